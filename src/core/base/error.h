@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one exception type of the program. Thrown anywhere, caught only at the boundary (apps, worker threads).
+#pragma once
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <string>
+
+namespace cei3d {
+
+enum class ErrorCode { failed = 1, usage = 2, interrupted = 130 };  // values are the program's exit codes
+
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorCode code, const std::string& what, std::string hint = {})
+      : std::runtime_error(what), code_(code), hint_(std::move(hint)) {}
+  ErrorCode code() const { return code_; }
+  const std::string& hint() const { return hint_; }  // what the user can do about it; may be empty
+
+ private:
+  ErrorCode code_;
+  std::string hint_;
+};
+
+// fail("{}: truncated PNG", path): bad data or a failed operation, exit code 1.
+template <class... A>
+[[noreturn]] void fail(fmt::format_string<A...> text, A&&... args) {
+  throw Error(ErrorCode::failed, fmt::format(text, std::forward<A>(args)...));
+}
+
+// Wrong use of the program (unknown name, impossible option), exit code 2.
+template <class... A>
+[[noreturn]] void fail_usage(fmt::format_string<A...> text, A&&... args) {
+  throw Error(ErrorCode::usage, fmt::format(text, std::forward<A>(args)...));
+}
+
+}  // namespace cei3d

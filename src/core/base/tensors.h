@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Named arrays: what models, checkpoints and projects are made of on disk (safetensors files).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace cei3d {
+
+struct Tensor {
+  std::vector<int64_t> shape;
+  std::vector<float> f32;     // exactly one of f32 and u8 is used
+  std::vector<uint8_t> u8;
+};
+using Tensors = std::map<std::string, Tensor>;
+
+// Whole-file read and atomic write (temporary name, fsync, rename) in the safetensors format (dtypes F32 and U8).
+// Errors: missing, truncated or malformed file; a full disk (the old file then stands untouched).
+Tensors read_tensors(const std::filesystem::path&);
+void write_tensors(const std::filesystem::path&, const Tensors&);
+std::string tensors_to_bytes(const Tensors&);
+Tensors tensors_from_bytes(const std::string& bytes, const std::string& name_for_errors);
+
+}  // namespace cei3d

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// The machine that kernels run on. A CPU device runs a launch on the calling thread; threads come from cutting work
+// into chunks with parallel_for. Devices have no state and can be shared by threads.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/compute/kernels/all.h"
+#include "core/compute/linear.h"
+
+namespace cei3d {
+
+// What one instruction set offers: compiled from cpu/run.cpp.
+struct LaunchTable {
+  const char* isa;   // "scalar", "avx2", "avx512"
+  int width;         // samples a register
+  void (*const* kernels)(const void* args, int n);
+  void (*linear)(const LinearArgs&);
+  void (*linear_weight_grad)(const LinearWeightGradArgs&);
+  double (*fma_peak)();  // measured FLOP/s of one core, fp32 multiply-add
+};
+
+class Device {
+ public:
+  explicit Device(const LaunchTable& table) : table_(table), name_(std::string("cpu/") + table.isa) {}
+  const std::string& name() const { return name_; }
+  int width() const { return table_.width; }
+
+  // Runs kernel K on items [0, n). Arrays must be padded to a multiple of 32 items.
+  template <class K>
+  void launch(const typename K::Args& args, int n) const {
+    table_.kernels[AllKernels::index_of<K>()](&args, n);
+  }
+  void linear(const LinearArgs& a) const { table_.linear(a); }
+  void linear_weight_grad(const LinearWeightGradArgs& a) const { table_.linear_weight_grad(a); }
+  double fma_peak() const { return table_.fma_peak(); }
+
+ private:
+  const LaunchTable& table_;
+  std::string name_;
+};
+
+// spec: "auto" or "cpu" (the widest instruction set this processor has), "cpu/scalar", "cpu/avx2", "cpu/avx512".
+// Errors: usage error for anything else, or for an instruction set this processor lacks.
+Device make_device(std::string_view spec = "auto");
+
+// Every CPU device this processor can run; the scalar one, the reference of parity tests, first.
+std::vector<Device> all_devices();
+
+}  // namespace cei3d

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pinhole camera. OpenCV axes: x right, y down, z into the scene. Pixel (column, row) covers [c, c+1) x [r, r+1);
+// its centre is at +0.5. Loaders convert other conventions on the way in.
+#pragma once
+
+#include "core/math/vec.h"
+
+namespace cei3d {
+
+struct Ray {
+  Vec3f origin, direction;  // direction has unit length
+};
+
+struct Camera {
+  int width = 0, height = 0;                         // pixels
+  double fx = 0, fy = 0, cx = 0, cy = 0, skew = 0;   // pixels
+  Mat3d world_from_cam = Mat3d::identity();          // rotation
+  Vec3d center{0, 0, 0};                             // camera centre in world units
+
+  // Ray through the continuous pixel position (u, v).
+  Ray ray(double u, double v) const {
+    const double y = (v - cy) / fy, x = (u - cx - skew * y) / fx;
+    const Vec3d d = world_from_cam * Vec3d{x, y, 1.0};
+    return {to_float(center), to_float(d / length(d))};
+  }
+  // Continuous pixel position (x, y) and z-depth (z) of a world point; z <= 0: behind the camera.
+  Vec3d project(Vec3d p) const {
+    const Vec3d c = transpose(world_from_cam) * (p - center);
+    return {(fx * c.x + skew * c.y) / c.z + cx, fy * c.y / c.z + cy, c.z};
+  }
+  Vec3f forward() const { return to_float(Vec3d{world_from_cam.row[0].z, world_from_cam.row[1].z, world_from_cam.row[2].z}); }
+};
+
+}  // namespace cei3d

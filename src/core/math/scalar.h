@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// The vocabulary that equations are written in. A number type T is float, double, Lanes<W> (core/math/lanes.h) or
+// Dual<...> (core/math/dual.h); equations use only + - * / and the functions below, never `if` on a value.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#ifdef __CUDACC__
+#define HD __host__ __device__ __forceinline__
+#else
+#define HD inline __attribute__((always_inline))  // so that no instruction set leaks through a weak symbol
+#endif
+
+namespace cei3d {
+
+HD float select(bool c, float a, float b) { return c ? a : b; }
+HD double select(bool c, double a, double b) { return c ? a : b; }
+HD uint32_t select(bool c, uint32_t a, uint32_t b) { return c ? a : b; }
+HD bool any(bool c) { return c; }
+HD bool all(bool c) { return c; }
+HD float min(float a, float b) { return a < b ? a : b; }
+HD double min(double a, double b) { return a < b ? a : b; }
+HD float max(float a, float b) { return a > b ? a : b; }
+HD double max(double a, double b) { return a > b ? a : b; }
+HD int min(int a, int b) { return a < b ? a : b; }
+HD int max(int a, int b) { return a > b ? a : b; }
+HD float abs(float a) { return ::fabsf(a); }
+HD double abs(double a) { return ::fabs(a); }
+HD float sqrt(float a) { return ::sqrtf(a); }
+HD double sqrt(double a) { return ::sqrt(a); }
+HD float exp(float a) { return ::expf(a); }
+HD double exp(double a) { return ::exp(a); }
+HD float log(float a) { return ::logf(a); }
+HD double log(double a) { return ::log(a); }
+HD float sin(float a) { return ::sinf(a); }
+HD double sin(double a) { return ::sin(a); }
+HD float cos(float a) { return ::cosf(a); }
+HD double cos(double a) { return ::cos(a); }
+HD float floor(float a) { return ::floorf(a); }
+HD double floor(double a) { return ::floor(a); }
+
+// A plain double of any number type: the value part, for tests and for control flow outside kernels.
+HD double value_of(float a) { return a; }
+HD double value_of(double a) { return a; }
+
+// The unsigned integer that goes with T (array indices).
+template <class T>
+struct IndexOf {
+  using type = uint32_t;
+};
+template <class T>
+using Index = typename IndexOf<T>::type;
+
+template <class T>
+HD Index<T> to_index(T a) {  // a >= 0
+  return Index<T>(value_of(a));
+}
+
+// Memory. Item i is one sample for a scalar T and the first of W consecutive samples for Lanes<W>.
+template <class T>
+HD T load(const float* p) {
+  return T(*p);
+}
+template <class T>
+HD void store(float* p, T v) {
+  *p = float(value_of(v));
+}
+template <class T>
+HD T gather(const float* p, uint32_t i) {
+  return T(p[i]);
+}
+// Two neighbouring floats p[2 i], p[2 i + 1].
+template <class T>
+HD void gather2(const float* p, uint32_t i, T& a, T& b) {
+  a = T(p[2 * i]);
+  b = T(p[2 * i + 1]);
+}
+
+template <class T>
+HD T square(T a) {
+  return a * a;
+}
+template <class T>
+HD T clamp(T a, T lo, T hi) {
+  return min(max(a, lo), hi);
+}
+
+inline constexpr float kPi = 3.14159265358979323846f;
+
+}  // namespace cei3d

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "core/math/vec.h"
+
+namespace cei3d {
+
+// Where a camera ray meets the surface. Unit-sphere frame.
+struct Hit {
+  Vec3f position;
+  Vec3f normal;       // unit, outward, of the SDF at the scale that shading uses
+  Vec3f to_camera;    // unit, from the hit to the camera
+  uint32_t triangle;  // of the surface mesh nearest along the ray ...
+  float b1, b2;       // ... and its barycentrics: p = (1 - b1 - b2) v0 + b1 v1 + b2 v2
+};
+
+}  // namespace cei3d

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// The one similarity transform between the capture's own frame ("input") and the unit sphere that fields live in.
+#pragma once
+
+#include "core/math/camera.h"
+
+namespace cei3d {
+
+struct Normalization {
+  Vec3d center{0, 0, 0};  // input units
+  double scale = 1;       // unit-sphere units per input unit
+
+  Vec3d unit_from_input(Vec3d p) const { return (p - center) * scale; }
+  Vec3d input_from_unit(Vec3d p) const { return p / scale + center; }
+  Camera unit_from_input(Camera c) const {
+    c.center = unit_from_input(c.center);
+    return c;
+  }
+};
+
+}  // namespace cei3d

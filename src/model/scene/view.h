@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a capture says: cameras, files and splits, in the capture's own frame ("input").
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/math/camera.h"
+
+namespace cei3d {
+
+enum class Split { train, val, test };
+
+struct View {
+  std::string name;                  // "train/r_055": split folder and stem, unique in the capture
+  Split split = Split::train;
+  Camera camera;                     // input frame; pixel centres at +0.5
+  std::filesystem::path image_path;  // empty: a camera without a photograph
+  std::filesystem::path mask_path;   // empty: alpha of the image is the mask
+};
+
+struct Capture {
+  std::filesystem::path root;
+  std::string format;                // "nerf-synthetic", "physg"
+  std::vector<View> views;           // train first, then val, test; each sorted as the capture lists them
+  Vec3d up{0, 0, 1};                 // world axis that points to the sky, input frame
+};
+
+}  // namespace cei3d
