@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// Photos to an editable object: the geometry stage, then the appearance stage. [architecture 1.2]
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/base/progress.h"
+#include "core/image/image.h"
+#include "model/scene/scene.h"
+
+namespace cei3d {
+
+struct ReconstructOptions {
+  std::string preset = "fast";  // "fast", "balanced" or "paper" (engine/reconstruct/presets.h)
+  double seconds = 0;           // stop training after; the whole schedule scales with it. 0: the preset's own
+  int iterations = 0;           // of the geometry stage, instead of seconds: makes a run a function of the seed alone
+  uint64_t seed = 1;
+  int downscale = 1;            // use images at 1/N of their size
+  int test_every = 0;           // hold out every Nth view when the capture has no split; 0: none
+};
+
+// Where the trainer puts its state. Both files of a checkpoint appear or neither.
+class Checkpoints {
+ public:
+  struct State {
+    Json head;
+    Tensors tensors;
+  };
+  virtual ~Checkpoints() = default;
+  virtual void save(const State&) = 0;
+  virtual std::optional<State> latest() = 0;  // what to resume from; nothing: start anew
+};
+
+// Training images by view; the loader is passed in because files are engine/io's business.
+class ImageSource {
+ public:
+  virtual ~ImageSource() = default;
+  virtual Image load(const View&) const = 0;  // RGBA, linear, straight alpha; alpha is the object mask
+};
+
+// Scene, or an interrupted Error after saving a checkpoint when progress.cancelled().
+Scene reconstruct(const Device&, const Capture&, const ImageSource&, const Normalization&, const ReconstructOptions&,
+                  Checkpoints&, Progress&);
+
+}  // namespace cei3d

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures of a scene, in two steps: trace (expensive, cacheable) and shade (cheap; all that light and paint change).
+#pragma once
+
+#include <vector>
+
+#include "core/image/image.h"
+#include "model/scene/scene.h"
+
+namespace cei3d {
+
+// Every sub-pixel sample that met the surface, ordered by pixel.
+struct GBuffer {
+  int width = 0, height = 0;
+  int samples = 2;                     // a pixel and axis
+  std::vector<Hit> hits;               // #H
+  std::vector<float> depths;           // #H, z-depth in unit-sphere units
+  std::vector<uint32_t> pixel_start;   // #pixels + 1: pixel p owns hits [start[p], start[p + 1])
+};
+// camera: unit-sphere frame.
+GBuffer trace_view(const Device&, const Scene&, const Camera& camera, int samples = 2);
+
+struct Frame {
+  Image rgb, albedo, diffuse, specular;  // RGBA, linear, straight alpha
+  Image normal;                          // RGB, unit vectors in the capture's axes; 0 where nothing was hit
+  Image depth;                           // 1 channel, z-depth in capture units; 0 where nothing was hit
+  Image mask;                            // 1 channel, coverage
+  std::vector<uint8_t> edited;           // #pixels, 1 where any sample routed to an edit layer
+};
+Frame shade_view(const Device&, const Scene&, const GBuffer&);
+
+}  // namespace cei3d

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// The surface as rays and light see it: a mesh of the zero level set, an index for rays, and for every vertex which
+// directions of the sky are free.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "model/geometry/hit.h"
+#include "model/geometry/mesh.h"
+
+namespace cei3d {
+
+inline constexpr int kSkyDirections = 512;  // directions a visibility row has bits for
+
+// Fixed set of near-uniform directions (spherical Fibonacci), the columns of a visibility table.
+const std::vector<Vec3f>& sky_directions();
+
+class Surface {
+ public:
+  explicit Surface(Mesh mesh);                                       // casts the visibility rays (seconds)
+  Surface(Mesh mesh, std::vector<uint8_t> visibility);               // from a stored table
+  ~Surface();
+  Surface(const Surface&) = delete;
+  Surface& operator=(const Surface&) = delete;
+
+  const Mesh& mesh() const { return mesh_; }
+  const std::vector<uint8_t>& visibility() const { return visibility_; }  // #V x kSkyDirections / 8, bit = free
+  bool sees(uint32_t vertex, int direction) const {
+    return visibility_[size_t(vertex) * (kSkyDirections / 8) + direction / 8] >> (direction % 8) & 1;
+  }
+
+  struct RayHit {
+    float t = -1;  // negative: nothing hit
+    uint32_t triangle = 0;
+    float b1 = 0, b2 = 0;
+  };
+  // Closest hits with t in (t_min, inf). origins, directions, out: #N. Runs on all threads.
+  void intersect(std::span<const Vec3f> origins, std::span<const Vec3f> directions, float t_min,
+                 std::span<RayHit> out) const;
+
+ private:
+  struct Bvh;
+  Mesh mesh_;
+  std::vector<uint8_t> visibility_;
+  std::unique_ptr<Bvh> bvh_;
+};
+
+}  // namespace cei3d
