@@ -20,7 +20,7 @@ struct LaunchTable {
   void (*const* kernels)(const void* args, int n);
   void (*linear)(const LinearArgs&);
   void (*linear_weight_grad)(const LinearWeightGradArgs&);
-  double (*fma_peak)();  // measured FLOP/s of one core, fp32 multiply-add
+  double (*fma_peak)();  // spins on multiply-adds in registers; FLOPs done, for the caller to time
 };
 
 class Device {

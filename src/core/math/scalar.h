@@ -37,6 +37,11 @@ HD float sin(float a) { return ::sinf(a); }
 HD double sin(double a) { return ::sin(a); }
 HD float cos(float a) { return ::cosf(a); }
 HD double cos(double a) { return ::cos(a); }
+template <class T>
+HD void sin_cos(T x, T& s, T& c) {
+  s = sin(x);
+  c = cos(x);
+}
 HD float floor(float a) { return ::floorf(a); }
 HD double floor(double a) { return ::floor(a); }
 
@@ -75,6 +80,16 @@ template <class T>
 HD void gather2(const float* p, uint32_t i, T& a, T& b) {
   a = T(p[2 * i]);
   b = T(p[2 * i + 1]);
+}
+// Adds (a, b) to that pair; on a GPU other threads may add to it at the same time.
+HD void scatter_add2(float* p, uint32_t i, float a, float b) {
+#ifdef __CUDA_ARCH__
+  atomicAdd(p + 2 * i, a);
+  atomicAdd(p + 2 * i + 1, b);
+#else
+  p[2 * i] += a;
+  p[2 * i + 1] += b;
+#endif
 }
 
 template <class T>

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+// Linear layers as register tiles: 4 outputs x 2 registers of samples share every load. Included by run.cpp only.
+#pragma once
+
+#include <cstddef>
+
+#include "core/compute/linear.h"
+
+namespace cei3d {
+
+// y[o0..o0+R) for the 2 W samples at x (R outputs a tile, W samples a register).
+template <int R, class T, int W>
+HD void linear_tile(const LinearArgs& a, const float* x, const float* w, const float* bias, float* y) {
+  T s0[R], s1[R];
+  for (int r = 0; r < R; ++r) s0[r] = s1[r] = T(bias ? bias[r] : 0.0f);
+  for (int i = 0; i < a.in; ++i) {
+    const T x0 = load<T>(x + size_t(i) * kPanel), x1 = load<T>(x + size_t(i) * kPanel + W);
+    for (int r = 0; r < R; ++r) {
+      const T c(w[size_t(r) * a.weight_stride + i]);
+      s0[r] = s0[r] + c * x0;
+      s1[r] = s1[r] + c * x1;
+    }
+  }
+  for (int r = 0; r < R; ++r) {
+    store<T>(y + size_t(r) * kPanel, s0[r]);
+    store<T>(y + size_t(r) * kPanel + W, s1[r]);
+  }
+}
+
+template <class T, int W>
+inline __attribute__((always_inline)) void linear_run(const LinearArgs& a) {
+  for (int p = 0; p < a.panels; ++p) {
+    const float* bias = a.bias && p % a.bias_every == 0 ? a.bias : nullptr;
+    for (int s = 0; s < kPanel; s += 2 * W) {
+      const float* x = a.x + size_t(p) * a.x_stride * kPanel + s;
+      float* y = a.y + size_t(p) * a.y_stride * kPanel + s;
+      int o = 0;
+      for (; o + 4 <= a.out; o += 4)
+        linear_tile<4, T, W>(a, x, a.weights + size_t(o) * a.weight_stride, bias ? bias + o : nullptr, y + size_t(o) * kPanel);
+      for (; o < a.out; ++o)
+        linear_tile<1, T, W>(a, x, a.weights + size_t(o) * a.weight_stride, bias ? bias + o : nullptr, y + size_t(o) * kPanel);
+    }
+  }
+}
+
+// d_weights of R outputs x C inputs: products of whole registers are summed over panels, then across the lanes.
+template <int R, int C, class T, int W>
+HD void weight_grad_tile(const LinearWeightGradArgs& a, int o, int i) {
+  T sum[R][C];
+  for (int r = 0; r < R; ++r)
+    for (int c = 0; c < C; ++c) sum[r][c] = T(0.0f);
+  for (int p = 0; p < a.panels; ++p) {
+    const float* x = a.x + (size_t(p) * a.x_stride + i) * kPanel;
+    const float* d = a.d_y + (size_t(p) * a.y_stride + o) * kPanel;
+    for (int s = 0; s < kPanel; s += W) {
+      T xs[C];
+      for (int c = 0; c < C; ++c) xs[c] = load<T>(x + size_t(c) * kPanel + s);
+      for (int r = 0; r < R; ++r) {
+        const T dr = load<T>(d + size_t(r) * kPanel + s);
+        for (int c = 0; c < C; ++c) sum[r][c] = sum[r][c] + dr * xs[c];
+      }
+    }
+  }
+  for (int r = 0; r < R; ++r)
+    for (int c = 0; c < C; ++c) a.d_weights[size_t(o + r) * a.weight_stride + i + c] += sum_lanes(sum[r][c]);
+}
+
+template <int R, class T, int W>
+HD void weight_grad_rows(const LinearWeightGradArgs& a, int o) {
+  int i = 0;
+  for (; i + 4 <= a.in; i += 4) weight_grad_tile<R, 4, T, W>(a, o, i);
+  for (; i < a.in; ++i) weight_grad_tile<R, 1, T, W>(a, o, i);
+}
+
+template <class T, int W>
+inline __attribute__((always_inline)) void bias_grad(const LinearWeightGradArgs& a) {
+  for (int o = 0; o < a.out; ++o) {
+    T sum(0.0f);
+    for (int p = 0; p < a.panels; p += a.bias_every)
+      for (int s = 0; s < kPanel; s += W) sum = sum + load<T>(a.d_y + (size_t(p) * a.y_stride + o) * kPanel + s);
+    a.d_bias[o] += sum_lanes(sum);
+  }
+}
+
+// Blocks of panels keep both operands in the first-level cache while all tiles pass over them.
+template <class T, int W>
+inline __attribute__((always_inline)) void weight_grad_run(const LinearWeightGradArgs& all) {
+  constexpr int kBlock = 4;
+  for (int p = 0; p < all.panels; p += kBlock) {
+    LinearWeightGradArgs a = all;
+    a.x += size_t(p) * a.x_stride * kPanel;
+    a.d_y += size_t(p) * a.y_stride * kPanel;
+    a.panels = all.panels - p < kBlock ? all.panels - p : kBlock;
+    int o = 0;
+    for (; o + 4 <= a.out; o += 4) weight_grad_rows<4, T, W>(a, o);
+    for (; o < a.out; ++o) weight_grad_rows<1, T, W>(a, o);
+  }
+  if (all.d_bias) bias_grad<T, W>(all);
+}
+
+}  // namespace cei3d

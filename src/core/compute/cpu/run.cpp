@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// Every kernel for one instruction set. Compiled as scalar, avx2 and avx512 with CEI3D_ISA and CEI3D_WIDTH set; no STL
+// here and nothing that could leave a weak symbol outside namespace CEI3D_ISA (tools/check_isa.sh looks).
+#include "core/compute/device.h"
+#if CEI3D_WIDTH > 1
+#include "core/math/lanes.h"
+#endif
+
+namespace cei3d {
+#if CEI3D_WIDTH == 1
+HD float sum_lanes(float a) { return a; }
+#endif
+}  // namespace cei3d
+#include "core/compute/cpu/linear.h"
+
+#define CEI3D_TEXT2(x) #x
+#define CEI3D_TEXT(x) CEI3D_TEXT2(x)
+
+namespace cei3d::CEI3D_ISA {
+namespace {
+
+#if CEI3D_WIDTH == 1
+using Number = float;
+#else
+using Number = Lanes<CEI3D_WIDTH>;
+#endif
+
+template <class K>
+void launch(const void* p, int n) {
+  const auto& args = *static_cast<const typename K::Args*>(p);
+  for (int i = 0; i < n; i += CEI3D_WIDTH) K::template run<Number>(args, i);
+}
+
+template <class List>
+struct Table;
+template <class... K>
+struct Table<KernelList<K...>> {
+  static constexpr void (*entries[])(const void*, int) = {&launch<K>...};
+};
+
+void linear(const LinearArgs& a) { linear_run<Number, CEI3D_WIDTH>(a); }
+void linear_weight_grad(const LinearWeightGradArgs& a) { weight_grad_run<Number, CEI3D_WIDTH>(a); }
+
+// Independent multiply-adds in registers: what no kernel on this instruction set can exceed. Returns FLOPs done.
+double fma_peak() {
+  constexpr int kChains = 12, kRounds = 1 << 20;
+  Number s[kChains];
+  for (int k = 0; k < kChains; ++k) s[k] = Number(float(k));
+  for (int i = 0; i < kRounds; ++i)
+    for (int k = 0; k < kChains; ++k) s[k] = s[k] * Number(0.999f) + Number(0.5f);
+  Number sum(0.0f);
+  for (int k = 0; k < kChains; ++k) sum = sum + s[k];
+  volatile float sink = sum_lanes(sum);
+  (void)sink;
+  return 2.0 * kChains * kRounds * CEI3D_WIDTH;
+}
+
+}  // namespace
+
+extern const LaunchTable table;
+const LaunchTable table{CEI3D_TEXT(CEI3D_ISA), CEI3D_WIDTH, Table<AllKernels>::entries, linear, linear_weight_grad,
+                        fma_peak};
+
+}  // namespace cei3d::CEI3D_ISA

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/compute/device.h"
+
+#include "core/base/error.h"
+
+namespace cei3d {
+
+namespace scalar {
+extern const LaunchTable table;
+}
+#ifdef CEI3D_X86
+namespace avx2 {
+extern const LaunchTable table;
+}
+namespace avx512 {
+extern const LaunchTable table;
+}
+#endif
+
+std::vector<Device> all_devices() {
+  std::vector<Device> devices{Device(scalar::table)};
+#ifdef CEI3D_X86
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) devices.emplace_back(avx2::table);
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
+      __builtin_cpu_supports("avx512vl"))
+    devices.emplace_back(avx512::table);
+#endif
+  return devices;
+}
+
+Device make_device(std::string_view spec) {
+  const std::vector<Device> devices = all_devices();
+  if (spec == "auto" || spec == "cpu") return devices.back();
+  for (const Device& d : devices)
+    if (d.name() == spec) return d;
+  std::string known;
+  for (const Device& d : devices) known += (known.empty() ? "" : ", ") + d.name();
+  fail_usage("device '{}' is not available here; this machine has: auto, cpu, {}", spec, known);
+}
+
+}  // namespace cei3d

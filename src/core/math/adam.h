@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "core/math/scalar.h"
+
+namespace cei3d {
+
+struct AdamStep {
+  float rate;              // learning rate, bias correction included: lr sqrt(1 - beta2^t) / (1 - beta1^t)
+  float beta1, beta2, eps; // [Kingma and Ba 2015]
+  bool skip_zero;          // leave entries without gradient alone (hash tables: most are untouched in a step)
+};
+
+// One parameter's update.
+template <class T>
+HD void adam_update(const AdamStep& s, T gradient, T& value, T& m, T& v) {
+  const T m1 = m * T(s.beta1) + gradient * T(1.0f - s.beta1);
+  const T v1 = v * T(s.beta2) + gradient * gradient * T(1.0f - s.beta2);
+  const T x1 = value - T(s.rate) * m1 / (sqrt(v1) + T(s.eps));
+  const auto keep = (gradient == T(0.0f)) & (T(s.skip_zero ? 0.0f : 1.0f) == T(0.0f));
+  m = select(keep, m, m1);
+  v = select(keep, v, v1);
+  value = select(keep, value, x1);
+}
+
+}  // namespace cei3d
