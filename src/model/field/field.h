@@ -12,11 +12,10 @@
 #include "core/base/json.h"
 #include "core/compute/device.h"
 #include "core/math/vec.h"
+#include "model/field/mlp.h"
 #include "model/field/params.h"
 
 namespace cei3d {
-
-enum class Activation { none, relu, elu, softplus, sigmoid };
 
 struct EncodingConfig {
   int frequencies = 0;         // L of the frequency encoding, sin and cos of 2^k x, k < L [reference-facts 2.1]; 0: none
@@ -35,9 +34,14 @@ struct FieldConfig {
   float softplus_beta = 100;
   int outputs = 3;
   Activation output_activation = Activation::none;
+  float sphere_radius = 0;     // > 0: |x| - sphere_radius is added to output 0, so that an untrained SDF is a sphere
 };
 Json to_json(const FieldConfig&);
 FieldConfig field_config_from_json(const Json&);  // error on unknown keys
+
+int encoding_rows(const EncodingConfig&);
+MlpConfig mlp_config(const FieldConfig&);
+GridLevel grid_level(const EncodingConfig&, int level);
 
 class Field {
  public:
@@ -46,6 +50,7 @@ class Field {
   const FieldConfig& config() const { return config_; }
   ParamSet& params() { return params_; }  // by name: "encoding/level3", "layer0/weight", "layer0/bias"
   const ParamSet& params() const { return params_; }
+  const float* table(int level) const { return params_.all()[level].value.data(); }  // tables come first
 
   // Values at points in [-1, 1]^3. x: #N, out: #N x outputs, row-major. Runs on all threads.
   void eval(const Device& device, std::span<const Vec3f> x, std::span<float> out) const;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named parameters of a model, with Adam moments. The only owner of weights: saving, hashing and optimising need no code
-// per network.
+// Named parameters of a model. The only owner of weights: saving, hashing and optimising need no code per network.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
@@ -13,7 +13,9 @@ namespace cei3d {
 struct Param {
   std::string name;
   std::vector<int64_t> shape;
-  std::vector<float> value;
+  std::vector<float> value;  // padded with zeros to a multiple of 32 floats, so that kernels need no remainder
+
+  size_t count() const;      // product of the shape
 };
 
 class ParamSet {
@@ -24,11 +26,14 @@ class ParamSet {
   std::vector<Param>& all() { return params_; }
   const std::vector<Param>& all() const { return params_; }
 
-  void save(Tensors& out, const std::string& prefix) const;       // "prefix/name"
-  void load(const Tensors& in, const std::string& prefix);        // error on a missing name or another shape
+  void save(Tensors& out, const std::string& prefix) const;  // "prefix/name"
+  void load(const Tensors& in, const std::string& prefix);   // error on a missing name or another shape
 
  private:
   std::vector<Param> params_;
 };
+
+// One array out of a tensor file, checked: error when it is missing or has another shape.
+const Tensor& require_tensor(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape);
 
 }  // namespace cei3d

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/field/optimizer.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace cei3d {
+
+void Optimizer::add(ParamSet& params, const std::string& prefix, const Group& group) {
+  for (Param& p : params.all())
+    if (p.name.starts_with(prefix)) {
+      const std::vector<float> zeros(p.value.size(), 0.0f);
+      slots_.push_back({&p, group, zeros, zeros, zeros});
+    }
+}
+
+std::span<float> Optimizer::gradient(const Param& param) {
+  for (Slot& s : slots_)
+    if (s.param == &param) return s.gradient;
+  fail("parameter '{}' is not being optimised", param.name);
+}
+
+void Optimizer::step(const Device& device, float rate_scale) {
+  ++steps_;
+  constexpr int kGrain = 1 << 16;
+  for (Slot& s : slots_) {
+    const Group& g = s.group;
+    const double correction = std::sqrt(1 - std::pow(double(g.beta2), double(steps_))) /
+                              (1 - std::pow(double(g.beta1), double(steps_)));
+    const AdamStep step{float(g.rate * rate_scale * correction), g.beta1, g.beta2, g.eps, g.skip_zero};
+    parallel_ranges(int(s.gradient.size()), kGrain, [&](int begin, int end) {
+      device.launch<Adam>({step, s.param->value.data() + begin, s.gradient.data() + begin, s.m.data() + begin,
+                           s.v.data() + begin}, end - begin);
+    });
+  }
+}
+
+void Optimizer::save(Tensors& out, const std::string& prefix) const {
+  for (size_t i = 0; i < slots_.size(); ++i) {
+    const std::string name = prefix + "/" + std::to_string(i);
+    const auto n = int64_t(slots_[i].m.size());
+    out[name + "/m"] = {{n}, slots_[i].m, {}};
+    out[name + "/v"] = {{n}, slots_[i].v, {}};
+  }
+  out[prefix + "/steps"] = {{1}, {float(steps_)}, {}};
+}
+
+void Optimizer::load(const Tensors& in, const std::string& prefix) {
+  for (size_t i = 0; i < slots_.size(); ++i) {
+    const std::string name = prefix + "/" + std::to_string(i);
+    const auto n = int64_t(slots_[i].m.size());
+    slots_[i].m = require_tensor(in, name + "/m", {n}).f32;
+    slots_[i].v = require_tensor(in, name + "/v", {n}).f32;
+  }
+  steps_ = int64_t(require_tensor(in, prefix + "/steps", {1}).f32[0]);
+}
+
+}  // namespace cei3d
