@@ -6,7 +6,6 @@
 #include <string>
 
 #include "core/base/progress.h"
-#include "core/image/image.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {
@@ -30,13 +29,6 @@ class Checkpoints {
   virtual ~Checkpoints() = default;
   virtual void save(const State&) = 0;
   virtual std::optional<State> latest() = 0;  // what to resume from; nothing: start anew
-};
-
-// Training images by view; the loader is passed in because files are engine/io's business.
-class ImageSource {
- public:
-  virtual ~ImageSource() = default;
-  virtual Image load(const View&) const = 0;  // RGBA, linear, straight alpha; alpha is the object mask
 };
 
 // Scene, or an interrupted Error after saving a checkpoint when progress.cancelled().

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/image/image.h"
 #include "core/math/camera.h"
 
 namespace cei3d {
@@ -25,6 +26,14 @@ struct Capture {
   std::string format;                // "nerf-synthetic", "physg"
   std::vector<View> views;           // train first, then val, test; each sorted as the capture lists them
   Vec3d up{0, 0, 1};                 // world axis that points to the sky, input frame
+};
+
+// Pictures by view. Behind an interface because files are engine/io's business (CaptureImages there reads them).
+// May be called from several threads.
+class ImageSource {
+ public:
+  virtual ~ImageSource() = default;
+  virtual Image load(const View&) const = 0;  // RGBA, linear, straight alpha; alpha is the object mask
 };
 
 }  // namespace cei3d
