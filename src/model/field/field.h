@@ -73,8 +73,8 @@ class FieldTrainer {
   // loss(begin, end, out, d_out): reads the outputs of points [begin, end), row-major from out[0], and writes
   // dL/d(output) to d_out; called from several threads, on ranges that don't depend on their number.
   using Loss = std::function<void(int begin, int end, const float* out, float* d_out)>;
-  // One Adam step. x: #N. `rate` scales both learning rates (schedules).
-  void step(const Device& device, std::span<const Vec3f> x, const Loss& loss, float rate = 1);
+  // One Adam step. x: #N. `rate` scales both learning rates (schedules); `levels`: hash levels in use, -1: all.
+  void step(const Device& device, std::span<const Vec3f> x, const Loss& loss, float rate = 1, int levels = -1);
 
  private:
   struct State;

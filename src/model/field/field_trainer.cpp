@@ -31,10 +31,11 @@ FieldTrainer::FieldTrainer(Field& field, const Options& options)
 }
 FieldTrainer::~FieldTrainer() = default;
 
-void FieldTrainer::step(const Device& device, std::span<const Vec3f> x, const Loss& loss, float rate) {
+void FieldTrainer::step(const Device& device, std::span<const Vec3f> x, const Loss& loss, float rate, int levels) {
   const FieldConfig& config = field_.config();
   const MlpWeights weights(mlp_config(config), field_.params());
-  const int n = int(x.size()), outputs = config.outputs, levels = config.encoding.levels;
+  const int n = int(x.size()), outputs = config.outputs;
+  if (levels < 0) levels = config.encoding.levels;
   const int chunks = (n + kChunk - 1) / kChunk;
   state_->chunks.resize(chunks);
   parallel_for(chunks, [&](int c) {

@@ -6,12 +6,13 @@
 #include "core/compute/kernels/activate.h"
 #include "core/compute/kernels/adam.h"
 #include "core/compute/kernels/encode.h"
+#include "core/compute/kernels/radiance.h"
 
 namespace cei3d {
 
 using AllKernels = KernelList<EncodePoint, EncodeFrequency, EncodeGrid, EncodeGridGrad,  //
                               Activate<Relu>, ActivateGrad<Relu>, Activate<Elu>, ActivateGrad<Elu>,
                               Activate<Softplus>, ActivateGrad<Softplus>, Activate<Sigmoid>, ActivateGrad<Sigmoid>,
-                              Adam>;
+                              Adam, RadianceInput, RadianceInputGrad>;
 
 }  // namespace cei3d

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the auxiliary radiance network sees of a surface sample: SDF features, normal, position, direction, n.v and the
+// mirrored direction with four octaves. It only serves the geometry stage.
+#pragma once
+
+#include "core/compute/kernels/panel.h"
+#include "core/math/encoding.h"
+
+namespace cei3d {
+
+inline constexpr int kRadianceOctaves = 4;
+inline constexpr int radiance_rows(int features) { return features + 3 + 3 + 3 + 1 + 3 + 6 * kRadianceOctaves; }
+
+struct RadianceArgs {
+  const float* points;      // [panels][3][32]
+  const float* directions;  // [panels][3][32], unit, from the camera
+  float* sdf;               // jets [panels * 4][1 + features][32]: read by the forward, holds gradients in the backward
+  const float* sdf_value;   // backward only: the jets of the forward
+  float* input;             // [panels][radiance_rows][32]: written by the forward, gradients read by the backward
+  int features;
+};
+
+template <class T>
+HD Vec3<T> load_sdf_gradient(const float* sdf, int i, int rows) {
+  return {load<T>(sdf + panel_at(i, 4, 1, rows, 0)), load<T>(sdf + panel_at(i, 4, 2, rows, 0)),
+          load<T>(sdf + panel_at(i, 4, 3, rows, 0))};
+}
+
+struct RadianceInput {
+  using Args = RadianceArgs;
+  template <class T>
+  static HD void run(const Args& a, int i) {
+    const int rows = radiance_rows(a.features);
+    float* out = a.input + panel_at(i, 1, 0, rows, 0);
+    const auto put = [&](T v) {
+      store<T>(out, v);
+      out += kPanel;
+    };
+    for (int f = 0; f < a.features; ++f) put(load<T>(a.sdf + panel_at(i, 4, 0, 1 + a.features, 1 + f)));
+    const Vec3<T> n = normalize(load_sdf_gradient<T>(a.sdf, i, 1 + a.features));
+    const Vec3<T> x = load_point<T>(a.points, i), d = load_point<T>(a.directions, i);
+    const T nv = -dot(n, d);
+    const Vec3<T> r = n * (T(2.0f) * nv) + d;
+    for (int k = 0; k < 3; ++k) put(n[k]);
+    for (int k = 0; k < 3; ++k) put(x[k]);
+    for (int k = 0; k < 3; ++k) put(d[k]);
+    put(nv);
+    for (int k = 0; k < 3; ++k) put(r[k]);
+    for (int o = 0; o < kRadianceOctaves; ++o)
+      for (int k = 0; k < 3; ++k) {
+        T value[2], slope[2];
+        frequency_eval(r[k], o, value, slope);
+        put(value[0]);
+        put(value[1]);
+      }
+  }
+};
+
+// Adds to the jets' gradient: features into rows 1.., the normal into the derivative columns of row 0.
+struct RadianceInputGrad {
+  using Args = RadianceArgs;
+  template <class T>
+  static HD void run(const Args& a, int i) {
+    const int rows = radiance_rows(a.features), sdf_rows = 1 + a.features;
+    const float* in = a.input + panel_at(i, 1, 0, rows, 0);
+    const auto get = [&](int row) { return load<T>(in + size_t(row) * kPanel); };
+    const auto get3 = [&](int row) { return Vec3<T>{get(row), get(row + 1), get(row + 2)}; };
+    for (int f = 0; f < a.features; ++f) {
+      float* d = a.sdf + panel_at(i, 4, 0, sdf_rows, 1 + f);
+      store<T>(d, load<T>(d) + get(f));
+    }
+    const Vec3<T> g = load_sdf_gradient<T>(a.sdf_value, i, sdf_rows), d = load_point<T>(a.directions, i);
+    const T inverse = T(1.0f) / sqrt(dot(g, g) + T(1e-20f));
+    const Vec3<T> n = g * inverse, v = -d;
+    const T nv = dot(n, v);
+    const Vec3<T> r = n * (T(2.0f) * nv) - v;
+    const int at_r = a.features + 10;
+    Vec3<T> d_r = get3(at_r);
+    for (int o = 0; o < kRadianceOctaves; ++o)
+      for (int k = 0; k < 3; ++k) {
+        T value[2], slope[2];
+        frequency_eval(r[k], o, value, slope);
+        const int row = at_r + 3 + 6 * o + 2 * k;
+        d_r[k] = d_r[k] + slope[0] * get(row) + slope[1] * get(row + 1);
+      }
+    const Vec3<T> d_n = get3(a.features) + v * get(a.features + 9) + (d_r * nv + v * dot(d_r, n)) * T(2.0f);
+    const Vec3<T> d_g = (d_n - n * dot(n, d_n)) * inverse;
+    for (int k = 0; k < 3; ++k) {
+      float* p = a.sdf + panel_at(i, 4, 1 + k, sdf_rows, 0);
+      store<T>(p, load<T>(p) + d_g[k]);
+    }
+  }
+};
+
+}  // namespace cei3d

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Volume rendering of a signed distance field, so that a surface can be found by descent. [Wang et al. 2021 (NeuS),
+// eq. 13 and its discrete form; reference-facts: preliminaries]
+#pragma once
+
+#include "core/math/activation.h"
+
+namespace cei3d {
+
+template <class T>
+struct NeusSample {
+  T alpha;
+  T d_sdf, d_cosine;  // of alpha
+};
+
+// Opacity of a segment of length `delta` whose middle has signed distance `sdf` and along which the distance changes by
+// `cosine` (gradient . direction) a unit. `anneal` in [0, 1] blends a softened slope in early training with the true one;
+// without the slope the zero set would shrink. `sharpness` is s of the logistic density.
+template <class T>
+HD NeusSample<T> neus_alpha(T sdf, T cosine, T delta, T sharpness, T anneal) {
+  const T zero(0.0f), one(1.0f), half(0.5f), eps(1e-5f);
+  const T soft = half - half * cosine;
+  const auto soft_on = soft > zero;
+  const auto hard_on = cosine < zero;
+  const T slope = -(select(soft_on, soft, zero) * (one - anneal) + select(hard_on, -cosine, zero) * anneal);
+  const T d_slope = select(soft_on, half, zero) * (one - anneal) + select(hard_on, one, zero) * anneal;  // by cosine
+  const auto before = Sigmoid::eval(sharpness * (sdf - half * slope * delta), 1.0f);
+  const auto after = Sigmoid::eval(sharpness * (sdf + half * slope * delta), 1.0f);
+  const T q = before.value + eps;
+  const T raw = (before.value - after.value + eps) / q;
+  const auto inside = (raw > zero) & (raw < one);
+  // raw = 1 - after / q
+  const T by_before = after.value / (q * q) * before.first * sharpness;
+  const T by_after = -(after.first * sharpness / q);
+  const T d_sdf = by_before + by_after;
+  const T d_cosine = half * delta * d_slope * (by_after - by_before);
+  return {clamp(raw, zero, one), select(inside, d_sdf, zero), select(inside, d_cosine, zero)};
+}
+
+}  // namespace cei3d

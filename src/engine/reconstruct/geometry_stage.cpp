@@ -1,0 +1,394 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/geometry_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/math/loss.h"
+#include "core/math/rng.h"
+#include "core/math/volume.h"
+#include "engine/reconstruct/prefit.h"
+
+namespace cei3d {
+
+namespace {
+
+constexpr int kRays = 64;           // a chunk
+constexpr int kKeptPerRay = 16;     // most samples of a ray that get jets
+constexpr int kKept = kRays * kKeptPerRay;
+constexpr int kCandidates = 96;     // most of a ray
+constexpr int kBlock = 512;         // candidates evaluated at a time
+constexpr int kRefreshEvery = 200, kFullRefreshEvery = 1600;  // steps between looks at the occupancy grid
+constexpr float kRefreshMargin = 0.15f;
+
+}  // namespace
+
+double GeometryStats::psnr() const { return -10 * std::log10(std::max(squared_error / double(std::max<int64_t>(rays, 1)), 1e-12)); }
+
+struct GeometryStage::RayBatch {
+  int count = 0;
+  std::vector<Ray> rays;
+  std::vector<Target> targets;
+};
+
+struct GeometryStage::Work {
+  Work(const FieldConfig& sdf, const MlpConfig& radiance)
+      : value(sdf, kBlock, 1), jet(sdf, kKept, 4), color(radiance, kKept, 1), block_points(kBlock * 3),
+        points(kKept * 3), directions(kKept * 3), d_color_input(size_t(kKept) * radiance.inputs) {}
+  FieldPass value, jet;
+  MlpPass color;
+  std::vector<float> depths, values;   // candidates of all rays, ray after ray
+  std::vector<int> first_candidate;    // #rays + 1
+  std::vector<float> block_points;
+  std::vector<float> kept_depth;       // #kept
+  std::vector<int> first_kept;         // #rays + 1
+  std::vector<uint8_t> pulled;         // #rays: the object should be here and is not
+  int padded = 0;                      // kept samples, rounded up to a panel
+  std::vector<float> points, directions;          // panels [3][32]
+  std::vector<NeusSample<float>> alpha;           // #kept
+  std::vector<float> weight, transmittance;       // #kept
+  std::vector<Vec3f> pixel;                       // #rays: composite over white
+  std::vector<float> coverage;                    // #rays
+  std::vector<float> d_color_input;
+};
+
+GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options, uint64_t seed)
+    : device_(device),
+      pixels_(pixels),
+      options_(options),
+      seed_(seed),
+      sdf_(options.sdf, seed),
+      radiance_config_{radiance_rows(options.sdf.outputs - 1), options.radiance_layers, options.radiance_width, -1,
+                       Activation::relu, 1, 3, Activation::sigmoid},
+      work_([this] { return std::make_unique<Work>(options_.sdf, radiance_config_); }),
+      sdf_gradients_(options.rays / kRays),
+      radiance_gradients_(options.rays / kRays) {
+  add_mlp_params(radiance_config_, radiance_, seed + 1);
+  Optimizer::Group tables{options.table_rate}, layers{options.layer_rate};
+  tables.skip_zero = true;
+  optimizer_.add(sdf_.params(), "encoding/", tables);
+  optimizer_.add(sdf_.params(), "layer", layers);
+  optimizer_.add(radiance_, "layer", layers);
+}
+
+void GeometryStage::prefit() {
+  std::vector<HullMask> masks;
+  for (size_t v = 0; v < pixels_.cameras().size(); ++v) masks.push_back({pixels_.cameras()[v], pixels_.masks()[v]});
+  prefit_to_hull(device_, sdf_, visual_hull(masks, 128), options_.hull_margin, options_.prefit_steps, levels_at(0), seed_);
+}
+
+int GeometryStage::levels_at(double u) const {
+  const int all = options_.sdf.encoding.levels, first = std::min(options_.first_levels, all);
+  return std::min(all, first + int((all - first + 1) * u / options_.unlock_until));
+}
+
+GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
+  const double p = std::min(1.0, u / options_.sharpness_until);
+  Schedule s;
+  s.sharpness = float(options_.sharpness_start * std::pow(double(options_.sharpness_end) / options_.sharpness_start, p));
+  s.step = std::clamp(1 / s.sharpness, options_.step_min, options_.step_max);
+  s.band = std::max(4 / s.sharpness, 1.5f * s.step);
+  s.anneal = float(std::min(1.0, u / options_.unlock_until));
+  s.levels = levels_at(u);
+  return s;
+}
+
+void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first, RayBatch& batch) const {
+  batch.count = kRays;
+  batch.rays.resize(kRays);
+  batch.targets.resize(kRays);
+  for (int r = 0; r < kRays; ++r) {
+    Rng rng(seed_, uint64_t(step), uint64_t(first + r));
+    const Pixel& p = store.pixels()[rng.below(uint32_t(store.pixels().size()))];
+    const float u = rng.uniform(), v = rng.uniform();
+    batch.rays[r] = store.cameras()[p.view].ray(p.x + u, p.y + v);
+    batch.targets[r] = target_of(p);
+  }
+}
+
+namespace {
+
+// Where along the ray the coarse grid is lowest: the likeliest place for a surface that is missing.
+float lowest_depth(const OccupancyGrid& grid, const Ray& ray) {
+  float near, far, best = -1, lowest = 1e9f;
+  if (!unit_sphere_span(ray, near, far)) return -1;
+  for (int k = 0; k < 64; ++k) {
+    const float t = near + (far - near) * (float(k) + 0.5f) / 64, d = grid.at(ray.origin + ray.direction * t);
+    if (d < lowest) lowest = d, best = t;
+  }
+  return best;
+}
+
+// First look at a ray, by values alone: which candidates carry weight.
+void select_samples(const float* depth, const float* value, int n, float step, float sharpness, float keep_weight,
+                    std::vector<float>& kept, float& coverage) {
+  float transmittance = 1;
+  coverage = 0;
+  const size_t end = kept.size() + kKeptPerRay;
+  for (int i = 0; i < n && kept.size() < end && transmittance > 5e-3f; ++i) {
+    const bool joined_before = i > 0 && depth[i] - depth[i - 1] < 1.5f * step;
+    const bool joined_after = i + 1 < n && depth[i + 1] - depth[i] < 1.5f * step;
+    const float half_slope = joined_after    ? 0.5f * (value[i + 1] - value[i])
+                             : joined_before ? 0.5f * (value[i] - value[i - 1])
+                                             : -0.35f * step;
+    const float before = joined_before ? 0.5f * (value[i] + value[i - 1]) : value[i] - half_slope;
+    const float after = value[i] + half_slope;
+    const float p = Sigmoid::eval(sharpness * before, 1).value, q = Sigmoid::eval(sharpness * after, 1).value;
+    const float alpha = std::clamp((p - q) / (p + 1e-5f), 0.0f, 1.0f), weight = transmittance * alpha;
+    if (weight > keep_weight) kept.push_back(depth[i]);
+    coverage += weight;
+    transmittance *= 1 - alpha;
+  }
+}
+
+}  // namespace
+
+void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Work& w, uint64_t jitter_key, bool training) const {
+  w.depths.clear();
+  w.first_candidate.assign(1, 0);
+  for (int r = 0; r < batch.count; ++r) {
+    const float jitter = training ? Rng(seed_ ^ 0x5eed, jitter_key, uint64_t(r)).uniform() : 0.5f;
+    grid_.march(batch.rays[r], s.step, s.band, jitter, kCandidates, w.depths);
+    w.first_candidate.push_back(int(w.depths.size()));
+  }
+  const int n = int(w.depths.size());
+  w.values.resize(n);
+  for (int begin = 0, ray = 0; begin < n; begin += kBlock) {
+    const int count = std::min(kBlock, n - begin), padded = (count + kPanel - 1) / kPanel * kPanel;
+    for (int i = 0; i < padded; ++i) {
+      while (i < count && begin + i >= w.first_candidate[ray + 1]) ++ray;
+      const Vec3f p = i < count ? batch.rays[ray].origin + batch.rays[ray].direction * w.depths[begin + i] : Vec3f{0, 0, 0};
+      for (int c = 0; c < 3; ++c) w.block_points[panel_at(i, 1, 0, 3, c)] = p[c];
+    }
+    w.value.forward(device_, sdf_, *sdf_weights_, w.block_points.data(), padded, s.levels, 1);
+    for (int i = 0; i < count; ++i)
+      w.values[begin + i] = w.value.output()[panel_at(i, 1, 0, options_.sdf.outputs, 0)];
+  }
+
+  w.kept_depth.clear();
+  w.first_kept.assign(1, 0);
+  w.pulled.assign(batch.count, 0);
+  for (int r = 0; r < batch.count; ++r) {
+    const int first = w.first_candidate[r], count = w.first_candidate[r + 1] - first;
+    float coverage;
+    select_samples(w.depths.data() + first, w.values.data() + first, count, s.step, s.sharpness, options_.keep_weight,
+                   w.kept_depth, coverage);
+    if (training && coverage < 0.3f && batch.targets[r].alpha > 0.9f &&
+        int(w.kept_depth.size()) - w.first_kept.back() < kKeptPerRay) {
+      // The object should be here and is not: keep the sample nearest to a surface so that the loss can pull it.
+      const float* v = w.values.data() + first;
+      const float t = count ? w.depths[first + int(std::min_element(v, v + count) - v)] : lowest_depth(grid_, batch.rays[r]);
+      if (t > 0) {
+        w.kept_depth.resize(w.first_kept.back());
+        w.kept_depth.push_back(t);
+        w.pulled[r] = 1;
+      }
+    }
+    w.first_kept.push_back(int(w.kept_depth.size()));
+  }
+}
+
+void GeometryStage::forward(const Schedule& s, const RayBatch& batch, Work& w) const {
+  const int kept = int(w.kept_depth.size());
+  w.padded = (kept + kPanel - 1) / kPanel * kPanel;
+  int ray = 0;
+  for (int i = 0; i < w.padded; ++i) {
+    while (i < kept && i >= w.first_kept[ray + 1]) ++ray;
+    const Ray& r = batch.rays[ray];
+    const Vec3f p = i < kept ? r.origin + r.direction * w.kept_depth[i] : Vec3f{0, 0, 0};
+    for (int c = 0; c < 3; ++c) {
+      w.points[panel_at(i, 1, 0, 3, c)] = p[c];
+      w.directions[panel_at(i, 1, 0, 3, c)] = r.direction[c];
+    }
+  }
+  w.jet.forward(device_, sdf_, *sdf_weights_, w.points.data(), w.padded, s.levels, options_.sdf.outputs);
+  device_.launch<RadianceInput>({w.points.data(), w.directions.data(), const_cast<float*>(w.jet.output()), nullptr,
+                                 w.color.input(), options_.sdf.outputs - 1}, w.padded);
+  w.color.forward(device_, *radiance_weights_, w.padded, radiance_config_.inputs, 3);
+  composite(s, batch, w);
+}
+
+void GeometryStage::composite(const Schedule& s, const RayBatch& batch, Work& w) const {
+  const int kept = int(w.kept_depth.size()), rows = options_.sdf.outputs;
+  w.alpha.resize(kept);
+  w.weight.resize(kept);
+  w.transmittance.resize(kept);
+  w.pixel.assign(batch.count, {1, 1, 1});
+  w.coverage.assign(batch.count, 0);
+  for (int r = 0; r < batch.count; ++r) {
+    float transmittance = 1;
+    for (int i = w.first_kept[r]; i < w.first_kept[r + 1]; ++i) {
+      const float f = w.jet.output()[panel_at(i, 4, 0, rows, 0)];
+      const float cosine = dot(load_sdf_gradient<float>(w.jet.output(), i, rows), batch.rays[r].direction);
+      w.alpha[i] = neus_alpha<float>(f, cosine, s.step, s.sharpness, s.anneal);
+      w.transmittance[i] = transmittance;
+      w.weight[i] = transmittance * w.alpha[i].alpha;
+      transmittance *= 1 - w.alpha[i].alpha;
+      for (int c = 0; c < 3; ++c)
+        w.pixel[r][c] += w.weight[i] * (w.color.output()[panel_at(i, 1, 0, 3, c)] - 1);
+      w.coverage[r] += w.weight[i];
+    }
+  }
+}
+
+void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, ChunkGradients& g,
+                             std::vector<float>& radiance, GeometryStats& stats) const {
+  const int rows = options_.sdf.outputs;
+  const float per_ray = 1.0f / float(options_.rays), per_sample = per_ray / 4;  // about four samples a ray are kept
+  float* d_jet = w.jet.d_output();
+  float* d_color = w.color.d_output();
+  std::fill(d_jet, d_jet + size_t(w.padded) * 4 * rows, 0.0f);
+  std::fill(d_color, d_color + size_t(w.padded) * 3, 0.0f);
+  for (int r = 0; r < batch.count; ++r) {
+    Vec3f d_pixel;
+    for (int c = 0; c < 3; ++c) {
+      const float e = w.pixel[r][c] - batch.targets[r].srgb[c];
+      const LossValue<float> l = huber(e, options_.huber_width);
+      d_pixel[c] = l.gradient * per_ray;
+      stats.color += l.value;
+      stats.squared_error += e * e / 3;
+    }
+    const float miss = w.coverage[r] - batch.targets[r].alpha;
+    const float d_coverage = options_.mask_weight * per_ray * (miss > 0 ? 1.0f : -1.0f);
+    stats.mask += std::abs(miss);
+    float behind = 0;  // sum of weight x d_weight over the samples behind
+    for (int i = w.first_kept[r + 1] - 1; i >= w.first_kept[r]; --i) {
+      float d_weight = d_coverage;
+      for (int c = 0; c < 3; ++c) {
+        const float color = w.color.output()[panel_at(i, 1, 0, 3, c)];
+        d_weight += d_pixel[c] * (color - 1);
+        d_color[panel_at(i, 1, 0, 3, c)] = d_pixel[c] * w.weight[i];
+      }
+      const float d_alpha = w.transmittance[i] * d_weight - behind / std::max(1 - w.alpha[i].alpha, 1e-4f);
+      behind += w.weight[i] * d_weight;
+      const Vec3f gradient = load_sdf_gradient<float>(w.jet.output(), i, rows);
+      Vec3f d_gradient;
+      stats.eikonal += eikonal(gradient, d_gradient);
+      d_jet[panel_at(i, 4, 0, rows, 0)] =
+          d_alpha * w.alpha[i].d_sdf + (w.pulled[r] ? options_.mask_weight * per_ray : 0.0f);
+      for (int c = 0; c < 3; ++c)
+        d_jet[panel_at(i, 4, 1 + c, rows, 0)] = d_alpha * w.alpha[i].d_cosine * batch.rays[r].direction[c] +
+                                                options_.eikonal_weight * per_sample * d_gradient[c];
+    }
+  }
+  radiance.assign(radiance_weights_->gradient_size(), 0.0f);
+  w.color.backward(device_, *radiance_weights_, w.padded, radiance_config_.inputs, radiance.data(), w.d_color_input.data());
+  device_.launch<RadianceInputGrad>({w.points.data(), w.directions.data(), d_jet, w.jet.output(), w.d_color_input.data(),
+                                     rows - 1}, w.padded);
+  g.reset(options_.sdf, sdf_weights_->gradient_size(), w.padded, 4);
+  std::copy(w.points.begin(), w.points.begin() + std::ptrdiff_t(w.padded) * 3, g.points.begin());
+  w.jet.backward(device_, *sdf_weights_, w.padded, s.levels, g.network.data(), g.d_encoding.data());
+  stats.kept += int64_t(w.kept_depth.size());
+  stats.candidates += int64_t(w.depths.size());
+  stats.rays += batch.count;
+}
+
+namespace {
+void add(GeometryStats& a, const GeometryStats& b) {
+  a.color += b.color;
+  a.mask += b.mask;
+  a.eikonal += b.eikonal;
+  a.squared_error += b.squared_error;
+  a.kept += b.kept;
+  a.candidates += b.candidates;
+  a.rays += b.rays;
+}
+}  // namespace
+
+GeometryStats GeometryStage::step(int64_t step, double u) {
+  const Schedule s = schedule_at(u);
+  if (step % kRefreshEvery == 0) grid_.refresh(device_, sdf_, step % kFullRefreshEvery == 0 ? 1e9f : kRefreshMargin);
+  sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
+  radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
+  const int chunks = options_.rays / kRays;
+  std::vector<GeometryStats> stats(chunks);
+  parallel_for(chunks, [&](int c) {
+    RayBatch batch;
+    sample_rays(pixels_, step, c * kRays, batch);
+    work_.with([&](Work& w) {
+      gather_samples(s, batch, w, uint64_t(step) * 4096 + uint64_t(c), true);
+      forward(s, batch, w);
+      backward(s, batch, w, sdf_gradients_[c], radiance_gradients_[c], stats[c]);
+    });
+  });
+  std::vector<const std::vector<float>*> radiance;
+  for (const auto& g : radiance_gradients_) radiance.push_back(&g);
+  accumulate_layers(radiance_, radiance, optimizer_);
+  accumulate_gradients(device_, sdf_, sdf_gradients_, s.levels, optimizer_);
+
+  const double warm_up = std::min(1.0, u / 0.02 + 0.01);
+  const double decay = u < options_.decay_from
+                           ? 1.0
+                           : std::pow(double(options_.decay_to), (u - options_.decay_from) / (1 - options_.decay_from));
+  optimizer_.step(device_, float(warm_up * decay));
+  GeometryStats total;
+  for (const GeometryStats& st : stats) add(total, st);
+  return total;
+}
+
+GeometryStats GeometryStage::evaluate(const PixelStore& held_out, int rays, double u) {
+  const Schedule s = schedule_at(u);
+  sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
+  radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
+  const int chunks = rays / kRays;
+  std::vector<GeometryStats> stats(chunks);
+  parallel_for(chunks, [&](int c) {
+    RayBatch batch;
+    sample_rays(held_out, -1, c * kRays, batch);
+    work_.with([&](Work& w) {
+      gather_samples(s, batch, w, 0, false);
+      forward(s, batch, w);
+      for (int r = 0; r < batch.count; ++r) {
+        const Vec3f e = w.pixel[r] - batch.targets[r].srgb;
+        stats[c].squared_error += dot(e, e) / 3;
+        ++stats[c].rays;
+      }
+    });
+  });
+  GeometryStats total;
+  for (const GeometryStats& st : stats) add(total, st);
+  return total;
+}
+
+Image GeometryStage::render_radiance(const Camera& camera, int samples) {
+  const Schedule s = schedule_at(1);
+  sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
+  radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
+  Image out(camera.width, camera.height, 3);
+  const int per_pixel = samples * samples, pixels = kRays / per_pixel, all = camera.width * camera.height;
+  if (pixels < 1) fail("render_radiance: at most 8 samples a pixel and axis");
+  parallel_for((all + pixels - 1) / pixels, [&](int c) {
+    RayBatch batch;
+    for (int i = c * pixels; i < std::min(all, (c + 1) * pixels); ++i)
+      for (int k = 0; k < per_pixel; ++k)
+        batch.rays.push_back(camera.ray(i % camera.width + (k % samples + 0.5) / samples,
+                                        i / camera.width + (k / samples + 0.5) / samples));
+    batch.count = int(batch.rays.size());
+    work_.with([&](Work& w) {
+      gather_samples(s, batch, w, 0, false);
+      forward(s, batch, w);
+      for (int r = 0; r < batch.count; ++r) {
+        const int i = c * pixels + r / per_pixel;
+        for (int k = 0; k < 3; ++k) out.data[size_t(i) * 3 + k] += w.pixel[r][k] / float(per_pixel);
+      }
+    });
+  });
+  return out;
+}
+
+void GeometryStage::save(Tensors& out) const {
+  sdf_.params().save(out, "sdf");
+  radiance_.save(out, "radiance");
+  optimizer_.save(out, "adam");
+}
+
+void GeometryStage::load(const Tensors& in) {
+  sdf_.params().load(in, "sdf");
+  radiance_.load(in, "radiance");
+  optimizer_.load(in, "adam");
+  grid_.refresh(device_, sdf_, 1e9f);
+}
+
+}  // namespace cei3d

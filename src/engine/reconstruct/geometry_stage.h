@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The geometry stage (EIR): volume rendering of the signed distance field with a small radiance network, until the
+// surface stands. [architecture 1.2; prototype-findings "Geometry stage that worked"; paper sec. 3.1]
+#pragma once
+
+#include <memory>
+
+#include "core/base/pool.h"
+#include "engine/reconstruct/occupancy.h"
+#include "engine/reconstruct/pixels.h"
+#include "model/field/field.h"
+#include "model/field/field_pass.h"
+#include "model/field/gradients.h"
+#include "model/field/optimizer.h"
+
+namespace cei3d {
+
+struct GeometryOptions {
+  FieldConfig sdf;                                   // outputs: 1 + features
+  int radiance_layers = 2, radiance_width = 64;
+  int rays = 2048;                                   // a step
+  float sharpness_start = 40, sharpness_end = 600;   // of the logistic density, geometric over `sharpness_until`
+  float sharpness_until = 0.6f;                      // fractions of the schedule
+  float unlock_until = 0.3f;                         // hash levels open, coarse to fine, until here
+  int first_levels = 5;
+  float step_min = 0.004f, step_max = 0.02f;         // along rays, unit-sphere units; in between: 1 / sharpness
+  float keep_weight = 0.01f;                         // samples below it get no jet and no radiance
+  float huber_width = 0.05f, mask_weight = 0.5f, eikonal_weight = 0.1f;
+  float table_rate = 1e-2f, layer_rate = 2e-3f;      // Adam
+  float decay_from = 0.3f, decay_to = 0.05f;         // exponential decay of the rate over the rest of the schedule
+  float hull_margin = 0.015f;                        // the prefit surface lies this far inside the visual hull
+  int prefit_steps = 300;
+};
+
+struct GeometryStats {
+  double color = 0, mask = 0, eikonal = 0;  // losses, a ray
+  double squared_error = 0;                 // a ray and channel, display space
+  int64_t kept = 0, candidates = 0, rays = 0;
+  double psnr() const;
+};
+
+class GeometryStage {
+ public:
+  GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options, uint64_t seed);
+
+  // Fits the field to the distance to the visual hull: descent then starts from the right object. Error: empty hull.
+  void prefit();
+  // One training step at schedule position u in [0, 1).
+  GeometryStats step(int64_t step, double u);
+  // Loss statistics of random pixels of another store (held-out views), no training.
+  GeometryStats evaluate(const PixelStore& held_out, int rays, double u);
+  // The whole view by the radiance field, over white, display-encoded RGB. samples: a pixel and axis.
+  Image render_radiance(const Camera& unit_camera, int samples);
+
+  const Field& sdf() const { return sdf_; }
+  int levels_at(double u) const;
+  void save(Tensors& out) const;
+  void load(const Tensors& in);
+
+ private:
+  struct Work;       // buffers of one chunk of rays
+  struct RayBatch;   // its rays and targets
+  struct Schedule {
+    float sharpness, step, band, anneal;
+    int levels;
+  };
+  Schedule schedule_at(double u) const;
+  void sample_rays(const PixelStore&, int64_t step, int first, RayBatch&) const;
+  void gather_samples(const Schedule&, const RayBatch&, Work&, uint64_t jitter_key, bool training) const;
+  void forward(const Schedule&, const RayBatch&, Work&) const;
+  void backward(const Schedule&, const RayBatch&, Work&, ChunkGradients& sdf, std::vector<float>& radiance,
+                GeometryStats&) const;
+  void composite(const Schedule&, const RayBatch&, Work&) const;
+
+  const Device& device_;
+  const PixelStore& pixels_;
+  GeometryOptions options_;
+  uint64_t seed_;
+  Field sdf_;
+  MlpConfig radiance_config_;
+  ParamSet radiance_;
+  Optimizer optimizer_;
+  OccupancyGrid grid_;
+  std::unique_ptr<MlpWeights> sdf_weights_, radiance_weights_;  // of the current step
+  Pool<Work> work_;
+  std::vector<ChunkGradients> sdf_gradients_;
+  std::vector<std::vector<float>> radiance_gradients_;
+};
+
+}  // namespace cei3d

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/occupancy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cei3d {
+
+bool unit_sphere_span(const Ray& ray, float& near, float& far) {
+  const float b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - 1, disc = b * b - c;
+  if (disc <= 0) return false;
+  const float root = std::sqrt(disc);
+  near = std::max(0.0f, -b - root);
+  far = -b + root;
+  return far > near;
+}
+
+Vec3f OccupancyGrid::center(int i) const {
+  const auto at = [&](int k) { return (float(k) + 0.5f) * 2 / float(n_) - 1; };
+  return {at(i % n_), at(i / n_ % n_), at(i / n_ / n_)};
+}
+
+void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin) {
+  std::vector<int> cells;
+  std::vector<Vec3f> points;
+  for (int i = 0; i < int(value_.size()); ++i) {
+    if (std::abs(value_[i]) > margin) continue;
+    const Vec3f p = center(i);
+    if (dot(p, p) > 1.1f) continue;
+    cells.push_back(i);
+    points.push_back(p);
+  }
+  std::vector<float> out(points.size() * sdf.config().outputs);
+  sdf.eval(device, points, out);
+  for (size_t k = 0; k < cells.size(); ++k) value_[cells[k]] = out[k * sdf.config().outputs];
+}
+
+void OccupancyGrid::march(const Ray& ray, float step, float band, float jitter, int most, std::vector<float>& depths) const {
+  float t, far;
+  if (!unit_sphere_span(ray, t, far)) return;
+  const float reach = band + half_diagonal();
+  t += jitter * step;
+  const size_t end = depths.size() + most;
+  while (t < far && depths.size() < end) {
+    const float d = at(ray.origin + ray.direction * t);
+    if (d < -reach) return;
+    if (d > reach) {
+      t += std::max(d - reach, step);  // a cell's distance is off by half its diagonal at most
+      continue;
+    }
+    depths.push_back(t);
+    t += step;
+  }
+}
+
+}  // namespace cei3d

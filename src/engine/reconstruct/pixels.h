@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The training pixels that matter (the object and a rim around it), packed: 12 bytes each, so that 100 views of 800^2
+// fit in memory.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <vector>
+
+#include "core/image/image.h"
+#include "core/math/camera.h"
+
+namespace cei3d {
+
+struct Pixel {
+  uint16_t view, x, y;
+  std::array<uint8_t, 4> srgba;  // display-encoded colour, straight alpha
+};
+
+class PixelStore {
+ public:
+  // image: RGBA, linear, straight alpha. Keeps pixels whose alpha is above zero within `rim` pixels.
+  void add_view(const Camera& unit_camera, const Image& image, int rim);
+
+  const std::vector<Camera>& cameras() const { return cameras_; }
+  const std::vector<Pixel>& pixels() const { return pixels_; }
+  // The view's alpha > 0.5, row-major.
+  const std::vector<std::vector<uint8_t>>& masks() const { return masks_; }
+
+ private:
+  std::vector<Camera> cameras_;
+  std::vector<Pixel> pixels_;
+  std::vector<std::vector<uint8_t>> masks_;
+};
+
+// Colour over white and coverage, display-encoded.
+struct Target {
+  Vec3f srgb;
+  float alpha;
+};
+inline Target target_of(const Pixel& p) {
+  const float a = float(p.srgba[3]) / 255;
+  const auto over = [&](int c) { return float(p.srgba[c]) / 255 * a + (1 - a); };
+  return {{over(0), over(1), over(2)}, a};
+}
+
+}  // namespace cei3d

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// What all silhouettes together leave of space. [Laurentini 1994]
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/math/camera.h"
+
+namespace cei3d {
+
+struct HullMask {
+  Camera camera;
+  std::span<const uint8_t> mask;  // [camera.height][camera.width], object = nonzero
+};
+
+struct VisualHull {
+  int n = 0;                       // cells an axis
+  Vec3f lo{-1, -1, -1}, hi{1, 1, 1};
+  std::vector<uint8_t> inside;     // [z][y][x]: the cell's centre is inside
+};
+
+// A cell is inside when every view that has it in its frame shows the object there, but for `tolerated` views (small
+// mask errors), and at least one view has it in its frame. Runs on all threads.
+VisualHull visual_hull(std::span<const HullMask> views, int n, Vec3f lo = {-1, -1, -1}, Vec3f hi = {1, 1, 1}, int tolerated = 0);
+
+}  // namespace cei3d
