@@ -73,6 +73,8 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
   optimizer_.add(radiance_, "layer", layers);
 }
 
+GeometryStage::~GeometryStage() = default;
+
 void GeometryStage::prefit() {
   std::vector<HullMask> masks;
   for (size_t v = 0; v < pixels_.cameras().size(); ++v) masks.push_back({pixels_.cameras()[v], pixels_.masks()[v]});

@@ -43,6 +43,8 @@ class GeometryStage {
  public:
   GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options, uint64_t seed);
 
+  ~GeometryStage();
+
   // Fits the field to the distance to the visual hull: descent then starts from the right object. Error: empty hull.
   void prefit();
   // One training step at schedule position u in [0, 1).

@@ -2,6 +2,7 @@
 // Pictures of a scene, in two steps: trace (expensive, cacheable) and shade (cheap; all that light and paint change).
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/image/image.h"
@@ -17,6 +18,10 @@ struct GBuffer {
   std::vector<float> depths;           // #H, z-depth in unit-sphere units
   std::vector<uint32_t> pixel_start;   // #pixels + 1: pixel p owns hits [start[p], start[p + 1])
 };
+// The hits of those rays (unit-sphere frame) that meet the surface, in order; ray_of_hit: #hits.
+std::vector<Hit> trace_rays(const Device&, const Field& sdf, const Surface&, std::span<const Ray> rays,
+                            std::vector<uint32_t>& ray_of_hit);
+
 // camera: unit-sphere frame.
 GBuffer trace_view(const Device&, const Scene&, const Camera& camera, int samples = 2);
 
