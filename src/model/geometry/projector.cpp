@@ -22,8 +22,9 @@ struct Texels {
   }
 };
 
+// Beyond the border of the picture its outermost texels go on.
 float texel(const Image& image, int x, int y) {
-  return x >= 0 && y >= 0 && x < image.width && y < image.height ? *image.at(x, y) : 0.0f;
+  return *image.at(min(max(x, 0), image.width - 1), min(max(y, 0), image.height - 1));
 }
 
 bool in_picture(const Camera& c, double u, double v) {

@@ -21,7 +21,7 @@ struct Projector {
   float min_facing = 0.1f;  // least cosine between the normal and the way to the camera
 
   bool empty() const { return alpha.empty(); }
-  // Alpha at the pixel position (u, v): bilinear between texel centres, 0 outside.
+  // Alpha at the pixel position (u, v): bilinear between texel centres, 0 outside the picture.
   float alpha_at(double u, double v) const;
   // Whether the point is seen by the camera, faces it and lies in the mask.
   bool covers(Vec3f position, Vec3f normal) const;
