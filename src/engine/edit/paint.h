@@ -15,7 +15,7 @@ struct PaintRequest {
   Camera camera;   // of the painted view, unit-sphere frame
   Image scribble;  // RGBA, sRGB, straight alpha, of the camera's size; painted where alpha >= 0.5. Its colour
                    // is the display colour of the base colour wanted there
-  std::string id;     // of the new layer
+  std::string id;  // of the new layer
   uint64_t seed = 1;  // of the branch's weights and batches
 };
 

@@ -161,11 +161,11 @@ TEST_F(PaintTest, ColorsComeOutExactWithASharpBorder) {
     EXPECT_EQ(routed.layer[i], 0);
     for (int c = 0; c < 3; ++c) {
       const float error = std::abs(routed.albedo[i][c] - expected[i][c]);
-      EXPECT_LT(error, 0.03f);
+      EXPECT_LT(error, 0.05f);  // three quarters of a pixel from the border
       sum += error;
     }
   }
-  EXPECT_LT(sum / double(3 * hits.size()), 0.003);
+  EXPECT_LT(sum / double(3 * hits.size()), 0.002);
   EXPECT_LT(result_->report.mean_error, 0.01f);
 }
 
