@@ -34,7 +34,7 @@ void check_stroke(const Stroke& s) {
          s.painted_pixels);
 }
 
-// Cells of a quarter of a pixel on the finest level, a table that holds those on the stroke: borders between
+// Cells of half a pixel on the finest level, a table that holds those on the stroke: borders between
 // two colours stay as sharp as the scribble shows them.
 FieldConfig branch_config(const Stroke& s) {
   std::vector<float> footprints = s.footprints;
@@ -43,8 +43,8 @@ FieldConfig branch_config(const Stroke& s) {
   FieldConfig c;
   c.encoding.levels = 8;
   c.encoding.base_resolution = 16;
-  c.encoding.finest_resolution = int(clamp(8 / pixel, 64.0f, 4096.0f));
-  c.encoding.log2_table = std::clamp(int(std::bit_width(2 * s.hits.size())), 14, 17);
+  c.encoding.finest_resolution = int(clamp(4 / pixel, 64.0f, 4096.0f));
+  c.encoding.log2_table = std::clamp(int(std::bit_width(3 * s.hits.size())), 14, 17);
   c.hidden_layers = 1;
   c.width = 32;
   c.outputs = 3;
