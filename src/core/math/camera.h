@@ -31,4 +31,16 @@ struct Camera {
   Vec3f forward() const { return to_float(Vec3d{world_from_cam.row[0].z, world_from_cam.row[1].z, world_from_cam.row[2].z}); }
 };
 
+// The same camera for a picture at 1/n of the size; columns and rows that don't fill an n x n block are cut off.
+inline Camera scaled(Camera c, int n) {
+  c.width /= n;
+  c.height /= n;
+  c.fx /= n;
+  c.fy /= n;
+  c.cx /= n;
+  c.cy /= n;
+  c.skew /= n;
+  return c;
+}
+
 }  // namespace cei3d

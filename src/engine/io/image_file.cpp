@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/io/image_file.h"
+
+#include <array>
+#include <cctype>
+#include <cstdint>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/math/color.h"
+#include "engine/io/exr_file.h"
+#include "engine/io/hdr_file.h"
+#include "engine/io/jpeg_file.h"
+#include "engine/io/png_file.h"
+
+namespace cei3d {
+namespace {
+
+ImageSize png_size(const std::string& bytes, const std::string& name) {
+  if (bytes.size() < 24 || bytes.compare(12, 4, "IHDR") != 0) fail("{} is a broken PNG: it ends too early.", name);
+  const auto number = [&](size_t i) {
+    uint32_t v = 0;
+    for (size_t k = 0; k < 4; ++k) v = v << 8 | uint8_t(bytes[i + k]);
+    return v;
+  };
+  if (number(16) - 1 >= 65535 || number(20) - 1 >= 65535) fail("{} is a broken PNG: its size is impossible.", name);
+  return {int(number(16)), int(number(20))};
+}
+
+// powf for the few values that 8-bit files hold is most of the loading time; a table of them is exact.
+float linear_of_stored(float v) {
+  if (!(v >= 0 && v <= 1)) return linear_from_srgb(v);
+  static const std::array<std::pair<float, float>, 256> table = [] {
+    std::array<std::pair<float, float>, 256> t;
+    for (int i = 0; i < 256; ++i) t[i] = {float(i) / 255.0f, linear_from_srgb(float(i) / 255.0f)};
+    return t;
+  }();
+  const auto& [stored, linear] = table[int(v * 255.0f + 0.5f)];
+  return stored == v ? linear : linear_from_srgb(v);
+}
+
+template <class F>
+Image map_colors(Image image, F f) {
+  for (size_t i = 0; i < image.data.size(); ++i)
+    if (image.channels != 4 || i % 4 != 3) image.data[i] = f(image.data[i]);
+  return image;
+}
+
+Image decode(const std::string& bytes, const std::string& name, ImageFormat format) {
+  switch (format) {
+    case ImageFormat::png:
+      return decode_png(bytes, name);
+    case ImageFormat::jpeg:
+      return decode_jpeg(bytes, name);
+    case ImageFormat::exr:
+      return decode_exr(bytes, name);
+    case ImageFormat::hdr:
+      return decode_hdr(bytes, name);
+  }
+  fail("{}: unknown picture format.", name);
+}
+
+}  // namespace
+
+ImageFormat image_format(const std::string& bytes, const std::string& name) {
+  if (bytes.empty()) fail("{} is empty. Copy or render it again.", name);
+  if (bytes.rfind("\x89PNG\r\n\x1a\n", 0) == 0) return ImageFormat::png;
+  if (bytes.rfind("\xff\xd8", 0) == 0) return ImageFormat::jpeg;
+  if (bytes.rfind("\x76\x2f\x31\x01", 0) == 0) return ImageFormat::exr;
+  if (bytes.rfind("#?", 0) == 0) return ImageFormat::hdr;
+  fail("{} is not a PNG, JPEG, EXR or Radiance HDR picture. Convert it to PNG.", name);
+}
+
+Image read_image(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  return decode(bytes, path.string(), image_format(bytes, path.string()));
+}
+
+Image read_linear_image(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path);
+  const ImageFormat format = image_format(bytes, path.string());
+  Image image = decode(bytes, path.string(), format);
+  if (format == ImageFormat::exr || format == ImageFormat::hdr) return image;
+  return map_colors(std::move(image), linear_of_stored);
+}
+
+ImageSize read_image_size(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path), name = path.string();
+  switch (image_format(bytes, name)) {
+    case ImageFormat::png:
+      return png_size(bytes, name);
+    case ImageFormat::jpeg:
+      return jpeg_size(bytes, name);
+    case ImageFormat::exr:
+      return exr_size(bytes, name);
+    case ImageFormat::hdr:
+      return hdr_size(bytes, name);
+  }
+  fail("{}: unknown picture format.", name);
+}
+
+bool has_image_suffix(const std::filesystem::path& path) {
+  std::string suffix = path.extension().string();
+  for (char& c : suffix) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return suffix == ".png" || suffix == ".jpg" || suffix == ".jpeg" || suffix == ".exr" || suffix == ".hdr";
+}
+
+void write_png(const std::filesystem::path& path, const Image& image, int bits) {
+  write_file_atomic(path, encode_png(image, bits));
+}
+void write_exr(const std::filesystem::path& path, const Image& image) { write_file_atomic(path, encode_exr(image)); }
+void write_hdr(const std::filesystem::path& path, const Image& image) { write_file_atomic(path, encode_hdr(image)); }
+
+Image srgb_from_linear(Image linear) {
+  return map_colors(std::move(linear), [](float v) { return srgb_from_linear(v); });
+}
+Image linear_from_srgb(Image srgb) { return map_colors(std::move(srgb), linear_of_stored); }
+
+}  // namespace cei3d
