@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+// The same kernels on every device of this machine against the scalar one, from one list of cases; linear layers against
+// plain loops in double.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/base/error.h"
+#include "core/compute/device.h"
+#include "core/math/rng.h"
+
+namespace cei3d {
+namespace {
+
+std::vector<float> noise(size_t n, uint64_t seed, float scale = 1) {
+  std::vector<float> v(n);
+  for (size_t i = 0; i < n; ++i) v[i] = scale * (2 * Rng(seed, 0, i).uniform() - 1);
+  return v;
+}
+
+constexpr int kN = 96;  // samples: three panels
+
+// A case runs one kernel and returns all that it wrote.
+struct Case {
+  const char* name;
+  std::function<std::vector<float>(const Device&)> run;
+};
+
+template <class A>
+std::vector<float> activation_case(const Device& device, bool gradient) {
+  const auto z = noise(kN * 4 * 5, 1, 2);
+  auto y = noise(kN * 4 * 5, 2);
+  const ActivateArgs a{z.data(), y.data(), 5, 5, 5, 4, 10};
+  gradient ? device.launch<ActivateGrad<A>>(a, kN) : device.launch<Activate<A>>(a, kN);
+  return y;
+}
+
+std::vector<float> grid_case(const Device& device, int columns, uint32_t mask) {
+  const auto points = noise(kN * 3, 3, 0.99f), table = noise(2 * 4913, 4);
+  std::vector<float> out(kN * columns * 2);
+  device.launch<EncodeGrid>({{points.data(), out.data(), 2, 0, columns}, {16, 17, mask}, table.data()}, kN);
+  return out;
+}
+
+std::vector<float> grid_grad_case(const Device& device, int columns, uint32_t mask) {
+  const auto points = noise(kN * 3, 3, 0.99f);
+  auto d = noise(kN * columns * 2, 5);
+  std::vector<float> table(2 * 4913, 0.0f);
+  device.launch<EncodeGridGrad>({{points.data(), d.data(), 2, 0, columns}, {16, 17, mask}, table.data()}, kN);
+  return table;
+}
+
+std::vector<float> adam_case(const Device& device, bool skip_zero) {
+  auto value = noise(kN, 6), gradient = noise(kN, 7), m = noise(kN, 8, 0.1f), v = noise(kN, 9, 0.1f);
+  for (float& x : v) x = std::abs(x);
+  for (int i = 0; i < kN; i += 3) gradient[i] = 0;
+  device.launch<Adam>({{0.01f, 0.9f, 0.99f, 1e-8f, skip_zero}, value.data(), gradient.data(), m.data(), v.data()}, kN);
+  value.insert(value.end(), m.begin(), m.end());
+  value.insert(value.end(), v.begin(), v.end());
+  value.insert(value.end(), gradient.begin(), gradient.end());
+  return value;
+}
+
+constexpr int kFeatures = 4;
+struct RadianceData {
+  std::vector<float> points = noise(kN * 3, 10), directions = noise(kN * 3, 11), sdf = noise(kN * 4 * (1 + kFeatures), 12),
+                     d_sdf = std::vector<float>(kN * 4 * (1 + kFeatures), 0.0f),
+                     input = std::vector<float>(kN * radiance_rows(kFeatures), 0.0f);
+  RadianceArgs forward() { return {points.data(), directions.data(), sdf.data(), nullptr, input.data(), kFeatures}; }
+};
+
+std::vector<float> radiance_case(const Device& device, bool gradient) {
+  RadianceData d;
+  if (!gradient) {
+    device.launch<RadianceInput>(d.forward(), kN);
+    return d.input;
+  }
+  d.input = noise(d.input.size(), 13);
+  device.launch<RadianceInputGrad>({d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures}, kN);
+  return d.d_sdf;
+}
+
+std::vector<float> frequency_case(const Device& device, int k) {
+  const auto points = noise(kN * 3, 14);
+  std::vector<float> out(kN * 4 * 6);
+  device.launch<EncodeFrequency>({{points.data(), out.data(), 6, 0, 4}, k}, kN);
+  return out;
+}
+
+std::vector<float> linear_case(const Device& device, int in, int out) {
+  const auto x = noise(size_t(kN) * in, 15), w = noise(size_t(in) * out, 16), b = noise(out, 17);
+  std::vector<float> y(size_t(kN) * out);
+  device.linear({kN / kPanel, in, out, x.data(), in, w.data(), in, b.data(), 1, y.data(), out});
+  return y;
+}
+
+const std::vector<Case> kCases = {
+    {"relu", [](const Device& d) { return activation_case<Relu>(d, false); }},
+    {"relu gradient", [](const Device& d) { return activation_case<Relu>(d, true); }},
+    {"elu", [](const Device& d) { return activation_case<Elu>(d, false); }},
+    {"elu gradient", [](const Device& d) { return activation_case<Elu>(d, true); }},
+    {"softplus", [](const Device& d) { return activation_case<Softplus>(d, false); }},
+    {"softplus gradient", [](const Device& d) { return activation_case<Softplus>(d, true); }},
+    {"sigmoid", [](const Device& d) { return activation_case<Sigmoid>(d, false); }},
+    {"sigmoid gradient", [](const Device& d) { return activation_case<Sigmoid>(d, true); }},
+    {"dense grid", [](const Device& d) { return grid_case(d, 1, 0); }},
+    {"dense grid jet", [](const Device& d) { return grid_case(d, 4, 0); }},
+    {"hashed grid jet", [](const Device& d) { return grid_case(d, 4, 1023); }},
+    {"dense grid gradient", [](const Device& d) { return grid_grad_case(d, 1, 0); }},
+    {"hashed grid jet gradient", [](const Device& d) { return grid_grad_case(d, 4, 1023); }},
+    {"frequency 0", [](const Device& d) { return frequency_case(d, 0); }},
+    {"frequency 9", [](const Device& d) { return frequency_case(d, 9); }},
+    {"adam", [](const Device& d) { return adam_case(d, false); }},
+    {"adam, zeros skipped", [](const Device& d) { return adam_case(d, true); }},
+    {"radiance input", [](const Device& d) { return radiance_case(d, false); }},
+    {"radiance input gradient", [](const Device& d) { return radiance_case(d, true); }},
+    {"linear 7 to 13", [](const Device& d) { return linear_case(d, 7, 13); }},
+    {"linear 64 to 64", [](const Device& d) { return linear_case(d, 64, 64); }},
+};
+
+TEST(Kernels, EveryDeviceAgreesWithTheScalarOne) {
+  const std::vector<Device> devices = all_devices();
+  for (const Case& c : kCases) {
+    const std::vector<float> want = c.run(devices[0]);
+    double scale = 1e-6;
+    for (float v : want) scale = std::max(scale, double(std::abs(v)));
+    for (const Device& device : devices) {
+      const std::vector<float> got = c.run(device);
+      double worst = 0;
+      for (size_t i = 0; i < want.size(); ++i) worst = std::max(worst, double(std::abs(got[i] - want[i])));
+      EXPECT_LT(worst / scale, 1e-5) << c.name << " on " << device.name();
+    }
+  }
+}
+
+TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
+  const Device device = make_device("cpu/scalar");
+  RadianceData d;
+  const auto weights = noise(d.input.size(), 20);
+  d.input = weights;
+  device.launch<RadianceInputGrad>({d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures}, kN);
+  const auto loss = [&](int sample) {
+    device.launch<RadianceInput>(d.forward(), kN);
+    double sum = 0;
+    for (int r = 0; r < radiance_rows(kFeatures); ++r) {
+      const size_t at = panel_at(sample, 1, 0, radiance_rows(kFeatures), r);
+      sum += double(weights[at]) * d.input[at];
+    }
+    return sum;
+  };
+  int checked = 0;
+  for (int i = 0; i < kN; i += 5) {
+    const Vec3f g = load_sdf_gradient<float>(d.sdf.data(), i, 1 + kFeatures);
+    if (length(g) < 0.4f) continue;  // the normal of a short gradient turns too fast for differences in float
+    ++checked;
+    const std::pair<int, int> columns[] = {{0, 1}, {0, 4}, {1, 0}, {2, 0}, {3, 0}};  // (jet column, row)
+    for (const auto& [column, row] : columns) {
+      float& v = d.sdf[panel_at(i, 4, column, 1 + kFeatures, row)];
+      const float keep = v, h = 2e-3f;
+      v = keep + h;
+      const double up = loss(i);
+      v = keep - h;
+      const double down = loss(i);
+      v = keep;
+      const double want = (up - down) / (2 * double(h));
+      EXPECT_NEAR(d.d_sdf[panel_at(i, 4, column, 1 + kFeatures, row)], want, 0.01 * (1 + std::abs(want))) << i << " " << column;
+    }
+  }
+  EXPECT_GT(checked, 10);
+}
+
+TEST(Linear, EqualsPlainLoopsWithBiasOnValuePanelsOnly) {
+  for (const Device& device : all_devices()) {
+    const int in = 9, out = 6, panels = 8, x_stride = 11, y_stride = 7;
+    const auto x = noise(size_t(panels) * x_stride * kPanel, 1), w = noise(in * out, 2), b = noise(out, 3);
+    std::vector<float> y(size_t(panels) * y_stride * kPanel, -5.0f);
+    device.linear({panels, in, out, x.data(), x_stride, w.data(), in, b.data(), 4, y.data(), y_stride});
+    const auto d_y = noise(y.size(), 4);
+    std::vector<float> d_w(in * out, 0.5f), d_b(out, 0.25f);
+    device.linear_weight_grad({panels, in, out, x.data(), x_stride, d_y.data(), y_stride, d_w.data(), in, d_b.data(), 4});
+    std::vector<double> want_w(in * out, 0.5), want_b(out, 0.25);
+    for (int p = 0; p < panels; ++p)
+      for (int s = 0; s < kPanel; ++s) {
+        for (int o = 0; o < out; ++o) {
+          const double d = d_y[(size_t(p) * y_stride + o) * kPanel + s];
+          double sum = p % 4 == 0 ? b[o] : 0;
+          for (int i = 0; i < in; ++i) {
+            const double v = x[(size_t(p) * x_stride + i) * kPanel + s];
+            sum += w[o * in + i] * v;
+            want_w[o * in + i] += d * v;
+          }
+          if (p % 4 == 0) want_b[o] += d;
+          EXPECT_NEAR(y[(size_t(p) * y_stride + o) * kPanel + s], sum, 1e-5);
+        }
+        EXPECT_EQ(y[(size_t(p) * y_stride + out) * kPanel + s], -5.0f);  // rows beyond are left alone
+      }
+    for (int k = 0; k < in * out; ++k) EXPECT_NEAR(d_w[k], want_w[k], 1e-4) << device.name();
+    for (int o = 0; o < out; ++o) EXPECT_NEAR(d_b[o], want_b[o], 1e-4);
+  }
+}
+
+TEST(Device, UnknownNamesAreUsageErrors) {
+  EXPECT_THROW(make_device("cuda:7"), Error);
+  EXPECT_EQ(make_device("cpu/scalar").name(), "cpu/scalar");
+}
+
+}  // namespace
+}  // namespace cei3d
