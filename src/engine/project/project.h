@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+// The project folder: a reconstructed object, its edits and what they were made from. [architecture 2.8]
+//
+//   project.json            format version, normalisation, options of the reconstruction
+//   dataset.json            cameras, splits, pictures (engine/project/dataset.h)
+//   base/NNNNNN.ckpt.json   the last two training states; base/latest names the newest
+//   base/scene.json         the reconstructed object
+//   stack.json              ordered edits, on or off, and the cursor
+//   edits/0001-paint/       edit.json and the pictures it was made from
+//   objects/ab/cdef...      tensors by content hash
+//   history.jsonl           what the user did
+//   runs/<time>-<verb>/     logs
+//
+// Every file is written under a temporary name and renamed, objects before the file that names them: whenever the
+// program dies, the folder is the project as it was before or after the running change.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/json.h"
+#include "engine/project/lock.h"
+#include "engine/project/stack.h"
+#include "engine/project/store.h"
+#include "model/scene/scene.h"
+
+namespace cei3d {
+
+inline constexpr int kProjectVersion = 1;
+
+struct ProjectHead {
+  Normalization normalization;
+  Json options;  // of the reconstruction, as its user gave them
+};
+
+struct EditRecord {
+  std::string id;      // "0001-paint"
+  std::string op;      // "paint"
+  int op_version = 1;  // of the operation: its results may change when this does
+  Json params;         // what was asked for: view, seed, ...
+  Json report;         // what came of it: points, seconds, ...
+  std::vector<std::pair<std::string, std::string>> inputs;  // file name, bytes; not filled when read back
+};
+
+struct TrainingState {
+  Json head;
+  Tensors tensors;
+};
+
+class Project {
+ public:
+  enum class Mode { read, write };
+
+  static bool is_project(const std::filesystem::path& folder);
+  // Makes the folder, or with `replace` empties the project that is there (its edits included; renders/ and exports/
+  // stay). Usage error: the folder holds something else, or a project and `replace` is not set. Nothing is left
+  // behind when it fails.
+  static Project create(const std::filesystem::path& folder, const ProjectHead&, const Capture&, bool replace);
+  // Errors: no project, a newer format, damaged files, another writer (Mode::write). Mode::read writes nothing.
+  static Project open(const std::filesystem::path& folder, Mode);
+
+  const std::filesystem::path& folder() const { return folder_; }
+  const ProjectHead& head() const { return head_; }
+  const Capture& capture() const { return capture_; }
+  const std::string& fingerprint() const { return fingerprint_; }  // of the capture when it was reconstructed
+  const Stack& stack() const { return stack_; }
+
+  // Training states: both files of one appear or neither. The last two are kept.
+  void save_checkpoint(const TrainingState&);
+  std::optional<TrainingState> latest_checkpoint() const;  // the newest that is whole
+
+  void save_base(const Scene&);  // the reconstruction's result, without layers
+  bool has_base() const;
+  Scene base() const;            // error when the reconstruction was not finished
+  Scene scene() const;           // base and the edits that are on, up to the cursor
+
+  // One edit more, at the cursor. record.id must be stack().next_id(record.op), which is also the layer's.
+  void add_edit(const EditRecord& record, const EditLayer& layer);
+  EditRecord edit(const std::string& id) const;
+  std::string undo();                  // id of the edit
+  std::string redo();
+  bool toggle(const std::string& id);  // the new state
+
+  void add_history(Json event);                           // one line of history.jsonl; "time" is added
+  std::filesystem::path new_run(const std::string& verb);  // makes runs/<time>-<verb>
+
+ private:
+  Project(std::filesystem::path folder, Mode mode);
+  std::filesystem::path file(const std::string& name) const { return folder_ / name; }
+  void require_writable() const;
+  void save_stack(const Stack&);
+  std::vector<std::filesystem::path> checkpoint_files() const;  // newest first
+  std::string scene_key() const;
+  void collect_garbage();
+
+  std::filesystem::path folder_;
+  ProjectLock lock_;
+  ProjectHead head_;
+  Capture capture_;
+  std::string fingerprint_;
+  Stack stack_;
+  ObjectStore store_;
+};
+
+}  // namespace cei3d

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/project/stack.h"
+
+#include <algorithm>
+
+#include "core/base/error.h"
+
+namespace cei3d {
+namespace {
+
+template <class Entries>
+auto find_entry(Entries& entries, const std::string& id) {
+  return std::find_if(entries.begin(), entries.end(), [&](const StackEntry& e) { return e.id == id; });
+}
+
+std::string known_ids(const std::vector<StackEntry>& entries) {
+  std::string list;
+  for (const StackEntry& e : entries) list += (list.empty() ? "" : ", ") + e.id;
+  return list.empty() ? "there are none" : "there are " + list;
+}
+
+// Ids become folder names: nothing but what next_id() makes is let in from a file.
+bool is_plain_id(const std::string& id) {
+  return id.size() > 5 && id.size() < 100 && std::all_of(id.begin(), id.end(), [](unsigned char c) {
+           return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
+         });
+}
+
+}  // namespace
+
+std::vector<std::string> Stack::active() const {
+  std::vector<std::string> ids;
+  for (size_t i = 0; i < cursor_; ++i)
+    if (entries_[i].enabled) ids.push_back(entries_[i].id);
+  return ids;
+}
+
+bool Stack::contains(const std::string& id) const { return find_entry(entries_, id) != entries_.end(); }
+
+std::string Stack::next_id(const std::string& op) const { return fmt::format("{:04}-{}", next_, op); }
+
+std::vector<std::string> Stack::push(const std::string& id) {
+  std::vector<std::string> dropped;
+  for (size_t i = cursor_; i < entries_.size(); ++i) dropped.push_back(entries_[i].id);
+  entries_.resize(cursor_);
+  entries_.push_back({id, true});
+  cursor_ = entries_.size();
+  ++next_;
+  return dropped;
+}
+
+std::string Stack::undo() {
+  if (cursor_ == 0) fail_usage("Nothing to undo: no edit stands.");
+  return entries_[--cursor_].id;
+}
+
+std::string Stack::redo() {
+  if (cursor_ == entries_.size()) fail_usage("Nothing to redo: no edit is undone.");
+  return entries_[cursor_++].id;
+}
+
+bool Stack::toggle(const std::string& id) {
+  const auto it = find_entry(entries_, id);
+  if (it == entries_.end()) fail_usage("No edit '{}': {}.", id, known_ids(entries_));
+  it->enabled = !it->enabled;
+  return it->enabled;
+}
+
+Json Stack::to_json() const {
+  Json edits = Json::array();
+  for (const StackEntry& e : entries_) edits.push_back({{"id", e.id}, {"enabled", e.enabled}});
+  return {{"edits", std::move(edits)}, {"cursor", cursor_}, {"next", next_}};
+}
+
+Stack Stack::from_json(const Json& j, const std::string& file) {
+  Stack stack;
+  try {
+    for (const Json& e : j.at("edits"))
+      stack.entries_.push_back({e.at("id").get<std::string>(), e.at("enabled").get<bool>()});
+    stack.cursor_ = j.at("cursor").get<size_t>();
+    stack.next_ = j.at("next").get<int>();
+  } catch (const Json::exception& e) {
+    fail("{} is damaged ({}); restore it from a copy of the project.", file, e.what());
+  }
+  if (stack.cursor_ > stack.entries_.size()) fail("{} is damaged: its cursor is beyond the last edit.", file);
+  for (const StackEntry& e : stack.entries_)
+    if (!is_plain_id(e.id)) fail("{} is damaged: '{}' is not an edit's name.", file, e.id);
+  return stack;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Immutable tensors by content: objects/ab/cdef....safetensors, where abcdef... is the hash of the file's bytes.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "core/base/tensors.h"
+
+namespace cei3d {
+
+class ObjectStore {
+ public:
+  explicit ObjectStore(std::filesystem::path root) : root_(std::move(root)) {}
+
+  std::string put(const Tensors&);  // the hash; a file that stands already is not written again
+  // Errors: missing object, or one whose bytes are not those that were stored (truncated, flipped bits).
+  Tensors get(const std::string& hash) const;
+  void remove_all_but(const std::set<std::string>& keep);
+
+ private:
+  std::filesystem::path path(const std::string& hash) const;
+  std::filesystem::path root_;
+};
+
+}  // namespace cei3d
