@@ -26,6 +26,7 @@ struct Capture {
   std::string format;                // "nerf-synthetic", "physg"
   std::vector<View> views;           // train first, then val, test; each sorted as the capture lists them
   Vec3d up{0, 0, 1};                 // world axis that points to the sky, input frame
+  std::vector<std::string> warnings; // what the loader had to guess, one sentence each
 };
 
 // Pictures by view. Behind an interface because files are engine/io's business (CaptureImages there reads them).

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/io/capture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "core/base/error.h"
+#include "engine/io/capture_format.h"
+#include "engine/io/image_file.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr Split kSplits[] = {Split::train, Split::val, Split::test};
+
+std::string known_formats() {
+  std::string text;
+  for (const CaptureFormat& f : capture_formats()) text += (text.empty() ? "" : ", ") + f.name;
+  return text;
+}
+
+const CaptureFormat& format_of(const fs::path& path, const std::string& wanted) {
+  for (const CaptureFormat& f : capture_formats())
+    if (wanted.empty() ? f.detect(path) : f.name == wanted) {
+      if (!f.detect(path)) fail("{} is not a {} capture.", path.string(), wanted);
+      return f;
+    }
+  if (!wanted.empty()) fail_usage("There is no capture format '{}'. Known: {}.", wanted, known_formats());
+  fail("{} is not a capture: it has neither transforms_train.json (NeRF-synthetic) nor cam_dict_norm.json (PhySG).",
+       path.string());
+}
+
+// Most photographers hold the camera upright: the mean of the cameras' own "up" points to the sky. Snapped to the
+// nearest axis; the format's convention where the cameras don't say.
+Vec3d up_axis(const Capture& capture) {
+  const Vec3d convention = capture.format == "physg" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  Vec3d sum{0, 0, 0};
+  int n = 0;
+  for (const View& v : capture.views) {
+    const Vec3d up = -Vec3d{v.camera.world_from_cam.row[0].y, v.camera.world_from_cam.row[1].y, v.camera.world_from_cam.row[2].y};
+    if (!std::isfinite(dot(up, up))) continue;
+    sum += up;
+    ++n;
+  }
+  if (n < 5 || length(sum) < 0.3 * n) return convention;
+  const Vec3d mean = normalize(sum);
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(mean[axis]) > 0.9) {
+      Vec3d up{0, 0, 0};
+      up[axis] = mean[axis] > 0 ? 1 : -1;
+      return up;
+    }
+  return convention;
+}
+
+void hold_out(Capture& capture, int every) {
+  if (every < 0 || every == 1) fail_usage("--test-every should be 2 or more (or 0 for none), not {}.", every);
+  const bool has_test = std::any_of(capture.views.begin(), capture.views.end(), [](const View& v) { return v.split == Split::test; });
+  if (every == 0 || has_test) return;
+  int i = 0;
+  for (View& view : capture.views)
+    if (view.split == Split::train && i++ % every == 0) view.split = Split::test;
+}
+
+void make_names_unique(Capture& capture) {
+  std::set<std::string> taken;
+  for (View& view : capture.views) {
+    std::string name = view.name;
+    if (taken.count(name)) name = fmt::format("{}/{}", split_name(view.split), fs::path(view.name).filename().string());
+    for (int n = 2; taken.count(name); ++n) name = fmt::format("{}-{}", view.name, n);
+    taken.insert(view.name = name);
+  }
+}
+
+std::string normalized(const std::string& name) {
+  fs::path path = fs::path(name).lexically_normal();
+  if (has_image_suffix(path)) path.replace_extension();
+  return path.generic_string();
+}
+
+size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t(0));
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = std::exchange(row[0], i);
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t change = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, change});
+    }
+  }
+  return row.back();
+}
+
+std::string near_names(const Capture& capture, const std::string& name) {
+  std::vector<std::pair<size_t, std::string>> all;
+  for (const View& v : capture.views)
+    all.push_back({std::min(edit_distance(name, v.name), edit_distance(name, fs::path(v.name).filename().string())), v.name});
+  const size_t n = std::min<size_t>(3, all.size());
+  std::partial_sort(all.begin(), all.begin() + std::ptrdiff_t(n), all.end());
+  std::string text;
+  for (size_t i = 0; i < n; ++i) text += (i ? ", " : "") + all[i].second;
+  return text;
+}
+
+}  // namespace
+
+const char* split_name(Split split) { return split == Split::train ? "train" : split == Split::val ? "val" : "test"; }
+
+std::optional<Split> split_from_name(const std::string& name) {
+  for (const Split split : kSplits)
+    if (name == split_name(split)) return split;
+  return std::nullopt;
+}
+
+std::vector<View> views_of(const Capture& capture, Split split) {
+  std::vector<View> views;
+  for (const View& v : capture.views)
+    if (v.split == split) views.push_back(v);
+  return views;
+}
+
+Capture load_capture(const fs::path& path, const CaptureOptions& options) {
+  if (!fs::exists(path)) fail("There is no capture at {}; check the path.", path.string());
+  Capture capture = format_of(path, options.format).load(path);
+  if (capture.views.empty()) fail("{} lists no views.", path.string());
+  hold_out(capture, options.test_every);
+  std::stable_sort(capture.views.begin(), capture.views.end(), [](const View& a, const View& b) { return a.split < b.split; });
+  make_names_unique(capture);
+  capture.up = up_axis(capture);
+  return capture;
+}
+
+const View& find_view(const Capture& capture, const std::string& name) {
+  const std::string wanted = normalized(name);
+  const View* by_stem = nullptr;
+  for (const View& v : capture.views) {  // training views come first
+    if (v.name == wanted || v.name == name) return v;
+    if (!by_stem && fs::path(v.name).filename().generic_string() == wanted) by_stem = &v;
+  }
+  if (by_stem) return *by_stem;
+  fail_usage("The capture has no view '{}'. Near names: {}.", name, near_names(capture, wanted));
+}
+
+CaptureSpec parse_capture_spec(const std::string& spec) {
+  const size_t colon = spec.rfind(':');
+  if (colon == std::string::npos || fs::exists(spec)) return {spec, std::nullopt};
+  const std::string word = spec.substr(colon + 1);
+  if (const auto split = split_from_name(word)) return {spec.substr(0, colon), split};
+  if (fs::exists(spec.substr(0, colon))) fail_usage("'{}' is not a split of a capture: use train, val or test.", word);
+  return {spec, std::nullopt};
+}
+
+}  // namespace cei3d

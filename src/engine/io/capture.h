@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Captures: posed photographs in the formats that people have. All conventions end here: OpenCV axes, pixel centres at
+// +0.5, the capture's own world frame.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/scene/view.h"
+
+namespace cei3d {
+
+struct CaptureOptions {
+  std::string format;  // "nerf-synthetic" or "physg"; empty: told by the files
+  int test_every = 0;  // every Nth training view becomes a test view when the capture has none; 0: never
+};
+
+// Cameras and file names; pictures are not read (but for the size of one a split). path: a folder, or its .json.
+// Missing pictures are no error here: check() lists them all. Errors: nothing recognised, malformed cameras, no views.
+Capture load_capture(const std::filesystem::path& path, const CaptureOptions& options = {});
+
+const char* split_name(Split split);
+std::optional<Split> split_from_name(const std::string& name);
+std::vector<View> views_of(const Capture& capture, Split split);
+
+// "train/r_055", "./train/r_055", with a picture's suffix, or a bare "r_055" when only one split has it (else the training
+// view). Error (usage) with near names when there is none.
+const View& find_view(const Capture& capture, const std::string& name);
+
+struct CaptureSpec {
+  std::filesystem::path path;
+  std::optional<Split> split;
+};
+// "DIR", "DIR:train", "DIR:val", "DIR:test". Error (usage): another word after the colon.
+CaptureSpec parse_capture_spec(const std::string& spec);
+
+}  // namespace cei3d

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// Pictures and masks of a capture's views.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/image/image.h"
+#include "model/scene/view.h"
+
+namespace cei3d {
+
+// RGBA, linear, straight alpha. Alpha: the mask file (luminance > 0.5: 1, else 0) where the view has one, else the
+// picture's own, else 1. PNG and JPEG are sRGB; EXR and HDR are linear as stored. Errors name the file: missing, broken,
+// of another size than the camera or the mask, NaN or infinite values.
+Image load_linear_rgba(const View& view);
+
+struct Mask {
+  int width = 0, height = 0;
+  std::vector<uint8_t> object;  // [height][width], 1: object
+  bool stated = true;           // false: there was neither a mask nor an alpha channel, all is object
+};
+// alpha > 0.5. Errors as above.
+Mask load_mask(const View& view);
+
+// Loads on demand. downscale: pictures at 1/N of their size; scaled(camera, N) is the camera that goes with them.
+class CaptureImages : public ImageSource {
+ public:
+  explicit CaptureImages(int downscale = 1) : downscale_(downscale) {}
+  Image load(const View& view) const override;
+
+ private:
+  int downscale_;
+};
+
+}  // namespace cei3d
