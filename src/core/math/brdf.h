@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// The microfacet model: GGX distribution with alpha = roughness^2, Smith masking, Schlick's Fresnel term; its
+// pre-integrated form (split sum); and its reflection lobe as a few spherical Gaussians.
+// [Walter et al. 2007; Schlick 1994; Karis 2013]
+#pragma once
+
+#include "core/math/vec.h"
+
+namespace cei3d {
+
+inline constexpr float kDielectricF0 = 0.08f;  // times Material::specular
+
+template <class T>
+HD T schlick(T f0, T cosine) {
+  const T m = T(1.0f) - cosine, m2 = m * m;
+  return f0 + (T(1.0f) - f0) * m2 * m2 * m;
+}
+
+// Density of microfacet normals at cosine nh to the macroscopic one; integrates to 1 against the cosine.
+template <class T>
+HD T ggx_density(T nh, T alpha) {
+  const T a2 = alpha * alpha, d = nh * nh * (a2 - T(1.0f)) + T(1.0f);
+  return a2 / (T(kPi) * d * d);
+}
+// Share of the facets seen from a direction at cosine c.
+template <class T>
+HD T smith_g1(T c, T alpha) {
+  const T a2 = alpha * alpha;
+  return T(2.0f) * c / (c + sqrt(a2 + (T(1.0f) - a2) * c * c));
+}
+// Reflectance density (1/sr) for unit vectors; zero where light or viewer is below the horizon.
+template <class T>
+HD T microfacet_brdf(Vec3<T> n, Vec3<T> v, Vec3<T> l, T f0, T roughness) {
+  const Vec3<T> h = normalize(v + l);
+  const T nv = max(dot(n, v), T(1e-6f)), nl = max(dot(n, l), T(1e-6f)), alpha = roughness * roughness;
+  const T f = schlick(f0, max(dot(v, h), T(0.0f))) * ggx_density(max(dot(n, h), T(0.0f)), alpha) *
+              smith_g1(nv, alpha) * smith_g1(nl, alpha) / (T(4.0f) * nv * nl);
+  return select((dot(n, v) > T(0.0f)) & (dot(n, l) > T(0.0f)), f, T(0.0f));
+}
+
+// What a surface reflects of a uniform sky towards a viewer at cosine nv: f0 * scale + bias. By quadrature over
+// importance-sampled facets (host only; tabulate it).
+struct EnvBrdf {
+  float scale, bias;
+};
+inline EnvBrdf env_brdf(double roughness, double nv) {
+  const double alpha = roughness * roughness;
+  const Vec3d v{std::sqrt(1 - nv * nv), 0, nv};
+  const int rings = 48, steps = 24;
+  double scale = 0, bias = 0;
+  for (int i = 0; i < rings; ++i) {
+    const double u = (i + 0.5) / rings, c = std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)), s = std::sqrt(1 - c * c);
+    for (int j = 0; j < steps; ++j) {
+      const double a = M_PI * (j + 0.5) / steps;  // half a turn: the other half mirrors it
+      const Vec3d h{s * std::cos(a), s * std::sin(a), c};
+      const double vh = dot(v, h), nl = 2 * vh * h.z - v.z;
+      if (vh <= 0 || nl <= 0) continue;
+      const double g = smith_g1(nv, alpha) * smith_g1(nl, alpha) * vh / (c * nv), f = schlick(0.0, vh);
+      scale += g * (1 - f);
+      bias += g * f;
+    }
+  }
+  return {float(scale / (rings * steps)), float(bias / (rings * steps))};
+}
+
+// The reflection lobe of GGX seen along the normal, in incident directions at angle t to the mirror direction:
+// proportional to 1 / (1 + x)^2 with x = (t / (2 alpha))^2 for small angles. Since 1 / (1 + x)^2 is the integral of
+// s e^-s e^(-s x) ds, the lobe is a mixture of Gaussians with sharpness s / (2 alpha^2), which three Gauss-Laguerre
+// nodes sum up. Lobe j: sharpness kReflectionSharpness[j] / alpha^2, share kReflectionShare[j] of the energy.
+inline constexpr int kReflectionLobes = 3;
+inline constexpr float kReflectionSharpness[3] = {0.2078873f, 1.1471402f, 3.1449727f};
+inline constexpr float kReflectionShare[3] = {0.7110930f, 0.2785177f, 0.0103893f};
+
+}  // namespace cei3d

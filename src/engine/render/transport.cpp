@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/render/transport.h"
+
+#include "core/base/parallel.h"
+
+namespace cei3d {
+namespace {
+
+constexpr float kSolidAngle = 4 * kPi / kSkyDirections;
+constexpr float kStart = 2e-3f;  // as far above the surface as visibility rays start
+constexpr int kGrain = 1024;     // vertices a chunk
+
+uint32_t nearest_corner(const Mesh& mesh, const Surface::RayHit& h) {
+  const auto& t = mesh.triangles[h.triangle];
+  const float b0 = 1 - h.b1 - h.b2;
+  return b0 >= h.b1 && b0 >= h.b2 ? t[0] : h.b1 >= h.b2 ? t[1] : t[2];
+}
+
+template <class F>
+std::vector<Vec3f> per_vertex(int n, F value) {
+  std::vector<Vec3f> out(n);
+  parallel_ranges(n, kGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) out[v] = value(v);
+  });
+  return out;
+}
+
+}  // namespace
+
+Transport::Transport(const Surface& surface) : surface_(surface) {
+  const Mesh& mesh = surface.mesh();
+  const auto& sky = sky_directions();
+  const int n = int(mesh.positions.size());
+  start_.assign(n + 1, 0);
+  std::vector<Vec3f> origins, directions;
+  std::vector<Surface::RayHit> hits;
+  for (int begin = 0; begin < n; begin += 16 * kGrain) {
+    const int end = std::min(n, begin + 16 * kGrain);
+    origins.clear();
+    directions.clear();
+    const size_t first = blockers_.size();
+    for (int v = begin; v < end; ++v) {
+      for (int k = 0; k < kSkyDirections; ++k) {
+        const float c = dot(mesh.normals[v], sky[k]);
+        if (c <= 0.02f || surface.sees(v, k)) continue;
+        origins.push_back(mesh.positions[v] + mesh.normals[v] * kStart);
+        directions.push_back(sky[k]);
+        blockers_.push_back({0, c * kSolidAngle});
+      }
+      start_[v + 1] = uint32_t(blockers_.size());
+    }
+    hits.resize(origins.size());
+    surface.intersect(origins, directions, 0, hits);
+    for (size_t i = 0; i < hits.size(); ++i) {
+      Blocker& b = blockers_[first + i];
+      if (hits[i].t < 0) b.weight = 0;
+      else b.vertex = nearest_corner(mesh, hits[i]);
+    }
+  }
+}
+
+std::vector<Vec3f> Transport::sky(const SkyRadiance& radiance) const {
+  const Mesh& mesh = surface_.mesh();
+  const auto& sky = sky_directions();
+  const uint8_t* bits = surface_.visibility().data();
+  return per_vertex(int(mesh.positions.size()), [&](int v) {
+    const uint8_t* row = bits + size_t(v) * (kSkyDirections / 8);
+    Vec3f sum{0, 0, 0};
+    for (int byte = 0; byte < kSkyDirections / 8; ++byte)
+      for (int set = row[byte]; set; set &= set - 1) {
+        const int k = 8 * byte + __builtin_ctz(set);
+        sum += radiance[k] * max(dot(mesh.normals[v], sky[k]), 0.0f);
+      }
+    return sum * kSolidAngle;
+  });
+}
+
+std::vector<Vec3f> Transport::open_sky(const SkyRadiance& radiance) const {
+  const Mesh& mesh = surface_.mesh();
+  const auto& sky = sky_directions();
+  return per_vertex(int(mesh.positions.size()), [&](int v) {
+    Vec3f sum{0, 0, 0};
+    for (int k = 0; k < kSkyDirections; ++k) sum += radiance[k] * max(dot(mesh.normals[v], sky[k]), 0.0f);
+    return sum * kSolidAngle;
+  });
+}
+
+std::vector<Vec3f> Transport::bounce(std::span<const Vec3f> radiance) const {
+  return per_vertex(int(start_.size()) - 1, [&](int v) {
+    Vec3f sum{0, 0, 0};
+    for (uint32_t i = start_[v]; i < start_[v + 1]; ++i) sum += radiance[blockers_[i].vertex] * blockers_[i].weight;
+    return sum;
+  });
+}
+
+}  // namespace cei3d
