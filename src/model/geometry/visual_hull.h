@@ -22,7 +22,9 @@ struct VisualHull {
 };
 
 // A cell is inside when every view that has it in its frame shows the object there, but for `tolerated` views (small
-// mask errors), and at least one view has it in its frame. Runs on all threads.
-VisualHull visual_hull(std::span<const HullMask> views, int n, Vec3f lo = {-1, -1, -1}, Vec3f hi = {1, 1, 1}, int tolerated = 0);
+// mask errors), and at least `min_seen` views have it in their frame. Runs on all threads. Error: a mask of another size
+// than its camera.
+VisualHull visual_hull(std::span<const HullMask> views, int n, Vec3f lo = {-1, -1, -1}, Vec3f hi = {1, 1, 1},
+                       int tolerated = 0, int min_seen = 1);
 
 }  // namespace cei3d
