@@ -9,7 +9,7 @@
 namespace cei3d {
 
 inline constexpr int kRadianceOctaves = 4;
-inline constexpr int radiance_rows(int features) { return features + 3 + 3 + 3 + 1 + 3 + 6 * kRadianceOctaves; }
+HD constexpr int radiance_rows(int features) { return features + 3 + 3 + 3 + 1 + 3 + 6 * kRadianceOctaves; }
 
 struct RadianceArgs {
   const float* points;      // [panels][3][32]
