@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: Apache-2.0
+# Bad input gets a sentence and an exit code, and nothing is written.
+source "$(dirname "$0")/lib.sh"
+
+# A small capture to spoil: 6 training views.
+fresh() {
+  rm -rf "$out/capture"
+  mkdir -p "$out/capture"
+  cp -r "$sample"/{train,test,transforms_train.json,transforms_test.json} "$out/capture"
+}
+
+# spoiled CODE PATTERN: neither check nor reconstruct accepts the capture; no project appears.
+spoiled() {
+  refused_by_check "$2"
+  refused "$1" "$2" reconstruct "$out/capture" -o "$out/project" --iterations 1
+  absent "$out/project"
+}
+
+# check answers on standard output and fails.
+refused_by_check() {
+  local status=0
+  cei3d check "$out/capture" >"$out/stdout" 2>"$out/stderr" || status=$?
+  [[ $status == 1 ]] || fail "check: exit code $status"
+  cat "$out/stdout" "$out/stderr" | grep -Eqi -- "$1" || fail "check does not say /$1/: $(cat "$out/stdout" "$out/stderr")"
+}
+
+fresh; rm "$out/capture/train/r_011.png"
+spoiled 1 'r_011.*missing|missing.*r_011|r_011'
+fresh; cp samples/spot/edits/relight/venice/r_004.png "$out/capture/x.png"; head -c 900 "$sample/train/r_013.png" >"$out/capture/train/r_013.png"
+spoiled 1 'r_013'
+fresh; sed -i '0,/0\.[0-9]*,/s//NaN,/' "$out/capture/transforms_train.json"
+spoiled 1 'pose|JSON|NaN|finite'
+fresh; echo '{"frames": []}' >"$out/capture/transforms_train.json"
+spoiled 1 'frames|views|field of view|focal'
+fresh; echo 'not json' >"$out/capture/transforms_train.json"
+spoiled 1 'JSON'
+fresh; cp tests/e2e/data/other_size.png "$out/capture/train/r_015.png"
+spoiled 1 'r_015|size'
+fresh; for f in "$out"/capture/train/*.png; do cp tests/e2e/data/empty_192.png "$f"; done
+spoiled 1 'mask|empty|alpha'
+rm -rf "$out/capture"
+refused 1 'capture|no such|not found|does not exist' reconstruct "$out/capture" -o "$out/project"
+absent "$out/project"
+
+# Edits: the project stays as it was.
+project=$out/object
+cp -r "$object" "$project"
+contents "$project" >"$out/contents"
+refused_edit() {
+  refused "$@"
+  contents "$project" | cmp -s - "$out/contents" || fail "a refused edit changed the project"
+}
+paint() { printf '%s\n' edit "$project" paint --view train/r_055 --scribble "$1"; }
+mapfile -t a < <(paint tests/e2e/data/other_size.png); refused_edit 1 '48x48' "${a[@]}"
+mapfile -t a < <(paint tests/e2e/data/empty_192.png); refused_edit 1 'opaque' "${a[@]}"
+mapfile -t a < <(paint tests/e2e/data/corner_192.png); refused_edit 1 'on the object|surface' "${a[@]}"
+mapfile -t a < <(paint tests/e2e/data/rgb_192.png); refused_edit 1 'alpha' "${a[@]}"
+mapfile -t a < <(paint "$out/no_such.png"); refused_edit 1 'no_such.png' "${a[@]}"
+head -c 500 "$sample/edits/paint/scribble.png" >"$out/truncated.png"
+mapfile -t a < <(paint "$out/truncated.png"); refused_edit 1 'truncated.png' "${a[@]}"
+refused_edit 2 'r_555|view' edit "$project" paint --view r_555 --scribble "$sample/edits/paint/scribble.png"
+
+# Renders and exports.
+refused 1 'no_such|project' render "$out/no_such" -o "$out/pictures"
+absent "$out/pictures"
+refused 2 'channel' render "$project" -o "$out/pictures" --channels rgb,smell
+absent "$out/pictures"
+refused 2 'glb|ply|npy|format|suffix' export "$project" -o "$out/spot.doc"
+absent "$out/spot.doc"
+refused 2 'verb|expected|argument|subcommand|smell' smell
+
+# A project of a newer format, a damaged one.
+sed -i 's/"version": *1/"version": 99/; s/"format": *1/"format": 99/' "$project/project.json"
+grep -q 99 "$project/project.json" || fail "the format version is not where this test looks for it"
+refused 1 'newer' render "$project" -o "$out/pictures"
+refused 1 'newer' edit "$project" paint --view r_055 --scribble "$sample/edits/paint/scribble.png"
+rm -rf "$project"; cp -r "$object" "$project"
+biggest=$(find "$project/objects" -type f -printf '%s %p\n' | sort -n | tail -1 | cut -d' ' -f2)
+truncate -s 1000 "$biggest"
+refused 1 'damaged|truncated|bytes|objects' render "$project" -o "$out/pictures"
+absent "$out/pictures"
+
+# A full disk, played by a limit on the size of files: the edit fails, the project stays as it was and works.
+rm -rf "$project"; cp -r "$object" "$project"
+(
+  trap '' XFSZ
+  ulimit -f 64
+  refused 1 'write|space|large|disk' edit "$project" paint --view r_055 --scribble "$sample/edits/paint/scribble.png"
+) || exit 1
+contents "$project" | cmp -s - "$out/contents" || fail "an edit that could not be stored changed the project"
+[[ $(cei3d log "$project") == "No edits." ]] || fail "an edit that could not be stored is in the log"

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: Apache-2.0
+# Paint, undo, redo, other light, export.
+source "$(dirname "$0")/lib.sh"
+
+project=$out/object
+cp -r "$object" "$project"
+views() { cei3d render "$project" -o "$1" --cameras "$sample:test" --size 96x96 --samples 1 "${@:2}"; }
+
+views "$out/before"
+cei3d edit "$project" paint --view train/r_055 --scribble "$sample/edits/paint/scribble.png"
+cei3d log "$project" | grep -q '0001-paint .*on' || fail "the edit is not in the log"
+views "$out/painted"
+! diff -rq -x render.json "$out/before" "$out/painted" >/dev/null || fail "painting changed nothing"
+cei3d eval "$project" "$sample:test" --samples 1 --edit 0001-paint --truth "$sample/edits/paint/gt" \
+  --mask "$sample/edits/paint/mask" --json "$out/eval.json"
+
+cei3d undo "$project"
+views "$out/undone"
+same_pictures "$out/before" "$out/undone"
+refused 2 'nothing' undo "$project"
+cei3d redo "$project"
+views "$out/redone"
+same_pictures "$out/painted" "$out/redone"
+cei3d toggle "$project" 0001-paint
+views "$out/toggled"
+same_pictures "$out/before" "$out/toggled"
+cei3d toggle "$project" 0001-paint
+
+views "$out/relit" --env "$sample/envs/venice.hdr"
+views "$out/turned" --env "$sample/envs/venice.hdr" --env-rotate 90
+! diff -rq -x render.json "$out/relit" "$out/turned" >/dev/null || fail "turning the light changed nothing"
+cei3d render "$project" -o "$out/turntable" --turntable 3 --size 64x64 --samples 1
+[[ $(ls "$out/turntable/rgb" | wc -l) == 3 ]] || fail "not 3 pictures on the turntable"
+
+cei3d export "$project" -o "$out/spot.glb"
+[[ $(head -c 4 "$out/spot.glb") == glTF ]] || fail "spot.glb is no GLB"
+cei3d export "$project" -o "$out/spot.ply"
+head -1 "$out/spot.ply" | grep -q '^ply' || fail "spot.ply is no PLY"
+cei3d export "$project" -o "$out/points.ply" --points
+cei3d export "$project" -o "$out/light.npy"
+head -c 6 "$out/light.npy" | grep -q NUMPY || fail "light.npy is no NPY"

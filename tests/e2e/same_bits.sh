@@ -1,0 +1,33 @@
+# SPDX-License-Identifier: Apache-2.0
+# One seed, the same bits: with one thread as with all, uninterrupted as after kill -9 in the middle.
+source "$(dirname "$0")/lib.sh"
+
+cei3d reconstruct "$sample" -o "$out/first" "${small[@]}" --threads 1 &
+pid=$!
+for ((i = 0; i < 600; ++i)); do  # dead as soon as there is a state to go on from
+  [[ -e $out/first/base/latest || ! -e /proc/$pid ]] && break
+  sleep 0.05
+done
+kill -9 "$pid" 2>/dev/null || true
+wait "$pid" 2>/dev/null || true
+[[ -e $out/first/base/scene.json ]] && fail "the run was over before it could be killed"
+refused 1 'resume' render "$out/first" -o "$out/nothing"
+absent "$out/nothing"
+cei3d reconstruct -o "$out/first" --resume
+
+cei3d edit "$out/first" paint --view r_055 --scribble "$sample/edits/paint/scribble.png" &
+pid=$!
+sleep 0.3
+kill -9 "$pid" 2>/dev/null || true
+wait "$pid" 2>/dev/null || true
+cei3d log "$out/first"  # it opens, with the edit or without
+
+for p in "$out/first" "$object"; do
+  cei3d render "$p" -o "$out/views_of_$(basename "$p")" --cameras "$sample:test" --size 64x64 --samples 1 --channels albedo,normal
+done
+[[ $(cei3d log "$out/first") != "No edits." ]] && cei3d undo "$out/first"
+rm -rf "$out/views_of_first"
+cei3d render "$out/first" -o "$out/views_of_first" --cameras "$sample:test" --size 64x64 --samples 1 --channels albedo,normal
+same_pictures "$out/views_of_first" "$out/views_of_object"
+scene() { grep -o '"[0-9a-f]\{16,\}"' "$1/base/scene.json"; }
+[[ $(scene "$out/first") == $(scene "$object") ]] || fail "the objects differ: $(diff "$out/first/base/scene.json" "$object/base/scene.json")"
