@@ -108,7 +108,7 @@ void report_problems(const std::vector<Checked>& all, CaptureReport& report) {
       ++n;
     }
     if (n == 0) continue;
-    if (n > 5) names += ", ...";
+    if (n > 5) names += fmt::format(" and {} more", n - 5);
     const ProblemText& text = kTexts[problem];
     report.findings.push_back({text.severity, fmt::format("{} of {} {}: {}.{}", n, all.size(), text.what, names, detail), text.fix});
   }

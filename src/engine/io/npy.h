@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arrays as NumPy's .npy, format 1.0, float32, C order. [NEP 1]
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace cei3d {
+
+struct NpyArray {
+  std::vector<int64_t> shape;
+  std::vector<float> data;
+};
+
+// values: [rows][columns]
+std::string encode_npy(std::span<const float> values, int64_t rows, int64_t columns);
+void write_npy(const std::filesystem::path& path, std::span<const float> values, int64_t rows, int64_t columns);  // atomically
+
+// float32 or float64 (little endian), C order, any shape. Errors name the file.
+NpyArray decode_npy(const std::string& bytes, const std::string& name);
+NpyArray read_npy(const std::filesystem::path& path);
+
+}  // namespace cei3d
