@@ -48,7 +48,7 @@ std::string message(const std::function<void()>& f) {
 
 TEST(Normalize, FindsABallAtAnyPlaceAndScale) {
   for (const TestBall ball : {TestBall{}, TestBall{{1000, 2000, -50}, 300}, TestBall{{0, 0, 0}, 0.001}})
-    expect_ball(normalization_from_masks(ball_masks(ball, test_views(ball, 40, 120, 90)).views), ball);
+    expect_ball(normalization_from_masks(ball_masks(ball, test_views(ball, 20, 120, 90)).views), ball);
 }
 
 TEST(Normalize, IsInvertible) {
