@@ -3,12 +3,11 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "engine/io/capture.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr const char* kSplits[] = {"train", "val", "test"};
 
 Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 Vec3d vector_from(const Json& j) { return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()}; }
@@ -38,6 +37,12 @@ Json view_json(const View& v, const fs::path& root) {
           {"camera", camera_json(v.camera)}};
 }
 
+Split split_of(const std::string& name) {
+  const std::optional<Split> split = split_from_name(name);
+  if (!split) fail("dataset.json of the project names the unknown split '{}'; restore it from a copy.", name);
+  return *split;
+}
+
 uintmax_t size_of(const fs::path& file) {
   std::error_code error;
   const uintmax_t size = file.empty() ? 0 : fs::file_size(file, error);
@@ -45,14 +50,6 @@ uintmax_t size_of(const fs::path& file) {
 }
 
 }  // namespace
-
-const char* split_name(Split s) { return kSplits[int(s)]; }
-
-Split split_from_name(const std::string& name) {
-  for (int i = 0; i < 3; ++i)
-    if (name == kSplits[i]) return Split(i);
-  fail_usage("There is no split '{}'; it is train, val or test.", name);
-}
 
 Json camera_json(const Camera& c) {
   Json rotation = Json::array();
@@ -97,7 +94,7 @@ Capture capture_from_json(const Json& j, const fs::path& project) {
   for (const Json& v : j.at("views")) {
     View view;
     view.name = v.at("name").get<std::string>();
-    view.split = split_from_name(v.at("split").get<std::string>());
+    view.split = split_of(v.at("split").get<std::string>());
     view.camera = camera_from_json(v.at("camera"));
     view.image_path = below(c.root, v.at("image").get<std::string>());
     view.mask_path = below(c.root, v.at("mask").get<std::string>());

@@ -19,7 +19,5 @@ std::string capture_fingerprint(const Capture&);
 
 Json camera_json(const Camera&);
 Camera camera_from_json(const Json&);  // throws Json::exception on missing keys
-const char* split_name(Split);
-Split split_from_name(const std::string&);  // usage error
 
 }  // namespace cei3d

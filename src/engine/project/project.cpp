@@ -90,17 +90,6 @@ bool is_empty_or_missing(const fs::path& folder) {
   return fs::is_empty(folder, error);
 }
 
-void require_place(const fs::path& folder, bool replace) {
-  if (Project::is_project(folder)) {
-    if (!replace)
-      fail_usage("{} is a project already; use --resume to go on with it, --force to replace it, or another folder.",
-                 folder.string());
-    return;
-  }
-  if (!is_empty_or_missing(folder))
-    fail_usage("{} exists and is not a project; name a new or empty folder.", folder.string());
-}
-
 bool is_temporary(const fs::path& file) { return file.filename().string().find(".tmp-") != std::string::npos; }
 
 std::vector<fs::path> children(const fs::path& folder) {
@@ -174,6 +163,28 @@ bool Project::is_project(const fs::path& folder) {
   return fs::is_regular_file(folder / "project.json", error);
 }
 
+void Project::check_place(const fs::path& folder, bool replace) {
+  if (is_project(folder)) {
+    if (!replace)
+      fail_usage("{} is a project already; use --resume to go on with it, --force to replace it, or another folder.",
+                 folder.string());
+    check_version(parse_json(folder / "project.json"), folder / "project.json");
+    return;
+  }
+  if (!is_empty_or_missing(folder))
+    fail_usage("{} exists and is not a project; name a new or empty folder.", folder.string());
+}
+
+void Project::discard_if_empty() {
+  require_writable();
+  if (has_base() || !checkpoint_files().empty()) return;
+  std::error_code error;
+  // project.json first: half removed, it is no project.
+  for (const char* name : {"project.json", "dataset.json", "stack.json", "history.jsonl", "base", "objects", "runs", ".lock"})
+    fs::remove_all(file(name), error);
+  fs::remove(folder_, error);
+}
+
 Project::Project(fs::path folder, Mode mode)
     : folder_(std::move(folder)),
       lock_(mode == Mode::write ? ProjectLock(folder_) : ProjectLock()),
@@ -187,10 +198,9 @@ Project::Project(fs::path folder, Mode mode)
 }
 
 Project Project::create(const fs::path& folder, const ProjectHead& head, const Capture& capture, bool replace) {
-  require_place(folder, replace);
+  check_place(folder, replace);
   if (is_project(folder)) {
     const ProjectLock lock(folder);
-    check_version(parse_json(folder / "project.json"), folder / "project.json");
     // base/ first: without it nothing of the old object can be shown with the new one's cameras.
     for (const char* name : {"base", "stack.json", "edits", "objects", "cache", "runs"}) fs::remove_all(folder / name);
     write_json(folder / "stack.json", Stack().to_json());

@@ -55,12 +55,17 @@ class Project {
   enum class Mode { read, write };
 
   static bool is_project(const std::filesystem::path& folder);
+  // The usage errors of create(), before anything is computed.
+  static void check_place(const std::filesystem::path& folder, bool replace);
   // Makes the folder, or with `replace` empties the project that is there (its edits included; renders/ and exports/
   // stay). Usage error: the folder holds something else, or a project and `replace` is not set. Nothing is left
   // behind when it fails.
   static Project create(const std::filesystem::path& folder, const ProjectHead&, const Capture&, bool replace);
   // Errors: no project, a newer format, damaged files, another writer (Mode::write). Mode::read writes nothing.
   static Project open(const std::filesystem::path& folder, Mode);
+
+  // Removes a project that holds neither an object nor a training state: what a reconstruction leaves that failed at once.
+  void discard_if_empty();
 
   const std::filesystem::path& folder() const { return folder_; }
   const ProjectHead& head() const { return head_; }

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/cli.h"
+
+#include <algorithm>
+#include <new>
+#include <ostream>
+#include <utility>
+
+#include "apps/cli/command.h"
+#include "core/base/error.h"
+#include "engine/session/version.h"
+
+namespace cei3d {
+namespace {
+
+constexpr const char* kAbout =
+    "cei3d: photographs of an object become an editable, relightable object.\n"
+    "\n"
+    "  cei3d check CAPTURE                                   is this folder of photographs usable?\n"
+    "  cei3d reconstruct CAPTURE -o PROJECT                  photographs to object\n"
+    "  cei3d edit PROJECT paint --view NAME --scribble S.png paint on one view, see it in all\n"
+    "  cei3d render PROJECT -o DIR                           pictures, also under another light\n"
+    "  cei3d export PROJECT -o OBJECT.glb                    a model file\n"
+    "  cei3d VERB -h                                         everything about a verb";
+
+constexpr const char* kFooter =
+    "A CAPTURE is a folder (or its .json): NeRF-synthetic transforms_{train,val,test}.json with RGBA pictures, or PhySG\n"
+    "cam_dict_norm.json with image/ and mask/. CAPTURE:test means one split of it. A PROJECT is a folder this program writes.\n"
+    "Pixels are (column,row) from the top-left corner, centres at +0.5. Positions and lengths are in the capture's own frame.\n"
+    "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (state saved).";
+
+const std::pair<const char*, LogLevel> kLevels[] = {
+    {"error", LogLevel::error}, {"warn", LogLevel::warn}, {"info", LogLevel::info}, {"debug", LogLevel::debug}};
+
+LogLevel level_of(const CommonOptions& o) {
+  if (o.quiet) return LogLevel::error;
+  for (const auto& [name, level] : kLevels)
+    if (o.log_level == name) return level;
+  return LogLevel::info;
+}
+
+void add_common(CLI::App& app, CommonOptions& o) {
+  app.set_version_flag("--version", std::string("cei3d ") + kVersion, "Print the version");
+  app.set_help_flag("-h,--help", "Print this help");
+  app.add_flag("-q,--quiet", o.quiet, "Print nothing but answers and errors")->group("Everywhere");
+  app.add_flag("--json", o.json, "Print the result as JSON on standard output, nothing else there")->group("Everywhere");
+  app.add_option("--log-level", o.log_level, "How much to tell on standard error")
+      ->check(CLI::IsMember({"error", "warn", "info", "debug"}))
+      ->capture_default_str()
+      ->group("Everywhere");
+  app.add_option("--device", o.device, "What computes: auto, cpu, cpu/scalar, cpu/avx2, cpu/avx512")
+      ->capture_default_str()
+      ->group("Everywhere");
+  app.add_option("--threads", o.threads, "Threads to use; 0: every core. Results do not depend on it")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str()
+      ->group("Everywhere");
+}
+
+// Runs, and turns everything thrown into a sentence and an exit code.
+template <class F>
+int guarded(Console& console, F run) {
+  try {
+    run();
+    return 0;
+  } catch (const Error& e) {
+    console.error(e.what(), e.hint(), int(e.code()));
+    return int(e.code());
+  } catch (const std::bad_alloc&) {
+    console.error("Out of memory; close other programs, or use fewer or smaller pictures (--downscale).", "", 1);
+  } catch (const std::exception& e) {
+    console.error(e.what(), "", 1);
+  }
+  return 1;
+}
+
+// What CLI11 found wrong, after `cei3d VERB`.
+int usage_error(const CLI::App& app, const CLI::ParseError& e, Console& console) {
+  std::string verb;
+  const CLI::App* at = &app;
+  while (!at->get_subcommands().empty()) {
+    at = at->get_subcommands().front();
+    verb += " " + at->get_name();
+  }
+  console.error(e.what(), fmt::format("See `cei3d{} -h`.", verb), 2);
+  return 2;
+}
+
+}  // namespace
+
+int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostream& err, bool err_is_terminal) {
+  CommonOptions common;
+  CLI::App app(kAbout, "cei3d");
+  app.footer(kFooter);
+  app.get_formatter()->column_width(34);
+  add_common(app, common);
+  app.require_subcommand(0, 1);
+  Commands commands(app, common);
+  for (const auto add : {add_check, add_reconstruct, add_render, add_edit, add_history, add_export, add_eval, add_info})
+    add(commands);
+
+  Console console(out, err, err_is_terminal);
+  try {
+    std::vector<std::string> reversed(args.rbegin(), args.rend());  // as CLI11 wants them
+    app.parse(reversed);
+  } catch (const CLI::Success& e) {  // help, version
+    return app.exit(e, out, err);
+  } catch (const CLI::ParseError& e) {
+    console.set_json(std::find(args.begin(), args.end(), "--json") != args.end());
+    return usage_error(app, e, console);
+  } catch (const Error& e) {
+    console.error(e.what(), e.hint(), int(e.code()));
+    return int(e.code());
+  }
+  console.set_json(common.json);
+  console.set_level(level_of(common));
+  if (!commands.chosen()) {
+    err << app.help();
+    return 2;
+  }
+  return guarded(console, [&] { commands.run(console); });
+}
+
+}  // namespace cei3d

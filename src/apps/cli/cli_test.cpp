@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/cli.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <sstream>
+
+#include "apps/cli/parse.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/json.h"
+#include "core/base/temp_folder.h"
+
+namespace cei3d {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct Typed {
+  int code;
+  std::string out, err;
+};
+
+Typed type(const std::vector<std::string>& args) {
+  std::ostringstream out, err;
+  const int code = run_cli(args, out, err, false);
+  return {code, out.str(), err.str()};
+}
+
+const std::vector<std::string> kVerbs = {"check", "reconstruct", "render", "edit", "log",    "undo",
+                                         "redo",  "toggle",      "export", "eval", "info",   "doctor"};
+
+TEST(Cli, HelpNamesEveryVerb) {
+  const Typed t = type({"--help"});
+  EXPECT_EQ(t.code, 0);
+  EXPECT_EQ(t.err, "");
+  for (const std::string& verb : kVerbs) EXPECT_THAT(t.out, HasSubstr("\n  " + verb + " ")) << verb;
+  EXPECT_THAT(t.out, HasSubstr("Exit codes"));
+}
+
+TEST(Cli, EveryVerbHasHelp) {
+  for (const std::string& verb : kVerbs) {
+    const Typed t = type({verb, "-h"});
+    EXPECT_EQ(t.code, 0) << verb;
+    EXPECT_THAT(t.out, HasSubstr("Usage")) << verb;
+  }
+  const Typed paint = type({"edit", "paint", "-h"});
+  EXPECT_EQ(paint.code, 0);
+  EXPECT_THAT(paint.out, HasSubstr("--scribble"));
+}
+
+TEST(Cli, HelpShowsDefaults) {
+  EXPECT_THAT(type({"reconstruct", "-h"}).out, HasSubstr("[fast]"));
+  EXPECT_THAT(type({"render", "-h"}).out, HasSubstr("[rgb]"));
+}
+
+TEST(Cli, Version) {
+  const Typed t = type({"--version"});
+  EXPECT_EQ(t.code, 0);
+  EXPECT_THAT(t.out, HasSubstr("cei3d 0."));
+}
+
+TEST(Cli, WrongUsageIsTwo) {
+  const std::vector<std::vector<std::string>> lines = {
+      {},
+      {"frobnicate"},
+      {"check"},
+      {"reconstruct", "photos"},
+      {"reconstruct", "-o", "x"},
+      {"reconstruct", "photos", "-o", "x", "--preset", "gigantic"},
+      {"reconstruct", "photos", "-o", "x", "--time", "soon"},
+      {"reconstruct", "photos", "-o", "x", "--time", "1m", "--iterations", "5"},
+      {"reconstruct", "photos", "-o", "x", "--resume", "--force"},
+      {"reconstruct", "photos", "-o", "x", "--downscale", "0"},
+      {"reconstruct", "photos", "-o", "x", "--bogus"},
+      {"render", "p"},
+      {"render", "p", "-o", "d", "--channels", "rgb,smell"},
+      {"render", "p", "-o", "d", "--size", "800"},
+      {"render", "p", "-o", "d", "--cameras", "c", "--turntable", "3"},
+      {"render", "p", "-o", "d", "--samples", "0"},
+      {"render", "p", "-o", "d", "--env", "no/such.hdr"},
+      {"edit", "p"},
+      {"edit", "p", "paint", "--view", "r_0"},
+      {"edit", "p", "paint", "--view", "r_0", "--scribble", "s.png", "--target", "smell"},
+      {"toggle", "p"},
+      {"log"},
+      {"eval", "p", "--edit", "0001-paint"},
+      {"doctor", "--log-level", "loud"},
+      {"doctor", "--device", "abacus"},
+  };
+  for (const auto& line : lines) {
+    const Typed t = type(line);
+    EXPECT_EQ(t.code, 2) << ::testing::PrintToString(line) << t.err;
+    EXPECT_NE(t.err, "") << ::testing::PrintToString(line);
+    EXPECT_EQ(t.out, "") << ::testing::PrintToString(line);
+  }
+}
+
+TEST(Cli, FailuresAreOneAndOneSentence) {
+  const TempFolder temp;
+  const std::string nowhere = (temp.path() / "nowhere").string();
+  for (const std::string verb : {"log", "undo", "redo", "info", "check"}) {
+    const Typed t = type({verb, nowhere});
+    EXPECT_EQ(t.code, 1) << verb;
+    EXPECT_THAT(t.err, HasSubstr("error: ")) << verb;
+    EXPECT_THAT(t.err, HasSubstr(nowhere)) << verb;
+  }
+  EXPECT_EQ(type({"render", nowhere, "-o", (temp.path() / "d").string()}).code, 1);
+  EXPECT_EQ(type({"reconstruct", nowhere, "-o", (temp.path() / "p").string()}).code, 1);
+  EXPECT_TRUE(fs::is_empty(temp.path()));  // nothing written
+}
+
+TEST(Cli, ErrorsAreJsonWhenAsked) {
+  for (const auto& line : {std::vector<std::string>{"log", "/no/such/project", "--json"}, {"--json", "log", "/no/such/project"}}) {
+    const Typed t = type(line);
+    EXPECT_EQ(t.code, 1);
+    EXPECT_EQ(Json::parse(t.out)["exit_code"], 1);
+  }
+  EXPECT_EQ(Json::parse(type({"toggle", "p", "--json"}).out)["exit_code"], 2);
+}
+
+TEST(Cli, DoctorAnswersInBothLanguages) {
+  EXPECT_THAT(type({"doctor"}).out, HasSubstr("cores"));
+  const Typed t = type({"doctor", "--json"});
+  EXPECT_EQ(t.code, 0);
+  EXPECT_GE(Json::parse(t.out)["cores"].get<int>(), 1);
+  EXPECT_EQ(t.err, "");
+}
+
+TEST(Cli, ReconstructRefusesAFolderThatHoldsSomethingElse) {
+  const TempFolder temp;
+  write_file_atomic(temp.path() / "p/thesis.tex", "irreplaceable");
+  for (const auto& more : {std::vector<std::string>{}, {"--force"}}) {
+    std::vector<std::string> line = {"reconstruct", "photos", "-o", (temp.path() / "p").string()};
+    line.insert(line.end(), more.begin(), more.end());
+    const Typed t = type(line);
+    EXPECT_EQ(t.code, 2);
+    EXPECT_THAT(t.err, HasSubstr("is not a project"));
+  }
+  EXPECT_EQ(read_file(temp.path() / "p/thesis.tex"), "irreplaceable");
+}
+
+TEST(Parse, Durations) {
+  EXPECT_EQ(parse_duration("90"), 90);
+  EXPECT_EQ(parse_duration("90s"), 90);
+  EXPECT_EQ(parse_duration("10m"), 600);
+  EXPECT_EQ(parse_duration("1h30m"), 5400);
+  EXPECT_EQ(parse_duration("0.5m"), 30);
+  for (const char* bad : {"", "m", "10x", "-5", "1m-2", "nan", "inf", "0", "1e99", " 5", "0x10"})
+    EXPECT_THROW(parse_duration(bad), Error) << bad;
+}
+
+TEST(Parse, DurationTexts) {
+  EXPECT_EQ(duration_text(7), "0:07");
+  EXPECT_EQ(duration_text(59.7), "1:00");
+  EXPECT_EQ(duration_text(750), "12:30");
+  EXPECT_EQ(duration_text(3723), "1:02:03");
+}
+
+TEST(Parse, Sizes) {
+  EXPECT_EQ(parse_size("800x600").width, 800);
+  EXPECT_EQ(parse_size("800x600").height, 600);
+  for (const char* bad : {"800", "x", "800x", "800x600x3", "0x5", "-3x5", "99999x5", "800 x 600"})
+    EXPECT_THROW(parse_size(bad), Error) << bad;
+}
+
+}  // namespace
+}  // namespace cei3d

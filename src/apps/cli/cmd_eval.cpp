@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/command.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+
+namespace cei3d {
+namespace {
+
+struct Options {
+  std::string project, capture, json_file;
+  EvalRequest request;
+};
+
+void evaluate(const Options& o, Session& session, Console& console) {
+  EvalRequest request = o.request;
+  if (request.edit.empty() != request.truth.empty() || request.edit.empty() != request.masks.empty())
+    fail_usage("--edit, --truth and --mask belong together: which edit, how it should look, and where it should be.");
+  if (!o.capture.empty()) {
+    const CaptureSpec spec = parse_capture_spec(o.capture);
+    request.capture = spec.path;
+    request.split = spec.split;
+  }
+  session.open(o.project, Session::Access::read);
+  const EvalReport r = session.evaluate(request, console);
+  if (!o.json_file.empty()) write_file_atomic(o.json_file, r.json().dump(1) + "\n");
+  console.answer(r.json(), r.markdown());
+}
+
+}  // namespace
+
+void add_eval(Commands& commands) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = commands.add("eval", "Compare rendered with real views: PSNR and SSIM, on white and inside the object mask");
+  verb->add_option("project", o->project, "Project folder")->required();
+  verb->add_option("capture", o->capture, "CAPTURE or CAPTURE:split (default: the project's own held-out views)");
+  // With a value --json names a file; the flag that prints on standard output keeps its name everywhere else.
+  verb->add_option("--json", o->json_file, "Write the scores to this file as JSON; without a file: print them")->expected(0, 1);
+  verb->add_option("--samples", o->request.samples, "Sub-pixel samples per axis")->check(CLI::Range(1, 16))->capture_default_str();
+  verb->add_option("--edit", o->request.edit, "Also score this edit (an id of `log`): fidelity inside its mask, leakage outside");
+  verb->add_option("--truth", o->request.truth, "With --edit: folder of pictures of the edited object, named like the views")
+      ->check(CLI::ExistingDirectory);
+  verb->add_option("--mask", o->request.masks, "With --edit: folder of masks, bright where the edit should be")
+      ->check(CLI::ExistingDirectory);
+  commands.on(verb, o, evaluate);
+}
+
+}  // namespace cei3d

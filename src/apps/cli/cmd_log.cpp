@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// log, undo, redo, toggle.
+#include "apps/cli/command.h"
+#include "core/base/error.h"
+
+namespace cei3d {
+namespace {
+
+struct Options {
+  std::string project, id;
+};
+
+std::string state_of(const LogEntry& e) { return !e.done ? "undone" : e.enabled ? "on" : "off"; }
+
+std::string log_text(const std::vector<LogEntry>& entries) {
+  if (entries.empty()) return "No edits.";
+  std::string text;
+  for (const LogEntry& e : entries)
+    text += fmt::format("{:<20} {:<7} {}\n", e.id, state_of(e), e.params.value("view", ""));
+  return text;
+}
+
+void show_log(const Options& o, Session& session, Console& console) {
+  session.open(o.project, Session::Access::read);
+  const std::vector<LogEntry> entries = session.log();
+  Json list = Json::array();
+  for (const LogEntry& e : entries) list.push_back(e.json());
+  console.answer({{"edits", list}}, log_text(entries));
+}
+
+void undo(const Options& o, Session& session, Console& console) {
+  session.open(o.project, Session::Access::write);
+  const std::string id = session.undo();
+  console.done({{"undone", id}}, id + " is undone; `cei3d redo` brings it back.");
+}
+
+void redo(const Options& o, Session& session, Console& console) {
+  session.open(o.project, Session::Access::write);
+  const std::string id = session.redo();
+  console.done({{"redone", id}}, id + " is done again.");
+}
+
+void toggle(const Options& o, Session& session, Console& console) {
+  session.open(o.project, Session::Access::write);
+  const bool enabled = session.toggle(o.id);
+  console.done({{"id", o.id}, {"enabled", enabled}}, fmt::format("{} is {}.", o.id, enabled ? "on" : "off"));
+}
+
+template <class F>
+CLI::App* add_verb(Commands& commands, const char* name, const char* help, F run) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = commands.add(name, help);
+  verb->add_option("project", o->project, "Project folder")->required();
+  if (std::string(name) == "toggle") verb->add_option("id", o->id, "Name of the edit, as `log` lists it")->required();
+  commands.on(verb, o, run);
+  return verb;
+}
+
+}  // namespace
+
+void add_history(Commands& commands) {
+  add_verb(commands, "log", "List the edits, oldest first: on, off or undone", show_log);
+  add_verb(commands, "undo", "Take the last edit back", undo);
+  add_verb(commands, "redo", "Do the last undone edit again", redo);
+  add_verb(commands, "toggle", "Switch one edit off or on, wherever it stands in the history", toggle);
+}
+
+}  // namespace cei3d

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// A verb: options that CLI11 fills, and what runs once they are all there.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "apps/cli/console.h"
+#include "engine/session/session.h"
+
+namespace cei3d {
+
+struct CommonOptions {
+  bool quiet = false, json = false;
+  std::string log_level = "info";
+  std::string device = "auto";
+  int threads = 0;
+};
+
+class Commands {
+ public:
+  Commands(CLI::App& app, const CommonOptions& common) : app_(app), common_(common) {}
+
+  // Adds a verb; `parent` null: of the program itself.
+  CLI::App* add(const std::string& name, const std::string& help, CLI::App* parent = nullptr) {
+    CLI::App* verb = (parent ? parent : &app_)->add_subcommand(name, help);
+    verb->fallthrough();  // --quiet, --json, ... may follow the verb
+    return verb;
+  }
+  // What the verb does. Options: a struct that lives as long as the command line does.
+  template <class Options, class F>
+  void on(CLI::App* verb, std::shared_ptr<Options> options, F run) {
+    verb->callback([this, options, run] { run_ = [options, run](Session& s, Console& c) { run(*options, s, c); }; });
+  }
+  void run(Console& console) const {
+    Session session(common_.device, common_.threads);
+    run_(session, console);
+  }
+  bool chosen() const { return bool(run_); }
+
+ private:
+  CLI::App& app_;
+  const CommonOptions& common_;
+  std::function<void(Session&, Console&)> run_;
+};
+
+void add_check(Commands&);
+void add_reconstruct(Commands&);
+void add_render(Commands&);
+void add_edit(Commands&);
+void add_history(Commands&);  // log, undo, redo, toggle
+void add_export(Commands&);
+void add_eval(Commands&);
+void add_info(Commands&);     // info, doctor
+
+}  // namespace cei3d

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the program says: results on standard output, progress and everything else on standard error.
+#pragma once
+
+#include <chrono>
+#include <iosfwd>
+#include <string>
+
+#include "core/base/json.h"
+#include "core/base/progress.h"
+
+namespace cei3d {
+
+enum class LogLevel { error, warn, info, debug };
+
+class Console : public Progress {
+ public:
+  Console(std::ostream& out, std::ostream& err, bool err_is_terminal)
+      : out_(out), err_(err), terminal_(err_is_terminal) {}
+
+  void set_level(LogLevel level) { level_ = level; }
+  void set_json(bool json) { json_ = json; }
+
+  // The answer to a question: always printed. text may hold several lines.
+  void answer(const Json& json, const std::string& text);
+  // What was done: nothing when quiet.
+  void done(const Json& json, const std::string& text);
+  void warn(const std::string& text);
+  // With --json also an object on standard output, unless an answer is there already.
+  void error(const std::string& text, const std::string& hint, int code);
+
+  void report(const ProgressReport&) override;
+  void log(const std::string& json_line) override;
+  bool cancelled() const override;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  void draw_bar(const ProgressReport&, double seconds_left);
+  void print_line(const ProgressReport&, double seconds_left);
+  void clear_bar();
+
+  std::ostream &out_, &err_;
+  bool terminal_, json_ = false, answered_ = false, bar_drawn_ = false;
+  LogLevel level_ = LogLevel::info;
+  std::string stage_;
+  Clock::time_point start_ = Clock::now(), last_{};
+};
+
+}  // namespace cei3d

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/parse.h"
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "core/base/error.h"
+
+namespace cei3d {
+namespace {
+
+[[noreturn]] void bad_duration(const std::string& text) {
+  fail_usage("--time '{}' is not a duration; write seconds or a sum like 90s, 10m, 1h30m.", text);
+}
+
+double unit_seconds(char unit, const std::string& text) {
+  if (unit == 's') return 1;
+  if (unit == 'm') return 60;
+  if (unit == 'h') return 3600;
+  bad_duration(text);
+}
+
+}  // namespace
+
+double parse_duration(const std::string& text) {
+  double total = 0;
+  const char *p = text.data(), *end = p + text.size();
+  if (p == end) bad_duration(text);
+  while (p < end) {
+    double value = 0;
+    const auto [after, error] = std::from_chars(p, end, value);
+    if (error != std::errc() || value < 0) bad_duration(text);
+    total += value * (after < end ? unit_seconds(*after, text) : 1);
+    p = after < end ? after + 1 : end;
+  }
+  if (!(total > 0 && total < 1e9)) bad_duration(text);
+  return total;
+}
+
+std::string duration_text(double seconds) {
+  const long s = std::lround(seconds);
+  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+}
+
+PictureSize parse_size(const std::string& text) {
+  PictureSize size;
+  char x = 0, rest = 0;
+  if (std::sscanf(text.c_str(), "%d%c%d%c", &size.width, &x, &size.height, &rest) != 3 || x != 'x' || size.width < 1 ||
+      size.height < 1 || size.width > 65535 || size.height > 65535)
+    fail_usage("--size '{}' is not a picture size; write it as WIDTHxHEIGHT in pixels, for example 800x600.", text);
+  return size;
+}
+
+std::vector<Channel> parse_channels(const std::string& text) {
+  std::vector<Channel> channels;
+  std::istringstream in(text);
+  for (std::string word; std::getline(in, word, ',');) {
+    const std::optional<Channel> c = channel_from_name(word);
+    if (!c) fail_usage("There is no channel '{}'; there are rgb, albedo, diffuse, specular, normal, depth, roughness, mask.", word);
+    channels.push_back(*c);
+  }
+  if (channels.empty()) fail_usage("--channels names no channel; for example --channels rgb,normal.");
+  return channels;
+}
+
+EnvConvention parse_env_convention(const std::string& text) {
+  const std::optional<EnvConvention> c = env_convention_from_name(text);
+  if (!c) fail_usage("There is no environment convention '{}'; there are zup, yup, mitsuba, blender.", text);
+  return *c;
+}
+
+CameraChoice parse_cameras(const std::string& text) {
+  if (text.ends_with(".json") && is_camera_file(text)) return CameraFile{text};
+  const CaptureSpec spec = parse_capture_spec(text);
+  return CaptureViews{spec.path, spec.split};
+}
+
+}  // namespace cei3d

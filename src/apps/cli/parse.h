@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Words of the command line as values, and values as words. Errors are usage errors that name the option.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/session/requests.h"
+
+namespace cei3d {
+
+double parse_duration(const std::string& text);  // "90", "90s", "10m", "1h30m": seconds
+std::string duration_text(double seconds);       // "0:07", "12:30", "1:02:03"
+struct PictureSize {
+  int width = 0, height = 0;
+};
+PictureSize parse_size(const std::string& text);                // "800x600"
+std::vector<Channel> parse_channels(const std::string& text);   // "rgb,normal"
+EnvConvention parse_env_convention(const std::string& text);
+// "FILE.json" that lists cameras of ours, else a capture with or without ":split".
+CameraChoice parse_cameras(const std::string& text);
+
+}  // namespace cei3d

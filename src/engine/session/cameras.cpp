@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/session/cameras.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "engine/project/dataset.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr double kPiD = 3.14159265358979323846;
+
+double median(std::vector<double> v) {
+  std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
+  return v[v.size() / 2];
+}
+
+// Any unit vector at a right angle.
+Vec3d across(Vec3d up) {
+  const Vec3d other = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+  return normalize(cross(up, other));
+}
+
+// Looks from `center` at `target` with `up` up; intrinsics as they are in `camera`.
+Camera look_at(Camera camera, Vec3d center, Vec3d target, Vec3d up) {
+  const Vec3d z = normalize(target - center), x = normalize(cross(z, up)), y = cross(z, x);
+  camera.center = center;
+  camera.world_from_cam = transpose(Mat3d{{x, y, z}});
+  return camera;
+}
+
+std::vector<NamedCamera> named(const std::vector<View>& views) {
+  std::vector<NamedCamera> cameras;
+  for (const View& v : views) cameras.push_back({v.name, "", v.camera});
+  return cameras;
+}
+
+std::vector<NamedCamera> read_camera_file(const fs::path& path) {
+  std::vector<NamedCamera> cameras;
+  try {
+    for (const Json& j : Json::parse(read_file(path)).at("cameras"))
+      cameras.push_back({j.at("name").get<std::string>(), "", camera_from_json(j)});
+  } catch (const Json::exception& e) {
+    fail("{} is not a list of cameras ({}); a render.json of `cei3d render` is one.", path.string(), e.what());
+  }
+  for (const NamedCamera& c : cameras)
+    if (c.camera.width < 1 || c.camera.height < 1 || !(c.camera.fx > 0) || !(c.camera.fy > 0))
+      fail("{}: camera {} has no size or no focal length.", path.string(), c.name);
+  return cameras;
+}
+
+void set_files(std::vector<NamedCamera>& cameras) {
+  std::map<std::string, int> count;
+  const auto stem = [](const std::string& name) { return fs::path(name).filename().string(); };
+  for (const NamedCamera& c : cameras) ++count[stem(c.name)];
+  for (NamedCamera& c : cameras) {
+    // Names may come from files: they never lead out of the output folder.
+    const fs::path name = fs::path(c.name).lexically_normal();
+    if (c.name.empty() || name.is_absolute() || *name.begin() == "..") fail("'{}' is not a usable view name.", c.name);
+    c.file = count[stem(c.name)] == 1 ? stem(c.name) : name.generic_string();
+  }
+}
+
+}  // namespace
+
+bool is_camera_file(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return false;
+  const Json j = Json::parse(read_file(path), nullptr, false);
+  return j.is_object() && j.contains("cameras");
+}
+
+std::vector<View> choose_views(const Project& project, const fs::path& path, std::optional<Split> split) {
+  Capture capture = path.empty() ? project.capture() : load_capture(path);
+  std::map<std::string, Split> known;
+  for (const View& v : project.capture().views) known[v.name] = v.split;
+  const bool has_splits = std::any_of(capture.views.begin(), capture.views.end(), [](const View& v) { return v.split != Split::train; });
+  if (!has_splits)
+    for (View& v : capture.views)
+      if (const auto it = known.find(v.name); it != known.end()) v.split = it->second;
+  const std::vector<View> views = split ? views_of(capture, *split) : capture.views;
+  if (views.empty())
+    fail("{} has no {} views.", path.empty() ? project.capture().root.string() : path.string(), split_name(*split));
+  return views;
+}
+
+Camera resized(Camera c, int width, int height) {
+  const double sx = double(width) / c.width;
+  c.cx = c.cx * sx;
+  c.cy = (c.cy - c.height / 2.0) * sx + height / 2.0;  // square pixels stay square: the centre of the picture stays
+  c.fx *= sx;
+  c.fy *= sx;
+  c.skew *= sx;
+  c.width = width;
+  c.height = height;
+  return c;
+}
+
+std::vector<NamedCamera> turntable(const Capture& capture, const Normalization& n, int frames) {
+  const Vec3d up = normalize(capture.up);
+  std::vector<double> distances, heights;
+  for (const View& v : capture.views) {
+    const Vec3d d = v.camera.center - n.center;
+    distances.push_back(length(d));
+    heights.push_back(dot(d, up) / std::max(length(d), 1e-12));
+  }
+  const double distance = median(distances);
+  const double height = clamp(median(heights), -0.9, 0.9), radius = std::sqrt(1 - height * height);
+  const Vec3d x = across(up), y = cross(up, x);
+  std::vector<NamedCamera> cameras;
+  for (int i = 0; i < frames; ++i) {
+    const double a = 2 * kPiD * i / frames;
+    const Vec3d direction = (x * std::cos(a) + y * std::sin(a)) * radius + up * height;
+    Camera c = look_at(capture.views.front().camera, n.center + direction * distance, n.center, up);
+    c.cx = c.width / 2.0;
+    c.cy = c.height / 2.0;
+    cameras.push_back({fmt::format("turn_{:03}", i), "", c});
+  }
+  return cameras;
+}
+
+std::vector<NamedCamera> choose_cameras(const Project& project, const CameraChoice& choice, int width, int height) {
+  const auto own = [&] {
+    const std::vector<View> test = views_of(project.capture(), Split::test);
+    return named(test.empty() ? project.capture().views : test);
+  };
+  std::vector<NamedCamera> cameras;
+  if (const auto* c = std::get_if<CaptureViews>(&choice)) cameras = named(choose_views(project, c->path, c->split));
+  else if (const auto* f = std::get_if<CameraFile>(&choice)) cameras = read_camera_file(f->path);
+  else if (const auto* t = std::get_if<Turntable>(&choice))
+    cameras = turntable(project.capture(), project.head().normalization, t->frames);
+  else
+    cameras = own();
+  if (cameras.empty()) fail("There are no cameras to render.");
+  set_files(cameras);
+  if (width > 0)
+    for (NamedCamera& c : cameras) c.camera = resized(c.camera, width, height);
+  return cameras;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/session/frame_files.h"
+
+#include <cmath>
+
+#include "core/math/color.h"
+#include "engine/io/image_file.h"
+
+namespace cei3d {
+namespace {
+
+// Straight alpha, and nothing where nothing was hit.
+Image color_picture(const Image& linear) {
+  Image out = srgb_from_linear(linear);
+  for (size_t i = 0; i < out.data.size(); i += 4)
+    if (out.data[i + 3] <= 0) out.data[i] = out.data[i + 1] = out.data[i + 2] = 0;
+  return out;
+}
+
+Image normal_picture(const Image& normals) {
+  Image out(normals.width, normals.height, 3);
+  for (size_t i = 0; i < out.data.size(); i += 3) {
+    const float* n = &normals.data[i];
+    if (n[0] == 0 && n[1] == 0 && n[2] == 0) continue;
+    for (int c = 0; c < 3; ++c) out.data[i + size_t(c)] = 0.5f * (n[c] + 1);
+  }
+  return out;
+}
+
+Image scaled(Image image, float factor) {
+  for (float& v : image.data) v *= factor;
+  return image;
+}
+
+Image roughness_picture(const Image& mask, float roughness) {
+  Image out(mask.width, mask.height, 1);
+  for (size_t i = 0; i < out.data.size(); ++i) out.data[i] = mask.data[i] > 0 ? roughness : 0;
+  return out;
+}
+
+}  // namespace
+
+Image channel_picture(const Frame& f, Channel channel, float roughness, double depth_scale) {
+  switch (channel) {
+    case Channel::rgb:
+      return color_picture(f.rgb);
+    case Channel::albedo:
+      return color_picture(f.albedo);
+    case Channel::diffuse:
+      return color_picture(f.diffuse);
+    case Channel::specular:
+      return color_picture(f.specular);
+    case Channel::normal:
+      return normal_picture(f.normal);
+    case Channel::depth:
+      return scaled(f.depth, float(depth_scale / 65535));
+    case Channel::roughness:
+      return roughness_picture(f.mask, roughness);
+    case Channel::mask:
+      return f.mask;
+  }
+  return {};
+}
+
+int channel_bits(Channel c) { return c == Channel::normal || c == Channel::depth ? 16 : 8; }
+
+Image rounded_srgb(const Image& linear_rgba) {
+  Image out = color_picture(linear_rgba);
+  for (float& v : out.data) v = std::round(clamp(v, 0.0f, 1.0f) * 255) / 255;
+  return out;
+}
+
+}  // namespace cei3d

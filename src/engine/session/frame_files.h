@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames as picture files: what each channel means is said in `render -h`.
+#pragma once
+
+#include "engine/render/render.h"
+#include "engine/session/requests.h"
+
+namespace cei3d {
+
+// Values as they go into the file, [0, 1]. depth_scale: file value (of 65535) per capture unit.
+Image channel_picture(const Frame&, Channel, float roughness, double depth_scale);
+int channel_bits(Channel);  // 8 or 16
+
+// As the file will hold it: RGBA, sRGB, rounded to 8 bits.
+Image rounded_srgb(const Image& linear_rgba);
+
+}  // namespace cei3d

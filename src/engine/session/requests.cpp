@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/session/requests.h"
+
+#include <cmath>
+#include <iterator>
+
+#include "core/base/error.h"
+
+namespace cei3d {
+namespace {
+
+constexpr const char* kChannels[] = {"rgb", "albedo", "diffuse", "specular", "normal", "depth", "roughness", "mask"};
+constexpr const char* kSeverities[] = {"note", "warning", "error"};
+constexpr const char* kConventions[] = {"", "zup", "yup", "mitsuba", "blender"};
+
+template <class Enum, size_t N>
+std::optional<Enum> from_name(const char* const (&names)[N], const std::string& name) {
+  for (size_t i = 0; i < N; ++i)
+    if (name == names[i] && *names[i]) return Enum(i);
+  return std::nullopt;
+}
+
+Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
+
+Json normalization_json(const Normalization& n) { return {{"center", vector_json(n.center)}, {"scale", n.scale}}; }
+
+Json material_json(const Material& m) {
+  return {{"roughness", m.roughness}, {"specular", m.specular}, {"metalness", m.metalness}};
+}
+
+// JSON knows no infinity: identical pictures have none, and say so.
+Json decibels(double v) { return std::isfinite(v) ? Json(v) : Json("infinite"); }
+
+std::string decibels_text(double v) { return std::isfinite(v) ? fmt::format("{:.2f}", v) : "identical"; }
+
+}  // namespace
+
+const char* channel_name(Channel c) { return kChannels[size_t(c)]; }
+std::optional<Channel> channel_from_name(const std::string& name) { return from_name<Channel>(kChannels, name); }
+std::optional<EnvConvention> env_convention_from_name(const std::string& name) {
+  return from_name<EnvConvention>(kConventions, name);
+}
+
+Json MachineInfo::json() const {
+  return {{"program", program}, {"processor", processor}, {"cores", cores}, {"memory_gib", memory_gib}, {"devices", devices}};
+}
+
+Json CheckReport::json() const {
+  Json splits = Json::object(), findings = Json::array();
+  for (const SplitReport& r : report.splits)
+    splits[split_name(r.split)] = {{"views", r.views},
+                                   {"size", {r.size.width, r.size.height}},
+                                   {"coverage", {{"mean", r.coverage}, {"least", r.coverage_min}, {"most", r.coverage_max}}}};
+  for (const Finding& f : report.findings)
+    findings.push_back({{"severity", kSeverities[size_t(f.severity)]}, {"what", f.what}, {"fix", f.fix}});
+  return {{"format", report.format},
+          {"root", capture.root.string()},
+          {"splits", splits},
+          {"up", vector_json(report.up)},
+          {"normalization", report.normalization ? normalization_json(*report.normalization) : Json()},
+          {"object_radius", object_radius},
+          {"camera_distance", {{"least", report.distance_min}, {"mean", report.distance}, {"most", report.distance_max}}},
+          {"findings", findings},
+          {"usable", report.usable()}};
+}
+
+Json ReconstructReport::json() const {
+  return {{"seconds", seconds},
+          {"views", views},
+          {"handler_points", handler_points},
+          {"vertices", vertices},
+          {"material", material_json(material)}};
+}
+
+Json ProjectInfo::json() const {
+  Json j = {{"folder", folder.string()},
+            {"capture", {{"root", capture_root.string()}, {"format", capture_format}}},
+            {"views", {{"train", views[0]}, {"val", views[1]}, {"test", views[2]}}},
+            {"normalization", normalization_json(normalization)},
+            {"options", options},
+            {"finished", finished},
+            {"bytes", bytes}};
+  if (finished)
+    j["object"] = {{"material", material_json(material)}, {"vertices", vertices},
+                   {"triangles", triangles},              {"handler_points", handler_points},
+                   {"handler_spacing", handler_spacing},  {"lobes", lobes},
+                   {"edits", edits},                      {"edits_active", edits_active}};
+  return j;
+}
+
+Json LogEntry::json() const {
+  return {{"id", id}, {"op", op}, {"enabled", enabled}, {"done", done}, {"params", params}, {"report", report}};
+}
+
+Json PaintSummary::json() const {
+  return {{"id", id},
+          {"painted_pixels", painted_pixels},
+          {"missed_pixels", missed_pixels},
+          {"points", points},
+          {"mean_error", mean_error},
+          {"max_error", max_error},
+          {"seconds", {{"load", load_seconds}, {"trace", trace_seconds}, {"fit", train_seconds}, {"store", store_seconds}}}};
+}
+
+Json RenderReport::json() const {
+  Json list = Json::array();
+  for (const auto& f : folders) list.push_back(f.string());
+  return {{"views", views},
+          {"seconds", seconds},
+          {"trace_seconds", trace_seconds},
+          {"shade_seconds", shade_seconds},
+          {"folders", list}};
+}
+
+Json ExportReport::json() const {
+  return {{"file", out.string()}, {"vertices", vertices}, {"triangles", triangles}, {"lobes", lobes}};
+}
+
+Json EvalReport::json() const {
+  Json j = {{"psnr", decibels(psnr)},           {"ssim", ssim},
+            {"psnr_masked", decibels(psnr_masked)}, {"psnr_worst", decibels(psnr_worst)},
+            {"worst_view", worst_view},         {"background", "white"}};
+  if (edit)
+    j["edit"] = {{"psnr_inside", decibels(edit->psnr_inside)},
+                 {"pixels_inside", edit->pixels_inside},
+                 {"changed_outside", edit->changed_outside},
+                 {"pixels_outside", edit->pixels_outside},
+                 {"views", edit->views}};
+  j["views"] = Json::array();
+  for (const ViewScore& v : views)
+    j["views"].push_back({{"view", v.view}, {"psnr", decibels(v.psnr)}, {"ssim", v.ssim}, {"psnr_masked", v.psnr_masked ? decibels(*v.psnr_masked) : Json()}});
+  return j;
+}
+
+std::string EvalReport::markdown() const {
+  std::string text = "| views | PSNR on white | worst view | SSIM | PSNR in the mask |\n|---|---|---|---|---|\n";
+  text += fmt::format("| {} | {} dB | {} dB ({}) | {:.4f} | {} dB |\n", views.size(), decibels_text(psnr),
+                      decibels_text(psnr_worst), worst_view, ssim, decibels_text(psnr_masked));
+  if (edit)
+    text += fmt::format(
+        "\n| edit: views | PSNR inside | pixels inside | changed outside | pixels outside |\n|---|---|---|---|---|\n"
+        "| {} | {} dB | {} | {} | {} |\n",
+        edit->views, decibels_text(edit->psnr_inside), edit->pixels_inside, edit->changed_outside, edit->pixels_outside);
+  return text;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a Session is asked for and what it answers: plain data. Each answer can say itself as JSON.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/base/json.h"
+#include "engine/io/capture.h"
+#include "engine/io/check.h"
+#include "engine/reconstruct/reconstruct.h"
+
+namespace cei3d {
+
+struct MachineInfo {
+  std::string program;                // version
+  std::string processor;
+  int cores = 0;
+  double memory_gib = 0;
+  std::vector<std::string> devices;   // that make_device() knows here, the one "auto" takes last
+  Json json() const;
+};
+
+struct CheckRequest {
+  std::filesystem::path capture;
+  CaptureOptions options;
+  std::filesystem::path picture;      // PNG of cameras and bounding sphere to write; empty: none
+};
+struct CheckReport {
+  Capture capture;
+  CaptureReport report;
+  double object_radius = 0;           // of its bounding sphere, when the report has a normalization
+  Json json() const;
+};
+
+struct ReconstructRequest {
+  std::filesystem::path capture;      // may be empty with `resume`: the one the project remembers
+  std::filesystem::path project;
+  std::string format;                 // of the capture; empty: told by the files
+  ReconstructOptions options;         // with `resume`: those the project began with count instead
+  bool resume = false, replace = false;
+};
+struct ReconstructReport {
+  double seconds = 0;
+  size_t views = 0;
+  size_t handler_points = 0, vertices = 0;
+  Material material;
+  Json json() const;
+};
+
+struct ProjectInfo {
+  std::filesystem::path folder, capture_root;
+  std::string capture_format;
+  bool finished = false;              // there is an object, not only training states
+  size_t views[3] = {0, 0, 0};        // train, val, test
+  Normalization normalization;
+  Json options;                       // of the reconstruction
+  // The rest stands when `finished`:
+  Material material;
+  size_t vertices = 0, triangles = 0, handler_points = 0, lobes = 0;
+  float handler_spacing = 0;          // capture units
+  size_t edits = 0, edits_active = 0;
+  uintmax_t bytes = 0;                // on disk
+  Json json() const;
+};
+
+struct LogEntry {
+  std::string id, op;
+  bool enabled = true, done = true;   // done: not undone
+  Json params, report;
+  Json json() const;
+};
+
+struct PaintCommand {
+  std::string view;                   // a view's name
+  std::filesystem::path scribble;     // RGBA PNG of the view's size
+  uint64_t seed = 1;
+};
+struct PaintSummary {
+  std::string id;
+  int painted_pixels = 0, missed_pixels = 0;
+  size_t points = 0;
+  float mean_error = 0, max_error = 0;  // of the fitted colour on the painted surface, linear
+  double load_seconds = 0, trace_seconds = 0, train_seconds = 0, store_seconds = 0;
+  Json json() const;
+};
+
+// Which cameras.
+struct CaptureViews {
+  std::filesystem::path path;
+  std::optional<Split> split;
+};
+struct CameraFile {
+  std::filesystem::path path;         // a render.json, or {"cameras": [...]} like one
+};
+struct Turntable {
+  int frames = 0;
+};
+struct ProjectViews {};               // the project's held-out views, or all when it has none
+using CameraChoice = std::variant<ProjectViews, CaptureViews, CameraFile, Turntable>;
+bool is_camera_file(const std::filesystem::path&);  // JSON with a list "cameras"
+
+enum class Channel { rgb, albedo, diffuse, specular, normal, depth, roughness, mask };
+const char* channel_name(Channel);
+std::optional<Channel> channel_from_name(const std::string&);
+
+enum class EnvConvention { by_up_axis, zup, yup, mitsuba, blender };
+std::optional<EnvConvention> env_convention_from_name(const std::string&);  // "zup", ...
+
+struct LightChoice {
+  std::filesystem::path env;          // latitude-longitude picture; empty: the object's own light
+  double rotate_degrees = 0;          // counter-clockwise about the up axis, seen from above
+  EnvConvention convention = EnvConvention::by_up_axis;
+};
+
+struct RenderRequest {
+  std::filesystem::path out;
+  CameraChoice cameras;
+  std::vector<Channel> channels{Channel::rgb};
+  int width = 0, height = 0;          // 0: the cameras' own
+  LightChoice light;
+  int samples = 2;                    // a pixel and axis
+};
+struct RenderReport {
+  size_t views = 0;
+  double seconds = 0, trace_seconds = 0, shade_seconds = 0;
+  std::vector<std::filesystem::path> folders;  // one a channel
+  Json json() const;
+};
+
+struct ExportRequest {
+  std::filesystem::path out;          // .ply, .glb or .npy
+  bool points = false;                // .ply: the handler points instead of the mesh
+};
+struct ExportReport {
+  std::filesystem::path out;
+  size_t vertices = 0, triangles = 0, lobes = 0;
+  Json json() const;
+};
+
+struct EvalRequest {
+  std::filesystem::path capture;      // empty: the project's own
+  std::optional<Split> split;         // none: test when there is one, else all
+  int samples = 2;
+  std::string edit;                   // with it: fidelity inside, leakage outside the masks, against `truth`
+  std::filesystem::path truth, masks; // folders of pictures named like the views
+};
+struct ViewScore {
+  std::string view;
+  double psnr = 0, ssim = 0;
+  std::optional<double> psnr_masked;    // nothing without object pixels
+};
+struct EditScore {
+  double psnr_inside = 0;
+  size_t pixels_inside = 0, changed_outside = 0, pixels_outside = 0, views = 0;
+};
+struct EvalReport {
+  std::vector<ViewScore> views;
+  double psnr = 0, ssim = 0, psnr_masked = 0;  // means over views
+  double psnr_worst = 0;
+  std::string worst_view;
+  std::optional<EditScore> edit;
+  Json json() const;
+  std::string markdown() const;
+};
+
+}  // namespace cei3d

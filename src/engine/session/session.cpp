@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/session/session.h"
+
+#include <sys/sysinfo.h>
+
+#include <fstream>
+#include <thread>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/compute/device.h"
+#include "engine/io/image_file.h"
+#include "engine/io/normalize.h"
+#include "engine/project/project.h"
+#include "engine/session/version.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+std::string processor_name() {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);)
+    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
+  return "unknown";
+}
+
+double memory_gib() {
+  struct sysinfo info {};
+  if (::sysinfo(&info) != 0) return 0;
+  return double(info.totalram) * info.mem_unit / double(1 << 30);
+}
+
+uintmax_t bytes_below(const fs::path& folder) {
+  uintmax_t sum = 0;
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+    if (it->is_regular_file(error)) sum += it->file_size(error);
+  return sum;
+}
+
+void describe_scene(const Scene& scene, ProjectInfo& info) {
+  info.material = scene.material;
+  info.lobes = scene.light.lobes.size();
+  if (scene.surface) {
+    info.vertices = scene.surface->mesh().positions.size();
+    info.triangles = scene.surface->mesh().triangles.size();
+  }
+  if (scene.handlers) {
+    info.handler_points = scene.handlers->positions.size();
+    info.handler_spacing = float(scene.handlers->spacing / scene.normalization.scale);
+  }
+}
+
+}  // namespace
+
+Session::Session(const std::string& device, int threads) : device_(std::make_unique<Device>(make_device(device))) {
+  set_threads(threads);
+}
+Session::~Session() = default;
+
+MachineInfo Session::machine() {
+  MachineInfo m;
+  m.program = kVersion;
+  m.processor = processor_name();
+  m.cores = int(std::thread::hardware_concurrency());
+  m.memory_gib = memory_gib();
+  for (const Device& d : all_devices()) m.devices.push_back(d.name());
+  return m;
+}
+
+CheckReport Session::check(const CheckRequest& request) {
+  CheckReport r;
+  r.capture = load_capture(request.capture, request.options);
+  r.report = cei3d::check(r.capture);
+  if (r.report.normalization) r.object_radius = kObjectRadius / r.report.normalization->scale;
+  if (!request.picture.empty() && r.report.normalization)
+    write_png(request.picture, draw_cameras(r.capture, *r.report.normalization));
+  return r;
+}
+
+Project& Session::project() const {
+  if (!project_) fail("No project is open (an error in the program).");
+  return *project_;
+}
+
+void Session::open(const fs::path& folder, Access access) {
+  project_.reset();  // lets go of its lock first: it may be the same project
+  const auto mode = access == Access::write ? Project::Mode::write : Project::Mode::read;
+  project_ = std::make_unique<Project>(Project::open(folder, mode));
+}
+
+ProjectInfo Session::info() const {
+  const Project& p = project();
+  ProjectInfo info;
+  info.folder = p.folder();
+  info.capture_root = p.capture().root;
+  info.capture_format = p.capture().format;
+  info.normalization = p.head().normalization;
+  info.options = p.head().options;
+  info.finished = p.has_base();
+  for (const View& v : p.capture().views) ++info.views[size_t(v.split)];
+  info.edits = p.stack().entries().size();
+  info.edits_active = p.stack().active().size();
+  info.bytes = bytes_below(p.folder());
+  if (info.finished) describe_scene(p.base(), info);
+  return info;
+}
+
+std::vector<LogEntry> Session::log() const {
+  std::vector<LogEntry> entries;
+  const Stack& stack = project().stack();
+  for (size_t i = 0; i < stack.entries().size(); ++i) {
+    const StackEntry& e = stack.entries()[i];
+    const EditRecord r = project().edit(e.id);
+    entries.push_back({e.id, r.op, e.enabled, i < stack.cursor(), r.params, r.report});
+  }
+  return entries;
+}
+
+std::string Session::undo() { return project().undo(); }
+std::string Session::redo() { return project().redo(); }
+bool Session::toggle(const std::string& id) { return project().toggle(id); }
+
+}  // namespace cei3d

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// All that a user can ask for, as functions: the command line (and later the server) only parse, call one of these and
+// print what comes back. Lengths and positions are in the capture's frame and units at this edge.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/json.h"
+#include "core/base/progress.h"
+#include "engine/io/capture.h"
+#include "engine/reconstruct/reconstruct.h"
+#include "engine/session/requests.h"
+
+namespace cei3d {
+
+class Device;
+class Project;
+
+class Session {
+ public:
+  // device: core/compute/device.h make_device(). threads: 0 takes every core.
+  explicit Session(const std::string& device = "auto", int threads = 0);
+  ~Session();
+
+  // Without a project.
+  static MachineInfo machine();
+  CheckReport check(const CheckRequest&);
+
+  // Makes a project, or goes on with one; it is open for writing afterwards. Interrupted Error: its state is saved.
+  ReconstructReport reconstruct(const ReconstructRequest&, Progress&);
+
+  // Everything below needs an open project; a second call opens another.
+  enum class Access { read, write };
+  void open(const std::filesystem::path& project, Access);
+  ProjectInfo info() const;
+  std::vector<LogEntry> log() const;
+  PaintSummary paint(const PaintCommand&, Progress&);
+  std::string undo();                  // id of the edit that is undone now
+  std::string redo();
+  bool toggle(const std::string& id);  // the new state
+  RenderReport render(const RenderRequest&, Progress&);
+  ExportReport export_to(const ExportRequest&, Progress&);
+  EvalReport evaluate(const EvalRequest&, Progress&);
+
+ private:
+  Project& project() const;  // error when none is open
+
+  std::unique_ptr<Device> device_;
+  std::unique_ptr<Project> project_;
+};
+
+}  // namespace cei3d

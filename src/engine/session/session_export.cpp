@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <vector>
+
+#include "core/base/error.h"
+#include "core/compute/device.h"
+#include "engine/io/gltf.h"
+#include "engine/io/npy.h"
+#include "engine/io/ply.h"
+#include "engine/project/project.h"
+#include "engine/session/session.h"
+#include "model/scene/dual_albedo.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+std::vector<Vec3f> in_capture_frame(std::vector<Vec3f> points, const Normalization& n) {
+  for (Vec3f& p : points) p = to_float(n.input_from_unit(to_double(p)));
+  return points;
+}
+
+// Area-weighted, for a mesh that came without.
+std::vector<Vec3f> vertex_normals(const Mesh& mesh) {
+  std::vector<Vec3f> normals(mesh.positions.size(), Vec3f{0, 0, 0});
+  for (const auto& t : mesh.triangles) {
+    const Vec3f a = mesh.positions[t[0]], n = cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
+    for (const uint32_t v : t) normals[v] += n;
+  }
+  for (Vec3f& n : normals) n = normalize(n);
+  return normals;
+}
+
+// The surface in the capture's frame and scale, coloured by the base colour, edits included.
+Mesh coloured_mesh(const Device& device, const Scene& scene) {
+  if (!scene.surface || !scene.albedo) fail("The object has no surface to export; reconstruct it again.");
+  Mesh mesh = scene.surface->mesh();
+  if (mesh.normals.empty()) mesh.normals = vertex_normals(mesh);
+  std::vector<Hit> hits;
+  for (size_t i = 0; i < mesh.positions.size(); ++i)
+    hits.push_back({mesh.positions[i], mesh.normals[i], mesh.normals[i], 0, 0, 0});
+  mesh.colors = routed_albedo(device, *scene.albedo, scene.layers, hits).albedo;
+  mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);
+  return mesh;
+}
+
+Mesh handler_mesh(const Scene& scene) {
+  if (!scene.handlers) fail("The object has no handler points; reconstruct it again.");
+  Mesh points;
+  points.positions = in_capture_frame(scene.handlers->positions, scene.normalization);
+  points.normals = scene.handlers->normals;
+  return points;
+}
+
+// [M][7]: axis, sharpness, amplitude, as PhySG and CEI-3D store lights. [reference-facts 1.7]
+std::vector<float> lobe_table(const SgMixture& light) {
+  std::vector<float> table;
+  for (const SgLobe& l : light.lobes)
+    table.insert(table.end(), {l.axis.x, l.axis.y, l.axis.z, l.lambda, l.mu.x, l.mu.y, l.mu.z});
+  return table;
+}
+
+}  // namespace
+
+ExportReport Session::export_to(const ExportRequest& request, Progress& progress) {
+  const std::string kind = request.out.extension().string();
+  if (kind != ".ply" && kind != ".glb" && kind != ".npy")
+    fail_usage("{}: the ending says what to write, and it is .glb, .ply or .npy.", request.out.string());
+  if (request.points && kind != ".ply") fail_usage("--points are written as .ply, not {}.", kind);
+  const Scene scene = project().scene();
+  progress.report({"export", 0.2, -1, ""});
+  ExportReport report;
+  report.out = request.out;
+  if (kind == ".npy") {
+    report.lobes = scene.light.lobes.size();
+    write_npy(request.out, lobe_table(scene.light), int64_t(report.lobes), 7);
+    return report;
+  }
+  const Mesh mesh = request.points ? handler_mesh(scene) : coloured_mesh(*device_, scene);
+  if (kind == ".ply")
+    write_ply(request.out, mesh);
+  else
+    write_glb(request.out, mesh, scene.material, scene.up);
+  progress.report({"export", 1, 0, ""});
+  report.vertices = mesh.positions.size();
+  report.triangles = mesh.triangles.size();
+  return report;
+}
+
+}  // namespace cei3d

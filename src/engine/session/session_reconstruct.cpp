@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <chrono>
+
+#include "core/base/error.h"
+#include "core/compute/device.h"
+#include "engine/io/capture_images.h"
+#include "engine/io/check.h"
+#include "engine/project/dataset.h"
+#include "engine/project/project.h"
+#include "engine/session/run_log.h"
+#include "engine/session/session.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+class ProjectCheckpoints : public Checkpoints {
+ public:
+  explicit ProjectCheckpoints(Project& project) : project_(project) {}
+  void save(const State& s) override { project_.save_checkpoint({s.head, s.tensors}); }
+  std::optional<State> latest() override {
+    std::optional<TrainingState> s = project_.latest_checkpoint();
+    if (!s) return std::nullopt;
+    return State{std::move(s->head), std::move(s->tensors)};
+  }
+
+ private:
+  Project& project_;
+};
+
+Json options_json(const ReconstructRequest& r) {
+  const ReconstructOptions& o = r.options;
+  return {{"preset", o.preset},       {"seconds", o.seconds},       {"iterations", o.iterations}, {"seed", o.seed},
+          {"downscale", o.downscale}, {"test_every", o.test_every}, {"format", r.format}};
+}
+
+ReconstructOptions options_from_json(const Json& j) {
+  ReconstructOptions o;
+  o.preset = j.at("preset").get<std::string>();
+  o.seconds = j.at("seconds").get<double>();
+  o.iterations = j.at("iterations").get<int>();
+  o.seed = j.at("seed").get<uint64_t>();
+  o.downscale = j.at("downscale").get<int>();
+  o.test_every = j.at("test_every").get<int>();
+  return o;
+}
+
+// Checked as `check` does, so that nothing is written for a capture that cannot work.
+Project create_project(const ReconstructRequest& request, const CheckReport& checked) {
+  require_usable(checked.report);
+  return Project::create(request.project, {*checked.report.normalization, options_json(request)}, checked.capture,
+                         request.replace);
+}
+
+// The capture that was reconstructed must still be the one that training goes on with.
+void require_same_capture(const Project& project, const fs::path& given) {
+  Capture now = project.capture();
+  if (!given.empty()) {
+    const Json& o = project.head().options;
+    now = load_capture(given, {o.value("format", ""), o.value("test_every", 0)});
+  }
+  if (capture_fingerprint(now) != project.fingerprint())
+    fail("The capture {} is not as it was when {} was begun: its views, cameras or pictures differ. Restore it, or start "
+         "anew with --force.",
+         now.root.string(), project.folder().string());
+}
+
+ReconstructReport report_of(const Project& project, const Scene& scene, double seconds) {
+  ReconstructReport r;
+  r.seconds = seconds;
+  r.views = views_of(project.capture(), Split::train).size();
+  r.handler_points = scene.handlers ? scene.handlers->positions.size() : 0;
+  r.vertices = scene.surface ? scene.surface->mesh().positions.size() : 0;
+  r.material = scene.material;
+  return r;
+}
+
+}  // namespace
+
+ReconstructReport Session::reconstruct(const ReconstructRequest& request, Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  if (request.resume) {
+    open(request.project, Access::write);
+    require_same_capture(project(), request.capture);
+    if (project().has_base()) return report_of(project(), project().base(), 0);
+  } else {
+    Project::check_place(request.project, request.replace);
+    const CheckReport checked = check({request.capture, {request.format, request.options.test_every}, {}});
+    project_.reset();
+    project_ = std::make_unique<Project>(create_project(request, checked));
+  }
+  try {
+    const ReconstructOptions options = options_from_json(project().head().options);
+    const fs::path run = project().new_run("reconstruct");
+    project().add_history({{"do", request.resume ? "resume" : "reconstruct"}, {"options", project().head().options}});
+    RunLog log(progress, run / "log.jsonl");
+    ProjectCheckpoints checkpoints(project());
+    const Scene scene = cei3d::reconstruct(*device_, project().capture(), CaptureImages(options.downscale),
+                                           project().head().normalization, options, checkpoints, log);
+    project().save_base(scene);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return report_of(project(), scene, seconds);
+  } catch (...) {
+    project().discard_if_empty();
+    throw;
+  }
+}
+
+}  // namespace cei3d

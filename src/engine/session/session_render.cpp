@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <chrono>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/compute/device.h"
+#include "engine/io/image_file.h"
+#include "engine/project/dataset.h"
+#include "engine/project/project.h"
+#include "engine/session/cameras.h"
+#include "engine/session/frame_files.h"
+#include "engine/session/light_choice.h"
+#include "engine/session/session.h"
+#include "engine/session/version.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+// One scale for every view of a run: the farthest point that any of them can see becomes 65535.
+double depth_scale(const std::vector<NamedCamera>& cameras, const Normalization& n) {
+  double farthest = 0;
+  for (const NamedCamera& c : cameras) farthest = std::max(farthest, length(c.camera.center - n.center) + 1 / n.scale);
+  return 65535 / farthest;
+}
+
+fs::path picture_path(const fs::path& out, Channel channel, const NamedCamera& c) {
+  return out / channel_name(channel) / (c.file + ".png");
+}
+
+Json light_json(const LightChoice& light) {
+  constexpr const char* kNames[] = {"by the capture's up axis", "zup", "yup", "mitsuba", "blender"};
+  Json j = {{"env", light.env.empty() ? Json("the object's own") : Json(light.env.string())},
+            {"rotate_degrees", light.rotate_degrees}};
+  if (!light.env.empty()) j["convention"] = kNames[size_t(light.convention)];
+  return j;
+}
+
+Json run_json(const Project& project, const RenderRequest& request, const std::vector<NamedCamera>& cameras, double depth) {
+  Json channels = Json::array(), list = Json::array();
+  for (const Channel c : request.channels) channels.push_back(channel_name(c));
+  for (const NamedCamera& c : cameras) {
+    Json j = {{"name", c.name}, {"file", c.file + ".png"}};
+    j.update(camera_json(c.camera));
+    list.push_back(std::move(j));
+  }
+  return {{"program", std::string("cei3d ") + kVersion},
+          {"project", fs::absolute(project.folder()).lexically_normal().string()},
+          {"edits", project.stack().active()},
+          {"light", light_json(request.light)},
+          {"channels", std::move(channels)},
+          {"switches", {{"samples_per_axis", request.samples}}},
+          {"depth", {{"scale", depth}, {"meaning", "z-depth in capture units = 16-bit value / scale; 0: nothing"}}},
+          {"axes", "OpenCV: x right, y down, z forward; world: the capture's; pixel centres at +0.5"},
+          {"cameras", std::move(list)}};
+}
+
+void require_running(const Progress& progress) {
+  if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Rendering was interrupted; the pictures written so far are whole.");
+}
+
+}  // namespace
+
+RenderReport Session::render(const RenderRequest& request, Progress& progress) {
+  const double start = now();
+  const std::vector<NamedCamera> cameras = choose_cameras(project(), request.cameras, request.width, request.height);
+  Scene scene = project().scene();
+  choose_light(request.light, scene);
+  const double depth = depth_scale(cameras, scene.normalization);
+  RenderReport report;
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    require_running(progress);
+    progress.report({"render", double(i) / double(cameras.size()), -1, cameras[i].name});
+    const double before = now();
+    const GBuffer buffer = trace_view(*device_, scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
+    const double traced = now();
+    const Frame frame = shade_view(*device_, scene, buffer);
+    report.trace_seconds += traced - before;
+    report.shade_seconds += now() - traced;
+    for (const Channel c : request.channels)
+      write_png(picture_path(request.out, c, cameras[i]), channel_picture(frame, c, scene.material.roughness, depth),
+                channel_bits(c));
+  }
+  write_file_atomic(request.out / "render.json", run_json(project(), request, cameras, depth).dump(1) + "\n");
+  progress.report({"render", 1, 0, ""});
+  report.views = cameras.size();
+  for (const Channel c : request.channels) report.folders.push_back(request.out / channel_name(c));
+  report.seconds = now() - start;
+  return report;
+}
+
+}  // namespace cei3d
