@@ -14,16 +14,13 @@ struct NeusSample {
 };
 
 // Opacity of a segment of length `delta` whose middle has signed distance `sdf` and along which the distance changes by
-// `cosine` (gradient . direction) a unit. `anneal` in [0, 1] blends a softened slope in early training with the true one;
-// without the slope the zero set would shrink. `sharpness` is s of the logistic density.
+// `cosine` (gradient . direction) a unit; without that slope the zero set would shrink. `sharpness` is s of the logistic
+// density. NeuS softens the slope early in training; starting from the visual hull that costs 1 dB, so we don't.
 template <class T>
-HD NeusSample<T> neus_alpha(T sdf, T cosine, T delta, T sharpness, T anneal) {
+HD NeusSample<T> neus_alpha(T sdf, T cosine, T delta, T sharpness) {
   const T zero(0.0f), one(1.0f), half(0.5f), eps(1e-5f);
-  const T soft = half - half * cosine;
-  const auto soft_on = soft > zero;
-  const auto hard_on = cosine < zero;
-  const T slope = -(select(soft_on, soft, zero) * (one - anneal) + select(hard_on, -cosine, zero) * anneal);
-  const T d_slope = select(soft_on, half, zero) * (one - anneal) + select(hard_on, one, zero) * anneal;  // by cosine
+  const auto entering = cosine < zero;
+  const T slope = select(entering, cosine, zero), d_slope = select(entering, one, zero);
   const auto before = Sigmoid::eval(sharpness * (sdf - half * slope * delta), 1.0f);
   const auto after = Sigmoid::eval(sharpness * (sdf + half * slope * delta), 1.0f);
   const T q = before.value + eps;

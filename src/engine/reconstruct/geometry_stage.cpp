@@ -15,17 +15,19 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kRays = 64;           // a chunk
-constexpr int kKeptPerRay = 16;     // most samples of a ray that get jets
+constexpr int kRays = 64;        // a chunk
+constexpr int kKeptPerRay = 24;  // most samples of a ray that get jets
 constexpr int kKept = kRays * kKeptPerRay;
-constexpr int kCandidates = 96;     // most of a ray
-constexpr int kBlock = 512;         // candidates evaluated at a time
-constexpr int kRefreshEvery = 200, kFullRefreshEvery = 1600;  // steps between looks at the occupancy grid
+constexpr int kCandidates = 96;                             // most of a ray
+constexpr int kBlock = 512;                                 // candidates evaluated at a time
+constexpr int kRefreshEvery = 25, kFullRefreshEvery = 400;  // steps between looks at the occupancy grid
 constexpr float kRefreshMargin = 0.15f;
 
 }  // namespace
 
-double GeometryStats::psnr() const { return -10 * std::log10(std::max(squared_error / double(std::max<int64_t>(rays, 1)), 1e-12)); }
+double GeometryStats::psnr() const {
+  return -10 * std::log10(std::max(squared_error / double(std::max<int64_t>(rays, 1)), 1e-12));
+}
 
 struct GeometryStage::RayBatch {
   int count = 0;
@@ -35,33 +37,44 @@ struct GeometryStage::RayBatch {
 
 struct GeometryStage::Work {
   Work(const FieldConfig& sdf, const MlpConfig& radiance)
-      : value(sdf, kBlock, 1), jet(sdf, kKept, 4), color(radiance, kKept, 1), block_points(kBlock * 3),
-        points(kKept * 3), directions(kKept * 3), d_color_input(size_t(kKept) * radiance.inputs) {}
+      : value(sdf, kBlock, 1),
+        jet(sdf, kKept, 4),
+        color(radiance, kKept, 1),
+        block_points(kBlock * 3),
+        points(kKept * 3),
+        directions(kKept * 3),
+        d_color_input(size_t(kKept) * radiance.inputs) {}
   FieldPass value, jet;
   MlpPass color;
-  std::vector<float> depths, values;   // candidates of all rays, ray after ray
-  std::vector<int> first_candidate;    // #rays + 1
+  std::vector<float> depths, values;  // candidates of all rays, ray after ray
+  std::vector<int> first_candidate;   // #rays + 1
   std::vector<float> block_points;
-  std::vector<float> kept_depth;       // #kept
-  std::vector<int> first_kept;         // #rays + 1
-  std::vector<uint8_t> pulled;         // #rays: the object should be here and is not
-  int padded = 0;                      // kept samples, rounded up to a panel
-  std::vector<float> points, directions;          // panels [3][32]
-  std::vector<NeusSample<float>> alpha;           // #kept
-  std::vector<float> weight, transmittance;       // #kept
-  std::vector<Vec3f> pixel;                       // #rays: composite over white
-  std::vector<float> coverage;                    // #rays
+  std::vector<float> kept_depth;             // #kept
+  std::vector<int> first_kept;               // #rays + 1
+  int padded = 0;                            // kept samples, rounded up to a panel
+  std::vector<float> points, directions;     // panels [3][32]
+  std::vector<NeusSample<float>> alpha;      // #kept
+  std::vector<float> weight, transmittance;  // #kept
+  std::vector<Vec3f> pixel;                  // #rays: composite over white
+  std::vector<float> coverage;               // #rays
   std::vector<float> d_color_input;
 };
 
-GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options, uint64_t seed)
+GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
+                             uint64_t seed)
     : device_(device),
       pixels_(pixels),
       options_(options),
       seed_(seed),
       sdf_(options.sdf, seed),
-      radiance_config_{radiance_rows(options.sdf.outputs - 1), options.radiance_layers, options.radiance_width, -1,
-                       Activation::relu, 1, 3, Activation::sigmoid},
+      radiance_config_{radiance_rows(options.sdf.outputs - 1),
+                       options.radiance_layers,
+                       options.radiance_width,
+                       -1,
+                       Activation::relu,
+                       1,
+                       3,
+                       Activation::sigmoid},
       work_([this] { return std::make_unique<Work>(options_.sdf, radiance_config_); }),
       sdf_gradients_(options.rays / kRays),
       radiance_gradients_(options.rays / kRays) {
@@ -77,8 +90,10 @@ GeometryStage::~GeometryStage() = default;
 
 void GeometryStage::prefit() {
   std::vector<HullMask> masks;
-  for (size_t v = 0; v < pixels_.cameras().size(); ++v) masks.push_back({pixels_.cameras()[v], pixels_.masks()[v]});
-  prefit_to_hull(device_, sdf_, visual_hull(masks, 128), options_.hull_margin, options_.prefit_steps, levels_at(0), seed_);
+  for (size_t v = 0; v < pixels_.cameras().size(); ++v)
+    masks.push_back({pixels_.cameras()[v], pixels_.masks()[v]});
+  prefit_to_hull(device_, sdf_, visual_hull(masks, 128), options_.hull_margin, options_.prefit_steps,
+                 levels_at(0), seed_);
 }
 
 int GeometryStage::levels_at(double u) const {
@@ -89,10 +104,10 @@ int GeometryStage::levels_at(double u) const {
 GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   const double p = std::min(1.0, u / options_.sharpness_until);
   Schedule s;
-  s.sharpness = float(options_.sharpness_start * std::pow(double(options_.sharpness_end) / options_.sharpness_start, p));
+  s.sharpness = float(options_.sharpness_start *
+                      std::pow(double(options_.sharpness_end) / options_.sharpness_start, p));
   s.step = std::clamp(1 / s.sharpness, options_.step_min, options_.step_max);
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
-  s.anneal = float(std::min(1.0, u / options_.unlock_until));
   s.levels = levels_at(u);
   return s;
 }
@@ -112,24 +127,12 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
 
 namespace {
 
-// Where along the ray the coarse grid is lowest: the likeliest place for a surface that is missing.
-float lowest_depth(const OccupancyGrid& grid, const Ray& ray) {
-  float near, far, best = -1, lowest = 1e9f;
-  if (!unit_sphere_span(ray, near, far)) return -1;
-  for (int k = 0; k < 64; ++k) {
-    const float t = near + (far - near) * (float(k) + 0.5f) / 64, d = grid.at(ray.origin + ray.direction * t);
-    if (d < lowest) lowest = d, best = t;
-  }
-  return best;
-}
-
 // First look at a ray, by values alone: which candidates carry weight.
-void select_samples(const float* depth, const float* value, int n, float step, float sharpness, float keep_weight,
-                    std::vector<float>& kept, float& coverage) {
+void select_samples(const float* depth, const float* value, int n, float step, float sharpness,
+                    float keep_weight, std::vector<float>& kept) {
   float transmittance = 1;
-  coverage = 0;
   const size_t end = kept.size() + kKeptPerRay;
-  for (int i = 0; i < n && kept.size() < end && transmittance > 5e-3f; ++i) {
+  for (int i = 0; i < n && kept.size() < end && transmittance > 1e-3f; ++i) {
     const bool joined_before = i > 0 && depth[i] - depth[i - 1] < 1.5f * step;
     const bool joined_after = i + 1 < n && depth[i + 1] - depth[i] < 1.5f * step;
     const float half_slope = joined_after    ? 0.5f * (value[i + 1] - value[i])
@@ -140,14 +143,14 @@ void select_samples(const float* depth, const float* value, int n, float step, f
     const float p = Sigmoid::eval(sharpness * before, 1).value, q = Sigmoid::eval(sharpness * after, 1).value;
     const float alpha = std::clamp((p - q) / (p + 1e-5f), 0.0f, 1.0f), weight = transmittance * alpha;
     if (weight > keep_weight) kept.push_back(depth[i]);
-    coverage += weight;
     transmittance *= 1 - alpha;
   }
 }
 
 }  // namespace
 
-void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Work& w, uint64_t jitter_key, bool training) const {
+void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Work& w, uint64_t jitter_key,
+                                   bool training) const {
   w.depths.clear();
   w.first_candidate.assign(1, 0);
   for (int r = 0; r < batch.count; ++r) {
@@ -161,7 +164,8 @@ void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Wor
     const int count = std::min(kBlock, n - begin), padded = (count + kPanel - 1) / kPanel * kPanel;
     for (int i = 0; i < padded; ++i) {
       while (i < count && begin + i >= w.first_candidate[ray + 1]) ++ray;
-      const Vec3f p = i < count ? batch.rays[ray].origin + batch.rays[ray].direction * w.depths[begin + i] : Vec3f{0, 0, 0};
+      const Vec3f p = i < count ? batch.rays[ray].origin + batch.rays[ray].direction * w.depths[begin + i]
+                                : Vec3f{0, 0, 0};
       for (int c = 0; c < 3; ++c) w.block_points[panel_at(i, 1, 0, 3, c)] = p[c];
     }
     w.value.forward(device_, sdf_, *sdf_weights_, w.block_points.data(), padded, s.levels, 1);
@@ -171,23 +175,10 @@ void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Wor
 
   w.kept_depth.clear();
   w.first_kept.assign(1, 0);
-  w.pulled.assign(batch.count, 0);
   for (int r = 0; r < batch.count; ++r) {
     const int first = w.first_candidate[r], count = w.first_candidate[r + 1] - first;
-    float coverage;
-    select_samples(w.depths.data() + first, w.values.data() + first, count, s.step, s.sharpness, options_.keep_weight,
-                   w.kept_depth, coverage);
-    if (training && coverage < 0.3f && batch.targets[r].alpha > 0.9f &&
-        int(w.kept_depth.size()) - w.first_kept.back() < kKeptPerRay) {
-      // The object should be here and is not: keep the sample nearest to a surface so that the loss can pull it.
-      const float* v = w.values.data() + first;
-      const float t = count ? w.depths[first + int(std::min_element(v, v + count) - v)] : lowest_depth(grid_, batch.rays[r]);
-      if (t > 0) {
-        w.kept_depth.resize(w.first_kept.back());
-        w.kept_depth.push_back(t);
-        w.pulled[r] = 1;
-      }
-    }
+    select_samples(w.depths.data() + first, w.values.data() + first, count, s.step, s.sharpness,
+                   options_.keep_weight, w.kept_depth);
     w.first_kept.push_back(int(w.kept_depth.size()));
   }
 }
@@ -206,8 +197,9 @@ void GeometryStage::forward(const Schedule& s, const RayBatch& batch, Work& w) c
     }
   }
   w.jet.forward(device_, sdf_, *sdf_weights_, w.points.data(), w.padded, s.levels, options_.sdf.outputs);
-  device_.launch<RadianceInput>({w.points.data(), w.directions.data(), const_cast<float*>(w.jet.output()), nullptr,
-                                 w.color.input(), options_.sdf.outputs - 1}, w.padded);
+  device_.launch<RadianceInput>({w.points.data(), w.directions.data(), const_cast<float*>(w.jet.output()),
+                                 nullptr, w.color.input(), options_.sdf.outputs - 1},
+                                w.padded);
   w.color.forward(device_, *radiance_weights_, w.padded, radiance_config_.inputs, 3);
   composite(s, batch, w);
 }
@@ -224,7 +216,7 @@ void GeometryStage::composite(const Schedule& s, const RayBatch& batch, Work& w)
     for (int i = w.first_kept[r]; i < w.first_kept[r + 1]; ++i) {
       const float f = w.jet.output()[panel_at(i, 4, 0, rows, 0)];
       const float cosine = dot(load_sdf_gradient<float>(w.jet.output(), i, rows), batch.rays[r].direction);
-      w.alpha[i] = neus_alpha<float>(f, cosine, s.step, s.sharpness, s.anneal);
+      w.alpha[i] = neus_alpha<float>(f, cosine, s.step, s.sharpness);
       w.transmittance[i] = transmittance;
       w.weight[i] = transmittance * w.alpha[i].alpha;
       transmittance *= 1 - w.alpha[i].alpha;
@@ -238,7 +230,8 @@ void GeometryStage::composite(const Schedule& s, const RayBatch& batch, Work& w)
 void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, ChunkGradients& g,
                              std::vector<float>& radiance, GeometryStats& stats) const {
   const int rows = options_.sdf.outputs;
-  const float per_ray = 1.0f / float(options_.rays), per_sample = per_ray / 4;  // about four samples a ray are kept
+  const float per_ray = 1.0f / float(options_.rays),
+              per_sample = per_ray / 4;  // about four samples a ray are kept
   float* d_jet = w.jet.d_output();
   float* d_color = w.color.d_output();
   std::fill(d_jet, d_jet + size_t(w.padded) * 4 * rows, 0.0f);
@@ -268,17 +261,18 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
       const Vec3f gradient = load_sdf_gradient<float>(w.jet.output(), i, rows);
       Vec3f d_gradient;
       stats.eikonal += eikonal(gradient, d_gradient);
-      d_jet[panel_at(i, 4, 0, rows, 0)] =
-          d_alpha * w.alpha[i].d_sdf + (w.pulled[r] ? options_.mask_weight * per_ray : 0.0f);
+      d_jet[panel_at(i, 4, 0, rows, 0)] = d_alpha * w.alpha[i].d_sdf;
       for (int c = 0; c < 3; ++c)
         d_jet[panel_at(i, 4, 1 + c, rows, 0)] = d_alpha * w.alpha[i].d_cosine * batch.rays[r].direction[c] +
                                                 options_.eikonal_weight * per_sample * d_gradient[c];
     }
   }
   radiance.assign(radiance_weights_->gradient_size(), 0.0f);
-  w.color.backward(device_, *radiance_weights_, w.padded, radiance_config_.inputs, radiance.data(), w.d_color_input.data());
-  device_.launch<RadianceInputGrad>({w.points.data(), w.directions.data(), d_jet, w.jet.output(), w.d_color_input.data(),
-                                     rows - 1}, w.padded);
+  w.color.backward(device_, *radiance_weights_, w.padded, radiance_config_.inputs, radiance.data(),
+                   w.d_color_input.data());
+  device_.launch<RadianceInputGrad>(
+      {w.points.data(), w.directions.data(), d_jet, w.jet.output(), w.d_color_input.data(), rows - 1},
+      w.padded);
   g.reset(options_.sdf, sdf_weights_->gradient_size(), w.padded, 4);
   std::copy(w.points.begin(), w.points.begin() + std::ptrdiff_t(w.padded) * 3, g.points.begin());
   w.jet.backward(device_, *sdf_weights_, w.padded, s.levels, g.network.data(), g.d_encoding.data());
@@ -301,7 +295,8 @@ void add(GeometryStats& a, const GeometryStats& b) {
 
 GeometryStats GeometryStage::step(int64_t step, double u) {
   const Schedule s = schedule_at(u);
-  if (step % kRefreshEvery == 0) grid_.refresh(device_, sdf_, step % kFullRefreshEvery == 0 ? 1e9f : kRefreshMargin);
+  if (step % kRefreshEvery == 0)
+    grid_.refresh(device_, sdf_, step % kFullRefreshEvery == 0 ? 1e9f : kRefreshMargin);
   sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
   radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
   const int chunks = options_.rays / kRays;
@@ -321,9 +316,10 @@ GeometryStats GeometryStage::step(int64_t step, double u) {
   accumulate_gradients(device_, sdf_, sdf_gradients_, s.levels, optimizer_);
 
   const double warm_up = std::min(1.0, u / 0.02 + 0.01);
-  const double decay = u < options_.decay_from
-                           ? 1.0
-                           : std::pow(double(options_.decay_to), (u - options_.decay_from) / (1 - options_.decay_from));
+  const double decay =
+      u < options_.decay_from
+          ? 1.0
+          : std::pow(double(options_.decay_to), (u - options_.decay_from) / (1 - options_.decay_from));
   optimizer_.step(device_, float(warm_up * decay));
   GeometryStats total;
   for (const GeometryStats& st : stats) add(total, st);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The geometry stage (EIR): volume rendering of the signed distance field with a small radiance network, until the
-// surface stands. [architecture 1.2; prototype-findings "Geometry stage that worked"; paper sec. 3.1]
+// The geometry stage (EIR): volume rendering of the signed distance field with a small radiance network,
+// until the surface stands. [architecture 1.2; prototype-findings "Geometry stage that worked"; paper
+// sec. 3.1]
 #pragma once
 
 #include <memory>
@@ -16,19 +17,20 @@
 namespace cei3d {
 
 struct GeometryOptions {
-  FieldConfig sdf;                                   // outputs: 1 + features
+  FieldConfig sdf;  // outputs: 1 + features
   int radiance_layers = 2, radiance_width = 64;
-  int rays = 2048;                                   // a step
-  float sharpness_start = 40, sharpness_end = 600;   // of the logistic density, geometric over `sharpness_until`
-  float sharpness_until = 0.6f;                      // fractions of the schedule
-  float unlock_until = 0.3f;                         // hash levels open, coarse to fine, until here
+  int rays = 2048;  // a step
+  float sharpness_start = 100,
+        sharpness_end = 800;     // of the logistic density, geometric over `sharpness_until`
+  float sharpness_until = 0.6f;  // fractions of the schedule
+  float unlock_until = 0.3f;     // hash levels open, coarse to fine, until here
   int first_levels = 5;
-  float step_min = 0.004f, step_max = 0.02f;         // along rays, unit-sphere units; in between: 1 / sharpness
-  float keep_weight = 0.01f;                         // samples below it get no jet and no radiance
+  float step_min = 0.004f, step_max = 0.02f;  // along rays, unit-sphere units; in between: 1 / sharpness
+  float keep_weight = 0.003f;                 // samples below it get no jet and no radiance
   float huber_width = 0.05f, mask_weight = 0.5f, eikonal_weight = 0.1f;
-  float table_rate = 1e-2f, layer_rate = 2e-3f;      // Adam
-  float decay_from = 0.3f, decay_to = 0.05f;         // exponential decay of the rate over the rest of the schedule
-  float hull_margin = 0.015f;                        // the prefit surface lies this far inside the visual hull
+  float table_rate = 1e-2f, layer_rate = 2e-3f;  // Adam
+  float decay_from = 0.3f, decay_to = 0.05f;  // exponential decay of the rate over the rest of the schedule
+  float hull_margin = 0.015f;                 // the prefit surface lies this far inside the visual hull
   int prefit_steps = 300;
 };
 
@@ -41,11 +43,13 @@ struct GeometryStats {
 
 class GeometryStage {
  public:
-  GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options, uint64_t seed);
+  GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
+                uint64_t seed);
 
   ~GeometryStage();
 
-  // Fits the field to the distance to the visual hull: descent then starts from the right object. Error: empty hull.
+  // Fits the field to the distance to the visual hull: descent then starts from the right object. Error:
+  // empty hull.
   void prefit();
   // One training step at schedule position u in [0, 1).
   GeometryStats step(int64_t step, double u);
@@ -60,10 +64,10 @@ class GeometryStage {
   void load(const Tensors& in);
 
  private:
-  struct Work;       // buffers of one chunk of rays
-  struct RayBatch;   // its rays and targets
+  struct Work;      // buffers of one chunk of rays
+  struct RayBatch;  // its rays and targets
   struct Schedule {
-    float sharpness, step, band, anneal;
+    float sharpness, step, band;
     int levels;
   };
   Schedule schedule_at(double u) const;

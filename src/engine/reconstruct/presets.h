@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Model sizes and schedules by name. A preset is data: the same code runs all of them.
+#pragma once
+
+#include <string>
+
+#include "engine/reconstruct/geometry_stage.h"
+#include "model/geometry/surface_nets.h"
+
+namespace cei3d {
+
+struct Preset {
+  GeometryOptions geometry;
+  FieldConfig albedo;
+  MeshingOptions meshing;
+  int iterations;              // of the geometry stage when neither a time nor a number is asked for
+  bool resolution_from_views;  // grids as fine as the pixels: finest_resolution and log2_table follow the
+                               // capture
+};
+
+// "fast" (hash grids), "balanced" (the same for longer), "paper" (the paper's networks: 8x512 SDF, 4x512
+// albedo, frequency encodings; reference-facts 2.1, 3.3). Usage error for any other name.
+Preset preset_by_name(const std::string& name);
+
+// Sets the grids of a preset from the size of a pixel on the object (unit-sphere units).
+void fit_to_footprint(Preset& preset, double pixel_footprint);
+
+}  // namespace cei3d
