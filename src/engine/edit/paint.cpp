@@ -44,7 +44,7 @@ FieldConfig branch_config(const Stroke& s) {
   c.encoding.levels = 8;
   c.encoding.base_resolution = 16;
   c.encoding.finest_resolution = int(clamp(4 / pixel, 64.0f, 4096.0f));
-  c.encoding.log2_table = std::clamp(int(std::bit_width(3 * s.hits.size())), 14, 17);
+  c.encoding.log2_table = std::clamp(int(std::bit_width(s.hits.size())), 14, 16);
   c.hidden_layers = 1;
   c.width = 32;
   c.outputs = 3;
@@ -52,7 +52,7 @@ FieldConfig branch_config(const Stroke& s) {
   return c;
 }
 
-constexpr int kSteps = 500, kBatch = 2048;
+constexpr int kSteps = 400, kBatch = 2048;
 
 // One batch, with replacement: a function of seed and step.
 struct Batch {
@@ -67,13 +67,14 @@ struct Batch {
   }
 };
 
-// d/d(out) of the mean squared error.
-FieldTrainer::Loss squared_error(const std::vector<Vec3f>& target) {
+// d/d(out) of the mean cross entropy: with the sigmoid behind it, the slope before it is out - target, so
+// that dark and saturated colours, where the sigmoid is flat, are learnt as fast as the others.
+FieldTrainer::Loss cross_entropy(const std::vector<Vec3f>& target) {
   return [&target](int begin, int end, const float* out, float* d_out) {
     for (int i = begin; i < end; ++i)
       for (int c = 0; c < 3; ++c) {
         const int k = 3 * (i - begin) + c;
-        d_out[k] = 2 * (out[k] - target[i][c]) / float(kBatch);
+        d_out[k] = (out[k] - target[i][c]) / (max(out[k] * (1 - out[k]), 1e-6f) * float(kBatch));
       }
   };
 }
@@ -87,7 +88,7 @@ std::shared_ptr<const Field> fit_branch(const Device& device, const Stroke& s, u
       throw Error(ErrorCode::interrupted, "painting was interrupted; nothing was changed");
     const float fraction = float(step) / kSteps;
     const Batch batch(s, seed, step);
-    trainer.step(device, batch.x, squared_error(batch.target), 0.5f * (1 + std::cos(kPi * fraction)) + 1e-3f);
+    trainer.step(device, batch.x, cross_entropy(batch.target), 0.5f * (1 + std::cos(kPi * fraction)) + 1e-3f);
     if (step % 40 == 0) progress.report({"paint", 0.2 + 0.8 * fraction, -1, ""});
   }
   return field;
