@@ -6,13 +6,16 @@
 #include "core/compute/kernels/activate.h"
 #include "core/compute/kernels/adam.h"
 #include "core/compute/kernels/encode.h"
+#include "core/compute/kernels/light.h"
 #include "core/compute/kernels/radiance.h"
+#include "core/compute/kernels/shade.h"
 
 namespace cei3d {
 
 using AllKernels = KernelList<EncodePoint, EncodeFrequency, EncodeGrid, EncodeGridGrad,  //
                               Activate<Relu>, ActivateGrad<Relu>, Activate<Elu>, ActivateGrad<Elu>,
                               Activate<Softplus>, ActivateGrad<Softplus>, Activate<Sigmoid>, ActivateGrad<Sigmoid>,
-                              Adam, RadianceInput, RadianceInputGrad>;
+                              Adam, RadianceInput, RadianceInputGrad, SgFitResidual, SgFitGather,  //
+                              SgIrradiance, SgReflection>;
 
 }  // namespace cei3d

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/linear_split.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/math/color.h"
+#include "engine/reconstruct/split_system.h"
+#include "model/light/envmap.h"
+
+namespace cei3d {
+namespace {
+
+struct Solution {
+  SplitUnknowns x;
+  std::vector<Vec3f> color;  // of a metal
+  double residual = 0;
+};
+
+class Search {
+ public:
+  Search(const Mesh& mesh, const std::vector<SplitRow>& rows, const LinearSplitOptions& options, Progress& progress)
+      : mesh_(mesh), options_(options), progress_(progress), system_(mesh, rows, options) {
+    start_.diffuse.assign(mesh.positions.size(), {0, 0, 0});
+    start_.light.assign(size_t(2) * options.light_height * options.light_height, {0, 0, 0});
+  }
+
+  Solution dielectric(float roughness) {
+    system_.set_metal({});
+    system_.set_roughness(roughness);
+    Solution s{start_, {}, 0};
+    system_.solve(s.x, options_.rounds, options_.steps);
+    return finish(std::move(s), false);
+  }
+  Solution metal(float roughness) {
+    system_.set_roughness(roughness);
+    Solution s{start_, std::vector<Vec3f>(mesh_.positions.size(), Vec3f{0.7f, 0.7f, 0.7f}), 0};
+    for (int round = 0; round < 3; ++round) {
+      system_.set_metal(s.color);
+      system_.solve(s.x, 3, 8);
+      s.color = system_.fit_metal_color(s.x);
+    }
+    system_.set_metal(s.color);
+    return finish(std::move(s), true);
+  }
+  std::vector<LinearSplit::Trial> trials;
+
+ private:
+  Solution finish(Solution s, bool metal) {
+    s.residual = system_.residual(s.x);
+    trials.push_back({metal, system_.roughness(), s.residual});
+    progress_.log(fmt::format(R"({{"stage":"split","metal":{},"roughness":{:.3f},"residual":{:.3e}}})", metal,
+                              system_.roughness(), s.residual));
+    return s;
+  }
+  const Mesh& mesh_;
+  LinearSplitOptions options_;
+  Progress& progress_;
+  SplitSystem system_;
+  SplitUnknowns start_;
+};
+
+// The largest roughness whose non-negative light fits within the tolerance of the best: a smaller one with a blurred
+// light fits as well as the truth, a larger one asks for negative light. Bisection in the logarithm.
+template <class F>
+std::pair<float, Solution> search_roughness(F solve, const LinearSplitOptions& o) {
+  if (o.fixed_roughness > 0) return {o.fixed_roughness, solve(o.fixed_roughness)};
+  float low = 0.12f, high = 0.8f;
+  Solution best = solve(low);
+  double least = best.residual;
+  float chosen = low;
+  for (int k = 1; k < o.roughness_solves; ++k) {
+    const float middle = std::sqrt(low * high);
+    Solution s = solve(middle);
+    least = std::min(least, s.residual);
+    if (s.residual <= (1 + o.tolerance) * least) {
+      low = chosen = middle;
+      best = std::move(s);
+    } else {
+      high = middle;
+    }
+  }
+  return {chosen, std::move(best)};
+}
+
+// Light and a metal's colour share a factor per channel that reflections leave open: the light is taken to be grey on
+// average.
+void make_light_grey(Solution& s, int height) {
+  Vec3f mean{0, 0, 0};
+  for (int i = 0; i < height; ++i)
+    for (int j = 0; j < 2 * height; ++j) mean += s.x.light[size_t(i) * 2 * height + j] * env_solid_angle(i, 2 * height, height);
+  const float grey = luminance(mean);
+  for (int c = 0; c < 3; ++c) {
+    const float k = grey / max(mean[c], 1e-6f * grey);
+    for (Vec3f& l : s.x.light) l[c] *= k;
+    for (Vec3f& a : s.color) a[c] /= k;
+  }
+  // No reflectance above one: the brightest hundredth decides the common scale.
+  std::vector<float> peak;
+  for (const Vec3f& a : s.color) peak.push_back(std::max({a.x, a.y, a.z}));
+  std::nth_element(peak.begin(), peak.begin() + peak.size() * 99 / 100, peak.end());
+  const float k = max(1.0f, peak[peak.size() * 99 / 100]);
+  for (Vec3f& l : s.x.light) l = l * k;
+  for (Vec3f& a : s.color) a = a / k;
+}
+
+Image to_image(const std::vector<Vec3f>& light, int height) {
+  Image map(2 * height, height, 3);
+  for (size_t i = 0; i < light.size(); ++i)
+    for (int c = 0; c < 3; ++c) map.data[3 * i + c] = light[i][c];
+  return map;
+}
+
+std::vector<Vec3f> clamped(std::vector<Vec3f> v, float high) {
+  for (Vec3f& x : v)
+    for (int c = 0; c < 3; ++c) x[c] = clamp(x[c], 0.0f, high);
+  return v;
+}
+
+}  // namespace
+
+SkyRadiance sky_radiance(const Image& light) {
+  const auto& sky = sky_directions();
+  SkyRadiance sum(sky.size(), Vec3f{0, 0, 0});
+  std::vector<float> total(sky.size(), 0);
+  // A pixel feeds the directions around it by a narrow lobe about as wide as their spacing.
+  for (int y = 0; y < light.height; ++y)
+    for (int x = 0; x < light.width; ++x) {
+      const Vec3f d = env_direction(float(x) + 0.5f, float(y) + 0.5f, light.width, light.height);
+      const float area = env_solid_angle(y, light.width, light.height);
+      for (size_t k = 0; k < sky.size(); ++k) {
+        const float c = dot(d, sky[k]);
+        if (c < 0.95f) continue;
+        const float w = area * std::exp(256 * (c - 1));
+        sum[k] += light.rgb(x, y) * w;
+        total[k] += w;
+      }
+    }
+  for (size_t k = 0; k < sky.size(); ++k) sum[k] = sum[k] / total[k];
+  return sum;
+}
+
+LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples, const LinearSplitOptions& options,
+                         Progress& progress) {
+  const Mesh& mesh = transport.surface().mesh();
+  const std::vector<SplitRow> rows = make_split_rows(transport.surface(), samples, options);
+  if (rows.size() < 1000)
+    fail("only {} pixels see the surface well enough to tell light from material; are masks and poses right?", rows.size());
+  Search search(mesh, rows, options, progress);
+  auto [roughness, solution] = search_roughness([&](float r) { return search.dielectric(r); }, options);
+  // A metal explains everything by reflection; try it at the roughness found and keep the better.
+  auto [metal_roughness, metal] = search_roughness([&](float r) { return search.metal(r); }, options);
+  LinearSplit result;
+  const bool is_metal = metal.residual < solution.residual;
+  if (is_metal) {
+    make_light_grey(metal, options.light_height);
+    result.material = {metal_roughness, 0.5f, 1};
+    result.light = to_image(metal.x.light, options.light_height);
+    result.albedo = clamped(metal.color, 1);
+    result.diffuse.assign(mesh.positions.size(), {0, 0, 0});
+  } else {
+    result.material = {roughness, 0.5f, 0};
+    result.light = to_image(solution.x.light, options.light_height);
+    result.diffuse = clamped(solution.x.diffuse, 1e6f);
+    const std::vector<Vec3f> sky = transport.sky(sky_radiance(result.light)), bounce = transport.bounce(result.diffuse);
+    result.albedo.resize(mesh.positions.size());
+    for (size_t v = 0; v < result.albedo.size(); ++v)
+      for (int c = 0; c < 3; ++c)
+        result.albedo[v][c] = clamp(kPi * result.diffuse[v][c] / max(sky[v][c] + bounce[v][c], 1e-4f), 0.0f, 1.0f);
+  }
+  result.trials = std::move(search.trials);
+  return result;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light and material told apart by one linear solve. A pixel is D(x) + S(x, v; roughness) L: whatever of it does not
+// change with the view stays in D, free for every surface point, so the light L can only be read from how a point
+// changes with the view, where albedo cannot interfere. For a given roughness both are linear unknowns. Albedo then is
+// D over the irradiance of L: explicit. Metals have no D; there light and reflectance alternate.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "core/image/image.h"
+#include "engine/render/transport.h"
+#include "model/material/material.h"
+
+namespace cei3d {
+
+// What the cameras saw of the surface.
+struct SurfaceSamples {
+  std::span<const Hit> hits;           // #N, unit-sphere frame
+  std::span<const Vec3f> colors;       // #N linear radiance
+  std::span<const uint8_t> saturated;  // #N, 1: clipped in the picture, not to be believed; may be empty
+};
+
+struct LinearSplitOptions {
+  int most_hits = 300000;      // a random subset of the samples beyond that
+  int light_height = 32;       // rows of the light's lat-long grid, EnvUp::z
+  int rounds = 5, steps = 15;  // of conjugate gradients; negative light is clamped and frozen between rounds
+  int roughness_solves = 6;    // how finely the roughness is searched
+  float fixed_roughness = 0;   // > 0: no search
+  float smoothness = 1e-4f;    // of the light, relative to the mean curvature of its unknowns
+  float tolerance = 0.025f;    // the largest roughness whose residual is within this of the best is taken
+  uint64_t seed = 1;
+};
+
+struct LinearSplit {
+  Material material;            // roughness; metalness 0 or 1
+  Image light;                  // light_height rows, 2 light_height columns, RGB, linear, >= 0
+  std::vector<Vec3f> albedo;    // #V base colour, linear, [0, 1]
+  std::vector<Vec3f> diffuse;   // #V view-independent radiance D; zero for metals
+  struct Trial {
+    bool metal;
+    float roughness;
+    double residual;            // mean squared error in display units
+  };
+  std::vector<Trial> trials;    // in the order they were run
+};
+
+LinearSplit linear_split(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&);
+
+// Mean of a lat-long light (EnvUp::z) around each of sky_directions().
+SkyRadiance sky_radiance(const Image& light);
+
+}  // namespace cei3d

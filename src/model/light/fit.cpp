@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/light/fit.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+
+namespace cei3d {
+namespace {
+
+constexpr int kRows = 7;  // axis, sharpness, colour
+constexpr float kRate = 0.03f, kBeta1 = 0.9f, kBeta2 = 0.99f;
+
+int padded(int n) { return (n + kPanel - 1) / kPanel * kPanel; }
+
+// Unknowns: raw axis (normalised on use), logarithm of the sharpness, square root of the colour. Planes [7][padded].
+class LobeFit {
+ public:
+  LobeFit(const Image& map, int lobes, EnvUp up) : lobes_(lobes), p_(padded(lobes)), cells_(padded(map.width * map.height)) {
+    for (auto* v : {&raw_, &gradient_, &m_, &v_, &planes_, &d_planes_}) v->assign(size_t(kRows) * p_, 0);
+    directions_.assign(3 * size_t(cells_), 0);
+    roots_ = d_radiance_ = directions_;
+    weights_.assign(cells_, 0);
+    for (int i = 0; i < map.width * map.height; ++i) {
+      const int x = i % map.width, y = i / map.width;
+      const Vec3f d = env_direction(float(x) + 0.5f, float(y) + 0.5f, map.width, map.height, up), c = map.rgb(x, y);
+      for (int k = 0; k < 3; ++k) {
+        directions_[size_t(k) * cells_ + i] = d[k];
+        roots_[size_t(k) * cells_ + i] = std::sqrt(max(c[k], 0.0f) + 1e-4f);
+      }
+      weights_[i] = env_solid_angle(y, map.width, map.height);
+    }
+    const double golden = M_PI * (3 - std::sqrt(5.0));
+    for (int k = 0; k < lobes; ++k) {
+      const double z = 1 - (2 * k + 1.0) / lobes, r = std::sqrt(1 - z * z), a = golden * k;
+      const Vec3f axis{float(r * std::cos(a)), float(r * std::sin(a)), float(z)};
+      const Vec3f c = env_radiance(map, axis, up);
+      for (int j = 0; j < 3; ++j) {
+        row(raw_, j)[k] = axis[j];
+        row(raw_, 4 + j)[k] = std::sqrt(max(0.6f * c[j], 1e-3f));  // neighbours overlap
+      }
+      row(raw_, 3)[k] = std::log(0.5f * float(lobes));
+    }
+  }
+
+  void step(const Device& device, int t, float rate) {
+    expand();
+    const SgFitArgs args{{planes_.data(), lobes_, p_}, cells_, directions_.data(), roots_.data(), weights_.data(),
+                         d_radiance_.data(), d_planes_.data()};
+    device.launch<SgFitResidual>(args, cells_);
+    device.launch<SgFitGather>(args, p_);
+    pull_back();
+    const float correction = std::sqrt(1 - std::pow(kBeta2, float(t + 1))) / (1 - std::pow(kBeta1, float(t + 1)));
+    const AdamStep adam{kRate * rate * correction, kBeta1, kBeta2, 1e-8f, false};
+    device.launch<Adam>({adam, raw_.data(), gradient_.data(), m_.data(), v_.data()}, kRows * p_);
+    for (int k = 0; k < lobes_; ++k) {
+      float& s = row(raw_, 3)[k];
+      s = clamp(s, std::log(kBroadestLobe), std::log(kSharpestLobe));
+    }
+  }
+
+  SgMixture lobes() {
+    expand();
+    SgMixture light;
+    for (int k = 0; k < lobes_; ++k) {
+      const auto at = [&](int r) { return row(planes_, r)[k]; };
+      light.lobes.push_back({{at(0), at(1), at(2)}, at(3), {at(4), at(5), at(6)}});
+    }
+    return light;
+  }
+
+ private:
+  float* row(std::vector<float>& planes, int r) { return planes.data() + size_t(r) * p_; }
+  Vec3f raw_axis(int k) { return {row(raw_, 0)[k], row(raw_, 1)[k], row(raw_, 2)[k]}; }
+
+  void expand() {
+    for (int k = 0; k < lobes_; ++k) {
+      const Vec3f axis = normalize(raw_axis(k));
+      for (int j = 0; j < 3; ++j) {
+        row(planes_, j)[k] = axis[j];
+        row(planes_, 4 + j)[k] = square(row(raw_, 4 + j)[k]);
+      }
+      row(planes_, 3)[k] = std::exp(row(raw_, 3)[k]);
+    }
+  }
+  void pull_back() {
+    for (int k = 0; k < lobes_; ++k) {
+      const Vec3f axis = normalize(raw_axis(k)), d{row(d_planes_, 0)[k], row(d_planes_, 1)[k], row(d_planes_, 2)[k]};
+      const Vec3f along = (d - axis * dot(d, axis)) / length(raw_axis(k));
+      for (int j = 0; j < 3; ++j) {
+        row(gradient_, j)[k] = along[j];
+        row(gradient_, 4 + j)[k] = 2 * row(raw_, 4 + j)[k] * row(d_planes_, 4 + j)[k];
+      }
+      row(gradient_, 3)[k] = row(planes_, 3)[k] * row(d_planes_, 3)[k];
+    }
+  }
+
+  int lobes_, p_, cells_;
+  std::vector<float> raw_, gradient_, m_, v_, planes_, d_planes_;
+  std::vector<float> directions_, roots_, weights_, d_radiance_;
+};
+
+}  // namespace
+
+SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOptions& options, EnvUp up) {
+  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a colour picture");
+  for (const float x : lat_long.data)
+    if (!std::isfinite(x)) fail("light map: a value is not finite");
+  LobeFit fit(env_resample(lat_long, std::min(options.height, lat_long.height)), options.lobes, up);
+  for (int t = 0; t < options.steps; ++t) {
+    const float u = float(t) / float(options.steps);
+    fit.step(device, t, std::pow(0.02f, u));
+  }
+  return fit.lobes();
+}
+
+}  // namespace cei3d

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Distant light as a picture to distant light as lobes.
+#pragma once
+
+#include "core/compute/device.h"
+#include "core/image/image.h"
+#include "model/light/envmap.h"
+#include "model/light/sg_mixture.h"
+
+namespace cei3d {
+
+struct LobeFitOptions {
+  int lobes = 128;
+  int steps = 800;        // of Adam
+  int height = 32;        // the picture is averaged down to this many rows first
+};
+
+// Lobes that start on a Fibonacci sphere with sharpness lobes / 2 and descend on the squared error of square roots,
+// weighted by solid angle.
+SgMixture fit_lobes(const Device&, const Image& lat_long, const LobeFitOptions& = {}, EnvUp up = EnvUp::z);
+
+}  // namespace cei3d
