@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <new>
 #include <ostream>
+#include <sstream>
 #include <utility>
 
 #include "apps/cli/command.h"
@@ -16,18 +17,20 @@ namespace {
 constexpr const char* kAbout =
     "cei3d: photographs of an object become an editable, relightable object.\n"
     "\n"
-    "  cei3d check CAPTURE                                   is this folder of photographs usable?\n"
-    "  cei3d reconstruct CAPTURE -o PROJECT                  photographs to object\n"
-    "  cei3d edit PROJECT paint --view NAME --scribble S.png paint on one view, see it in all\n"
-    "  cei3d render PROJECT -o DIR                           pictures, also under another light\n"
-    "  cei3d export PROJECT -o OBJECT.glb                    a model file\n"
-    "  cei3d VERB -h                                         everything about a verb";
+    "  cei3d check CAPTURE                                    is this folder of photographs usable?\n"
+    "  cei3d reconstruct CAPTURE -o PROJECT                   photographs to object\n"
+    "  cei3d edit PROJECT paint --view NAME --scribble S.png  paint on one view, see it in all\n"
+    "  cei3d render PROJECT -o DIR                            pictures, also under another light\n"
+    "  cei3d export PROJECT -o OBJECT.glb                     a model file\n"
+    "  cei3d VERB -h                                          everything about a verb";
 
 constexpr const char* kFooter =
     "A CAPTURE is a folder (or its .json): NeRF-synthetic transforms_{train,val,test}.json with RGBA pictures, or PhySG\n"
     "cam_dict_norm.json with image/ and mask/. CAPTURE:test means one split of it. A PROJECT is a folder this program writes.\n"
     "Pixels are (column,row) from the top-left corner, centres at +0.5. Positions and lengths are in the capture's own frame.\n"
     "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (state saved).";
+
+constexpr const char* kVerbFooter = "Also, as everywhere: --quiet, --json, --log-level, --device, --threads (see `cei3d -h`).";
 
 const std::pair<const char*, LogLevel> kLevels[] = {
     {"error", LogLevel::error}, {"warn", LogLevel::warn}, {"info", LogLevel::info}, {"debug", LogLevel::debug}};
@@ -55,6 +58,27 @@ void add_common(CLI::App& app, CommonOptions& o) {
       ->check(CLI::Range(0, 4096))
       ->capture_default_str()
       ->group("Everywhere");
+}
+
+// Lines of at most `width` characters, broken at spaces.
+std::string wrapped(const std::string& text, size_t width) {
+  std::istringstream in(text);
+  std::string out, line;
+  for (std::string word; in >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      out += line + '\n';
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return out + line;
+}
+
+constexpr size_t kNameColumn = 34, kTextColumn = 84;
+
+void wrap_help(CLI::App& app) {
+  for (CLI::Option* option : app.get_options()) option->description(wrapped(option->get_description(), kTextColumn));
+  for (CLI::App* verb : app.get_subcommands({})) wrap_help(*verb);
 }
 
 // Runs, and turns everything thrown into a sentence and an exit code.
@@ -91,13 +115,15 @@ int usage_error(const CLI::App& app, const CLI::ParseError& e, Console& console)
 int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostream& err, bool err_is_terminal) {
   CommonOptions common;
   CLI::App app(kAbout, "cei3d");
-  app.footer(kFooter);
-  app.get_formatter()->column_width(34);
+  app.footer(kVerbFooter);  // verbs inherit it
+  app.get_formatter()->column_width(kNameColumn);
   add_common(app, common);
   app.require_subcommand(0, 1);
   Commands commands(app, common);
-  for (const auto add : {add_check, add_reconstruct, add_render, add_edit, add_history, add_export, add_eval, add_info})
+  for (const auto add : {add_check, add_reconstruct, add_render, add_edit, add_history, add_export, add_eval, add_info, add_bench})
     add(commands);
+  app.footer(kFooter);
+  wrap_help(app);
 
   Console console(out, err, err_is_terminal);
   try {

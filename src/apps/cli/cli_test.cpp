@@ -17,8 +17,8 @@ namespace cei3d {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 struct Typed {
   int code;
@@ -53,9 +53,9 @@ TEST(Cli, EveryVerbHasHelp) {
   EXPECT_THAT(paint.out, HasSubstr("--scribble"));
 }
 
-TEST(Cli, HelpShowsDefaults) {
-  EXPECT_THAT(type({"reconstruct", "-h"}).out, HasSubstr("[fast]"));
-  EXPECT_THAT(type({"render", "-h"}).out, HasSubstr("[rgb]"));
+TEST(Cli, HelpShowsDefaults) {  // as the installed CLI11 writes them
+  EXPECT_THAT(type({"reconstruct", "-h"}).out, AnyOf(HasSubstr("[fast]"), HasSubstr("=fast")));
+  EXPECT_THAT(type({"render", "-h"}).out, AnyOf(HasSubstr("[rgb]"), HasSubstr("=rgb")));
 }
 
 TEST(Cli, Version) {
@@ -84,6 +84,7 @@ TEST(Cli, WrongUsageIsTwo) {
       {"render", "p", "-o", "d", "--samples", "0"},
       {"render", "p", "-o", "d", "--env", "no/such.hdr"},
       {"edit", "p"},
+      {"edit", "paint", "--view", "r_0", "--scribble", "s.png"},
       {"edit", "p", "paint", "--view", "r_0"},
       {"edit", "p", "paint", "--view", "r_0", "--scribble", "s.png", "--target", "smell"},
       {"toggle", "p"},

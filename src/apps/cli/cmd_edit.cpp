@@ -32,6 +32,7 @@ void add_paint(Commands& commands, CLI::App* edit, std::shared_ptr<std::string> 
       ->capture_default_str();
   verb->add_option("--seed", o->command.seed, "Of everything random in the edit")->capture_default_str();
   commands.on(verb, o, [project](const PaintOptions& options, Session& session, Console& console) {
+    if (project->empty()) fail_usage("edit needs a PROJECT: cei3d edit PROJECT paint --view NAME --scribble FILE.png.");
     session.open(*project, Session::Access::write);
     const PaintSummary r = session.paint(options.command, console);
     console.done(r.json(), paint_text(r));
@@ -43,7 +44,8 @@ void add_paint(Commands& commands, CLI::App* edit, std::shared_ptr<std::string> 
 void add_edit(Commands& commands) {
   auto project = std::make_shared<std::string>();
   CLI::App* edit = commands.add("edit", "Change the object; every edit is a layer that `undo` takes back");
-  edit->add_option("project", *project, "Project folder")->required();
+  // Not ->required(): CLI11 would take the operation's name for it in `cei3d edit paint -h`.
+  edit->add_option("project", *project, "Project folder")->option_text("TEXT REQUIRED");
   edit->require_subcommand(1);
   add_paint(commands, edit, project);
 }

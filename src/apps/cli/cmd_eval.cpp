@@ -8,6 +8,7 @@ namespace {
 
 struct Options {
   std::string project, capture, json_file;
+  bool json = false;
   EvalRequest request;
 };
 
@@ -23,6 +24,7 @@ void evaluate(const Options& o, Session& session, Console& console) {
   session.open(o.project, Session::Access::read);
   const EvalReport r = session.evaluate(request, console);
   if (!o.json_file.empty()) write_file_atomic(o.json_file, r.json().dump(1) + "\n");
+  if (o.json) console.set_json(true);
   console.answer(r.json(), r.markdown());
 }
 
@@ -33,8 +35,15 @@ void add_eval(Commands& commands) {
   CLI::App* verb = commands.add("eval", "Compare rendered with real views: PSNR and SSIM, on white and inside the object mask");
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("capture", o->capture, "CAPTURE or CAPTURE:split (default: the project's own held-out views)");
-  // With a value --json names a file; the flag that prints on standard output keeps its name everywhere else.
-  verb->add_option("--json", o->json_file, "Write the scores to this file as JSON; without a file: print them")->expected(0, 1);
+  // Here --json may name a file; without one it is the flag that it is everywhere.
+  verb->add_option_function<std::vector<std::string>>(
+          "--json",
+          [o](const std::vector<std::string>& values) {
+            o->json = values.empty() || values[0].empty();
+            if (!o->json) o->json_file = values[0];
+          },
+          "Write the scores to this file as JSON; without a file: print them")
+      ->expected(0, 1);
   verb->add_option("--samples", o->request.samples, "Sub-pixel samples per axis")->check(CLI::Range(1, 16))->capture_default_str();
   verb->add_option("--edit", o->request.edit, "Also score this edit (an id of `log`): fidelity inside its mask, leakage outside");
   verb->add_option("--truth", o->request.truth, "With --edit: folder of pictures of the edited object, named like the views")

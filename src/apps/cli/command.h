@@ -54,5 +54,6 @@ void add_history(Commands&);  // log, undo, redo, toggle
 void add_export(Commands&);
 void add_eval(Commands&);
 void add_info(Commands&);     // info, doctor
+void add_bench(Commands&);
 
 }  // namespace cei3d

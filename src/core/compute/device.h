@@ -21,6 +21,7 @@ struct LaunchTable {
   void (*linear)(const LinearArgs&);
   void (*linear_weight_grad)(const LinearWeightGradArgs&);
   double (*fma_peak)();  // spins on multiply-adds in registers; FLOPs done, for the caller to time
+  double (*gather_peak)(const float* pairs, uint32_t mask);  // random 8-byte gathers from mask + 1 pairs; how many
 };
 
 class Device {
@@ -37,6 +38,7 @@ class Device {
   void linear(const LinearArgs& a) const { table_.linear(a); }
   void linear_weight_grad(const LinearWeightGradArgs& a) const { table_.linear_weight_grad(a); }
   double fma_peak() const { return table_.fma_peak(); }
+  double gather_peak(const float* pairs, uint32_t mask) const { return table_.gather_peak(pairs, mask); }
 
  private:
   const LaunchTable& table_;

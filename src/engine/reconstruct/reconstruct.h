@@ -13,10 +13,10 @@ namespace cei3d {
 struct ReconstructOptions {
   std::string preset = "fast";  // "fast", "balanced" or "paper" (engine/reconstruct/presets.h)
   double seconds = 0;           // stop training after; the whole schedule scales with it. 0: the preset's own
-  int iterations = 0;           // of the geometry stage, instead of seconds: makes a run a function of the seed alone
+  int iterations = 0;  // of the geometry stage, instead of seconds: makes a run a function of the seed alone
   uint64_t seed = 1;
-  int downscale = 1;            // use images at 1/N of their size
-  int test_every = 0;           // hold out every Nth view when the capture has no split; 0: none
+  int downscale = 1;   // use images at 1/N of their size
+  int test_every = 0;  // hold out every Nth view when the capture has no split; 0: none
 };
 
 // Where the trainer puts its state. Both files of a checkpoint appear or neither.
@@ -32,7 +32,7 @@ class Checkpoints {
 };
 
 // Scene, or an interrupted Error after saving a checkpoint when progress.cancelled().
-Scene reconstruct(const Device&, const Capture&, const ImageSource&, const Normalization&, const ReconstructOptions&,
-                  Checkpoints&, Progress&);
+Scene reconstruct(const Device&, const Capture&, const ImageSource&, const Normalization&,
+                  const ReconstructOptions&, Checkpoints&, Progress&);
 
 }  // namespace cei3d

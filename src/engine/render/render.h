@@ -2,6 +2,7 @@
 // Pictures of a scene, in two steps: trace (expensive, cacheable) and shade (cheap; all that light and paint change).
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -9,6 +10,8 @@
 #include "model/scene/scene.h"
 
 namespace cei3d {
+
+class Lighting;  // engine/render/lighting.h
 
 // Every sub-pixel sample that met the surface, ordered by pixel.
 struct GBuffer {
@@ -32,6 +35,11 @@ struct Frame {
   Image mask;                            // 1 channel, coverage
   std::vector<uint8_t> edited;           // #pixels, 1 where any sample routed to an edit layer
 };
-Frame shade_view(const Device&, const Scene&, const GBuffer&);
+// How the scene's own light reaches its surface; made once and used for every view. The bounce is that of the unedited
+// object, so that an edit changes no pixel outside its region.
+std::shared_ptr<const Lighting> light_scene(const Device&, const Scene&);
+
+Frame shade_view(const Device&, const Scene&, const Lighting&, const GBuffer&);
+Frame shade_view(const Device&, const Scene&, const GBuffer&);  // for a single view
 
 }  // namespace cei3d

@@ -26,6 +26,8 @@ class Session {
   explicit Session(const std::string& device = "auto", int threads = 0);
   ~Session();
 
+  const Device& device() const { return *device_; }
+
   // Without a project.
   static MachineInfo machine();
   CheckReport check(const CheckRequest&);

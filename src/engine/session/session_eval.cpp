@@ -135,7 +135,10 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
     const auto n = std::erase_if(without.layers, [&](const EditLayer& l) { return l.id == request.edit; });
     if (n == 0) fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", request.edit);
   }
-  const auto picture = [&](const Scene& s, const GBuffer& buffer) { return rounded_srgb(shade_view(*device_, s, buffer).rgb); };
+  const auto lighting = light_scene(*device_, scene);
+  const auto picture = [&](const Scene& s, const GBuffer& buffer) {
+    return rounded_srgb(shade_view(*device_, s, *lighting, buffer).rgb);
+  };
   EvalReport report;
   EditSums edit;
   for (size_t i = 0; i < views.size(); ++i) {

@@ -70,6 +70,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
   Scene scene = project().scene();
   choose_light(request.light, scene);
   const double depth = depth_scale(cameras, scene.normalization);
+  const auto lighting = light_scene(*device_, scene);
   RenderReport report;
   for (size_t i = 0; i < cameras.size(); ++i) {
     require_running(progress);
@@ -77,7 +78,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
     const double before = now();
     const GBuffer buffer = trace_view(*device_, scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
     const double traced = now();
-    const Frame frame = shade_view(*device_, scene, buffer);
+    const Frame frame = shade_view(*device_, scene, *lighting, buffer);
     report.trace_seconds += traced - before;
     report.shade_seconds += now() - traced;
     for (const Channel c : request.channels)

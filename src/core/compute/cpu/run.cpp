@@ -55,10 +55,32 @@ double fma_peak() {
   return 2.0 * kChains * kRounds * CEI3D_WIDTH;
 }
 
+// Pairs of floats from pseudo-random places of a table: what a hash encoding cannot exceed. Returns gathers done.
+double gather_peak(const float* pairs, uint32_t mask) {
+  constexpr int kRounds = 1 << 18;
+  Index<Number> at(12345u);
+  Number lane[1];
+#if CEI3D_WIDTH > 1
+  for (int k = 0; k < CEI3D_WIDTH; ++k) at.v[k] = uint32_t(k) * 2654435761u;
+#endif
+  lane[0] = Number(0.0f);
+  for (int i = 0; i < kRounds; ++i) {
+    for (int k = 0; k < 8; ++k) {
+      at = at * Index<Number>(1664525u) + Index<Number>(1013904223u);
+      Number a, b;
+      gather2(pairs, (at ^ (at * Index<Number>(805459861u))) & Index<Number>(mask), a, b);
+      lane[0] = lane[0] + a + b;
+    }
+  }
+  volatile float sink = sum_lanes(lane[0]);
+  (void)sink;
+  return 8.0 * kRounds * CEI3D_WIDTH;
+}
+
 }  // namespace
 
 extern const LaunchTable table;
 const LaunchTable table{CEI3D_TEXT(CEI3D_ISA), CEI3D_WIDTH, Table<AllKernels>::entries, linear, linear_weight_grad,
-                        fma_peak};
+                        fma_peak, gather_peak};
 
 }  // namespace cei3d::CEI3D_ISA

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// The appearance stage (PPD): light and material of a standing surface, started by the linear split. [architecture 1.2]
+#pragma once
+
+#include <memory>
+
+#include "core/base/progress.h"
+#include "engine/reconstruct/linear_split.h"
+#include "model/field/field.h"
+#include "model/light/sg_mixture.h"
+
+namespace cei3d {
+
+struct AppearanceInput {
+  const Surface& surface;
+  SurfaceSamples samples;  // pixels wholly on the object
+};
+
+struct AppearanceOptions {
+  double seconds = 0;      // for all of it; 0: full effort, a function of the seed alone
+  uint64_t seed = 1;
+  FieldConfig albedo;      // 3 outputs, sigmoid
+};
+
+struct AppearanceResult {
+  SgMixture light;
+  Material material;
+  std::shared_ptr<const Field> albedo;
+  LinearSplit split;       // what it started from, for the record
+};
+
+AppearanceResult fit_appearance(const Device&, const AppearanceInput&, const AppearanceOptions&, Progress&);
+
+}  // namespace cei3d

@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/reconstruct.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/math/color.h"
+#include "core/math/rng.h"
+#include "engine/reconstruct/appearance_stage.h"
+#include "engine/reconstruct/geometry_stage.h"
+#include "engine/reconstruct/presets.h"
+#include "engine/render/render.h"
+#include "model/geometry/surface_nets.h"
+
+namespace cei3d {
+
+namespace {
+
+constexpr int kRim = 6;  // pixels around the object that are trained on
+constexpr double kCheckpointSeconds = 30;
+constexpr double kGeometryShare = 0.72;  // of the time that is asked for
+constexpr double kMostAppearance = 90;   // seconds: more brings nothing
+constexpr size_t kMostHits = 600000;     // training pixels of the appearance stage
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+struct TrainingViews {
+  PixelStore train, held_out;
+  double footprint = 0;  // of a pixel at the object's centre, mean over the views
+};
+
+TrainingViews load_views(const Capture& capture, const ImageSource& images,
+                         const Normalization& normalization, Progress& progress) {
+  TrainingViews v;
+  int done = 0, trained = 0;
+  for (const View& view : capture.views) {
+    progress.report({"loading", 0.01 * done++ / double(capture.views.size()), -1, view.name});
+    if (progress.cancelled()) throw Error(ErrorCode::interrupted, "interrupted while loading the pictures");
+    const bool train = view.split == Split::train;
+    if (!train && v.held_out.cameras().size() >= 8) continue;
+    const Image image = images.load(view);
+    Camera camera = normalization.unit_from_input(view.camera);
+    const double shrink = double(image.width) / camera.width;  // pictures may come downscaled
+    camera.width = image.width;
+    camera.height = image.height;
+    for (double* f : {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &camera.skew}) *f *= shrink;
+    (train ? v.train : v.held_out).add_view(camera, image, kRim);
+    if (train) v.footprint += length(camera.center) / camera.fx, ++trained;
+  }
+  v.footprint /= std::max(trained, 1);
+  return v;
+}
+
+// Where a run stands in its schedule: by iterations, or by the clock.
+class Schedule {
+ public:
+  Schedule(double seconds, int iterations) : seconds_(seconds), iterations_(iterations), start_(now()) {}
+  void resume_at(double elapsed) { start_ = now() - elapsed; }
+  double elapsed() const { return now() - start_; }
+  double position(int64_t step) const {
+    return seconds_ > 0 ? elapsed() / seconds_ : double(step) / iterations_;
+  }
+  double seconds_left(double u) const {
+    return seconds_ > 0 ? seconds_ - elapsed() : u > 0.01 ? elapsed() * (1 - u) / u : -1;
+  }
+
+ private:
+  double seconds_;
+  int iterations_;
+  double start_;
+};
+
+void save_geometry(Checkpoints& checkpoints, const GeometryStage& stage, int64_t step, double elapsed) {
+  Checkpoints::State state;
+  state.head = {{"stage", "geometry"}, {"step", step}, {"elapsed", elapsed}};
+  stage.save(state.tensors);
+  checkpoints.save(state);
+}
+
+// Trains until the schedule is over. Returns the number of steps.
+int64_t train_geometry(GeometryStage& stage, const TrainingViews& views, Schedule schedule,
+                       Checkpoints& checkpoints, Progress& progress) {
+  int64_t step = 0;
+  if (const auto state = checkpoints.latest()) {
+    stage.load(state->tensors);
+    step = state->head.at("step").get<int64_t>();
+    schedule.resume_at(state->head.at("elapsed").get<double>());
+  } else {
+    progress.report({"visual hull", 0.01, -1, ""});
+    stage.prefit();
+    schedule.resume_at(0);
+  }
+  const PixelStore& judged = views.held_out.pixels().empty() ? views.train : views.held_out;
+  const char* label = views.held_out.pixels().empty() ? "train" : "held-out";
+  double last_report = 0, last_save = schedule.elapsed();
+  GeometryStats sum;
+  for (;; ++step) {
+    const double u = schedule.position(step);
+    if (u >= 1) break;
+    if (progress.cancelled()) {
+      save_geometry(checkpoints, stage, step, schedule.elapsed());
+      throw Error(ErrorCode::interrupted, "interrupted; the state is saved", "go on with --resume");
+    }
+    sum = stage.step(step, u);
+    if (!std::isfinite(sum.color)) fail("training diverged at step {}: the loss is not a number", step);
+    if (schedule.elapsed() - last_report > 2) {
+      const double psnr = stage.evaluate(judged, 4096, u).psnr(), rays = double(sum.rays);
+      progress.report(
+          {"geometry", 0.02 + 0.7 * u, schedule.seconds_left(u),
+           fmt::format("loss {:.4f}  {} {:.1f} dB at the object", sum.color / rays, label, psnr)});
+      progress.log(Json{{"stage", "geometry"},
+                        {"step", step},
+                        {"u", u},
+                        {"color", sum.color / rays},
+                        {"mask", sum.mask / rays},
+                        {"eikonal", sum.eikonal / double(std::max<int64_t>(sum.kept, 1))},
+                        {"psnr", psnr},
+                        {"on", label},
+                        {"kept", double(sum.kept) / rays}}
+                       .dump());
+      last_report = schedule.elapsed();
+    }
+    if (schedule.elapsed() - last_save > kCheckpointSeconds) {
+      save_geometry(checkpoints, stage, step + 1, schedule.elapsed());
+      last_save = schedule.elapsed();
+    }
+  }
+  save_geometry(checkpoints, stage, step, schedule.elapsed());
+  return step;
+}
+
+// The radiance field's own pictures of the held-out views, for the record: what the physical model is
+// measured against.
+void report_radiance(GeometryStage& stage, const Capture& capture, const ImageSource& images,
+                     const Normalization& normalization, Progress& progress) {
+  double sum = 0;
+  int views = 0;
+  for (const View& view : capture.views) {
+    if (view.split == Split::train || views == 4) continue;
+    const Image truth = images.load(view);
+    if (truth.width != view.camera.width) return;
+    const Image got = stage.render_radiance(normalization.unit_from_input(view.camera), 2);
+    double error = 0;
+    for (size_t i = 0; i < got.data.size() / 3; ++i)
+      for (int c = 0; c < 3; ++c) {
+        const float a = truth.data[4 * i + 3], want = srgb_from_linear(truth.data[4 * i + c]) * a + 1 - a;
+        error += square(double(got.data[3 * i + c]) - want);
+      }
+    sum += -10 * std::log10(error / double(got.data.size()));
+    ++views;
+  }
+  if (views)
+    progress.log(
+        Json{{"stage", "radiance field"}, {"held_out_psnr_on_white", sum / views}, {"views", views}}.dump());
+}
+
+// Pixels wholly on the object, as hits with colour; a fixed random subset when there are too many.
+struct ObjectHits {
+  std::vector<Hit> hits;
+  std::vector<Vec3f> colors;       // linear
+  std::vector<uint8_t> saturated;  // a channel is clipped
+  std::vector<uint16_t> views;
+  std::vector<float> footprints;  // distance between neighbouring pixels on the surface
+};
+
+ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& surface,
+                       const PixelStore& pixels) {
+  std::vector<Pixel> inner;
+  for (const Pixel& p : pixels.pixels())
+    if (p.srgba[3] == 255) inner.push_back(p);
+  const double keep = std::min(1.0, double(kMostHits) / double(std::max<size_t>(inner.size(), 1)));
+  std::vector<Pixel> chosen;
+  for (size_t i = 0; i < inner.size(); ++i)
+    if (keep == 1 || Rng(7, 0, i).uniform() < keep) chosen.push_back(inner[i]);
+  std::vector<Ray> rays;
+  rays.reserve(chosen.size());
+  for (const Pixel& p : chosen) rays.push_back(pixels.cameras()[p.view].ray(p.x + 0.5, p.y + 0.5));
+  ObjectHits out;
+  std::vector<uint32_t> ray_of_hit;
+  out.hits = trace_rays(device, sdf, surface, rays, ray_of_hit);
+  for (size_t i = 0; i < out.hits.size(); ++i) {
+    const Pixel& p = chosen[ray_of_hit[i]];
+    const Camera& camera = pixels.cameras()[p.view];
+    const auto channel = [&](int c) { return linear_from_srgb(float(p.srgba[c]) / 255); };
+    out.colors.push_back({channel(0), channel(1), channel(2)});
+    out.saturated.push_back(p.srgba[0] == 255 || p.srgba[1] == 255 || p.srgba[2] == 255);
+    out.views.push_back(p.view);
+    out.footprints.push_back(length(out.hits[i].position - to_float(camera.center)) / float(camera.fx));
+  }
+  return out;
+}
+
+}  // namespace
+
+Scene reconstruct(const Device& device, const Capture& capture, const ImageSource& images,
+                  const Normalization& normalization, const ReconstructOptions& options,
+                  Checkpoints& checkpoints, Progress& progress) {
+  Preset preset = preset_by_name(options.preset);
+  TrainingViews views = load_views(capture, images, normalization, progress);
+  if (views.train.pixels().empty()) fail("no training picture shows the object: every mask is empty");
+  fit_to_footprint(preset, views.footprint);
+
+  const double appearance_seconds =
+      options.seconds > 0 ? std::min(kMostAppearance, 0.2 * options.seconds) : 0;
+  const double geometry_seconds =
+      options.seconds > 0 && options.iterations == 0
+          ? std::max(kGeometryShare * options.seconds,
+                     options.seconds - appearance_seconds - std::max(8.0, 0.06 * options.seconds))
+          : 0;
+  const int iterations = options.iterations > 0 ? options.iterations : preset.iterations;
+
+  Scene scene;
+  scene.normalization = normalization;
+  scene.up = capture.up;
+  {
+    GeometryStage stage(device, views.train, preset.geometry, options.seed);
+    train_geometry(stage, views, Schedule(geometry_seconds, iterations), checkpoints, progress);
+    report_radiance(stage, capture, images, normalization, progress);
+    scene.sdf = std::make_shared<const Field>(stage.sdf());
+  }
+  progress.report({"surface", 0.74, -1, ""});
+  scene.surface = std::make_shared<const Surface>(extract_mesh(device, *scene.sdf, preset.meshing));
+  const ObjectHits hits = object_hits(device, *scene.sdf, *scene.surface, views.train);
+  if (hits.hits.empty()) fail("the reconstructed surface is not where the pictures show the object");
+  progress.report({"handler points", 0.78, -1, ""});
+  scene.handlers = std::make_shared<const HandlerPoints>(
+      thin_hits(hits.hits, hits.footprints, 1.5f * float(views.footprint)));
+
+  AppearanceOptions appearance;
+  appearance.seconds = appearance_seconds;
+  appearance.seed = options.seed;
+  appearance.albedo = preset.albedo;
+  AppearanceResult result =
+      fit_appearance(device, {*scene.surface, {hits.hits, hits.colors, hits.saturated}}, appearance, progress);
+  scene.light = std::move(result.light);
+  scene.material = result.material;
+  scene.albedo = std::move(result.albedo);
+  progress.report({"done", 1, 0, ""});
+  return scene;
+}
+
+}  // namespace cei3d
