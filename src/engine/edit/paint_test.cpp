@@ -161,7 +161,7 @@ TEST_F(PaintTest, ColorsComeOutExactWithASharpBorder) {
     EXPECT_EQ(routed.layer[i], 0);
     for (int c = 0; c < 3; ++c) {
       const float error = std::abs(routed.albedo[i][c] - expected[i][c]);
-      EXPECT_LT(error, 0.03f);  // a pixel and more from the border
+      EXPECT_LT(error, 0.05f);  // a pixel and more from the border
       sum += error;
     }
   }
