@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/math/sg.h"
 
 namespace cei3d {
 namespace {
@@ -13,10 +15,41 @@ constexpr float kRate = 0.03f, kBeta1 = 0.9f, kBeta2 = 0.99f;
 
 int padded(int n) { return (n + kPanel - 1) / kPanel * kPanel; }
 
+Image blurred(const Image& map, float sharpness, EnvUp up) {
+  Image out(map.width, map.height, 3);
+  std::vector<Vec3f> directions;
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x)
+      directions.push_back(env_direction(float(x) + 0.5f, float(y) + 0.5f, map.width, map.height, up));
+  parallel_for(map.height, [&](int y) {
+    for (int x = 0; x < map.width; ++x) {
+      const Vec3f d = directions[size_t(y) * map.width + x];
+      Vec3f sum{0, 0, 0};
+      float total = 0;
+      for (int i = 0; i < map.width * map.height; ++i) {
+        const float t = sharpness * (dot(d, directions[i]) - 1);
+        if (t < -12) continue;
+        const float w = std::exp(t) * env_solid_angle(i / map.width, map.width, map.height);
+        sum += map.rgb(i % map.width, i / map.width) * w;
+        total += w;
+      }
+      for (int c = 0; c < 3; ++c) out.at(x, y)[c] = sum[c] / total;
+    }
+  });
+  return out;
+}
+
+// The lobe that becomes `seen` when blurred by a lobe of the given sharpness, energy kept.
+SgLobe unblurred(SgLobe seen, float sharpness) {
+  const float lambda = min(seen.lambda * sharpness / (sharpness - seen.lambda), kSharpestLobe);
+  return {seen.axis, lambda, seen.mu * (sg_integral(seen.lambda) / sg_integral(lambda))};
+}
+
 // Unknowns: raw axis (normalised on use), logarithm of the sharpness, square root of the colour. Planes [7][padded].
 class LobeFit {
  public:
-  LobeFit(const Image& map, int lobes, EnvUp up) : lobes_(lobes), p_(padded(lobes)), cells_(padded(map.width * map.height)) {
+  LobeFit(const Image& map, int lobes, float sharpest, EnvUp up)
+      : lobes_(lobes), sharpest_(sharpest), p_(padded(lobes)), cells_(padded(map.width * map.height)) {
     for (auto* v : {&raw_, &gradient_, &m_, &v_, &planes_, &d_planes_}) v->assign(size_t(kRows) * p_, 0);
     directions_.assign(3 * size_t(cells_), 0);
     roots_ = d_radiance_ = directions_;
@@ -39,7 +72,7 @@ class LobeFit {
         row(raw_, j)[k] = axis[j];
         row(raw_, 4 + j)[k] = std::sqrt(max(0.6f * c[j], 1e-3f));  // neighbours overlap
       }
-      row(raw_, 3)[k] = std::log(0.5f * float(lobes));
+      row(raw_, 3)[k] = std::log(min(0.5f * float(lobes), 0.5f * sharpest));
     }
   }
 
@@ -55,7 +88,7 @@ class LobeFit {
     device.launch<Adam>({adam, raw_.data(), gradient_.data(), m_.data(), v_.data()}, kRows * p_);
     for (int k = 0; k < lobes_; ++k) {
       float& s = row(raw_, 3)[k];
-      s = clamp(s, std::log(kBroadestLobe), std::log(kSharpestLobe));
+      s = clamp(s, std::log(kBroadestLobe), std::log(sharpest_));
     }
   }
 
@@ -95,7 +128,9 @@ class LobeFit {
     }
   }
 
-  int lobes_, p_, cells_;
+  int lobes_;
+  float sharpest_;
+  int p_, cells_;
   std::vector<float> raw_, gradient_, m_, v_, planes_, d_planes_;
   std::vector<float> directions_, roots_, weights_, d_radiance_;
 };
@@ -106,12 +141,15 @@ SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOp
   if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a colour picture");
   for (const float x : lat_long.data)
     if (!std::isfinite(x)) fail("light map: a value is not finite");
-  LobeFit fit(env_resample(lat_long, std::min(options.height, lat_long.height)), options.lobes, up);
-  for (int t = 0; t < options.steps; ++t) {
-    const float u = float(t) / float(options.steps);
-    fit.step(device, t, std::pow(0.02f, u));
-  }
-  return fit.lobes();
+  Image map = env_resample(lat_long, std::min(options.height, lat_long.height));
+  const float kernel = options.seen_through;
+  if (kernel > 0) map = blurred(map, kernel, up);
+  LobeFit fit(map, options.lobes, kernel > 0 ? 0.7f * kernel : kSharpestLobe, up);
+  for (int t = 0; t < options.steps; ++t) fit.step(device, t, std::pow(0.02f, float(t) / float(options.steps)));
+  SgMixture light = fit.lobes();
+  if (kernel > 0)
+    for (SgLobe& l : light.lobes) l = unblurred(l, kernel);
+  return light;
 }
 
 }  // namespace cei3d

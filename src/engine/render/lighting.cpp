@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/render/lighting.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/math/brdf.h"
+#include "core/math/sg.h"
+
+namespace cei3d {
+namespace {
+
+constexpr int kBlock = 2048;       // hits a chunk: what it needs stays in the second-level cache
+constexpr int kEnvCells = 64;
+constexpr float kSkyLobe = 256;    // sharpness of a lobe as wide as the spacing of sky_directions()
+constexpr float kLift = 2e-3f;     // rays start this far above the surface
+constexpr int kOcclusionRays = 6;  // of the reflection lobe
+
+Vec3f at_corners(const std::vector<Vec3f>& v, const std::array<uint32_t, 3>& t, float b1, float b2) {
+  return v[t[0]] * (1 - b1 - b2) + v[t[1]] * b1 + v[t[2]] * b2;
+}
+
+// Directions of equal weight that stand for the reflection lobe of a roughness around +Z: one ring at the radius that
+// splits each equal share of its energy. 1 / (1 + x)^2 has the cumulative share x / (1 + x).
+std::vector<Vec3f> lobe_directions(float roughness) {
+  std::vector<Vec3f> d;
+  const float alpha = roughness * roughness;
+  for (int k = 0; k < kOcclusionRays; ++k) {
+    const float u = (float(k) + 0.5f) / kOcclusionRays;
+    const float t = std::min(2 * alpha * std::sqrt(u / (1 - u)), 1.4f), a = 2.399963f * float(k);
+    d.push_back({std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)});
+  }
+  return d;
+}
+
+Vec3f turned(Vec3f z, Vec3f d) {  // d in a frame whose third axis is z
+  const float s = z.z < 0 ? -1.0f : 1.0f, a = -1 / (s + z.z), b = z.x * z.y * a;  // [Duff et al. 2017]
+  const Vec3f x{1 + s * z.x * z.x * a, s * b, -s * z.x}, y{b, s + z.y * z.y * a, -z.y};
+  return x * d.x + y * d.y + z * d.z;
+}
+
+}  // namespace
+
+std::vector<Vec2f> env_brdf_table(float roughness) {
+  std::vector<Vec2f> table(kEnvCells);
+  parallel_ranges(kEnvCells, 8, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const EnvBrdf e = env_brdf(roughness, (i + 0.5) / kEnvCells);
+      table[i] = {e.scale, e.bias};
+    }
+  });
+  return table;
+}
+
+Vec2f env_brdf_at(const std::vector<Vec2f>& table, float nv) {
+  const float x = clamp(nv * float(table.size()) - 0.5f, 0.0f, float(table.size() - 1));
+  const int i = std::min(int(x), int(table.size()) - 2);
+  const float f = x - float(i);
+  return {table[i].x * (1 - f) + table[i + 1].x * f, table[i].y * (1 - f) + table[i + 1].y * f};
+}
+
+SkyRadiance sky_radiance(const SgMixture& light) {
+  SkyRadiance out;
+  const float unit = 1 / sg_integral(kSkyLobe);
+  for (const Vec3f d : sky_directions()) {
+    Vec3f sum{0, 0, 0};
+    for (const SgLobe& l : light.lobes) {
+      const Vec3f gap = d - l.axis;
+      sum += l.mu * (unit * sg_inner(l.lambda, kSkyLobe, dot(gap, gap)));
+    }
+    out.push_back(sum);
+  }
+  return out;
+}
+
+Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture& light,
+                   std::span<const Vec3f> base_color, const Material& material,
+                   std::shared_ptr<const Transport> transport)
+    : device_(device), surface_(surface), material_(material), n_lobes_(int(light.lobes.size())) {
+  if (base_color.size() != surface.mesh().positions.size())
+    fail("lighting: {} colours for {} vertices", base_color.size(), surface.mesh().positions.size());
+  padded_ = (n_lobes_ + kPanel - 1) / kPanel * kPanel;
+  lobe_planes_.assign(size_t(7) * padded_, 0);
+  for (int k = 0; k < n_lobes_; ++k) {
+    const SgLobe& l = light.lobes[k];
+    const float row[] = {l.axis.x, l.axis.y, l.axis.z, clamp(l.lambda, kBroadestLobe, kSharpestLobe), l.mu.x, l.mu.y, l.mu.z};
+    for (int j = 0; j < 7; ++j) lobe_planes_[size_t(j) * padded_ + k] = row[j];
+  }
+  env_table_ = env_brdf_table(material.roughness);
+  if (!transport) transport = std::make_shared<Transport>(surface);
+  const SkyRadiance sky = sky_radiance(light);
+  const std::vector<Vec3f> seen = transport->sky(sky), open = transport->open_sky(sky);
+  openness_.resize(seen.size());
+  for (size_t v = 0; v < seen.size(); ++v)
+    for (int c = 0; c < 3; ++c) openness_[v][c] = open[v][c] > 1e-6f ? min(seen[v][c] / open[v][c], 1.0f) : 1.0f;
+  bounce_.assign(seen.size(), {0, 0, 0});
+  leaving_.resize(seen.size());
+  for (int round = 0; round < 2; ++round) {
+    for (size_t v = 0; v < seen.size(); ++v) leaving_[v] = base_color[v] * (seen[v] + bounce_[v]) / kPi;
+    bounce_ = transport->bounce(leaving_);
+  }
+}
+
+Lighting::~Lighting() = default;
+
+// Planes of one chunk of hits.
+struct Lighting::Block {
+  std::vector<float> normals, mirrors, irradiance, reflected;
+  std::vector<Vec3f> origins, directions;
+  std::vector<Surface::RayHit> far;
+  Block() {
+    for (auto* v : {&normals, &mirrors, &irradiance, &reflected}) v->assign(size_t(3) * kBlock, 0);
+  }
+};
+
+Vec3f Lighting::leaving(const Surface::RayHit& h) const {
+  return at_corners(leaving_, surface_.mesh().triangles[h.triangle], h.b1, h.b2);
+}
+
+HitLight Lighting::light_at(std::span<const Hit> hits) const {
+  HitLight out;
+  out.irradiance.resize(hits.size());
+  out.reflected.resize(hits.size());
+  out.env.resize(hits.size());
+  const std::vector<Vec3f> lobe = lobe_directions(material_.roughness);
+  const LobePlanes lobes{lobe_planes_.data(), n_lobes_, padded_};
+  parallel_ranges(int(hits.size()), kBlock, [&](int begin, int end) {
+    Block b;
+    for (int i = begin; i < end; ++i) {
+      const Hit& h = hits[i];
+      const Vec3f r = normalize(h.normal * (2 * dot(h.normal, h.to_camera)) - h.to_camera);
+      for (int c = 0; c < 3; ++c) {
+        b.normals[size_t(c) * kBlock + i - begin] = h.normal[c];
+        b.mirrors[size_t(c) * kBlock + i - begin] = r[c];
+      }
+      for (const Vec3f& d : lobe) {
+        b.origins.push_back(h.position + h.normal * kLift);
+        b.directions.push_back(turned(r, d));
+      }
+    }
+    const int n = (end - begin + kPanel - 1) / kPanel * kPanel;
+    device_.launch<SgIrradiance>({lobes, kBlock, b.normals.data(), b.irradiance.data()}, n);
+    SgReflection::Args reflection{lobes, {}, {}, kBlock, b.mirrors.data(), b.reflected.data()};
+    set_reflection_lobe(material_.roughness, reflection);
+    device_.launch<SgReflection>(reflection, n);
+    b.far.resize(b.origins.size());
+    surface_.intersect(b.origins, b.directions, 0, b.far);
+    for (int i = begin; i < end; ++i) {
+      const Hit& h = hits[i];
+      const auto& t = surface_.mesh().triangles[h.triangle];
+      const auto plane = [&](const std::vector<float>& p) {
+        return Vec3f{p[i - begin], p[kBlock + i - begin], p[2 * kBlock + i - begin]};
+      };
+      out.irradiance[i] = plane(b.irradiance) * at_corners(openness_, t, h.b1, h.b2) + at_corners(bounce_, t, h.b1, h.b2);
+      Vec3f seen{0, 0, 0};
+      int free = 0;
+      for (int k = 0; k < kOcclusionRays; ++k) {
+        const Surface::RayHit& f = b.far[size_t(i - begin) * kOcclusionRays + k];
+        if (f.t < 0) ++free;
+        else seen += leaving(f);
+      }
+      out.reflected[i] = (plane(b.reflected) * float(free) + seen) / float(kOcclusionRays);
+      out.env[i] = env_brdf_at(env_table_, dot(h.normal, h.to_camera));
+    }
+  });
+  return out;
+}
+
+Shading Lighting::shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const {
+  const HitLight light = light_at(hits);
+  Shading out{std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())};
+  const float m = material_.metalness, dielectric = (1 - m) * kDielectricF0 * material_.specular;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const Vec3f f0 = albedo[i] * m + Vec3f{dielectric, dielectric, dielectric};
+    const Vec2f env = light.env[i];
+    out.diffuse[i] = albedo[i] * light.irradiance[i] * ((1 - m) / kPi);
+    out.specular[i] = (f0 * env.x + Vec3f{env.y, env.y, env.y}) * light.reflected[i];
+  }
+  return out;
+}
+
+}  // namespace cei3d

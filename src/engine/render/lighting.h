@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shading model: what a surface point sends to the camera under a light of lobes. Direct light in closed form,
+// dimmed by what the vertices around the point see of the sky, plus one diffuse bounce; reflections in closed form,
+// replaced by the surface's own radiance where rays of the reflection lobe meet it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/compute/device.h"
+#include "engine/render/transport.h"
+#include "model/light/sg_mixture.h"
+#include "model/material/material.h"
+
+namespace cei3d {
+
+struct Shading {
+  std::vector<Vec3f> diffuse, specular;  // #hits, linear radiance
+};
+
+// What of a hit's shading the light and the material multiply: colour = base colour * diffuse_gain + specular, with
+// specular = (f0 * scale + bias) * reflected.
+struct HitLight {
+  std::vector<Vec3f> irradiance;  // #hits, sky and bounce
+  std::vector<Vec3f> reflected;   // #hits, mean radiance over the reflection lobe
+  std::vector<Vec2f> env;         // #hits, scale and bias
+};
+
+class Lighting {
+ public:
+  // base_color: #V, of the unedited object: what bounces and what reflections see. The transport can be shared by
+  // lights; without one it is computed (a second).
+  Lighting(const Device&, const Surface&, const SgMixture&, std::span<const Vec3f> base_color, const Material&,
+           std::shared_ptr<const Transport> transport = nullptr);
+  ~Lighting();
+
+  // albedo: #hits base colour. A hit's result depends on nothing but that hit.
+  Shading shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const;
+  HitLight light_at(std::span<const Hit> hits) const;
+
+ private:
+  struct Block;
+  Vec3f leaving(const Surface::RayHit&) const;
+
+  const Device& device_;
+  const Surface& surface_;
+  Material material_;
+  std::vector<float> lobe_planes_;
+  int n_lobes_ = 0, padded_ = 0;
+  std::vector<Vec3f> openness_;  // #V share of the open sky's irradiance that arrives
+  std::vector<Vec3f> bounce_;    // #V irradiance from the surface itself
+  std::vector<Vec3f> leaving_;   // #V radiance that the surface sends out, taken as diffuse
+  std::vector<Vec2f> env_table_; // scale and bias of the reflectance by the viewer's cosine
+};
+
+// Mean radiance of a light around each of sky_directions().
+SkyRadiance sky_radiance(const SgMixture& light);
+
+// The env_brdf of one roughness, tabulated over the viewer's cosine in cells of equal width.
+std::vector<Vec2f> env_brdf_table(float roughness);
+Vec2f env_brdf_at(const std::vector<Vec2f>& table, float nv);
+
+}  // namespace cei3d
