@@ -1,12 +1,78 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/session/light_choice.h"
 
+#include <cmath>
+
 #include "core/base/error.h"
+#include "engine/io/image_file.h"
+#include "model/light/fit.h"
 
 namespace cei3d {
+namespace {
 
-void choose_light(const LightChoice& choice, Scene&) {
-  if (!choice.env.empty()) fail("Environment pictures are not read yet.");
+// Rotation by an angle about a unit axis, counter-clockwise when the axis points to the viewer. [Rodrigues]
+Mat3f about_axis(Vec3f k, float radians) {
+  const float s = std::sin(radians), c = 1 - std::cos(radians);
+  const Mat3f cross_k{{{0, -k.z, k.y}, {k.z, 0, -k.x}, {-k.y, k.x, 0}}};
+  const Mat3f squared = cross_k * cross_k;
+  Mat3f r = Mat3f::identity();
+  for (int i = 0; i < 3; ++i) r.row[i] += cross_k.row[i] * s + squared.row[i] * c;
+  return r;
+}
+
+// The shortest rotation that takes one unit vector to another.
+Mat3f turning(Vec3f from, Vec3f to) {
+  const Vec3f axis = cross(from, to);
+  const float sine = length(axis), cosine = dot(from, to);
+  if (sine < 1e-6f) {
+    const Vec3f any = std::abs(from.x) < 0.9f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0};
+    return cosine > 0 ? Mat3f::identity() : about_axis(normalize(cross(from, any)), kPi);
+  }
+  return about_axis(axis / sine, std::atan2(sine, cosine));
+}
+
+// Blender's lookup and the scenes' are one: centre +X, row 0 +Z. "yup" and "mitsuba" are one as well.
+EnvUp row_zero(EnvConvention convention, Vec3f up) {
+  switch (convention) {
+    case EnvConvention::zup:
+    case EnvConvention::blender:
+      return EnvUp::z;
+    case EnvConvention::yup:
+    case EnvConvention::mitsuba:
+      return EnvUp::y;
+    case EnvConvention::by_up_axis:
+      break;
+  }
+  return std::abs(up.y) > 0.9f ? EnvUp::y : EnvUp::z;
+}
+
+void require_lat_long(const Image& map, const std::filesystem::path& path) {
+  if (map.width != 2 * map.height)
+    fail("{} is {}x{} pixels; a latitude-longitude picture is twice as wide as high.", path.string(), map.width, map.height);
+  if (map.channels < 3) fail("{} has no colours; save the environment as RGB.", path.string());
+  double sum = 0;
+  for (const float v : map.data) {
+    if (!std::isfinite(v)) fail("{} holds NaN or infinite values; convert it again.", path.string());
+    sum += v;
+  }
+  if (sum <= 0) fail("{} is black: there is no light in it.", path.string());
+}
+
+SgMixture light_of_picture(const Device& device, const LightChoice& choice, Vec3f up) {
+  const Image map = read_linear_image(choice.env);
+  require_lat_long(map, choice.env);
+  const EnvUp row = row_zero(choice.convention, up);
+  const SgMixture light = fit_lobes(device, map, {}, row);
+  if (choice.convention != EnvConvention::by_up_axis) return light;
+  return rotated(light, turning(row == EnvUp::y ? Vec3f{0, 1, 0} : Vec3f{0, 0, 1}, up));  // skies are up
+}
+
+}  // namespace
+
+SgMixture chosen_light(const Device& device, const LightChoice& choice, const SgMixture& own, Vec3d up) {
+  const Vec3f axis = to_float(normalize(up));
+  const SgMixture light = choice.env.empty() ? own : light_of_picture(device, choice, axis);
+  return choice.rotate_degrees == 0 ? light : rotated(light, about_axis(axis, float(choice.rotate_degrees) * kPi / 180));
 }
 
 }  // namespace cei3d

@@ -51,14 +51,6 @@ Mesh handler_mesh(const Scene& scene) {
   return points;
 }
 
-// [M][7]: axis, sharpness, amplitude, as PhySG and CEI-3D store lights. [reference-facts 1.7]
-std::vector<float> lobe_table(const SgMixture& light) {
-  std::vector<float> table;
-  for (const SgLobe& l : light.lobes)
-    table.insert(table.end(), {l.axis.x, l.axis.y, l.axis.z, l.lambda, l.mu.x, l.mu.y, l.mu.z});
-  return table;
-}
-
 }  // namespace
 
 ExportReport Session::export_to(const ExportRequest& request, Progress& progress) {
@@ -72,7 +64,7 @@ ExportReport Session::export_to(const ExportRequest& request, Progress& progress
   report.out = request.out;
   if (kind == ".npy") {
     report.lobes = scene.light.lobes.size();
-    write_npy(request.out, lobe_table(scene.light), int64_t(report.lobes), 7);
+    write_npy(request.out, to_array(scene.light), int64_t(report.lobes), 7);
     return report;
   }
   const Mesh mesh = request.points ? handler_mesh(scene) : coloured_mesh(*device_, scene);

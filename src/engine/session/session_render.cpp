@@ -68,7 +68,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
   const double start = now();
   const std::vector<NamedCamera> cameras = choose_cameras(project(), request.cameras, request.width, request.height);
   Scene scene = project().scene();
-  choose_light(request.light, scene);
+  scene.light = chosen_light(*device_, request.light, scene.light, scene.up);
   const double depth = depth_scale(cameras, scene.normalization);
   const auto lighting = light_scene(*device_, scene);
   RenderReport report;
