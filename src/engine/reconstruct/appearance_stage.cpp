@@ -26,9 +26,10 @@ LinearSplitOptions split_options(const AppearanceOptions& o) {
   LinearSplitOptions s;
   s.seed = o.seed;
   if (o.seconds > 0 && o.seconds < 40) {
-    s.most_hits = 120000;
+    s.most_hits = 200000;
+    s.search_hits = 80000;
     s.roughness_solves = 4;
-    s.rounds = 4;
+    s.light_height = 32;
   }
   return s;
 }
@@ -94,7 +95,10 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   progress.log(Json{{"stage", "linear split"}, {"seconds", now() - start}, {"roughness", result.material.roughness},
                     {"metalness", result.material.metalness}}.dump());
   progress.report({"lobes", 0.9, -1, ""});
-  result.light = fit_lobes(device, result.split.light);
+  LobeFitOptions lobes;
+  lobes.height = result.split.light.height;
+  lobes.seen_through = 0.5f / std::pow(result.material.roughness, 4.0f);
+  result.light = fit_lobes(device, result.split.light, lobes);
   const Lighting lighting(device, input.surface, result.light, result.split.albedo, result.material);
   const LinearInAlbedo model = linear_in_albedo(lighting, input.samples.hits);
   Field albedo(options.albedo, options.seed + 100);

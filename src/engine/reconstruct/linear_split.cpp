@@ -18,13 +18,19 @@ struct Solution {
   double residual = 0;
 };
 
-class Search {
+// Solves for one size of the problem.
+class Solver {
  public:
-  Search(const Mesh& mesh, const std::vector<SplitRow>& rows, const LinearSplitOptions& options, Progress& progress)
-      : mesh_(mesh), options_(options), progress_(progress), system_(mesh, rows, options) {
-    start_.diffuse.assign(mesh.positions.size(), {0, 0, 0});
+  Solver(const Transport& transport, const SurfaceSamples& samples, const LinearSplitOptions& options, Progress& progress)
+      : mesh_(transport.surface().mesh()),
+        rows_(make_split_rows(transport.surface(), samples, options)),
+        options_(options),
+        progress_(progress),
+        system_(mesh_, rows_, options) {
+    start_.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
     start_.light.assign(size_t(2) * options.light_height * options.light_height, {0, 0, 0});
   }
+  size_t rows() const { return rows_.size(); }
 
   Solution dielectric(float roughness) {
     system_.set_metal({});
@@ -55,6 +61,7 @@ class Search {
     return s;
   }
   const Mesh& mesh_;
+  std::vector<SplitRow> rows_;
   LinearSplitOptions options_;
   Progress& progress_;
   SplitSystem system_;
@@ -64,24 +71,17 @@ class Search {
 // The largest roughness whose non-negative light fits within the tolerance of the best: a smaller one with a blurred
 // light fits as well as the truth, a larger one asks for negative light. Bisection in the logarithm.
 template <class F>
-std::pair<float, Solution> search_roughness(F solve, const LinearSplitOptions& o) {
-  if (o.fixed_roughness > 0) return {o.fixed_roughness, solve(o.fixed_roughness)};
+float search_roughness(F residual_at, const LinearSplitOptions& o) {
+  if (o.fixed_roughness > 0) return o.fixed_roughness;
   float low = 0.12f, high = 0.8f;
-  Solution best = solve(low);
-  double least = best.residual;
-  float chosen = low;
+  double least = residual_at(low);
   for (int k = 1; k < o.roughness_solves; ++k) {
     const float middle = std::sqrt(low * high);
-    Solution s = solve(middle);
-    least = std::min(least, s.residual);
-    if (s.residual <= (1 + o.tolerance) * least) {
-      low = chosen = middle;
-      best = std::move(s);
-    } else {
-      high = middle;
-    }
+    const double residual = residual_at(middle);
+    least = std::min(least, residual);
+    (residual <= (1 + o.tolerance) * least ? low : high) = middle;
   }
-  return {chosen, std::move(best)};
+  return low;
 }
 
 // Light and a metal's colour share a factor per channel that reflections leave open: the light is taken to be grey on
@@ -144,20 +144,25 @@ SkyRadiance sky_radiance(const Image& light) {
 LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples, const LinearSplitOptions& options,
                          Progress& progress) {
   const Mesh& mesh = transport.surface().mesh();
-  const std::vector<SplitRow> rows = make_split_rows(transport.surface(), samples, options);
-  if (rows.size() < 1000)
-    fail("only {} pixels see the surface well enough to tell light from material; are masks and poses right?", rows.size());
-  Search search(mesh, rows, options, progress);
-  auto [roughness, solution] = search_roughness([&](float r) { return search.dielectric(r); }, options);
-  // A metal explains everything by reflection; try it at the roughness found and keep the better.
-  auto [metal_roughness, metal] = search_roughness([&](float r) { return search.metal(r); }, options);
+  LinearSplitOptions coarse = options;
+  coarse.most_hits = options.search_hits;
+  coarse.light_height = options.search_height;
+  Solver search(transport, samples, coarse, progress);
+  if (search.rows() < 1000)
+    fail("only {} pixels see the surface well enough to tell light from material; are masks and poses right?", search.rows());
+  // A metal explains everything by reflection: the better of the two explanations stands.
+  const double dielectric_residual = search.dielectric(0.2f).residual, metal_residual = search.metal(0.2f).residual;
   LinearSplit result;
-  const bool is_metal = metal.residual < solution.residual;
+  const bool is_metal = metal_residual < dielectric_residual;
+  const float roughness = search_roughness(
+      [&](float r) { return (is_metal ? search.metal(r) : search.dielectric(r)).residual; }, options);
+  Solver fine(transport, samples, options, progress);
+  Solution solution = is_metal ? fine.metal(roughness) : fine.dielectric(roughness);
   if (is_metal) {
-    make_light_grey(metal, options.light_height);
-    result.material = {metal_roughness, 0.5f, 1};
-    result.light = to_image(metal.x.light, options.light_height);
-    result.albedo = clamped(metal.color, 1);
+    make_light_grey(solution, options.light_height);
+    result.material = {roughness, 0.5f, 1};
+    result.light = to_image(solution.x.light, options.light_height);
+    result.albedo = clamped(solution.color, 1);
     result.diffuse.assign(mesh.positions.size(), {0, 0, 0});
   } else {
     result.material = {roughness, 0.5f, 0};
@@ -170,6 +175,7 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
         result.albedo[v][c] = clamp(kPi * result.diffuse[v][c] / max(sky[v][c] + bounce[v][c], 1e-4f), 0.0f, 1.0f);
   }
   result.trials = std::move(search.trials);
+  result.trials.insert(result.trials.end(), fine.trials.begin(), fine.trials.end());
   return result;
 }
 

@@ -23,13 +23,15 @@ struct SurfaceSamples {
 };
 
 struct LinearSplitOptions {
-  int most_hits = 300000;      // a random subset of the samples beyond that
-  int light_height = 32;       // rows of the light's lat-long grid, EnvUp::z
-  int rounds = 5, steps = 15;  // of conjugate gradients; negative light is clamped and frozen between rounds
-  int roughness_solves = 6;    // how finely the roughness is searched
+  int most_hits = 600000;      // a random subset of the samples beyond that
+  int light_height = 48;       // rows of the light's lat-long grid, EnvUp::z
+  int rounds = 4, steps = 12;  // of conjugate gradients; negative light is clamped and frozen between rounds
+  int search_hits = 200000;    // samples, and
+  int search_height = 32;      // rows of the light, while the roughness is searched
+  int roughness_solves = 6;    // how finely it is searched
   float fixed_roughness = 0;   // > 0: no search
   float smoothness = 1e-4f;    // of the light, relative to the mean curvature of its unknowns
-  float tolerance = 0.025f;    // the largest roughness whose residual is within this of the best is taken
+  float tolerance = 0.012f;    // the largest roughness whose residual is within this of the best is taken
   uint64_t seed = 1;
 };
 
