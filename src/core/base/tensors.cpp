@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The safetensors format: u64 header length (little endian), JSON header, then the arrays' bytes. Only little-endian
-// machines. [huggingface.co/docs/safetensors]
+// The safetensors format: u64 header length (little endian), JSON header, then the arrays' bytes. Only
+// little-endian machines. [huggingface.co/docs/safetensors]
 #include "core/base/tensors.h"
 
 #include <algorithm>
@@ -27,8 +27,10 @@ struct Entry {
 };
 
 [[noreturn]] void malformed(const std::string& file, const std::string& why) {
-  fail("{} is not a usable safetensors file: {}. It may be truncated or from another program; restore or remake it.",
-       file, why);
+  fail(
+      "{} is not a usable safetensors file: {}. It may be truncated or from another program; restore or "
+      "remake it.",
+      file, why);
 }
 
 int64_t element_count(const std::vector<int64_t>& shape, const std::string& file, const std::string& name) {
@@ -39,7 +41,8 @@ int64_t element_count(const std::vector<int64_t>& shape, const std::string& file
 }
 
 uint64_t as_size(const Json& j, const std::string& file, const std::string& name) {
-  // The parser makes 1.0 a float and negative numbers signed, so this is exactly "a non-negative integer that fits".
+  // The parser makes 1.0 a float and negative numbers signed, so this is exactly "a non-negative integer that
+  // fits".
   if (!j.is_number_unsigned() || j.get<uint64_t>() > uint64_t(std::numeric_limits<int64_t>::max()))
     malformed(file, "'" + name + "' holds something that is not a size");
   return j.get<uint64_t>();
@@ -58,7 +61,8 @@ Entry parse_entry(const std::string& name, const Json& j, uint64_t data_size, co
   for (const Json& d : shape) e.tensor.shape.push_back(int64_t(as_size(d, file, name)));
   e.begin = as_size(offsets[0], file, name);
   e.end = as_size(offsets[1], file, name);
-  if (e.begin > e.end || e.end > data_size) malformed(file, "'" + name + "' reaches beyond the end of the file");
+  if (e.begin > e.end || e.end > data_size)
+    malformed(file, "'" + name + "' reaches beyond the end of the file");
   const int64_t count = element_count(e.tensor.shape, file, name);
   const uint64_t item = e.is_float ? 4 : 1;
   if ((e.end - e.begin) % item != 0 || (e.end - e.begin) / item != uint64_t(count))
@@ -114,7 +118,8 @@ std::string tensors_to_bytes(const Tensors& tensors) {
     require_consistent(name, t);
     const bool is_u8 = !t.u8.empty();
     const uint64_t size = t.u8.size() + t.f32.size() * 4;
-    header[name] = {{"dtype", is_u8 ? "U8" : "F32"}, {"shape", t.shape}, {"data_offsets", {position, position + size}}};
+    header[name] = {
+        {"dtype", is_u8 ? "U8" : "F32"}, {"shape", t.shape}, {"data_offsets", {position, position + size}}};
     position += size;
   }
   std::string text = header.dump();
@@ -131,7 +136,8 @@ Tensors tensors_from_bytes(const std::string& bytes, const std::string& file) {
   uint64_t length = 0;
   if (bytes.size() < 8) malformed(file, "it is too short");
   std::memcpy(&length, bytes.data(), 8);
-  if (length > kMaxHeader || length > bytes.size() - 8) malformed(file, "its header reaches beyond the end of the file");
+  if (length > kMaxHeader || length > bytes.size() - 8)
+    malformed(file, "its header reaches beyond the end of the file");
   const Json header = parse_header(bytes.data() + 8, length, file);
   const char* data = bytes.data() + 8 + length;
   const uint64_t data_size = bytes.size() - 8 - length;
@@ -152,12 +158,15 @@ Tensors tensors_from_bytes(const std::string& bytes, const std::string& file) {
     } else {
       e.tensor.u8.assign(data + e.begin, data + e.end);
     }
-    if (!tensors.emplace(e.name, std::move(e.tensor)).second) malformed(file, "the name '" + e.name + "' comes twice");
+    if (!tensors.emplace(e.name, std::move(e.tensor)).second)
+      malformed(file, "the name '" + e.name + "' comes twice");
   }
   return tensors;
 }
 
-Tensors read_tensors(const std::filesystem::path& path) { return tensors_from_bytes(read_file(path), path.string()); }
+Tensors read_tensors(const std::filesystem::path& path) {
+  return tensors_from_bytes(read_file(path), path.string());
+}
 
 void write_tensors(const std::filesystem::path& path, const Tensors& tensors) {
   write_file_atomic(path, tensors_to_bytes(tensors));

@@ -28,8 +28,8 @@ void mean_of_block(const Image& image, int x0, int y0, int n, float* out) {
 Image downscale(const Image& image, int n) {
   if (n == 1) return image;
   if (n < 1 || n > image.width || n > image.height)
-    fail_usage("Cannot scale a picture of {} x {} pixels down by {}: choose a factor from 1 to {}.", image.width, image.height,
-         n, std::min(image.width, image.height));
+    fail_usage("Cannot scale a picture of {} x {} pixels down by {}: choose a factor from 1 to {}.",
+               image.width, image.height, n, std::min(image.width, image.height));
   Image out(image.width / n, image.height / n, image.channels);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) mean_of_block(image, x * n, y * n, n, out.at(x, y));

@@ -29,18 +29,21 @@ const CaptureFormat& format_of(const fs::path& path, const std::string& wanted) 
       return f;
     }
   if (!wanted.empty()) fail_usage("There is no capture format '{}'. Known: {}.", wanted, known_formats());
-  fail("{} is not a capture: it has neither transforms_train.json (NeRF-synthetic) nor cam_dict_norm.json (PhySG).",
-       path.string());
+  fail(
+      "{} is not a capture: it has neither transforms_train.json (NeRF-synthetic) nor cam_dict_norm.json "
+      "(PhySG).",
+      path.string());
 }
 
-// Most photographers hold the camera upright: the mean of the cameras' own "up" points to the sky. Snapped to the
-// nearest axis; the format's convention where the cameras don't say.
+// Most photographers hold the camera upright: the mean of the cameras' own "up" points to the sky. Snapped to
+// the nearest axis; the format's convention where the cameras don't say.
 Vec3d up_axis(const Capture& capture) {
   const Vec3d convention = capture.format == "physg" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
   Vec3d sum{0, 0, 0};
   int n = 0;
   for (const View& v : capture.views) {
-    const Vec3d up = -Vec3d{v.camera.world_from_cam.row[0].y, v.camera.world_from_cam.row[1].y, v.camera.world_from_cam.row[2].y};
+    const Vec3d up = -Vec3d{v.camera.world_from_cam.row[0].y, v.camera.world_from_cam.row[1].y,
+                            v.camera.world_from_cam.row[2].y};
     if (!std::isfinite(dot(up, up))) continue;
     sum += up;
     ++n;
@@ -58,7 +61,8 @@ Vec3d up_axis(const Capture& capture) {
 
 void hold_out(Capture& capture, int every) {
   if (every < 0 || every == 1) fail_usage("--test-every should be 2 or more (or 0 for none), not {}.", every);
-  const bool has_test = std::any_of(capture.views.begin(), capture.views.end(), [](const View& v) { return v.split == Split::test; });
+  const bool has_test = std::any_of(capture.views.begin(), capture.views.end(),
+                                    [](const View& v) { return v.split == Split::test; });
   if (every == 0 || has_test) return;
   int i = 0;
   for (View& view : capture.views)
@@ -69,7 +73,8 @@ void make_names_unique(Capture& capture) {
   std::set<std::string> taken;
   for (View& view : capture.views) {
     std::string name = view.name;
-    if (taken.count(name)) name = fmt::format("{}/{}", split_name(view.split), fs::path(view.name).filename().string());
+    if (taken.count(name))
+      name = fmt::format("{}/{}", split_name(view.split), fs::path(view.name).filename().string());
     for (int n = 2; taken.count(name); ++n) name = fmt::format("{}-{}", view.name, n);
     taken.insert(view.name = name);
   }
@@ -98,7 +103,9 @@ size_t edit_distance(const std::string& a, const std::string& b) {
 std::string near_names(const Capture& capture, const std::string& name) {
   std::vector<std::pair<size_t, std::string>> all;
   for (const View& v : capture.views)
-    all.push_back({std::min(edit_distance(name, v.name), edit_distance(name, fs::path(v.name).filename().string())), v.name});
+    all.push_back(
+        {std::min(edit_distance(name, v.name), edit_distance(name, fs::path(v.name).filename().string())),
+         v.name});
   const size_t n = std::min<size_t>(3, all.size());
   std::partial_sort(all.begin(), all.begin() + std::ptrdiff_t(n), all.end());
   std::string text;
@@ -108,7 +115,9 @@ std::string near_names(const Capture& capture, const std::string& name) {
 
 }  // namespace
 
-const char* split_name(Split split) { return split == Split::train ? "train" : split == Split::val ? "val" : "test"; }
+const char* split_name(Split split) {
+  return split == Split::train ? "train" : split == Split::val ? "val" : "test";
+}
 
 std::optional<Split> split_from_name(const std::string& name) {
   for (const Split split : kSplits)
@@ -128,7 +137,8 @@ Capture load_capture(const fs::path& path, const CaptureOptions& options) {
   Capture capture = format_of(path, options.format).load(path);
   if (capture.views.empty()) fail("{} lists no views.", path.string());
   hold_out(capture, options.test_every);
-  std::stable_sort(capture.views.begin(), capture.views.end(), [](const View& a, const View& b) { return a.split < b.split; });
+  std::stable_sort(capture.views.begin(), capture.views.end(),
+                   [](const View& a, const View& b) { return a.split < b.split; });
   make_names_unique(capture);
   capture.up = up_axis(capture);
   return capture;
@@ -150,7 +160,8 @@ CaptureSpec parse_capture_spec(const std::string& spec) {
   if (colon == std::string::npos || fs::exists(spec)) return {spec, std::nullopt};
   const std::string word = spec.substr(colon + 1);
   if (const auto split = split_from_name(word)) return {spec.substr(0, colon), split};
-  if (fs::exists(spec.substr(0, colon))) fail_usage("'{}' is not a split of a capture: use train, val or test.", word);
+  if (fs::exists(spec.substr(0, colon)))
+    fail_usage("'{}' is not a split of a capture: use train, val or test.", word);
   return {spec, std::nullopt};
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Captures: posed photographs in the formats that people have. All conventions end here: OpenCV axes, pixel centres at
-// +0.5, the capture's own world frame.
+// Captures: posed photographs in the formats that people have. All conventions end here: OpenCV axes, pixel
+// centres at +0.5, the capture's own world frame.
 #pragma once
 
 #include <filesystem>
@@ -17,16 +17,17 @@ struct CaptureOptions {
   int test_every = 0;  // every Nth training view becomes a test view when the capture has none; 0: never
 };
 
-// Cameras and file names; pictures are not read (but for the size of one a split). path: a folder, or its .json.
-// Missing pictures are no error here: check() lists them all. Errors: nothing recognised, malformed cameras, no views.
+// Cameras and file names; pictures are not read (but for the size of one a split). path: a folder, or its
+// .json. Missing pictures are no error here: check() lists them all. Errors: nothing recognised, malformed
+// cameras, no views.
 Capture load_capture(const std::filesystem::path& path, const CaptureOptions& options = {});
 
 const char* split_name(Split split);
 std::optional<Split> split_from_name(const std::string& name);
 std::vector<View> views_of(const Capture& capture, Split split);
 
-// "train/r_055", "./train/r_055", with a picture's suffix, or a bare "r_055" when only one split has it (else the training
-// view). Error (usage) with near names when there is none.
+// "train/r_055", "./train/r_055", with a picture's suffix, or a bare "r_055" when only one split has it (else
+// the training view). Error (usage) with near names when there is none.
 const View& find_view(const Capture& capture, const std::string& name);
 
 struct CaptureSpec {

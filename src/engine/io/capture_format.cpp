@@ -22,7 +22,8 @@ std::string without_nan(const std::string& text) {
     } else if (!in_string) {
       size_t n = 0;
       for (const char* word : {"-NaN", "NaN", "-nan", "nan", "-Infinity", "Infinity"})
-        if (n == 0 && text.compare(i, std::string_view(word).size(), word) == 0) n = std::string_view(word).size();
+        if (n == 0 && text.compare(i, std::string_view(word).size(), word) == 0)
+          n = std::string_view(word).size();
       if (n > 0) {
         out += "null";
         i += n - 1;

@@ -19,13 +19,14 @@ struct CaptureFormat {
 };
 const std::vector<CaptureFormat>& capture_formats();
 
-// NeRF-synthetic and its kin: transforms_{train,val,test}.json or one transforms.json (all training views), OpenGL
-// camera-to-world. A frame's own fl_x, fl_y, cx, cy, w, h win over the file's; mask_path is honoured. [reference-facts 1.5]
+// NeRF-synthetic and its kin: transforms_{train,val,test}.json or one transforms.json (all training views),
+// OpenGL camera-to-world. A frame's own fl_x, fl_y, cx, cy, w, h win over the file's; mask_path is honoured.
+// [reference-facts 1.5]
 bool detect_nerf(const std::filesystem::path& path);
 Capture load_nerf(const std::filesystem::path& path);
 
-// PhySG: cam_dict_norm.json, image/, mask/, in the folder itself or in its train/ and test/. OpenCV world-to-camera,
-// integer pixel centres. [reference-facts 1.1]
+// PhySG: cam_dict_norm.json, image/, mask/, in the folder itself or in its train/ and test/. OpenCV
+// world-to-camera, integer pixel centres. [reference-facts 1.1]
 bool detect_physg(const std::filesystem::path& path);
 Capture load_physg(const std::filesystem::path& path);
 

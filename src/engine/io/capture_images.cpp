@@ -18,8 +18,10 @@ void require_path(const View& view) {
 void require_size(const View& view, const Image& image, const std::filesystem::path& path) {
   const Camera& c = view.camera;
   if (image.width != c.width || image.height != c.height)
-    fail("{} is {} x {} pixels, but view {} should have {} x {}. All pictures and masks of a split need one size.",
-         path.string(), image.width, image.height, view.name, c.width, c.height);
+    fail(
+        "{} is {} x {} pixels, but view {} should have {} x {}. All pictures and masks of a split need one "
+        "size.",
+        path.string(), image.width, image.height, view.name, c.width, c.height);
 }
 
 // The mask file's object pixels as 0 and 1.
@@ -28,7 +30,8 @@ std::vector<uint8_t> read_mask_file(const View& view) {
   require_size(view, mask, view.mask_path);
   std::vector<uint8_t> object(size_t(mask.width) * mask.height);
   for (int y = 0; y < mask.height; ++y)
-    for (int x = 0; x < mask.width; ++x) object[size_t(y) * mask.width + x] = luminance(mask.rgb(x, y)) > 0.5f;
+    for (int x = 0; x < mask.width; ++x)
+      object[size_t(y) * mask.width + x] = luminance(mask.rgb(x, y)) > 0.5f;
   return object;
 }
 
@@ -56,7 +59,8 @@ Mask load_mask(const View& view) {
   require_path(view);
   const Image image = read_image(view.image_path);
   require_size(view, image, view.image_path);
-  Mask mask{image.width, image.height, std::vector<uint8_t>(size_t(image.width) * image.height, 1), image.channels == 4};
+  Mask mask{image.width, image.height, std::vector<uint8_t>(size_t(image.width) * image.height, 1),
+            image.channels == 4};
   if (mask.stated)
     for (size_t i = 0; i < mask.object.size(); ++i) mask.object[i] = image.data[4 * i + 3] > 0.5f;
   return mask;

@@ -10,9 +10,9 @@
 
 namespace cei3d {
 
-// RGBA, linear, straight alpha. Alpha: the mask file (luminance > 0.5: 1, else 0) where the view has one, else the
-// picture's own, else 1. PNG and JPEG are sRGB; EXR and HDR are linear as stored. Errors name the file: missing, broken,
-// of another size than the camera or the mask, NaN or infinite values.
+// RGBA, linear, straight alpha. Alpha: the mask file (luminance > 0.5: 1, else 0) where the view has one,
+// else the picture's own, else 1. PNG and JPEG are sRGB; EXR and HDR are linear as stored. Errors name the
+// file: missing, broken, of another size than the camera or the mask, NaN or infinite values.
 Image load_linear_rgba(const View& view);
 
 struct Mask {
@@ -23,7 +23,8 @@ struct Mask {
 // alpha > 0.5. Errors as above.
 Mask load_mask(const View& view);
 
-// Loads on demand. downscale: pictures at 1/N of their size; scaled(camera, N) is the camera that goes with them.
+// Loads on demand. downscale: pictures at 1/N of their size; scaled(camera, N) is the camera that goes with
+// them.
 class CaptureImages : public ImageSource {
  public:
   explicit CaptureImages(int downscale = 1) : downscale_(downscale) {}

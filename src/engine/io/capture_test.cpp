@@ -62,7 +62,8 @@ TEST(Capture, SameBallInBothFormatsGivesTheSameCameras) {
   EXPECT_TRUE(b.warnings.empty());
 }
 
-// The silhouette's centre of a ball lies where its centre projects, nearly: catches half pixels and flipped axes.
+// The silhouette's centre of a ball lies where its centre projects, nearly: catches half pixels and flipped
+// axes.
 TEST(Capture, PicturesAndCamerasAgree) {
   const TempFolder temp;
   const TestBall ball;
@@ -133,7 +134,8 @@ TEST(Capture, PhysgFallsBackToOrderAndSaysSo) {
   const auto views = test_views(ball, 3);
   write_physg(temp.path(), ball, views);
   for (int i = 0; i < 3; ++i)
-    fs::rename(temp.path() / "image" / (views[i].stem + ".png"), temp.path() / "image" / fmt::format("photo{}.png", i));
+    fs::rename(temp.path() / "image" / (views[i].stem + ".png"),
+               temp.path() / "image" / fmt::format("photo{}.png", i));
   const Capture capture = load_capture(temp.path());
   ASSERT_EQ(capture.warnings.size(), 1u);
   EXPECT_THAT(capture.warnings[0], HasSubstr("order"));
@@ -155,11 +157,13 @@ Capture named_views() {
 
 TEST(Capture, FindsViewsByTheirNames) {
   const Capture c = named_views();
-  for (const char* name : {"train/r_055", "./train/r_055", "train/r_055.png", "./train/r_055.JPG", "r_055", "r_055.png"})
+  for (const char* name :
+       {"train/r_055", "./train/r_055", "train/r_055.png", "./train/r_055.JPG", "r_055", "r_055.png"})
     EXPECT_EQ(find_view(c, name).name, "train/r_055") << name;
   EXPECT_EQ(find_view(c, "r_200").name, "test/r_200");
   EXPECT_EQ(find_view(c, "test/r_055").name, "test/r_055");
-  EXPECT_THAT(message([&] { find_view(c, "train/r_005"); }), AllOf(HasSubstr("train/r_005"), HasSubstr("train/r_055")));
+  EXPECT_THAT(message([&] { find_view(c, "train/r_005"); }),
+              AllOf(HasSubstr("train/r_005"), HasSubstr("train/r_055")));
   EXPECT_THROW(find_view(c, ""), Error);
 }
 
@@ -189,21 +193,30 @@ TEST(Capture, BadCameraFilesAreErrors) {
       {"transforms_train.json", "{\"frames\": []}", "no views"},
       {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\"}]}", "lacks"},
       {"transforms_train.json", "{\"frames\": [{\"file_path\": 7, \"transform_matrix\": []}]}", "lacks"},
-      {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [[1,2],[3]]}]}", "matrix"},
-      {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": \"x\"}]}", "matrix"},
+      {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [[1,2],[3]]}]}",
+       "matrix"},
+      {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": \"x\"}]}",
+       "matrix"},
       {"transforms_train.json",
-       "{\"frames\": [{\"file_path\": \"..\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}", "names no picture"},
+       "{\"frames\": [{\"file_path\": \"..\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+       "names no picture"},
       {"transforms_train.json",
-       "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [\"1\",0,0,0,0,1,0,0,0,0,1,0]}]}", "number"},
-      {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+       "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [\"1\",0,0,0,0,1,0,0,0,0,1,0]}]}",
+       "number"},
+      {"transforms_train.json",
+       "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
        "picture size"},
       {"transforms_train.json",
-       "{\"w\":8,\"h\":8,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}", "focal"},
+       "{\"w\":8,\"h\":8,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
+       "[1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+       "focal"},
       {"transforms_train.json",
-       "{\"w\":8,\"h\":8,\"fl_x\":-4,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+       "{\"w\":8,\"h\":8,\"fl_x\":-4,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
+       "[1,0,0,0,0,1,0,0,0,0,1,0]}]}",
        "impossible"},
       {"transforms_train.json",
-       "{\"w\":1e9,\"h\":8,\"fl_x\":4,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+       "{\"w\":1e9,\"h\":8,\"fl_x\":4,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
+       "[1,0,0,0,0,1,0,0,0,0,1,0]}]}",
        "impossible"},
       {"transforms_train.json",
        "{\"w\":8,\"h\":8,\"camera_angle_x\":4,\"frames\": [{\"file_path\": \"a\", "
@@ -226,7 +239,10 @@ TEST(Capture, BadCameraFilesAreErrors) {
   const TempFolder temp;
   EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr("not a capture"));
   EXPECT_THAT(message([&] { load_capture(temp.path() / "none"); }), HasSubstr("no capture at"));
-  EXPECT_THAT(message([&] { load_capture(temp.path(), {"colmap", 0}); }), HasSubstr("Known: nerf-synthetic, physg"));
+  EXPECT_THAT(message([&] {
+                load_capture(temp.path(), {"colmap", 0});
+              }),
+              HasSubstr("Known: nerf-synthetic, physg"));
 }
 
 TEST(Capture, NamesNeverLeadOutOfAFolder) {
@@ -240,7 +256,8 @@ TEST(Capture, NamesNeverLeadOutOfAFolder) {
 
 TEST(Capture, NanInJsonIsReadAsNan) {
   const TempFolder temp;
-  std::string text = Json{{"w", 8}, {"h", 8}, {"fl_x", 8.0}, {"frames", {nerf_frame("NaN/r_1", Camera())}}}.dump();
+  std::string text =
+      Json{{"w", 8}, {"h", 8}, {"fl_x", 8.0}, {"frames", {nerf_frame("NaN/r_1", Camera())}}}.dump();
   text.replace(text.find("[[1.0"), 5, "[[NaN");
   write_file_atomic(temp.path() / "transforms_train.json", text);
   const View v = load_capture(temp.path()).views[0];
@@ -284,7 +301,8 @@ TEST(CaptureImages, LinearStraightAlphaAndDownscale) {
   EXPECT_EQ(CaptureImages(2).load(v).width, 2);
   const Camera half = scaled(Camera{4, 4, 8, 8, 2, 2, 0, Mat3d::identity(), {0, 0, 0}}, 2);
   EXPECT_EQ(half.width, 2);
-  EXPECT_EQ(half.project({1, 1, 8}).x * 2, (Camera{4, 4, 8, 8, 2, 2, 0, Mat3d::identity(), {0, 0, 0}}.project({1, 1, 8}).x));
+  EXPECT_EQ(half.project({1, 1, 8}).x * 2,
+            (Camera{4, 4, 8, 8, 2, 2, 0, Mat3d::identity(), {0, 0, 0}}.project({1, 1, 8}).x));
   View grey = v;
   grey.image_path = temp.path() / "g.png";
   write_png(grey.image_path, Image(4, 4, 1, 1.0f));

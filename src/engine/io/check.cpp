@@ -23,13 +23,19 @@ struct ProblemText {
   const char *what, *fix;
 };
 constexpr std::array<ProblemText, kProblems> kTexts{{
-    {Severity::error, "pictures are missing", "Copy them to where the cameras say they are, or remove these views from the camera file."},
-    {Severity::error, "pictures or masks cannot be used", "Copy or render them again; all pictures of a split need one size."},
-    {Severity::error, "poses are not a rotation and a finite position", "Estimate the poses again, or remove these views."},
+    {Severity::error, "pictures are missing",
+     "Copy them to where the cameras say they are, or remove these views from the camera file."},
+    {Severity::error, "pictures or masks cannot be used",
+     "Copy or render them again; all pictures of a split need one size."},
+    {Severity::error, "poses are not a rotation and a finite position",
+     "Estimate the poses again, or remove these views."},
     {Severity::error, "masks are empty", "Remove these views, or correct their masks or alpha."},
-    {Severity::error, "pictures have neither an alpha channel nor a mask file", "Add mask files, or save PNGs with alpha."},
-    {Severity::error, "masks cover the whole picture", "Check that the masks mean the object: bright or opaque is object."},
-    {Severity::warning, "views show the object cut by the frame border", "Step back or widen the frame; what is never seen whole is guessed."},
+    {Severity::error, "pictures have neither an alpha channel nor a mask file",
+     "Add mask files, or save PNGs with alpha."},
+    {Severity::error, "masks cover the whole picture",
+     "Check that the masks mean the object: bright or opaque is object."},
+    {Severity::warning, "views show the object cut by the frame border",
+     "Step back or widen the frame; what is never seen whole is guessed."},
     {Severity::warning, "cameras look away from the object", "Check the poses of these views."},
 }};
 
@@ -53,14 +59,16 @@ bool pose_is_sound(const Camera& c) {
 int border_pixels(const Mask& m) {
   int n = 0;
   for (int x = 0; x < m.width; ++x) n += m.object[x] + m.object[size_t(m.height - 1) * m.width + x];
-  for (int y = 0; y < m.height; ++y) n += m.object[size_t(y) * m.width] + m.object[size_t(y) * m.width + m.width - 1];
+  for (int y = 0; y < m.height; ++y)
+    n += m.object[size_t(y) * m.width] + m.object[size_t(y) * m.width + m.width - 1];
   return n;
 }
 
 void look_at_picture(const View& view, ViewResult& out) {
   load_linear_rgba(view);  // decodes all of it, and refuses NaN
   out.mask = load_mask(view);
-  const size_t n = out.mask.object.size(), set = size_t(std::count(out.mask.object.begin(), out.mask.object.end(), 1));
+  const size_t n = out.mask.object.size(),
+               set = size_t(std::count(out.mask.object.begin(), out.mask.object.end(), 1));
   out.size = {out.mask.width, out.mask.height};
   out.coverage = double(set) / double(n);
   out.has[kNoMask] = !out.mask.stated;
@@ -88,7 +96,8 @@ ViewResult look_at(const View& view) {
 
 bool looks_away(const Camera& c, const Normalization& n) {
   const Vec3d p = c.project(n.center);
-  const double margin = kObjectRadius / n.scale / std::max(p.z, 1e-12) * c.fx;  // the object's radius in pixels
+  const double margin =
+      kObjectRadius / n.scale / std::max(p.z, 1e-12) * c.fx;  // the object's radius in pixels
   return p.z <= 0 || p.x < -margin || p.y < -margin || p.x > c.width + margin || p.y > c.height + margin;
 }
 
@@ -110,7 +119,9 @@ void report_problems(const std::vector<Checked>& all, CaptureReport& report) {
     if (n == 0) continue;
     if (n > 5) names += fmt::format(" and {} more", n - 5);
     const ProblemText& text = kTexts[problem];
-    report.findings.push_back({text.severity, fmt::format("{} of {} {}: {}.{}", n, all.size(), text.what, names, detail), text.fix});
+    report.findings.push_back({text.severity,
+                               fmt::format("{} of {} {}: {}.{}", n, all.size(), text.what, names, detail),
+                               text.fix});
   }
 }
 
@@ -123,18 +134,21 @@ void report_splits(const std::vector<Checked>& all, CaptureReport& report) {
       ++s.views;
       if (s.size.width == 0) s.size = {view->camera.width, view->camera.height};
       if (!(s.size == ImageSize{view->camera.width, view->camera.height}))
-        report.findings.push_back({Severity::error,
-                                   fmt::format("View {} is {} x {} pixels, others of its split {} x {}.", view->name,
-                                               view->camera.width, view->camera.height, s.size.width, s.size.height),
-                                   "Give all pictures of a split one size."});
+        report.findings.push_back(
+            {Severity::error,
+             fmt::format("View {} is {} x {} pixels, others of its split {} x {}.", view->name,
+                         view->camera.width, view->camera.height, s.size.width, s.size.height),
+             "Give all pictures of a split one size."});
       if (result.mask.object.empty()) continue;
       ++with_mask;
       s.coverage += result.coverage;
       s.coverage_min = std::min(s.coverage_min, result.coverage);
       s.coverage_max = std::max(s.coverage_max, result.coverage);
     }
-    if (with_mask > 0) s.coverage /= with_mask;
-    else s.coverage_min = 0;
+    if (with_mask > 0)
+      s.coverage /= with_mask;
+    else
+      s.coverage_min = 0;
     if (s.views > 0) report.splits.push_back(s);
   }
 }
@@ -142,7 +156,8 @@ void report_splits(const std::vector<Checked>& all, CaptureReport& report) {
 void report_normalization(const std::vector<Checked>& all, CaptureReport& report) {
   std::vector<HullMask> masks;
   for (const auto& [view, result] : all)
-    if (view->split == Split::train && result.mask.stated && !result.mask.object.empty() && !result.has[kBadPose])
+    if (view->split == Split::train && result.mask.stated && !result.mask.object.empty() &&
+        !result.has[kBadPose])
       masks.push_back({view->camera, result.mask.object});
   if (masks.size() < 2) return;  // said by the views' own findings
   std::vector<std::string> warnings;
@@ -188,7 +203,8 @@ void report_counts(const Capture& capture, CaptureReport& report) {
 }  // namespace
 
 bool CaptureReport::usable() const {
-  return std::none_of(findings.begin(), findings.end(), [](const Finding& f) { return f.severity == Severity::error; });
+  return std::none_of(findings.begin(), findings.end(),
+                      [](const Finding& f) { return f.severity == Severity::error; });
 }
 
 CaptureReport check(const Capture& capture, std::optional<Split> only) {
@@ -219,7 +235,8 @@ void require_usable(const CaptureReport& report) {
   std::string text;
   int n = 0;
   for (const Finding& f : report.findings)
-    if (f.severity == Severity::error && ++n <= 4) text += (text.empty() ? "" : " ") + f.what + (f.fix.empty() ? "" : " " + f.fix);
+    if (f.severity == Severity::error && ++n <= 4)
+      text += (text.empty() ? "" : " ") + f.what + (f.fix.empty() ? "" : " " + f.fix);
   if (n > 4) text += fmt::format(" And {} more problems; `cei3d check` lists them.", n - 4);
   if (n > 0) fail("The capture cannot be used. {}", text);
 }

@@ -29,11 +29,12 @@ struct SplitReport {
 
 struct CaptureReport {
   std::string format;
-  Vec3d up{0, 0, 1};                                         // input frame
-  std::vector<SplitReport> splits;                           // those that have views
-  std::optional<Normalization> normalization;                // nothing when it could not be found
-  double distance_min = 0, distance = 0, distance_max = 0;   // training cameras to the object's centre, input units
-  std::vector<Finding> findings;                             // errors first
+  Vec3d up{0, 0, 1};                           // input frame
+  std::vector<SplitReport> splits;             // those that have views
+  std::optional<Normalization> normalization;  // nothing when it could not be found
+  double distance_min = 0, distance = 0,
+         distance_max = 0;        // training cameras to the object's centre, input units
+  std::vector<Finding> findings;  // errors first
 
   bool usable() const;
 };
@@ -45,8 +46,9 @@ CaptureReport check(const Capture& capture, std::optional<Split> only = std::nul
 void require_usable(const CaptureReport& report);
 void require_usable(const Capture& capture);  // checks the training views first
 
-// Cameras and the object's bounding sphere from above (left; up axis to the viewer) and from the side (right; up axis up).
-// RGB, sRGB. Training cameras blue, validation green, test orange, with their viewing directions. size: pixels a panel.
+// Cameras and the object's bounding sphere from above (left; up axis to the viewer) and from the side (right;
+// up axis up). RGB, sRGB. Training cameras blue, validation green, test orange, with their viewing
+// directions. size: pixels a panel.
 Image draw_cameras(const Capture& capture, const Normalization& normalization, int size = 480);
 
 }  // namespace cei3d

@@ -63,7 +63,8 @@ TEST_F(Check, GoodCaptureIsUnderstood) {
 TEST_F(Check, MissingPicturesAreListed) {
   fs::remove(picture(3));
   fs::remove(picture(5));
-  EXPECT_THAT(complaint(), AllOf(HasSubstr("2 of 20 pictures are missing"), HasSubstr("train/r_003"), HasSubstr("train/r_005")));
+  EXPECT_THAT(complaint(), AllOf(HasSubstr("2 of 20 pictures are missing"), HasSubstr("train/r_003"),
+                                 HasSubstr("train/r_005")));
 }
 
 TEST_F(Check, TruncatedPicture) {
@@ -99,8 +100,10 @@ TEST_F(Check, OpaqueAlphaIsNoMask) {
 TEST_F(Check, BadPoses) {
   EXPECT_THAT(complaint_about([](Capture& c) { c.views[2].camera.center.y = NAN; }),
               AllOf(HasSubstr("1 of 20 poses"), HasSubstr("r_002")));
-  EXPECT_THAT(complaint_about([](Capture& c) { c.views[2].camera.world_from_cam.row[0].x = NAN; }), HasSubstr("poses"));
-  EXPECT_THAT(complaint_about([](Capture& c) { c.views[2].camera.world_from_cam.row[0].x += 0.1; }), HasSubstr("poses"));
+  EXPECT_THAT(complaint_about([](Capture& c) { c.views[2].camera.world_from_cam.row[0].x = NAN; }),
+              HasSubstr("poses"));
+  EXPECT_THAT(complaint_about([](Capture& c) { c.views[2].camera.world_from_cam.row[0].x += 0.1; }),
+              HasSubstr("poses"));
   EXPECT_THAT(complaint_about([](Capture& c) {
                 for (Vec3d& row : c.views[2].camera.world_from_cam.row) row.x = -row.x;  // a reflection
               }),
@@ -137,7 +140,8 @@ TEST_F(Check, CutObjectAndCameraThatLooksAwayAreWarnings) {
   const CaptureReport report = check(capture);
   std::string all;
   for (const Finding& f : report.findings) all += f.what;
-  EXPECT_THAT(all, AllOf(HasSubstr("cut by the frame border: train/r_001"), HasSubstr("look away from the object: test/away")));
+  EXPECT_THAT(all, AllOf(HasSubstr("cut by the frame border: train/r_001"),
+                         HasSubstr("look away from the object: test/away")));
 }
 
 TEST_F(Check, DrawsCameras) {
@@ -148,9 +152,11 @@ TEST_F(Check, DrawsCameras) {
   // A camera sits where it should: its dot is blue in the panel from above.
   const Vec3d p = report.normalization->unit_from_input(capture.views[0].camera.center);
   double reach = 1;
-  for (const View& v : capture.views) reach = std::max(reach, length(report.normalization->unit_from_input(v.camera.center)));
+  for (const View& v : capture.views)
+    reach = std::max(reach, length(report.normalization->unit_from_input(v.camera.center)));
   const Vec3d right = normalize(cross(Vec3d{1, 0, 0}, Vec3d{0, 0, 1})), away = cross(Vec3d{0, 0, 1}, right);
-  const int x = int((dot(p, right) / (1.1 * reach) * 0.5 + 0.5) * 200), y = int((0.5 - dot(p, away) / (1.1 * reach) * 0.5) * 200);
+  const int x = int((dot(p, right) / (1.1 * reach) * 0.5 + 0.5) * 200),
+            y = int((0.5 - dot(p, away) / (1.1 * reach) * 0.5) * 200);
   EXPECT_GT(image.at(x, y)[2], image.at(x, y)[0] + 0.3f);
 }
 

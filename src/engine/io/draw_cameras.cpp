@@ -49,17 +49,21 @@ class Panel {
 };
 
 Vec3f color_of(Split split) {
-  return split == Split::train ? Vec3f{0.15f, 0.35f, 0.8f} : split == Split::val ? Vec3f{0.2f, 0.6f, 0.3f} : Vec3f{0.9f, 0.5f, 0.1f};
+  return split == Split::train ? Vec3f{0.15f, 0.35f, 0.8f}
+         : split == Split::val ? Vec3f{0.2f, 0.6f, 0.3f}
+                               : Vec3f{0.9f, 0.5f, 0.1f};
 }
 
 }  // namespace
 
 Image draw_cameras(const Capture& capture, const Normalization& normalization, int size) {
   const Vec3d up = normalize(capture.up);
-  const Vec3d right = normalize(cross(std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}, up)), away = cross(up, right);
+  const Vec3d right = normalize(cross(std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}, up)),
+              away = cross(up, right);
   double reach = 1;
   for (const View& v : capture.views)
-    if (const double d = length(normalization.unit_from_input(v.camera.center)); std::isfinite(d)) reach = std::max(reach, d);
+    if (const double d = length(normalization.unit_from_input(v.camera.center)); std::isfinite(d))
+      reach = std::max(reach, d);
 
   Image image(2 * size, size, 3, 1.0f);
   Panel top(image, 0, size, reach * 1.1), side(image, size, size, reach * 1.1);
@@ -68,7 +72,8 @@ Image draw_cameras(const Capture& capture, const Normalization& normalization, i
     panel->circle(kObjectRadius, {0.4f, 0.4f, 0.4f});
   }
   for (const View& v : capture.views) {
-    const Vec3d p = normalization.unit_from_input(v.camera.center), q = p + to_double(v.camera.forward()) * (0.12 * reach);
+    const Vec3d p = normalization.unit_from_input(v.camera.center),
+                q = p + to_double(v.camera.forward()) * (0.12 * reach);
     if (!std::isfinite(dot(p, q))) continue;
     const Vec3f color = color_of(v.split);
     top.line({dot(p, right), dot(p, away)}, {dot(q, right), dot(q, away)}, color);

@@ -86,12 +86,14 @@ std::vector<std::string> wanted_channels(const Imf::ChannelList& list) {
     throw std::runtime_error("it has neither R, G and B nor one grey channel");
   }
   for (const std::string& name : names)
-    if (list[name].xSampling != 1 || list[name].ySampling != 1) throw std::runtime_error("its channels are subsampled");
+    if (list[name].xSampling != 1 || list[name].ySampling != 1)
+      throw std::runtime_error("its channels are subsampled");
   return names;
 }
 
 // The interleaved picture of a window, as the library wants to hear it: addressed from pixel (0, 0).
-Imf::FrameBuffer frame_buffer(Image& image, const std::vector<std::string>& names, const Imath::Box2i& window) {
+Imf::FrameBuffer frame_buffer(Image& image, const std::vector<std::string>& names,
+                              const Imath::Box2i& window) {
   const size_t x_step = sizeof(float) * size_t(image.channels), y_step = x_step * size_t(image.width);
   Imf::FrameBuffer buffer;
   for (size_t c = 0; c < names.size(); ++c)
@@ -149,7 +151,8 @@ std::string encode_exr(const Image& image) {
   std::vector<std::string> names{"R", "G", "B", "A"};
   if (image.channels == 1) names = {"Y"};
   if (image.empty() || (image.channels != 1 && image.channels != 3 && image.channels != 4))
-    fail("Cannot write an EXR of {} x {} pixels with {} channels.", image.width, image.height, image.channels);
+    fail("Cannot write an EXR of {} x {} pixels with {} channels.", image.width, image.height,
+         image.channels);
   names.resize(size_t(image.channels));
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;

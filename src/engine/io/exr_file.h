@@ -9,8 +9,8 @@
 
 namespace cei3d {
 
-// Float as stored, linear. Channels: R, G, B (and A): 3 or 4; else Y or the only channel there is: 1. The picture is
-// the display window; what the data window leaves out is zero. Errors name `name`.
+// Float as stored, linear. Channels: R, G, B (and A): 3 or 4; else Y or the only channel there is: 1. The
+// picture is the display window; what the data window leaves out is zero. Errors name `name`.
 Image decode_exr(const std::string& bytes, const std::string& name);
 ImageSize exr_size(const std::string& bytes, const std::string& name);
 

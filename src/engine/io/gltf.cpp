@@ -12,19 +12,24 @@
 namespace cei3d {
 namespace {
 
-constexpr int kFloat = 5126, kUint32 = 5125, kVertexTarget = 34962, kIndexTarget = 34963;  // OpenGL's names for them
+constexpr int kFloat = 5126, kUint32 = 5125, kVertexTarget = 34962,
+              kIndexTarget = 34963;  // OpenGL's names for them
 
 // The one binary buffer, and its views and accessors.
 class Buffer {
  public:
   // Appends an array; returns its accessor's index.
   int add(const void* data, size_t bytes, size_t count, const char* type, int component, int target) {
-    views_.push_back({{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes}, {"target", target}});
-    accessors_.push_back({{"bufferView", views_.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}});
+    views_.push_back(
+        {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", bytes}, {"target", target}});
+    accessors_.push_back(
+        {{"bufferView", views_.size() - 1}, {"componentType", component}, {"count", count}, {"type", type}});
     bytes_.append(static_cast<const char*>(data), bytes);  // all arrays are multiples of 4 bytes: aligned
     return int(accessors_.size()) - 1;
   }
-  int add(const std::vector<Vec3f>& v) { return add(v.data(), v.size() * sizeof(Vec3f), v.size(), "VEC3", kFloat, kVertexTarget); }
+  int add(const std::vector<Vec3f>& v) {
+    return add(v.data(), v.size() * sizeof(Vec3f), v.size(), "VEC3", kFloat, kVertexTarget);
+  }
   Json& accessor(int i) { return accessors_[size_t(i)]; }
   Json views_ = Json::array(), accessors_ = Json::array();
   std::string bytes_;
@@ -66,7 +71,8 @@ void append_chunk(std::string& out, const char* type, std::string data, char pad
 }
 
 void require_sound(const Mesh& mesh) {
-  if (mesh.positions.empty() || mesh.triangles.empty()) fail("There is no surface to export: the mesh is empty.");
+  if (mesh.positions.empty() || mesh.triangles.empty())
+    fail("There is no surface to export: the mesh is empty.");
   for (const Vec3f p : mesh.positions)
     if (!std::isfinite(dot(p, p))) fail("The mesh has a vertex that is not finite; it cannot be exported.");
 }
@@ -86,9 +92,10 @@ std::string encode_glb(const Mesh& mesh, const Material& material, Vec3d up) {
       for (int k = 0; k < 3; ++k) c[k] = std::clamp(c[k], 0.0f, 1.0f);
     attributes["COLOR_0"] = buffer.add(colors);
   }
-  const int indices = buffer.add(mesh.triangles.data(), mesh.triangles.size() * 12, mesh.triangles.size() * 3, "SCALAR", kUint32,
-                                 kIndexTarget);
-  if (buffer.bytes_.size() > 0xf0000000u) fail("The mesh is too large for a GLB file (4 GB); export fewer faces.");
+  const int indices = buffer.add(mesh.triangles.data(), mesh.triangles.size() * 12, mesh.triangles.size() * 3,
+                                 "SCALAR", kUint32, kIndexTarget);
+  if (buffer.bytes_.size() > 0xf0000000u)
+    fail("The mesh is too large for a GLB file (4 GB); export fewer faces.");
 
   Json j{{"asset", {{"version", "2.0"}, {"generator", "CEI-3D"}}}};
   if (material.specular != 0.5f) j["extensionsUsed"] = {"KHR_materials_specular"};

@@ -10,10 +10,12 @@
 
 namespace cei3d {
 
-// POSITION, NORMAL and COLOR_0 (linear, float) where the mesh has them; roughness and metalness as factors; a specular
-// other than 0.5 as KHR_materials_specular with F0 = 0.08 specular. Vertices stay in the capture's frame: a rotation of
-// the node turns `up` (capture frame) to glTF's +Y, so that viewers show the object upright.
+// POSITION, NORMAL and COLOR_0 (linear, float) where the mesh has them; roughness and metalness as factors; a
+// specular other than 0.5 as KHR_materials_specular with F0 = 0.08 specular. Vertices stay in the capture's
+// frame: a rotation of the node turns `up` (capture frame) to glTF's +Y, so that viewers show the object
+// upright.
 std::string encode_glb(const Mesh& mesh, const Material& material, Vec3d up);
-void write_glb(const std::filesystem::path& path, const Mesh& mesh, const Material& material, Vec3d up);  // atomically
+void write_glb(const std::filesystem::path& path, const Mesh& mesh, const Material& material,
+               Vec3d up);  // atomically
 
 }  // namespace cei3d

@@ -20,7 +20,9 @@ class Reader {
  public:
   Reader(const std::string& bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
-  [[noreturn]] void broken(const char* why) const { fail("{} is a broken or unusual HDR picture: {}.", name_, why); }
+  [[noreturn]] void broken(const char* why) const {
+    fail("{} is a broken or unusual HDR picture: {}.", name_, why);
+  }
 
   std::string line() {
     const size_t end = bytes_.find('\n', position_);
@@ -54,13 +56,16 @@ Header read_header(Reader& in) {
   Header header;
   if (in.line().rfind("#?", 0) != 0) in.broken("it does not start with #?RADIANCE");
   for (std::string text = in.line(); !text.empty(); text = in.line()) {
-    if (text.rfind("FORMAT=", 0) == 0 && text.rfind("FORMAT=32-bit_rle_rgbe", 0) != 0) in.broken("its colours are not RGBE");
+    if (text.rfind("FORMAT=", 0) == 0 && text.rfind("FORMAT=32-bit_rle_rgbe", 0) != 0)
+      in.broken("its colours are not RGBE");
     if (text.rfind("EXPOSURE=", 0) == 0) header.exposure *= std::atof(text.c_str() + 9);
   }
   if (!(header.exposure > 0) || !std::isfinite(header.exposure)) in.broken("its exposure is impossible");
   ImageSize& size = header.size;
-  if (std::sscanf(in.line().c_str(), "-Y %d +X %d", &size.height, &size.width) != 2) in.broken("its rows don't run from the top");
-  if (size.width < 1 || size.height < 1 || size.width > 65535 || size.height > 65535) in.broken("its size is impossible");
+  if (std::sscanf(in.line().c_str(), "-Y %d +X %d", &size.height, &size.width) != 2)
+    in.broken("its rows don't run from the top");
+  if (size.width < 1 || size.height < 1 || size.width > 65535 || size.height > 65535)
+    in.broken("its size is impossible");
   return header;
 }
 
@@ -110,7 +115,9 @@ Rgbe encode(const float* p) {
   if (top < 1e-32f) return {0, 0, 0, 0};
   int exponent = 0;
   std::frexp(top, &exponent);
-  const auto digit = [&](float v) { return uint8_t(std::min(255L, std::lround(std::ldexp(v, 8 - exponent)))); };
+  const auto digit = [&](float v) {
+    return uint8_t(std::min(255L, std::lround(std::ldexp(v, 8 - exponent))));
+  };
   return {digit(r), digit(g), digit(b), uint8_t(std::min(exponent + 128, 255))};
 }
 
@@ -124,7 +131,8 @@ ImageSize hdr_size(const std::string& bytes, const std::string& name) {
 Image decode_hdr(const std::string& bytes, const std::string& name) {
   Reader in(bytes, name);
   const Header header = read_header(in);
-  // A row takes at least 4 bytes (old runs) or 2 bytes a 127 pixels and component: refuse sizes the bytes cannot hold.
+  // A row takes at least 4 bytes (old runs) or 2 bytes a 127 pixels and component: refuse sizes the bytes
+  // cannot hold.
   if (in.left() < size_t(header.size.height) * 4) in.broken("it ends too early");
   Image image(header.size.width, header.size.height, 3);
   std::vector<Rgbe> row(size_t(header.size.width));
@@ -133,15 +141,19 @@ Image decode_hdr(const std::string& bytes, const std::string& name) {
     for (int x = 0; x < image.width; ++x)
       for (int c = 0; c < 3; ++c)
         image.at(x, y)[c] =
-            row[x][3] == 0 ? 0.0f : float(std::ldexp(double(row[x][c]), int(row[x][3]) - 136) / header.exposure);
+            row[x][3] == 0 ? 0.0f
+                           : float(std::ldexp(double(row[x][c]), int(row[x][3]) - 136) / header.exposure);
   }
   return image;
 }
 
 std::string encode_hdr(const Image& image) {
-  if (image.empty() || image.channels < 3) fail("Cannot write an HDR picture with {} channels.", image.channels);
-  std::string out = fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
-  const bool coded = image.width >= 8 && image.width < 32768;  // else a flat row could be taken for a coded one
+  if (image.empty() || image.channels < 3)
+    fail("Cannot write an HDR picture with {} channels.", image.channels);
+  std::string out =
+      fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
+  const bool coded =
+      image.width >= 8 && image.width < 32768;  // else a flat row could be taken for a coded one
   for (int y = 0; y < image.height; ++y) {
     std::vector<Rgbe> row(size_t(image.width));
     for (int x = 0; x < image.width; ++x) row[x] = encode(image.at(x, y));
@@ -152,7 +164,8 @@ std::string encode_hdr(const Image& image) {
         out += char(n);
         for (int i = 0; i < n; ++i) out += char(row[x++][c]);
       }
-    for (int x = 0; !coded && x < image.width; ++x) out.append(reinterpret_cast<const char*>(row[x].data()), 4);
+    for (int x = 0; !coded && x < image.width; ++x)
+      out.append(reinterpret_cast<const char*>(row[x].data()), 4);
   }
   return out;
 }

@@ -9,12 +9,13 @@
 
 namespace cei3d {
 
-// 3 channels, linear; EXPOSURE lines are divided out. Flat, old and new run-length scanlines; rows from the top only.
-// Errors name `name`.
+// 3 channels, linear; EXPOSURE lines are divided out. Flat, old and new run-length scanlines; rows from the
+// top only. Errors name `name`.
 Image decode_hdr(const std::string& bytes, const std::string& name);
 ImageSize hdr_size(const std::string& bytes, const std::string& name);
 
-// image: 3 channels (a 4th is dropped), linear, negative values become 0. Relative error up to 1/256 of the largest channel.
+// image: 3 channels (a 4th is dropped), linear, negative values become 0. Relative error up to 1/256 of the
+// largest channel.
 std::string encode_hdr(const Image& image);
 
 }  // namespace cei3d

@@ -17,13 +17,15 @@ namespace cei3d {
 namespace {
 
 ImageSize png_size(const std::string& bytes, const std::string& name) {
-  if (bytes.size() < 24 || bytes.compare(12, 4, "IHDR") != 0) fail("{} is a broken PNG: it ends too early.", name);
+  if (bytes.size() < 24 || bytes.compare(12, 4, "IHDR") != 0)
+    fail("{} is a broken PNG: it ends too early.", name);
   const auto number = [&](size_t i) {
     uint32_t v = 0;
     for (size_t k = 0; k < 4; ++k) v = v << 8 | uint8_t(bytes[i + k]);
     return v;
   };
-  if (number(16) - 1 >= 65535 || number(20) - 1 >= 65535) fail("{} is a broken PNG: its size is impossible.", name);
+  if (number(16) - 1 >= 65535 || number(20) - 1 >= 65535)
+    fail("{} is a broken PNG: its size is impossible.", name);
   return {int(number(16)), int(number(20))};
 }
 
@@ -108,8 +110,12 @@ bool has_image_suffix(const std::filesystem::path& path) {
 void write_png(const std::filesystem::path& path, const Image& image, int bits) {
   write_file_atomic(path, encode_png(image, bits));
 }
-void write_exr(const std::filesystem::path& path, const Image& image) { write_file_atomic(path, encode_exr(image)); }
-void write_hdr(const std::filesystem::path& path, const Image& image) { write_file_atomic(path, encode_hdr(image)); }
+void write_exr(const std::filesystem::path& path, const Image& image) {
+  write_file_atomic(path, encode_exr(image));
+}
+void write_hdr(const std::filesystem::path& path, const Image& image) {
+  write_file_atomic(path, encode_hdr(image));
+}
 
 Image srgb_from_linear(Image linear) {
   return map_colors(std::move(linear), [](float v) { return srgb_from_linear(v); });

@@ -36,8 +36,8 @@ void expect_same(const Image& a, const Image& b) {
 }
 
 // Truncations and random damage: an Error that names the file, or a picture; never anything else.
-void abuse(const std::string& bytes, const std::function<Image(const std::string&, const std::string&)>& decode,
-           bool every_cut_fails) {
+void abuse(const std::string& bytes,
+           const std::function<Image(const std::string&, const std::string&)>& decode, bool every_cut_fails) {
   for (size_t n = 0; n < bytes.size(); n += 1 + bytes.size() / 300) {
     try {
       decode(bytes.substr(0, n), "cut.img");
@@ -49,7 +49,8 @@ void abuse(const std::string& bytes, const std::function<Image(const std::string
   std::mt19937 random(7);
   for (int i = 0; i < 1500; ++i) {
     std::string s = bytes;
-    for (int k = 0; k < 4; ++k) s[random() % (i % 2 ? s.size() : std::min<size_t>(s.size(), 100))] = char(random());
+    for (int k = 0; k < 4; ++k)
+      s[random() % (i % 2 ? s.size() : std::min<size_t>(s.size(), 100))] = char(random());
     try {
       decode(s, "flipped.img");
     } catch (const Error&) {
@@ -70,16 +71,16 @@ TEST(Png, ClampsRoundsAndTakesNanForBlack) {
   EXPECT_EQ(decode_png(encode_png(image, 8), "x").data, (std::vector<float>{0, 1, 0, 101.0f / 255.0f}));
 }
 
-// A 2 x 1 picture of 1 bit a pixel: palette red (transparent), blue (opaque); pixels 0, 1. Chunks made by hand.
+// A 2 x 1 picture of 1 bit a pixel: palette red (transparent), blue (opaque); pixels 0, 1. Chunks made by
+// hand.
 TEST(Png, ExpandsPalettes) {
   const unsigned char bytes[] = {
-      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52,
-      0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x01, 0x03, 0x00, 0x00, 0x00, 0xce, 0xec, 0xed,
-      0xc9, 0x00, 0x00, 0x00, 0x06, 0x50, 0x4c, 0x54, 0x45, 0xff, 0x00, 0x00, 0x00, 0x00, 0xff, 0x6c,
-      0xa1, 0xfd, 0x8e, 0x00, 0x00, 0x00, 0x01, 0x74, 0x52, 0x4e, 0x53, 0x00, 0x40, 0xe6, 0xd8, 0x66,
-      0x00, 0x00, 0x00, 0x0a, 0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x70, 0x00, 0x00, 0x00, 0x42,
-      0x00, 0x41, 0x29, 0x37, 0xf4, 0xef, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42,
-      0x60, 0x82};
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44, 0x52, 0x00,
+      0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x01, 0x03, 0x00, 0x00, 0x00, 0xce, 0xec, 0xed, 0xc9, 0x00,
+      0x00, 0x00, 0x06, 0x50, 0x4c, 0x54, 0x45, 0xff, 0x00, 0x00, 0x00, 0x00, 0xff, 0x6c, 0xa1, 0xfd, 0x8e,
+      0x00, 0x00, 0x00, 0x01, 0x74, 0x52, 0x4e, 0x53, 0x00, 0x40, 0xe6, 0xd8, 0x66, 0x00, 0x00, 0x00, 0x0a,
+      0x49, 0x44, 0x41, 0x54, 0x78, 0x9c, 0x63, 0x70, 0x00, 0x00, 0x00, 0x42, 0x00, 0x41, 0x29, 0x37, 0xf4,
+      0xef, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
   const Image image = decode_png(std::string(reinterpret_cast<const char*>(bytes), sizeof bytes), "x");
   EXPECT_EQ(image.channels, 4);
   EXPECT_EQ(image.data, (std::vector<float>{1, 0, 0, 0, 0, 0, 1, 1}));
@@ -93,7 +94,8 @@ TEST(Png, DamageIsAnErrorOrAPicture) {
 TEST(Jpeg, DecodesWhatItEncodes) {
   Image image(32, 24, 3);
   for (int y = 0; y < 24; ++y)
-    for (int x = 0; x < 32; ++x) image.at(x, y)[0] = float(x) / 31, image.at(x, y)[1] = float(y) / 23, image.at(x, y)[2] = 0.5f;
+    for (int x = 0; x < 32; ++x)
+      image.at(x, y)[0] = float(x) / 31, image.at(x, y)[1] = float(y) / 23, image.at(x, y)[2] = 0.5f;
   const std::string bytes = encode_jpeg(image, 95);
   const Image back = decode_jpeg(bytes, "x");
   ASSERT_EQ(back.data.size(), image.data.size());
@@ -123,7 +125,8 @@ TEST(Hdr, RoundTripWithinTheFormat) {
     for (int y = 0; y < 5; ++y)
       for (int x = 0; x < width; ++x) {
         const float* p = image.at(x, y);
-        for (int c = 0; c < 3; ++c) EXPECT_NEAR(back.at(x, y)[c], p[c], std::max({p[0], p[1], p[2]}) / 256 + 1e-30);
+        for (int c = 0; c < 3; ++c)
+          EXPECT_NEAR(back.at(x, y)[c], p[c], std::max({p[0], p[1], p[2]}) / 256 + 1e-30);
       }
   }
   abuse(encode_hdr(sample(3, 255, 40, 30)), decode_hdr, true);
@@ -137,7 +140,8 @@ TEST(Hdr, ReadsRunsAndExposure) {
   const Image a = decode_hdr(old_style, "x");
   for (int x = 0; x < 4; ++x) EXPECT_EQ(a.at(x, 0)[0], 0.5f) << x;  // 128 / 256 * 2^1 / 2
   std::string new_style = "#?RADIANCE\n\n-Y 1 +X 8\n";
-  new_style += std::string("\x02\x02\x00\x08", 4) + "\x88\x40" + "\x88\x80" + std::string("\x08\x01\x02\x03\x04\x05\x06\x07\x08", 9) + "\x88\x80";
+  new_style += std::string("\x02\x02\x00\x08", 4) + "\x88\x40" + "\x88\x80" +
+               std::string("\x08\x01\x02\x03\x04\x05\x06\x07\x08", 9) + "\x88\x80";
   const Image b = decode_hdr(new_style, "x");
   EXPECT_EQ(b.at(7, 0)[0], 0.25f);
   EXPECT_EQ(b.at(7, 0)[1], 0.5f);

@@ -19,15 +19,19 @@ struct CloseHandle {
 using Handle = std::unique_ptr<void, CloseHandle>;
 
 [[noreturn]] void broken(const std::string& name, void* handle) {
-  fail("{} is a broken or unusual JPEG: {}. Copy it again, or convert it to PNG.", name, tjGetErrorStr2(handle));
+  fail("{} is a broken or unusual JPEG: {}. Copy it again, or convert it to PNG.", name,
+       tjGetErrorStr2(handle));
 }
 
-const unsigned char* data_of(const std::string& bytes) { return reinterpret_cast<const unsigned char*>(bytes.data()); }
+const unsigned char* data_of(const std::string& bytes) {
+  return reinterpret_cast<const unsigned char*>(bytes.data());
+}
 
 ImageSize read_header(void* handle, const std::string& bytes, const std::string& name) {
   ImageSize size;
   int subsampling = 0, space = 0;
-  if (tjDecompressHeader3(handle, data_of(bytes), bytes.size(), &size.width, &size.height, &subsampling, &space) != 0 ||
+  if (tjDecompressHeader3(handle, data_of(bytes), bytes.size(), &size.width, &size.height, &subsampling,
+                          &space) != 0 ||
       size.width < 1 || size.height < 1)  // a file cut before its frame header is no error to the library
     broken(name, handle);
   return size;
@@ -44,9 +48,10 @@ Image decode_jpeg(const std::string& bytes, const std::string& name) {
   const Handle handle(tjInitDecompress());
   const ImageSize size = read_header(handle.get(), bytes, name);
   std::unique_ptr<uint8_t[]> data(new uint8_t[size_t(size.width) * size.height * 3]);
-  const int status = tjDecompress2(handle.get(), data_of(bytes), bytes.size(), data.get(), size.width, 0, size.height, TJPF_RGB,
-                                   TJFLAG_ACCURATEDCT);
-  // Warnings are about damage that decoding survives. Only a missing end spoils pixels silently and for certain.
+  const int status = tjDecompress2(handle.get(), data_of(bytes), bytes.size(), data.get(), size.width, 0,
+                                   size.height, TJPF_RGB, TJFLAG_ACCURATEDCT);
+  // Warnings are about damage that decoding survives. Only a missing end spoils pixels silently and for
+  // certain.
   const bool fatal = tjGetErrorCode(handle.get()) == TJERR_FATAL ||
                      std::strstr(tjGetErrorStr2(handle.get()), "remature end") != nullptr;
   if (status != 0 && fatal) broken(name, handle.get());
@@ -58,12 +63,13 @@ Image decode_jpeg(const std::string& bytes, const std::string& name) {
 std::string encode_jpeg(const Image& image, int quality) {
   if (image.channels != 3 || image.empty()) fail("Cannot write a JPEG with {} channels.", image.channels);
   std::string rgb(image.data.size(), '\0');
-  for (size_t i = 0; i < rgb.size(); ++i) rgb[i] = char(uint8_t(std::clamp(image.data[i], 0.0f, 1.0f) * 255 + 0.5f));
+  for (size_t i = 0; i < rgb.size(); ++i)
+    rgb[i] = char(uint8_t(std::clamp(image.data[i], 0.0f, 1.0f) * 255 + 0.5f));
   const Handle handle(tjInitCompress());
   unsigned char* out = nullptr;
   unsigned long size = 0;
-  const int status = tjCompress2(handle.get(), data_of(rgb), image.width, 0, image.height, TJPF_RGB, &out, &size, TJSAMP_444,
-                                 quality, TJFLAG_ACCURATEDCT);
+  const int status = tjCompress2(handle.get(), data_of(rgb), image.width, 0, image.height, TJPF_RGB, &out,
+                                 &size, TJSAMP_444, quality, TJFLAG_ACCURATEDCT);
   const std::string bytes(reinterpret_cast<const char*>(out), status == 0 ? size : 0);
   tjFree(out);
   if (status != 0) fail("Cannot make a JPEG: {}.", tjGetErrorStr2(handle.get()));

@@ -62,8 +62,10 @@ TEST(Ply, RoundTrip) {
 
 TEST(Ply, ForeignPropertiesAndPolygons) {
   std::string text =
-      "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 4\r\nproperty double x\r\nproperty double y\r\nproperty double z\r\n"
-      "property uchar quality\r\nelement face 1\r\nproperty uchar flags\r\nproperty list uchar uint vertex_index\r\nend_header\r\n";
+      "ply\r\nformat binary_little_endian 1.0\r\nelement vertex 4\r\nproperty double x\r\nproperty double "
+      "y\r\nproperty double z\r\n"
+      "property uchar quality\r\nelement face 1\r\nproperty uchar flags\r\nproperty list uchar uint "
+      "vertex_index\r\nend_header\r\n";
   const double p[4][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
   for (const auto& v : p) text.append(reinterpret_cast<const char*>(v), 24), text += '\7';
   const uint32_t quad[4] = {0, 1, 2, 3};
@@ -79,11 +81,15 @@ TEST(Ply, ForeignPropertiesAndPolygons) {
 }
 
 TEST(Ply, HostileCountsAllocateNothing) {
-  EXPECT_THROW(decode_ply("ply\nformat binary_little_endian 1.0\nelement vertex 18446744073709551615\nproperty uchar x\n"
-                          "property uchar y\nproperty uchar z\nend_header\n",
-                          "x"),
-               Error);
-  EXPECT_THROW(decode_ply("ply\nformat binary_little_endian 1.0\nelement junk 99999999999999\nend_header\n", "x"), Error);
+  EXPECT_THROW(
+      decode_ply(
+          "ply\nformat binary_little_endian 1.0\nelement vertex 18446744073709551615\nproperty uchar x\n"
+          "property uchar y\nproperty uchar z\nend_header\n",
+          "x"),
+      Error);
+  EXPECT_THROW(
+      decode_ply("ply\nformat binary_little_endian 1.0\nelement junk 99999999999999\nend_header\n", "x"),
+      Error);
 }
 
 struct Glb {
@@ -118,9 +124,12 @@ TEST(Gltf, HoldsTheMeshAndTheMaterial) {
     const Json& v = j["bufferViews"][a["bufferView"].get<int>()];
     return glb.binary.substr(v["byteOffset"], v["byteLength"]);
   };
-  EXPECT_EQ(array_of(primitive["attributes"]["POSITION"]), std::string(reinterpret_cast<const char*>(m.positions.data()), 48));
-  EXPECT_EQ(array_of(primitive["attributes"]["NORMAL"]), std::string(reinterpret_cast<const char*>(m.normals.data()), 48));
-  EXPECT_EQ(array_of(primitive["indices"]), std::string(reinterpret_cast<const char*>(m.triangles.data()), 48));
+  EXPECT_EQ(array_of(primitive["attributes"]["POSITION"]),
+            std::string(reinterpret_cast<const char*>(m.positions.data()), 48));
+  EXPECT_EQ(array_of(primitive["attributes"]["NORMAL"]),
+            std::string(reinterpret_cast<const char*>(m.normals.data()), 48));
+  EXPECT_EQ(array_of(primitive["indices"]),
+            std::string(reinterpret_cast<const char*>(m.triangles.data()), 48));
   EXPECT_EQ(j["accessors"][0]["max"], Json({1.0, 2.0, 3.0}));
   EXPECT_EQ(j["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"], 0.25f);
   EXPECT_EQ(j["materials"][0]["pbrMetallicRoughness"]["metallicFactor"], 1.0f);
@@ -163,13 +172,16 @@ TEST(Npy, BadHeadersAreErrors) {
   const auto with = [](std::string header) {
     return std::string("\x93NUMPY\x01\x00", 8) + char(header.size()) + '\0' + header + "12345678";
   };
-  EXPECT_EQ(decode_npy(with("{'descr': '<f8', 'fortran_order': False, 'shape': (1,), }"), "x").data.size(), 1u);
-  for (const char* header :
-       {"", "{}", "{'descr': '<i4', 'fortran_order': False, 'shape': (2,), }", "{'descr': '<f4', 'fortran_order': True, 'shape': (2,), }",
-        "{'descr': '<f4', 'fortran_order': False, 'shape': (3,), }", "{'descr': '<f4', 'fortran_order': False, 'shape': 2, }",
-        "{'descr': '<f4', 'fortran_order': False, 'shape': (-2,), }",
-        "{'descr': '<f4', 'fortran_order': False, 'shape': (99999999999999999999,), }",
-        "{'descr': '<f4', 'fortran_order': False, 'shape': (4611686018427387906, 2), }", "{'descr': '<f4', 'fortran_order': False"})
+  EXPECT_EQ(decode_npy(with("{'descr': '<f8', 'fortran_order': False, 'shape': (1,), }"), "x").data.size(),
+            1u);
+  for (const char* header : {"", "{}", "{'descr': '<i4', 'fortran_order': False, 'shape': (2,), }",
+                             "{'descr': '<f4', 'fortran_order': True, 'shape': (2,), }",
+                             "{'descr': '<f4', 'fortran_order': False, 'shape': (3,), }",
+                             "{'descr': '<f4', 'fortran_order': False, 'shape': 2, }",
+                             "{'descr': '<f4', 'fortran_order': False, 'shape': (-2,), }",
+                             "{'descr': '<f4', 'fortran_order': False, 'shape': (99999999999999999999,), }",
+                             "{'descr': '<f4', 'fortran_order': False, 'shape': (4611686018427387906, 2), }",
+                             "{'descr': '<f4', 'fortran_order': False"})
     EXPECT_THROW(decode_npy(with(header), "x"), Error) << header;
 }
 

@@ -19,7 +19,9 @@ struct CameraFile {
 std::vector<CameraFile> camera_files(const fs::path& path) {
   if (fs::is_regular_file(path)) {
     const std::string stem = path.stem().string();
-    const Split split = stem == "transforms_test" ? Split::test : stem == "transforms_val" ? Split::val : Split::train;
+    const Split split = stem == "transforms_test"  ? Split::test
+                        : stem == "transforms_val" ? Split::val
+                                                   : Split::train;
     return {{path, split}};
   }
   std::vector<CameraFile> files;
@@ -27,7 +29,8 @@ std::vector<CameraFile> camera_files(const fs::path& path) {
     const fs::path file = path / fmt::format("transforms_{}.json", split_name(split));
     if (fs::exists(file)) files.push_back({file, split});
   }
-  if (files.empty() && fs::exists(path / "transforms.json")) files.push_back({path / "transforms.json", Split::train});
+  if (files.empty() && fs::exists(path / "transforms.json"))
+    files.push_back({path / "transforms.json", Split::train});
   return files;
 }
 
@@ -58,7 +61,8 @@ std::optional<double> lookup(const Json& frame, const Json& file, std::initializ
 }
 
 double focal_from_angle(double angle, int pixels, const std::string& where) {
-  if (!(angle > 0 && angle < 3.1415)) fail("The field of view of {} should lie between 0 and pi radians.", where);
+  if (!(angle > 0 && angle < 3.1415))
+    fail("The field of view of {} should lie between 0 and pi radians.", where);
   return 0.5 * pixels / std::tan(0.5 * angle);
 }
 
@@ -66,9 +70,11 @@ void require_no_distortion(const Json& frame, const Json& file, const std::strin
   for (const char* key : {"k1", "k2", "k3", "k4", "p1", "p2"}) {
     const auto value = lookup(frame, file, {key}, where);
     if (value && std::abs(*value) > 1e-9)
-      fail("{} has lens distortion ({} = {:g}), which is not supported yet. Undistort the photographs first, for example with "
-           "colmap image_undistorter.",
-           where, key, *value);
+      fail(
+          "{} has lens distortion ({} = {:g}), which is not supported yet. Undistort the photographs first, "
+          "for example with "
+          "colmap image_undistorter.",
+          where, key, *value);
   }
 }
 
@@ -85,7 +91,8 @@ int pixels_of(double v, const std::string& where) {
   return int(std::lround(v));
 }
 
-void set_intrinsics(Camera& c, const Json& frame, const Json& file, ImageSize known, const std::string& where) {
+void set_intrinsics(Camera& c, const Json& frame, const Json& file, ImageSize known,
+                    const std::string& where) {
   const auto w = lookup(frame, file, {"w"}, where), h = lookup(frame, file, {"h"}, where);
   c.width = w ? pixels_of(*w, where) : known.width;
   c.height = h ? pixels_of(*h, where) : known.height;
@@ -98,7 +105,8 @@ void set_intrinsics(Camera& c, const Json& frame, const Json& file, ImageSize kn
   c.fy = lookup(frame, file, {"fl_y"}, where).value_or(c.fx);
   c.cx = lookup(frame, file, {"cx"}, where).value_or(c.width / 2.0);
   c.cy = lookup(frame, file, {"cy"}, where).value_or(c.height / 2.0);
-  if (!(c.fx > 0 && c.fy > 0) || !std::isfinite(c.fx * c.fy * c.cx * c.cy)) fail("The intrinsics of {} are impossible.", where);
+  if (!(c.fx > 0 && c.fy > 0) || !std::isfinite(c.fx * c.fy * c.cx * c.cy))
+    fail("The intrinsics of {} are impossible.", where);
 }
 
 View read_frame(const Json& frame, Split split, const fs::path& folder, const std::string& where) {
@@ -128,7 +136,8 @@ std::vector<View> read_split(const CameraFile& file) {
                                fmt::format("frame {} of {}", views.size(), file.path.string())));
   ImageSize known;
   if (!j.contains("w") || !j.contains("h"))
-    for (size_t i = 0; i < views.size() && known.width == 0; ++i) known = size_of_picture(views[i].image_path);
+    for (size_t i = 0; i < views.size() && known.width == 0; ++i)
+      known = size_of_picture(views[i].image_path);
   for (size_t i = 0; i < views.size(); ++i) {
     const std::string where = fmt::format("frame {} of {}", i, file.path.string());
     require_no_distortion(j["frames"][i], j, where);

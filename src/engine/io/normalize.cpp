@@ -64,7 +64,8 @@ std::vector<Silhouette> find_silhouettes(std::span<const HullMask> masks) {
   return out;
 }
 
-// Largest distance from `center` to a line of sight through the silhouette: the object's width about that point.
+// Largest distance from `center` to a line of sight through the silhouette: the object's width about that
+// point.
 double reach(const Silhouette& s, Vec3d center) {
   double best = 0;
   const Vec3d to_center = center - s.view->camera.center;
@@ -86,11 +87,14 @@ Normalization first_box(const std::vector<Silhouette>& silhouettes) {
   }
   const Vec3d center = nearest_point_to_lines(origins, axes);
   if (!std::isfinite(dot(center, center)))
-    fail("The cameras don't say where the object is: their lines of sight are parallel, or poses are not finite. Photograph the "
-         "object from several sides, and check the poses.");
+    fail(
+        "The cameras don't say where the object is: their lines of sight are parallel, or poses are not "
+        "finite. Photograph the "
+        "object from several sides, and check the poses.");
   std::vector<double> reaches;
   for (const Silhouette& s : silhouettes) reaches.push_back(reach(s, center));
-  // A mask with a stray pixel far out must not inflate the box: long objects are within 3 medians, specks mostly not.
+  // A mask with a stray pixel far out must not inflate the box: long objects are within 3 medians, specks
+  // mostly not.
   const double half = std::min(*std::max_element(reaches.begin(), reaches.end()), 3 * median(reaches)) * 1.05;
   if (!(half > 0)) fail("The object's size could not be told from the masks.");
   return {center, 1 / half};
@@ -141,13 +145,16 @@ Normalization sphere_around(const Vote& v, Vec3d center) {
 }
 
 // Strict where all silhouettes agree; otherwise one view in twenty may be wrong.
-int choose_tolerance(std::span<const HullMask> masks, const Normalization& box, std::vector<std::string>* warnings) {
+int choose_tolerance(std::span<const HullMask> masks, const Normalization& box,
+                     std::vector<std::string>* warnings) {
   const int tolerated = int(masks.size()) / 20;
   const size_t strict = vote(masks, box, 48, 0).cells.size();
   const size_t lenient = tolerated > 0 ? vote(masks, box, 48, tolerated).cells.size() : strict;
   if (strict >= 0.6 * double(lenient)) return 0;
   if (warnings)
-    warnings->push_back("Some masks disagree with the others (up to one in twenty was outvoted): look for cut or empty masks.");
+    warnings->push_back(
+        "Some masks disagree with the others (up to one in twenty was outvoted): look for cut or empty "
+        "masks.");
   return tolerated;
 }
 
@@ -167,14 +174,18 @@ Vec3d nearest_point_to_lines(std::span<const Vec3d> origins, std::span<const Vec
 
 Normalization normalization_from_masks(std::span<const HullMask> masks, std::vector<std::string>* warnings) {
   const std::vector<Silhouette> silhouettes = find_silhouettes(masks);
-  if (silhouettes.empty()) fail("No mask has a pixel set: the object is nowhere. Check the alpha channel or the mask files.");
-  if (silhouettes.size() < 2) fail("Only one view shows the object; its place and size need at least two, better fifty.");
+  if (silhouettes.empty())
+    fail("No mask has a pixel set: the object is nowhere. Check the alpha channel or the mask files.");
+  if (silhouettes.size() < 2)
+    fail("Only one view shows the object; its place and size need at least two, better fifty.");
   Normalization box = first_box(silhouettes);
   const int tolerated = choose_tolerance(masks, box, warnings);
   const Vote coarse = vote(masks, box, 64, tolerated);
   if (coarse.cells.empty())
-    fail("The masks have no volume in common: masks and camera poses disagree. Check that the pictures and poses belong "
-         "together, and the axes convention of the poses.");
+    fail(
+        "The masks have no volume in common: masks and camera poses disagree. Check that the pictures and "
+        "poses belong "
+        "together, and the axes convention of the poses.");
   box = cube_around(coarse);
   const Vote fine = vote(masks, box, 96, tolerated);
   return sphere_around(fine.cells.empty() ? coarse : fine, box.center);
@@ -188,9 +199,11 @@ Normalization find_normalization(const Capture& capture) {
   for (size_t i = 0; i < views.size(); ++i)
     if (masks[i].stated) hull.push_back({views[i].camera, masks[i].object});
   if (hull.empty())
-    fail("{} has neither masks nor an alpha channel, so the object cannot be told from the background. Give PNGs with alpha, or "
-         "mask files.",
-         capture.root.string());
+    fail(
+        "{} has neither masks nor an alpha channel, so the object cannot be told from the background. Give "
+        "PNGs with alpha, or "
+        "mask files.",
+        capture.root.string());
   return normalization_from_masks(hull);
 }
 

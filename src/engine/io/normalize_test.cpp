@@ -59,14 +59,16 @@ TEST(Normalize, IsInvertible) {
 TEST(Normalize, ViewsThatCutTheObjectAreNoEvidenceAgainstIt) {
   const TestBall ball;
   auto views = test_views(ball, 40, 120, 90);
-  for (size_t i = 0; i < views.size(); i += 4) views[i].camera.fx = views[i].camera.fy = 420;  // the ball fills the frame
+  for (size_t i = 0; i < views.size(); i += 4)
+    views[i].camera.fx = views[i].camera.fy = 420;  // the ball fills the frame
   expect_ball(normalization_from_masks(ball_masks(ball, views).views), ball);
 }
 
 TEST(Normalize, OneWrongMaskInTwentyIsOutvotedAndSaid) {
   const TestBall ball;
   MaskSet set = ball_masks(ball, test_views(ball, 40, 120, 90));
-  std::fill(set.pixels[7].begin() + 45 * 120, set.pixels[7].end(), uint8_t(0));  // half of the object is missing
+  std::fill(set.pixels[7].begin() + 45 * 120, set.pixels[7].end(),
+            uint8_t(0));  // half of the object is missing
   std::vector<std::string> warnings;
   expect_ball(normalization_from_masks(set.views, &warnings), ball);
   EXPECT_EQ(warnings.size(), 1u);
@@ -89,12 +91,15 @@ TEST(Normalize, EmptyMasksAndDisagreeingPosesAreErrors) {
   set = ball_masks(ball, views);
   for (HullMask& v : set.views) v.camera.center.x = NAN;
   EXPECT_NE(message([&] { normalization_from_masks(set.views); }), "no error");
-  EXPECT_THAT(message([&] { normalization_from_masks(std::span(set.views).first(1)); }), HasSubstr("at least two"));
+  EXPECT_THAT(message([&] { normalization_from_masks(std::span(set.views).first(1)); }),
+              HasSubstr("at least two"));
 }
 
 TEST(Normalize, NearestPointToLines) {
   const Vec3d p{1, 2, 3};
-  std::vector<Vec3d> directions{normalize(Vec3d{1, 0, 0.1}), normalize(Vec3d{0, 1, 0.3}), normalize(Vec3d{1, 1, 1})}, origins;
+  std::vector<Vec3d> directions{normalize(Vec3d{1, 0, 0.1}), normalize(Vec3d{0, 1, 0.3}),
+                                normalize(Vec3d{1, 1, 1})},
+      origins;
   for (const Vec3d d : directions) origins.push_back(p - d * 7.0);
   EXPECT_NEAR(length(nearest_point_to_lines(origins, directions) - p), 0, 1e-10);
 }
@@ -105,10 +110,12 @@ TEST(Normalize, FromFiles) {
   write_nerf_split(temp.path(), "train", ball, test_views(ball, 30));
   expect_ball(find_normalization(load_capture(temp.path())), ball);
   for (const View& v : load_capture(temp.path()).views) write_png(v.image_path, Image(64, 48, 3, 0.5f));
-  EXPECT_THAT(message([&] { find_normalization(load_capture(temp.path())); }), HasSubstr("neither masks nor an alpha"));
+  EXPECT_THAT(message([&] { find_normalization(load_capture(temp.path())); }),
+              HasSubstr("neither masks nor an alpha"));
 }
 
-// The scenes were rendered with the object in the unit sphere, bounding radius 0.97. Hulls are a little larger.
+// The scenes were rendered with the object in the unit sphere, bounding radius 0.97. Hulls are a little
+// larger.
 TEST(Normalize, SharedScenes) {
   for (const char* name : {"spot", "teapot", "penguin"}) {
     const std::filesystem::path scene = std::filesystem::path("../shared/scenes") / name;

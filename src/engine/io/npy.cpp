@@ -10,7 +10,9 @@
 namespace cei3d {
 namespace {
 
-[[noreturn]] void broken(const std::string& name, const char* why) { fail("{} is not a usable .npy array: {}.", name, why); }
+[[noreturn]] void broken(const std::string& name, const char* why) {
+  fail("{} is not a usable .npy array: {}.", name, why);
+}
 
 // The text after "'key':" in the header, a Python dictionary that writers print in one way.
 std::string value_of_key(const std::string& header, const std::string& key, const std::string& name) {
@@ -42,8 +44,10 @@ std::vector<int64_t> parse_shape(const std::string& text, const std::string& nam
 }  // namespace
 
 std::string encode_npy(std::span<const float> values, int64_t rows, int64_t columns) {
-  if (uint64_t(rows) * uint64_t(columns) != values.size()) fail("Cannot write {} values as {} x {}.", values.size(), rows, columns);
-  std::string header = fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);
+  if (uint64_t(rows) * uint64_t(columns) != values.size())
+    fail("Cannot write {} values as {} x {}.", values.size(), rows, columns);
+  std::string header =
+      fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", rows, columns);
   header.append((64 - (10 + header.size() + 1) % 64) % 64, ' ');
   header += '\n';
   std::string out("\x93NUMPY\x01\x00", 8);
@@ -54,7 +58,8 @@ std::string encode_npy(std::span<const float> values, int64_t rows, int64_t colu
   return out;
 }
 
-void write_npy(const std::filesystem::path& path, std::span<const float> values, int64_t rows, int64_t columns) {
+void write_npy(const std::filesystem::path& path, std::span<const float> values, int64_t rows,
+               int64_t columns) {
   write_file_atomic(path, encode_npy(values, rows, columns));
 }
 
@@ -68,7 +73,8 @@ NpyArray decode_npy(const std::string& bytes, const std::string& name) {
   const std::string header = bytes.substr(start, length);
   const std::string type = value_of_key(header, "descr", name).substr(0, 5);
   if (type != "'<f4'" && type != "'<f8'") broken(name, "its values are neither float32 nor float64");
-  if (value_of_key(header, "fortran_order", name).rfind("False", 0) != 0) broken(name, "it is in Fortran order");
+  if (value_of_key(header, "fortran_order", name).rfind("False", 0) != 0)
+    broken(name, "it is in Fortran order");
 
   NpyArray array;
   array.shape = parse_shape(value_of_key(header, "shape", name), name);
@@ -81,8 +87,10 @@ NpyArray decode_npy(const std::string& bytes, const std::string& name) {
   array.data.resize(size_t(count));
   for (size_t i = 0; i < array.data.size(); ++i) {
     double wide_value = 0;
-    if (item == 4) std::memcpy(&array.data[i], data + 4 * i, 4);
-    else std::memcpy(&wide_value, data + 8 * i, 8), array.data[i] = float(wide_value);
+    if (item == 4)
+      std::memcpy(&array.data[i], data + 4 * i, 4);
+    else
+      std::memcpy(&wide_value, data + 8 * i, 8), array.data[i] = float(wide_value);
   }
   return array;
 }

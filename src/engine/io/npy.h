@@ -17,7 +17,8 @@ struct NpyArray {
 
 // values: [rows][columns]
 std::string encode_npy(std::span<const float> values, int64_t rows, int64_t columns);
-void write_npy(const std::filesystem::path& path, std::span<const float> values, int64_t rows, int64_t columns);  // atomically
+void write_npy(const std::filesystem::path& path, std::span<const float> values, int64_t rows,
+               int64_t columns);  // atomically
 
 // float32 or float64 (little endian), C order, any shape. Errors name the file.
 NpyArray decode_npy(const std::string& bytes, const std::string& name);

@@ -61,8 +61,10 @@ Camera read_camera(const Json& j, const std::string& where) {
 
 using Files = std::vector<fs::path>;
 
-// The file of each view, by stem; by order when no stem fits and the numbers agree, as the format's own loader does.
-Files match(const std::vector<std::string>& keys, const Files& files, const fs::path& folder, Capture& capture) {
+// The file of each view, by stem; by order when no stem fits and the numbers agree, as the format's own
+// loader does.
+Files match(const std::vector<std::string>& keys, const Files& files, const fs::path& folder,
+            Capture& capture) {
   std::map<std::string, fs::path> by_stem;
   for (const fs::path& file : files) by_stem[file.stem().string()] = file;
   Files out;
@@ -73,14 +75,15 @@ Files match(const std::vector<std::string>& keys, const Files& files, const fs::
     out.push_back(it != by_stem.end() ? it->second : folder / fs::path(key).filename());
   }
   if (found > 0 && found < files.size())
-    capture.warnings.push_back(
-        fmt::format("{} of {} pictures in {} have no camera and are left out.", files.size() - found, files.size(), folder.string()));
+    capture.warnings.push_back(fmt::format("{} of {} pictures in {} have no camera and are left out.",
+                                           files.size() - found, files.size(), folder.string()));
   if (found > 0) return out;
   if (files.size() != keys.size())
-    fail("The {} pictures in {} fit the {} cameras neither by name nor by number. Name them as in {}.", files.size(),
-         folder.string(), keys.size(), kCameras);
+    fail("The {} pictures in {} fit the {} cameras neither by name nor by number. Name them as in {}.",
+         files.size(), folder.string(), keys.size(), kCameras);
   capture.warnings.push_back(
-      fmt::format("The pictures in {} are not named like the cameras; they were matched by sorted order.", folder.string()));
+      fmt::format("The pictures in {} are not named like the cameras; they were matched by sorted order.",
+                  folder.string()));
   return files;
 }
 
@@ -92,8 +95,10 @@ void read_part(const Part& part, Capture& capture) {
   for (const auto& [key, value] : j.items()) keys.push_back(key);
   std::sort(keys.begin(), keys.end());
   const Files images = pictures_in(part.folder / "image"), masks = pictures_in(part.folder / "mask");
-  const Files image_of = images.empty() ? Files(keys.size()) : match(keys, images, part.folder / "image", capture);
-  const Files mask_of = masks.empty() ? Files(keys.size()) : match(keys, masks, part.folder / "mask", capture);
+  const Files image_of =
+      images.empty() ? Files(keys.size()) : match(keys, images, part.folder / "image", capture);
+  const Files mask_of =
+      masks.empty() ? Files(keys.size()) : match(keys, masks, part.folder / "mask", capture);
 
   ImageSize size;
   for (size_t i = 0; i < keys.size() && size.width == 0; ++i) size = size_of_picture(image_of[i]);

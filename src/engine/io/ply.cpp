@@ -35,7 +35,9 @@ struct Element {
 class Reader {
  public:
   Reader(const std::string& bytes, const std::string& name) : bytes_(bytes), name_(name) {}
-  [[noreturn]] void broken(const std::string& why) const { fail("{} is not a usable PLY mesh: {}.", name_, why); }
+  [[noreturn]] void broken(const std::string& why) const {
+    fail("{} is not a usable PLY mesh: {}.", name_, why);
+  }
 
   std::string line() {
     const size_t end = bytes_.find('\n', position_);
@@ -88,13 +90,16 @@ std::vector<Element> read_header(Reader& in) {
     } else if (word == "property") {
       if (elements.empty() || !(words >> a)) in.broken("its header is malformed");
       Property p;
-      if (a == "list") words >> p.count_type >> p.type >> p.name;
-      else p.type = a, words >> p.name;
+      if (a == "list")
+        words >> p.count_type >> p.type >> p.name;
+      else
+        p.type = a, words >> p.name;
       if (p.name.empty()) in.broken("its header is malformed");
       elements.back().properties.push_back(p);
     }
   }
-  for (const Element& e : elements)  // every item takes a byte at least, so that hostile counts allocate nothing
+  for (const Element& e :
+       elements)  // every item takes a byte at least, so that hostile counts allocate nothing
     if (e.properties.empty() ? e.count > 0 : e.count > in.left()) in.broken("it ends too early");
   return elements;
 }
@@ -126,8 +131,10 @@ void read_vertices(Reader& in, const Element& e, Mesh& mesh) {
       }
       const double value = in.number(p.type);
       const int t = target_of(p.name);
-      if (t >= 6) v[2][t - 6] = linear_from_srgb(float(p.type[0] == 'u' ? value / 255 : value));
-      else if (t >= 0) v[t / 3][t % 3] = float(value);
+      if (t >= 6)
+        v[2][t - 6] = linear_from_srgb(float(p.type[0] == 'u' ? value / 255 : value));
+      else if (t >= 0)
+        v[t / 3][t % 3] = float(value);
     }
     if (!std::isfinite(dot(v[0], v[0]))) in.broken("a vertex is not finite");
     mesh.positions.push_back(v[0]);
@@ -148,7 +155,8 @@ void read_faces(Reader& in, const Element& e, Mesh& mesh) {
         uint32_t first = 0, last = 0;
         for (double k = 0; k < n; ++k) {
           const double index = in.number(p.type);
-          if (!(index >= 0 && index < double(mesh.positions.size()))) in.broken("a face names a vertex that does not exist");
+          if (!(index >= 0 && index < double(mesh.positions.size())))
+            in.broken("a face names a vertex that does not exist");
           if (k >= 2) mesh.triangles.push_back({first, last, uint32_t(index)});
           if (k == 0) first = uint32_t(index);
           last = uint32_t(index);
@@ -160,12 +168,15 @@ void read_faces(Reader& in, const Element& e, Mesh& mesh) {
 }  // namespace
 
 std::string encode_ply(const Mesh& mesh) {
-  const bool normals = mesh.normals.size() == mesh.positions.size(), colors = mesh.colors.size() == mesh.positions.size();
+  const bool normals = mesh.normals.size() == mesh.positions.size(),
+             colors = mesh.colors.size() == mesh.positions.size();
   std::string out = "ply\nformat binary_little_endian 1.0\ncomment CEI-3D\n";
-  out += fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n", mesh.positions.size());
+  out += fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n",
+                     mesh.positions.size());
   if (normals) out += "property float nx\nproperty float ny\nproperty float nz\n";
   if (colors) out += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
-  out += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n", mesh.triangles.size());
+  out += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+                     mesh.triangles.size());
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
     put(out, mesh.positions[i]);
     if (normals) put(out, mesh.normals[i]);
@@ -178,17 +189,22 @@ std::string encode_ply(const Mesh& mesh) {
   return out;
 }
 
-void write_ply(const std::filesystem::path& path, const Mesh& mesh) { write_file_atomic(path, encode_ply(mesh)); }
+void write_ply(const std::filesystem::path& path, const Mesh& mesh) {
+  write_file_atomic(path, encode_ply(mesh));
+}
 
 Mesh decode_ply(const std::string& bytes, const std::string& name) {
   Reader in(bytes, name);
   Mesh mesh;
   for (const Element& e : read_header(in)) {
-    if (e.name == "vertex") read_vertices(in, e, mesh);
-    else if (e.name == "face") read_faces(in, e, mesh);
+    if (e.name == "vertex")
+      read_vertices(in, e, mesh);
+    else if (e.name == "face")
+      read_faces(in, e, mesh);
     else
       for (size_t i = 0; i < e.count; ++i)
-        for (const Property& p : e.properties) p.count_type.empty() ? void(in.number(p.type)) : skip_list(in, p);
+        for (const Property& p : e.properties)
+          p.count_type.empty() ? void(in.number(p.type)) : skip_list(in, p);
   }
   return mesh;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// libpng reports errors by longjmp. So every call sequence runs in a small function over plain data (no destructors
-// between setjmp and longjmp), and everything that owns memory lives in the callers.
+// libpng reports errors by longjmp. So every call sequence runs in a small function over plain data (no
+// destructors between setjmp and longjmp), and everything that owns memory lives in the callers.
 #include "engine/io/png_file.h"
 
 #include <png.h>
@@ -37,7 +37,8 @@ void read_bytes(png_structp png, png_bytep out, size_t n) {
 
 // Calls step(png, info, context); false after a libpng error.
 template <class Context>
-bool guarded(png_structp png, png_infop info, void (*step)(png_structp, png_infop, Context*), Context* context) {
+bool guarded(png_structp png, png_infop info, void (*step)(png_structp, png_infop, Context*),
+             Context* context) {
   if (setjmp(png_jmpbuf(png))) return false;
   step(png, info, context);
   return true;
@@ -71,7 +72,8 @@ void read_rows(png_structp png, png_infop, png_bytepp rows) {
 
 class Reader {
  public:
-  Reader(const std::string& bytes, const std::string& name) : name_(name), source_{bytes.data(), bytes.size(), 0, {}} {
+  Reader(const std::string& bytes, const std::string& name)
+      : name_(name), source_{bytes.data(), bytes.size(), 0, {}} {
     png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, source_.error, on_error, on_warning);
     info_ = png_ ? png_create_info_struct(png_) : nullptr;
     if (!info_) {
@@ -89,9 +91,7 @@ class Reader {
     require(guarded(png_, info_, read_header, &h));
     return h;
   }
-  void rows(png_bytepp rows) {
-    require(guarded(png_, info_, read_rows, rows));
-  }
+  void rows(png_bytepp rows) { require(guarded(png_, info_, read_rows, rows)); }
   void require(bool ok) {
     if (!ok) fail("{} is a broken PNG: {}. Copy or render it again.", name_, source_.error);
   }
@@ -144,7 +144,9 @@ std::vector<png_bytep> row_pointers(std::vector<uint8_t>& data, size_t height) {
   return rows;
 }
 
-uint32_t quantize(float v, float top) { return v > 0 ? uint32_t(std::min(v, 1.0f) * top + 0.5f) : 0; }  // NaN: 0
+uint32_t quantize(float v, float top) {
+  return v > 0 ? uint32_t(std::min(v, 1.0f) * top + 0.5f) : 0;
+}  // NaN: 0
 
 }  // namespace
 
@@ -152,7 +154,8 @@ Image decode_png(const std::string& bytes, const std::string& name) {
   Reader reader(bytes, name);
   const Header h = reader.header();
   const size_t size = size_t(h.width) * h.height * h.channels * (h.bits / 8);
-  // Deflate shrinks at most 1032:1 and expansion (1-bit palettes to RGBA) adds 32: more cannot come out of these bytes.
+  // Deflate shrinks at most 1032:1 and expansion (1-bit palettes to RGBA) adds 32: more cannot come out of
+  // these bytes.
   if (size > bytes.size() * 33'100) fail("{} is a broken PNG: it is far too short for its size.", name);
   std::vector<uint8_t> data(size);
   reader.rows(row_pointers(data, h.height).data());

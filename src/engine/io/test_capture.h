@@ -43,7 +43,8 @@ inline std::vector<TestView> test_views(const TestBall& ball, int n, int width =
     const Vec3d out{r * std::cos(phi), r * std::sin(phi), z};
     const Vec3d aim = ball.center + Vec3d{std::cos(3.0 * i), std::sin(5.0 * i), 0.3} * (0.1 * ball.radius);
     std::string stem = std::to_string(1000 + i).replace(0, 1, "r_");
-    views.push_back({stem, look_at(ball.center + out * (4.5 * ball.radius), aim, {0, 0, 1}, width, height, 1.4 * width)});
+    views.push_back(
+        {stem, look_at(ball.center + out * (4.5 * ball.radius), aim, {0, 0, 1}, width, height, 1.4 * width)});
   }
   return views;
 }
@@ -76,9 +77,10 @@ inline Json nerf_frame(const std::string& file_path, const Camera& c) {
 }
 
 // transforms_<split>.json and <split>/r_000.png ...
-inline void write_nerf_split(const std::filesystem::path& folder, const std::string& split, const TestBall& ball,
-                             const std::vector<TestView>& views) {
-  Json j{{"camera_angle_x", 2 * std::atan(0.5 * views[0].camera.width / views[0].camera.fx)}, {"frames", Json::array()}};
+inline void write_nerf_split(const std::filesystem::path& folder, const std::string& split,
+                             const TestBall& ball, const std::vector<TestView>& views) {
+  Json j{{"camera_angle_x", 2 * std::atan(0.5 * views[0].camera.width / views[0].camera.fx)},
+         {"frames", Json::array()}};
   for (const TestView& v : views) {
     j["frames"].push_back(nerf_frame("./" + split + "/" + v.stem, v.camera));
     write_png(folder / split / (v.stem + ".png"), ball_image(ball, v.camera));
@@ -87,7 +89,8 @@ inline void write_nerf_split(const std::filesystem::path& folder, const std::str
 }
 
 // cam_dict_norm.json, image/, mask/ in `folder`.
-inline void write_physg(const std::filesystem::path& folder, const TestBall& ball, const std::vector<TestView>& views) {
+inline void write_physg(const std::filesystem::path& folder, const TestBall& ball,
+                        const std::vector<TestView>& views) {
   Json j = Json::object();
   for (const TestView& v : views) {
     const Camera& c = v.camera;
@@ -97,9 +100,10 @@ inline void write_physg(const std::filesystem::path& folder, const TestBall& bal
     for (int i = 0; i < 3; ++i)
       for (const double x : {r.row[i].x, r.row[i].y, r.row[i].z, t[i]}) w2c.push_back(x);
     for (const double x : {0.0, 0.0, 0.0, 1.0}) w2c.push_back(x);
-    j[v.stem + ".png"] = {{"K", {c.fx, c.skew, c.cx - 0.5, 0, 0, c.fy, c.cy - 0.5, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
-                          {"W2C", w2c},
-                          {"img_size", {c.width, c.height}}};
+    j[v.stem + ".png"] = {
+        {"K", {c.fx, c.skew, c.cx - 0.5, 0, 0, c.fy, c.cy - 0.5, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
+        {"W2C", w2c},
+        {"img_size", {c.width, c.height}}};
     const Image rgba = ball_image(ball, c);
     Image rgb(c.width, c.height, 3), mask(c.width, c.height, 1);
     for (size_t i = 0; i < mask.data.size(); ++i) {

@@ -49,7 +49,8 @@ TEST(Ssim, OneForEqualPicturesAndSymmetric) {
 // Constant pictures have no variance: only the luminance term is left.
 TEST(Ssim, ConstantPictures) {
   const double x = 0.25, y = 0.75;
-  EXPECT_NEAR(ssim(Image(11, 11, 3, float(x)), Image(13 - 2, 11, 3, float(y))), (2 * x * y + 1e-4) / (x * x + y * y + 1e-4), 1e-6);
+  EXPECT_NEAR(ssim(Image(11, 11, 3, float(x)), Image(13 - 2, 11, 3, float(y))),
+              (2 * x * y + 1e-4) / (x * x + y * y + 1e-4), 1e-6);
 }
 
 // A picture and its negative about 1/2: means mirror, covariance is minus the variance. One window: 11 x 11.

@@ -12,11 +12,15 @@ namespace {
 
 void require_pair(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height || a.channels != 3 || b.channels != 3 || a.empty())
-    fail("Cannot compare a picture of {} x {} x {} with one of {} x {} x {}: render at the size of the photographs.", a.width,
-         a.height, a.channels, b.width, b.height, b.channels);
+    fail(
+        "Cannot compare a picture of {} x {} x {} with one of {} x {} x {}: render at the size of the "
+        "photographs.",
+        a.width, a.height, a.channels, b.width, b.height, b.channels);
 }
 
-double from_mse(double mse) { return mse == 0 ? std::numeric_limits<double>::infinity() : -10 * std::log10(mse); }
+double from_mse(double mse) {
+  return mse == 0 ? std::numeric_limits<double>::infinity() : -10 * std::log10(mse);
+}
 
 }  // namespace
 

@@ -10,8 +10,8 @@
 
 namespace cei3d {
 
-// RGB over a grey background, in the values' own space (display space: as the NeRF papers do). 4 channels: straight alpha;
-// 1 channel is repeated.
+// RGB over a grey background, in the values' own space (display space: as the NeRF papers do). 4 channels:
+// straight alpha; 1 channel is repeated.
 Image over_background(const Image& image, float background);
 
 // a, b: RGB of one size, values in [0, 1], display-encoded. Infinity for equal pictures. Error: sizes differ.

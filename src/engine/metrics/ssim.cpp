@@ -16,7 +16,8 @@ constexpr double kC1 = 1e-4, kC2 = 9e-4;  // (K1 range)^2, (K2 range)^2
 std::array<double, kWindow> gaussian() {
   std::array<double, kWindow> k;
   double sum = 0;
-  for (int i = 0; i < kWindow; ++i) sum += k[size_t(i)] = std::exp(-0.5 * std::pow((i - kWindow / 2) / 1.5, 2));
+  for (int i = 0; i < kWindow; ++i)
+    sum += k[size_t(i)] = std::exp(-0.5 * std::pow((i - kWindow / 2) / 1.5, 2));
   for (double& v : k) v /= sum;
   return k;
 }
@@ -65,9 +66,12 @@ double ssim_channel(const Image& a, const Image& b, int c) {
 }  // namespace
 
 double ssim(const Image& a, const Image& b) {
-  if (a.width != b.width || a.height != b.height || a.channels != 3 || b.channels != 3 || a.width < kWindow || a.height < kWindow)
-    fail("SSIM needs two RGB pictures of one size, at least {} x {} pixels; got {} x {} x {} and {} x {} x {}.", kWindow, kWindow,
-         a.width, a.height, a.channels, b.width, b.height, b.channels);
+  if (a.width != b.width || a.height != b.height || a.channels != 3 || b.channels != 3 || a.width < kWindow ||
+      a.height < kWindow)
+    fail(
+        "SSIM needs two RGB pictures of one size, at least {} x {} pixels; got {} x {} x {} and {} x {} x "
+        "{}.",
+        kWindow, kWindow, a.width, a.height, a.channels, b.width, b.height, b.channels);
   return (ssim_channel(a, b, 0) + ssim_channel(a, b, 1) + ssim_channel(a, b, 2)) / 3;
 }
 

@@ -6,8 +6,9 @@
 
 namespace cei3d {
 
-// Mean over channels and window positions; 11 x 11 Gaussian windows (sigma 1.5) that lie wholly in the picture, biased
-// variances, K1 = 0.01, K2 = 0.03, range 1. a, b: RGB of one size >= 11 x 11, display-encoded. Error: other sizes.
+// Mean over channels and window positions; 11 x 11 Gaussian windows (sigma 1.5) that lie wholly in the
+// picture, biased variances, K1 = 0.01, K2 = 0.03, range 1. a, b: RGB of one size >= 11 x 11,
+// display-encoded. Error: other sizes.
 double ssim(const Image& a, const Image& b);
 
 }  // namespace cei3d

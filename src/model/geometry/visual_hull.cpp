@@ -19,8 +19,12 @@ struct Projection {
 Projection projection_of(const HullMask& view) {
   const Camera& c = view.camera;
   const Mat3d r = transpose(c.world_from_cam);
-  Projection p{{r.row[0] * c.fx + r.row[1] * c.skew + r.row[2] * c.cx, r.row[1] * c.fy + r.row[2] * c.cy, r.row[2]},
-               {}, c.width, c.height, view.mask.data()};
+  Projection p{
+      {r.row[0] * c.fx + r.row[1] * c.skew + r.row[2] * c.cx, r.row[1] * c.fy + r.row[2] * c.cy, r.row[2]},
+      {},
+      c.width,
+      c.height,
+      view.mask.data()};
   for (int i = 0; i < 3; ++i) p.offset[i] = -dot(p.row[i], c.center);
   return p;
 }
@@ -52,7 +56,8 @@ VisualHull visual_hull(std::span<const HullMask> views, int n, Vec3f lo, Vec3f h
                        int min_seen) {
   for (const HullMask& view : views)
     if (view.mask.size() != size_t(view.camera.width) * view.camera.height)
-      fail("A mask of {} pixels does not fit a camera of {} x {}.", view.mask.size(), view.camera.width, view.camera.height);
+      fail("A mask of {} pixels does not fit a camera of {} x {}.", view.mask.size(), view.camera.width,
+           view.camera.height);
   std::vector<Projection> projections;
   for (const HullMask& view : views) projections.push_back(projection_of(view));
   VisualHull hull{n, lo, hi, std::vector<uint8_t>(size_t(n) * n * n, 0)};
@@ -60,8 +65,8 @@ VisualHull visual_hull(std::span<const HullMask> views, int n, Vec3f lo, Vec3f h
   parallel_for(n, [&](int z) {
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x)
-        hull.inside[(size_t(z) * n + y) * n + x] =
-            is_inside(projections, to_double(lo) + size * Vec3d{x + 0.5, y + 0.5, z + 0.5}, tolerated, min_seen);
+        hull.inside[(size_t(z) * n + y) * n + x] = is_inside(
+            projections, to_double(lo) + size * Vec3d{x + 0.5, y + 0.5, z + 0.5}, tolerated, min_seen);
   });
   return hull;
 }

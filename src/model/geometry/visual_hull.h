@@ -16,14 +16,14 @@ struct HullMask {
 };
 
 struct VisualHull {
-  int n = 0;                       // cells an axis
+  int n = 0;  // cells an axis
   Vec3f lo{-1, -1, -1}, hi{1, 1, 1};
-  std::vector<uint8_t> inside;     // [z][y][x]: the cell's centre is inside
+  std::vector<uint8_t> inside;  // [z][y][x]: the cell's centre is inside
 };
 
-// A cell is inside when every view that has it in its frame shows the object there, but for `tolerated` views (small
-// mask errors), and at least `min_seen` views have it in their frame. Runs on all threads. Error: a mask of another size
-// than its camera.
+// A cell is inside when every view that has it in its frame shows the object there, but for `tolerated` views
+// (small mask errors), and at least `min_seen` views have it in their frame. Runs on all threads. Error: a
+// mask of another size than its camera.
 VisualHull visual_hull(std::span<const HullMask> views, int n, Vec3f lo = {-1, -1, -1}, Vec3f hi = {1, 1, 1},
                        int tolerated = 0, int min_seen = 1);
 
