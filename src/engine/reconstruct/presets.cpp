@@ -78,7 +78,7 @@ void fit_to_footprint(Preset& p, double footprint) {
   sdf.finest_resolution = albedo.finest_resolution = finest;
   sdf.log2_table = finest > 450 ? 17 : 15;
   albedo.log2_table = finest > 450 ? 18 : 16;
-  p.meshing.resolution = finest > 450 ? 256 : 192;
+  p.meshing.resolution = finest > 450 ? 256 : finest > 200 ? 192 : 96;
 }
 
 }  // namespace cei3d
