@@ -2,6 +2,7 @@
 #include "apps/cli/console.h"
 
 #include <algorithm>
+#include <cctype>
 #include <ostream>
 
 #include "apps/cli/interrupt.h"
@@ -13,10 +14,19 @@ namespace {
 
 constexpr int kBarWidth = 24;
 constexpr double kRedrawSeconds = 0.1, kLineSeconds = 10;
+constexpr double kQuietStart = 2;  // seconds: what is over by then needs no lines
 
 std::string bar(double fraction) {
   const int full = std::clamp(int(fraction * kBarWidth + 0.5), 0, kBarWidth);
   return std::string(size_t(full), '#') + std::string(size_t(kBarWidth - full), '.');
+}
+
+// Ends in a full stop; begins with a capital when it follows another sentence.
+std::string sentence(std::string text, bool follows) {
+  if (text.empty()) return text;
+  if (follows) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
+  if (std::string(".!?").find(text.back()) == std::string::npos) text += '.';
+  return follows ? " " + text : text;
 }
 
 std::string left(double seconds) { return seconds < 0 ? std::string() : duration_text(seconds) + " left"; }
@@ -44,7 +54,7 @@ void Console::warn(const std::string& text) {
 
 void Console::error(const std::string& text, const std::string& hint, int code) {
   clear_bar();
-  err_ << "error: " << text << (hint.empty() ? "" : " " + hint) << '\n';
+  err_ << "error: " << sentence(text, false) << sentence(hint, true) << '\n';
   if (json_ && !answered_) out_ << Json{{"error", text}, {"exit_code", code}}.dump(1) << '\n';
   out_.flush();
   err_.flush();
@@ -55,6 +65,7 @@ void Console::report(const ProgressReport& r) {
   const Clock::time_point now = Clock::now();
   const auto since = [&](Clock::time_point t) { return std::chrono::duration<double>(now - t).count(); };
   const bool new_stage = r.stage != stage_;
+  if (!terminal_ && since(start_) < kQuietStart) return;
   if (!new_stage && r.fraction < 1 && since(last_) < (terminal_ ? kRedrawSeconds : kLineSeconds)) return;
   last_ = now;
   stage_ = r.stage;

@@ -44,7 +44,8 @@ std::vector<NamedCamera> named(const std::vector<View>& views) {
 std::vector<NamedCamera> read_camera_file(const fs::path& path) {
   std::vector<NamedCamera> cameras;
   try {
-    for (const Json& j : Json::parse(read_file(path)).at("cameras"))
+    const Json file = Json::parse(read_file(path));
+    for (const Json& j : file.at("cameras"))
       cameras.push_back({j.at("name").get<std::string>(), "", camera_from_json(j)});
   } catch (const Json::exception& e) {
     fail("{} is not a list of cameras ({}); a render.json of `cei3d render` is one.", path.string(), e.what());
