@@ -5,7 +5,7 @@ set -euo pipefail
 readonly program=$1 out=$2 sample=samples/spot
 readonly object=$(dirname "$out")/object/object
 # Small enough for a test, long enough that a cow comes out.
-readonly small=(--iterations 120 --downscale 2 --seed 7)
+readonly small=(--iterations 60 --downscale 2 --seed 7)
 
 rm -rf "$out"
 mkdir -p "$out"

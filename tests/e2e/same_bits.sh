@@ -2,7 +2,7 @@
 # One seed, the same bits: with one thread as with all, uninterrupted as after kill -9 in the middle.
 source "$(dirname "$0")/lib.sh"
 
-cei3d reconstruct "$sample" -o "$out/first" "${small[@]}" --threads 1 &
+"$program" reconstruct "$sample" -o "$out/first" "${small[@]}" --threads 1 &
 pid=$!
 for ((i = 0; i < 600; ++i)); do  # dead as soon as there is a state to go on from
   [[ -e $out/first/base/latest || ! -e /proc/$pid ]] && break
@@ -15,7 +15,7 @@ refused 1 'resume' render "$out/first" -o "$out/nothing"
 absent "$out/nothing"
 cei3d reconstruct -o "$out/first" --resume
 
-cei3d edit "$out/first" paint --view r_055 --scribble "$sample/edits/paint/scribble.png" &
+"$program" edit "$out/first" paint --view r_055 --scribble "$sample/edits/paint/scribble.png" &
 pid=$!
 sleep 0.3
 kill -9 "$pid" 2>/dev/null || true
