@@ -5,10 +5,12 @@
 #include <chrono>
 #include <cmath>
 
-#include "core/base/parallel.h"
+#include "core/base/error.h"
+#include "core/math/brdf.h"
 #include "core/math/color.h"
 #include "core/math/loss.h"
 #include "core/math/rng.h"
+#include "engine/reconstruct/light_descent.h"
 #include "engine/render/lighting.h"
 #include "model/light/fit.h"
 
@@ -34,51 +36,128 @@ LinearSplitOptions split_options(const AppearanceOptions& o) {
   return s;
 }
 
-// Every sample's radiance is linear in its base colour: dark + a (bright - dark), for dielectrics and metals alike.
-struct LinearInAlbedo {
-  std::vector<Vec3f> dark, gain;
-};
-
-LinearInAlbedo linear_in_albedo(const Lighting& lighting, std::span<const Hit> hits) {
-  LinearInAlbedo l;
-  const Shading dark = lighting.shade(hits, std::vector<Vec3f>(hits.size(), {0, 0, 0}));
-  const Shading bright = lighting.shade(hits, std::vector<Vec3f>(hits.size(), {1, 1, 1}));
-  for (size_t i = 0; i < hits.size(); ++i) {
-    l.dark.push_back(dark.diffuse[i] + dark.specular[i]);
-    l.gain.push_back(bright.diffuse[i] + bright.specular[i] - l.dark.back());
-  }
-  return l;
-}
-
 // Slope of the sRGB curve at a linear value, bounded where it is steep.
 float srgb_slope(float linear) { return 1.055f / 2.4f * std::pow(std::max(linear, 0.004f), 1 / 2.4f - 1); }
 
-void fit_albedo(const Device& device, Field& field, const SurfaceSamples& samples, const LinearInAlbedo& model, int steps,
-                uint64_t seed, Progress& progress) {
-  FieldTrainer trainer(field, {});
-  std::vector<Vec3f> x(kBatch);
-  std::vector<uint32_t> chosen(kBatch);
-  for (int step = 0; step < steps && !progress.cancelled(); ++step) {
-    for (int i = 0; i < kBatch; ++i) {
-      chosen[i] = Rng(seed, uint64_t(step), uint64_t(i)).below(uint32_t(samples.hits.size()));
-      x[i] = samples.hits[chosen[i]].position;
+std::vector<Vec3f> colors_at(const Device& device, const Field& field, std::span<const Vec3f> x) {
+  std::vector<float> values(3 * x.size());
+  field.eval(device, x, values);
+  std::vector<Vec3f> out(x.size());
+  for (size_t i = 0; i < x.size(); ++i) out[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return out;
+}
+
+// Descent on the albedo field under a light, and then on both.
+class Descent {
+ public:
+  Descent(const Device& device, const AppearanceInput& input, std::shared_ptr<const Transport> transport,
+          const AppearanceOptions& options, AppearanceResult& result, Progress& progress)
+      : device_(device),
+        input_(input),
+        transport_(std::move(transport)),
+        options_(options),
+        result_(result),
+        progress_(progress),
+        field_(options.albedo, options.seed + 100),
+        trainer_(field_, {}) {
+    relight(result.split.albedo);
+  }
+
+  // The field alone: every sample's radiance is linear in its base colour, dark + a gain.
+  void fit_albedo(int steps) {
+    const SurfaceSamples& samples = input_.samples;
+    const HitLight light = lighting_->light_at(samples.hits);
+    for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
+      choose_batch();
+      const auto loss = [&](int begin, int end, const float* out, float* d_out) {
+        for (int i = begin; i < end; ++i)
+          color_gradient(batch_[i], light.at(batch_[i], result_.material), out + 3 * (i - begin), d_out + 3 * (i - begin));
+      };
+      trainer_.step(device_, positions_, loss, std::pow(0.1f, float(step) / float(steps)));
+      if (step % 50 == 0) progress_.report({"albedo", 0.92 + 0.03 * step / steps, -1, ""});
     }
+  }
+
+  // Field and light together; openness and bounce follow every kRefresh steps.
+  void fit_jointly(int steps) {
+    LightDescent light(result_.light, result_.material.roughness, {});
+    for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
+      if (step % kRefresh == 0) relight(colors_at(device_, field_, input_.surface.mesh().positions));
+      else lighting_->set_lobes(result_.light);
+      joint_step(light, std::pow(0.1f, float(step) / float(steps)));
+      if (step % 50 == 0) progress_.report({"light and albedo", 0.95 + 0.04 * step / steps, -1, ""});
+    }
+  }
+
+  Field take_field() { return std::move(field_); }
+
+ private:
+  static constexpr int kRefresh = 25;
+
+  void relight(const std::vector<Vec3f>& base_color) {
+    lighting_ = std::make_unique<Lighting>(device_, input_.surface, result_.light, base_color, result_.material, transport_);
+  }
+
+  void choose_batch() {
+    batch_.resize(kBatch);
+    positions_.resize(kBatch);
+    for (int i = 0; i < kBatch; ++i) {
+      batch_[i] = Rng(options_.seed, uint64_t(epoch_), uint64_t(i)).below(uint32_t(input_.samples.hits.size()));
+      positions_[i] = input_.samples.hits[batch_[i]].position;
+    }
+    ++epoch_;
+  }
+
+  // dL/d(radiance) of one sample with base colour `a`, and dL/da; zero where the picture is clipped.
+  Vec3f color_gradient(uint32_t sample, const HitLight::Terms& t, const float* a, float* d_a) const {
+    const SurfaceSamples& s = input_.samples;
+    const bool clipped = !s.saturated.empty() && s.saturated[sample];
+    Vec3f g{0, 0, 0};
+    for (int c = 0; c < 3; ++c) {
+      const float gain = t.diffuse_gain[c] + t.specular_gain[c], got = t.specular_floor[c] + a[c] * gain;
+      const float e = srgb_from_linear(std::max(got, 0.0f)) - srgb_from_linear(s.colors[sample][c]);
+      if (!clipped) g[c] = huber(e, 0.05f).gradient * srgb_slope(got) / float(kBatch);
+      d_a[c] = g[c] * gain;
+    }
+    return g;
+  }
+
+  void joint_step(LightDescent& descent, float rate) {
+    choose_batch();
+    std::vector<Hit> hits(kBatch);
+    for (int i = 0; i < kBatch; ++i) hits[i] = input_.samples.hits[batch_[i]];
+    const HitLight light = lighting_->light_at(hits);
+    const Material& m = result_.material;
+    std::vector<Vec3f> d_irradiance(kBatch), d_reflected(kBatch);
     const auto loss = [&](int begin, int end, const float* out, float* d_out) {
       for (int i = begin; i < end; ++i) {
-        const uint32_t s = chosen[i];
-        if (!samples.saturated.empty() && samples.saturated[s]) continue;
+        const float* a = out + 3 * (i - begin);
+        const Vec3f g = color_gradient(batch_[i], light.at(i, m), a, d_out + 3 * (i - begin));
+        const float floor = (1 - m.metalness) * kDielectricF0 * m.specular * light.env[i].x + light.env[i].y;
         for (int c = 0; c < 3; ++c) {
-          const int k = 3 * (i - begin) + c;
-          const float got = model.dark[s][c] + out[k] * model.gain[s][c];
-          const float e = srgb_from_linear(std::max(got, 0.0f)) - srgb_from_linear(samples.colors[s][c]);
-          d_out[k] = huber(e, 0.05f).gradient * srgb_slope(got) * model.gain[s][c] / float(kBatch);
+          d_irradiance[i][c] = g[c] * a[c] * (1 - m.metalness) / kPi * light.openness[i][c];
+          d_reflected[i][c] = g[c] * (m.metalness * a[c] * light.env[i].x + floor) * light.open_mirror[i];
         }
       }
     };
-    trainer.step(device, x, loss, std::pow(0.05f, float(step) / float(steps)));
-    if (step % 100 == 0) progress.report({"albedo", 0.92 + 0.07 * step / steps, -1, ""});
+    trainer_.step(device_, positions_, loss, 0.1f * rate);
+    descent.step(device_, hits, d_irradiance, d_reflected, rate);
+    result_.light = descent.light();
   }
-}
+
+  const Device& device_;
+  const AppearanceInput& input_;
+  std::shared_ptr<const Transport> transport_;
+  AppearanceOptions options_;
+  AppearanceResult& result_;
+  Progress& progress_;
+  Field field_;
+  FieldTrainer trainer_;
+  std::unique_ptr<Lighting> lighting_;
+  int epoch_ = 0;
+  std::vector<uint32_t> batch_;
+  std::vector<Vec3f> positions_;
+};
 
 }  // namespace
 
@@ -87,10 +166,8 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   const double start = now();
   AppearanceResult result;
   progress.report({"light", 0.8, options.seconds, ""});
-  {
-    const Transport transport(input.surface);
-    result.split = linear_split(transport, input.samples, split_options(options), progress);
-  }
+  const auto transport = std::make_shared<const Transport>(input.surface);
+  result.split = linear_split(*transport, input.samples, split_options(options), progress);
   result.material = result.split.material;
   progress.log(Json{{"stage", "linear split"}, {"seconds", now() - start}, {"roughness", result.material.roughness},
                     {"metalness", result.material.metalness}}.dump());
@@ -99,12 +176,11 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   lobes.height = result.split.light.height;
   lobes.seen_through = 0.5f / std::pow(result.material.roughness, 4.0f);
   result.light = fit_lobes(device, result.split.light, lobes);
-  const Lighting lighting(device, input.surface, result.light, result.split.albedo, result.material);
-  const LinearInAlbedo model = linear_in_albedo(lighting, input.samples.hits);
-  Field albedo(options.albedo, options.seed + 100);
-  const int steps = options.seconds > 0 && options.seconds < 40 ? 500 : 1500;
-  fit_albedo(device, albedo, input.samples, model, steps, options.seed, progress);
-  result.albedo = std::make_shared<const Field>(std::move(albedo));
+  const bool brief = options.seconds > 0 && options.seconds < 40;
+  Descent descent(device, input, transport, options, result, progress);
+  descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800);
+  descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps : brief ? 100 : 400);
+  result.albedo = std::make_shared<const Field>(descent.take_field());
   progress.log(Json{{"stage", "appearance"}, {"seconds", now() - start}}.dump());
   return result;
 }

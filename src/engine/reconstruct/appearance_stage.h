@@ -18,6 +18,8 @@ struct AppearanceInput {
 
 struct AppearanceOptions {
   double seconds = 0;      // for all of it; 0: full effort, a function of the seed alone
+  int albedo_steps = -1;   // of the field under the split's light; -1: as `seconds` allow
+  int joint_steps = -1;    // of field and light together; -1: as `seconds` allow
   uint64_t seed = 1;
   FieldConfig albedo;      // 3 outputs, sigmoid
 };

@@ -380,13 +380,16 @@ void GeometryStage::save(Tensors& out) const {
   sdf_.params().save(out, "sdf");
   radiance_.save(out, "radiance");
   optimizer_.save(out, "adam");
+  const int64_t n = grid_.resolution();
+  out["occupancy"] = {{n, n, n}, grid_.values(), {}};  // stale cells and all: resuming then equals never stopping
 }
 
 void GeometryStage::load(const Tensors& in) {
   sdf_.params().load(in, "sdf");
   radiance_.load(in, "radiance");
   optimizer_.load(in, "adam");
-  grid_.refresh(device_, sdf_, 1e9f);
+  const int64_t n = grid_.resolution();
+  grid_.set(require_tensor(in, "occupancy", {n, n, n}).f32);
 }
 
 }  // namespace cei3d

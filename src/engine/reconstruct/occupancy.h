@@ -19,6 +19,8 @@ class OccupancyGrid {
   void refresh(const Device&, const Field& sdf, float margin);
   void set(std::vector<float> values) { value_ = std::move(values); }
 
+  const std::vector<float>& values() const { return value_; }
+
   int resolution() const { return n_; }
   float half_diagonal() const { return 1.7320508f / float(n_); }
   Vec3f center(int i) const;  // of cell i
