@@ -78,16 +78,10 @@ SkyRadiance sky_radiance(const SgMixture& light) {
 Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture& light,
                    std::span<const Vec3f> base_color, const Material& material,
                    std::shared_ptr<const Transport> transport)
-    : device_(device), surface_(surface), material_(material), n_lobes_(int(light.lobes.size())) {
+    : device_(device), surface_(surface), material_(material) {
   if (base_color.size() != surface.mesh().positions.size())
     fail("lighting: {} colours for {} vertices", base_color.size(), surface.mesh().positions.size());
-  padded_ = (n_lobes_ + kPanel - 1) / kPanel * kPanel;
-  lobe_planes_.assign(size_t(7) * padded_, 0);
-  for (int k = 0; k < n_lobes_; ++k) {
-    const SgLobe& l = light.lobes[k];
-    const float row[] = {l.axis.x, l.axis.y, l.axis.z, clamp(l.lambda, kBroadestLobe, kSharpestLobe), l.mu.x, l.mu.y, l.mu.z};
-    for (int j = 0; j < 7; ++j) lobe_planes_[size_t(j) * padded_ + k] = row[j];
-  }
+  set_lobes(light);
   env_table_ = env_brdf_table(material.roughness);
   if (!transport) transport = std::make_shared<Transport>(surface);
   const SkyRadiance sky = sky_radiance(light);
@@ -104,6 +98,17 @@ Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture
 }
 
 Lighting::~Lighting() = default;
+
+void Lighting::set_lobes(const SgMixture& light) {
+  n_lobes_ = int(light.lobes.size());
+  padded_ = (n_lobes_ + kPanel - 1) / kPanel * kPanel;
+  lobe_planes_.assign(size_t(7) * padded_, 0);
+  for (int k = 0; k < n_lobes_; ++k) {
+    const SgLobe& l = light.lobes[k];
+    const float row[] = {l.axis.x, l.axis.y, l.axis.z, clamp(l.lambda, kBroadestLobe, kSharpestLobe), l.mu.x, l.mu.y, l.mu.z};
+    for (int j = 0; j < 7; ++j) lobe_planes_[size_t(j) * padded_ + k] = row[j];
+  }
+}
 
 // Planes of one chunk of hits.
 struct Lighting::Block {
@@ -123,6 +128,8 @@ HitLight Lighting::light_at(std::span<const Hit> hits) const {
   HitLight out;
   out.irradiance.resize(hits.size());
   out.reflected.resize(hits.size());
+  out.openness.resize(hits.size());
+  out.open_mirror.resize(hits.size());
   out.env.resize(hits.size());
   const std::vector<Vec3f> lobe = lobe_directions(material_.roughness);
   const LobePlanes lobes{lobe_planes_.data(), n_lobes_, padded_};
@@ -153,7 +160,8 @@ HitLight Lighting::light_at(std::span<const Hit> hits) const {
       const auto plane = [&](const std::vector<float>& p) {
         return Vec3f{p[i - begin], p[kBlock + i - begin], p[2 * kBlock + i - begin]};
       };
-      out.irradiance[i] = plane(b.irradiance) * at_corners(openness_, t, h.b1, h.b2) + at_corners(bounce_, t, h.b1, h.b2);
+      out.openness[i] = at_corners(openness_, t, h.b1, h.b2);
+      out.irradiance[i] = plane(b.irradiance) * out.openness[i] + at_corners(bounce_, t, h.b1, h.b2);
       Vec3f seen{0, 0, 0};
       int free = 0;
       for (int k = 0; k < kOcclusionRays; ++k) {
@@ -161,6 +169,7 @@ HitLight Lighting::light_at(std::span<const Hit> hits) const {
         if (f.t < 0) ++free;
         else seen += leaving(f);
       }
+      out.open_mirror[i] = float(free) / float(kOcclusionRays);
       out.reflected[i] = (plane(b.reflected) * float(free) + seen) / float(kOcclusionRays);
       out.env[i] = env_brdf_at(env_table_, dot(h.normal, h.to_camera));
     }
@@ -168,15 +177,19 @@ HitLight Lighting::light_at(std::span<const Hit> hits) const {
   return out;
 }
 
+HitLight::Terms HitLight::at(size_t hit, const Material& material) const {
+  const float m = material.metalness, dielectric = (1 - m) * kDielectricF0 * material.specular;
+  return {irradiance[hit] * ((1 - m) / kPi), reflected[hit] * (m * env[hit].x),
+          reflected[hit] * (dielectric * env[hit].x + env[hit].y)};
+}
+
 Shading Lighting::shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const {
   const HitLight light = light_at(hits);
   Shading out{std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())};
-  const float m = material_.metalness, dielectric = (1 - m) * kDielectricF0 * material_.specular;
   for (size_t i = 0; i < hits.size(); ++i) {
-    const Vec3f f0 = albedo[i] * m + Vec3f{dielectric, dielectric, dielectric};
-    const Vec2f env = light.env[i];
-    out.diffuse[i] = albedo[i] * light.irradiance[i] * ((1 - m) / kPi);
-    out.specular[i] = (f0 * env.x + Vec3f{env.y, env.y, env.y}) * light.reflected[i];
+    const HitLight::Terms t = light.at(i, material_);
+    out.diffuse[i] = albedo[i] * t.diffuse_gain;
+    out.specular[i] = albedo[i] * t.specular_gain + t.specular_floor;
   }
   return out;
 }

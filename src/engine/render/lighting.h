@@ -19,12 +19,18 @@ struct Shading {
   std::vector<Vec3f> diffuse, specular;  // #hits, linear radiance
 };
 
-// What of a hit's shading the light and the material multiply: colour = base colour * diffuse_gain + specular, with
-// specular = (f0 * scale + bias) * reflected.
+// What reaches a hit: irradiance = openness * (of the free sky) + bounce, reflected = open_mirror * (of the free sky) +
+// what the surface shows. The colour is linear in the base colour: see at().
 struct HitLight {
-  std::vector<Vec3f> irradiance;  // #hits, sky and bounce
-  std::vector<Vec3f> reflected;   // #hits, mean radiance over the reflection lobe
-  std::vector<Vec2f> env;         // #hits, scale and bias
+  std::vector<Vec3f> irradiance, reflected;  // #hits
+  std::vector<Vec3f> openness;               // #hits, per channel
+  std::vector<float> open_mirror;            // #hits, share of the reflection lobe that sees the sky
+  std::vector<Vec2f> env;                    // #hits, scale and bias of the reflectance
+
+  struct Terms {
+    Vec3f diffuse_gain, specular_gain, specular_floor;  // times base colour, times base colour, plain
+  };
+  Terms at(size_t hit, const Material& material) const;
 };
 
 class Lighting {
@@ -38,6 +44,8 @@ class Lighting {
   // albedo: #hits base colour. A hit's result depends on nothing but that hit.
   Shading shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const;
   HitLight light_at(std::span<const Hit> hits) const;
+  // Another light close to the first: bounce and openness stay. For descent on the light.
+  void set_lobes(const SgMixture&);
 
  private:
   struct Block;

@@ -16,6 +16,6 @@ using AllKernels = KernelList<EncodePoint, EncodeFrequency, EncodeGrid, EncodeGr
                               Activate<Relu>, ActivateGrad<Relu>, Activate<Elu>, ActivateGrad<Elu>,
                               Activate<Softplus>, ActivateGrad<Softplus>, Activate<Sigmoid>, ActivateGrad<Sigmoid>,
                               Adam, RadianceInput, RadianceInputGrad, SgFitResidual, SgFitGather,  //
-                              SgIrradiance, SgReflection>;
+                              SgIrradiance, SgReflection, SgShadeGrad>;
 
 }  // namespace cei3d

@@ -52,7 +52,57 @@ struct SgReflection {
   }
 };
 
-inline void set_reflection_lobe(float roughness, SgReflection::Args& a) {
+// Adjoint of both, for the lobes. Item: a lobe; adds up what the points [begin, end) say about it.
+struct SgShadeGrad {
+  struct Args {
+    LobePlanes lobes;
+    float sharpness[kReflectionLobes], weight[kReflectionLobes];
+    int stride, begin, end;
+    const float *normals, *mirrors;          // [3][stride]
+    const float *d_irradiance, *d_reflected;  // [3][stride]
+    float* d_lobes;                           // [7][padded]: axis, sharpness, colour; written
+  };
+  template <class T>
+  static HD void run(const Args& a, int i) {
+    const int p = a.lobes.padded;
+    const Vec3<T> axis = load_planes<T>(a.lobes.data, p, i), mu = load_planes<T>(a.lobes.data + 4 * p, p, i);
+    const T lambda = max(load<T>(a.lobes.data + 3 * p + i), T(0.1f)), zero(0.0f);  // padding has none
+    Vec3<T> d_axis{zero, zero, zero}, d_mu{zero, zero, zero};
+    T d_lambda = zero;
+    for (int h = a.begin; h < a.end; ++h) {
+      const Vec3<T> n = point<T>(a.normals, a.stride, h), e = point<T>(a.d_irradiance, a.stride, h);
+      const SgSlopes<T> diffuse = sg_irradiance_slopes(lambda, dot(n, axis));
+      const T ye = dot(e, mu);
+      d_mu += e * diffuse.value;
+      d_lambda += ye * diffuse.d_lambda;
+      d_axis += n * (ye * diffuse.d_cosine);
+      const Vec3<T> r = point<T>(a.mirrors, a.stride, h), g = point<T>(a.d_reflected, a.stride, h), gap = r - axis;
+      const T q = dot(gap, gap), yg = dot(g, mu);
+      T share = zero, slope = zero, along = zero;
+      for (int j = 0; j < kReflectionLobes; ++j) {
+        const SgInnerSlopes<T> s = sg_inner_slopes(lambda, T(a.sharpness[j]), q);
+        share += T(a.weight[j]) * s.value;
+        slope += T(a.weight[j]) * s.d_lambda1;
+        along += T(a.weight[j]) * s.d_q;
+      }
+      d_mu += g * share;
+      d_lambda += yg * slope;
+      d_axis += gap * (T(-2.0f) * yg * along);
+    }
+    store_planes(a.d_lobes, p, i, d_axis);
+    store<T>(a.d_lobes + 3 * p + i, d_lambda);
+    store_planes(a.d_lobes + 4 * p, p, i, d_mu);
+  }
+
+ private:
+  template <class T>
+  static HD Vec3<T> point(const float* p, int stride, int i) {
+    return {T(p[i]), T(p[stride + i]), T(p[2 * stride + i])};
+  }
+};
+
+template <class Args>
+void set_reflection_lobe(float roughness, Args& a) {
   const float alpha = roughness * roughness;
   for (int j = 0; j < kReflectionLobes; ++j) {
     a.sharpness[j] = kReflectionSharpness[j] / (alpha * alpha);
