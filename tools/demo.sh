@@ -50,9 +50,9 @@ page >"$out/index.html"
 cat <<TEXT
 
 Done. Look at
-  $out/index.html        all pictures on one page
-  $out/painted/rgb       the painted object     (undo: $program undo $object)
-  $out/turntable/rgb     all around it
-  $out/spot.glb          open it in Blender
-  $object                the project: paint on it with $program edit $object paint -h
+  $out/index.html   all pictures on one page
+  $out/painted/rgb  the painted object (take it back: $program undo $object)
+  $out/turntable/rgb
+  $out/spot.glb     the model, for Blender and the like
+  $object       the project: $program edit $object paint -h
 TEXT
