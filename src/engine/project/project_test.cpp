@@ -356,6 +356,20 @@ TEST_F(ProjectTest, AWriteThatFailsLeavesTheOldState) {
   EXPECT_TRUE(p.stack().entries().empty());
 }
 
+TEST_F(ProjectTest, DiscardsOnlyWhatHoldsNothing) {
+  {
+    Project p = make();
+    p.new_run("reconstruct");
+    p.add_history({{"do", "reconstruct"}});
+    p.discard_if_empty();
+  }
+  EXPECT_FALSE(fs::exists(folder()));
+  Project p = make();
+  p.save_checkpoint({{{"step", 1}}, {{"x", {{1}, {1}, {}}}}});
+  p.discard_if_empty();
+  EXPECT_TRUE(p.latest_checkpoint());
+}
+
 TEST_F(ProjectTest, HistoryGrowsByLines) {
   Project p = make_with_base();
   add_paint(p, 1);
