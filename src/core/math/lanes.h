@@ -228,12 +228,18 @@ HD LaneIndex<16> to_index<Lanes<16>>(Lanes<16> a) {
   return to_index_lanes(a);
 }
 
-template <int W>
-HD float sum_lanes(Lanes<W> a) {
-  float s = 0;
-  for (int k = 0; k < W; ++k) s += a.v[k];
-  return s;
+HD float sum_lanes(Lanes<8> a) {
+  const __m256 v = __m256(a.v);
+  __m128 s = _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+  s = _mm_add_ps(s, _mm_movehl_ps(s, s));
+  return _mm_cvtss_f32(_mm_add_ss(s, _mm_shuffle_ps(s, s, 1)));
 }
+#ifdef __AVX512F__
+HD float sum_lanes(Lanes<16> a) {
+  const __m512 v = __m512(a.v);
+  return sum_lanes(Lanes<8>(Reg<8>::f(_mm256_add_ps(_mm512_castps512_ps256(v), _mm512_extractf32x8_ps(v, 1)))));
+}
+#endif
 
 template <class L>
 struct LanesMemory {

@@ -17,12 +17,11 @@ Image color_picture(const Image& linear) {
   return out;
 }
 
+// No normal is the zero vector, which decodes as such: mid grey.
 Image normal_picture(const Image& normals) {
   Image out(normals.width, normals.height, 3);
   for (size_t i = 0; i < out.data.size(); i += 3) {
-    const float* n = &normals.data[i];
-    if (n[0] == 0 && n[1] == 0 && n[2] == 0) continue;
-    for (int c = 0; c < 3; ++c) out.data[i + size_t(c)] = 0.5f * (n[c] + 1);
+    for (size_t c = 0; c < 3; ++c) out.data[i + c] = 0.5f * (normals.data[i + c] + 1);
   }
   return out;
 }

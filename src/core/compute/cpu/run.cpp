@@ -55,7 +55,7 @@ double fma_peak() {
   return 2.0 * kChains * kRounds * CEI3D_WIDTH;
 }
 
-// Pairs of floats from pseudo-random places of a table: what a hash encoding cannot exceed. Returns gathers done.
+// Pairs of floats from pseudo-random places of a table. Returns gathers done.
 double gather_peak(const float* pairs, uint32_t mask) {
   constexpr int kRounds = 1 << 18;
   Index<Number> at(12345u);
