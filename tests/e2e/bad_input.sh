@@ -75,8 +75,8 @@ grep -q 99 "$project/project.json" || fail "the format version is not where this
 refused 1 'newer' render "$project" -o "$out/pictures"
 refused 1 'newer' edit "$project" paint --view r_055 --scribble "$sample/edits/paint/scribble.png"
 rm -rf "$project"; cp -r "$object" "$project"
-biggest=$(find "$project/objects" -type f -printf '%s %p\n' | sort -n | tail -1 | cut -d' ' -f2)
-truncate -s 1000 "$biggest"
+hash=$(grep -o '"object": *"[0-9a-f]*"' "$project/base/scene.json" | grep -o '[0-9a-f]\{16,\}')
+truncate -s 1000 "$project/objects/${hash:0:2}/${hash:2}.safetensors"
 refused 1 'damaged|truncated|bytes|objects' render "$project" -o "$out/pictures"
 absent "$out/pictures"
 
