@@ -80,7 +80,7 @@ class Descent {
 
   // Field and light together; openness and bounce follow every kRefresh steps.
   void fit_jointly(int steps) {
-    LightDescent light(result_.light, result_.material.roughness, {});
+    LightDescent light(result_.light, result_.material.roughness, result_.material.metalness == 0);
     for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
       if (step % kRefresh == 0) relight(colors_at(device_, field_, input_.surface.mesh().positions));
       else lighting_->set_lobes(result_.light);
@@ -174,7 +174,7 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   progress.report({"lobes", 0.9, -1, ""});
   LobeFitOptions lobes;
   lobes.height = result.split.light.height;
-  lobes.seen_through = 0.5f / std::pow(result.material.roughness, 4.0f);
+  lobes.seen_through = 0.5f * reflection_scale(result.material.roughness);
   result.light = fit_lobes(device, result.split.light, lobes);
   const bool brief = options.seconds > 0 && options.seconds < 40;
   Descent descent(device, input, transport, options, result, progress);

@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kRows = 7;
 constexpr int kGrain = 512;  // hits a chunk
+constexpr float kLogRate = 3e-3f, kAxisRate = 5e-4f;  // of Adam, on logarithms and on unit vectors
 constexpr float kDarkest = 1e-5f;
 constexpr float kBeta1 = 0.9f, kBeta2 = 0.99f;
 
@@ -23,8 +24,11 @@ std::vector<float> planes_of(std::span<const Vec3f> v, int stride) {
 
 }  // namespace
 
-LightDescent::LightDescent(const SgMixture& light, float roughness, const Rates& rates)
-    : count_(int(light.lobes.size())), padded_((count_ + kPanel - 1) / kPanel * kPanel), roughness_(roughness), rates_(rates) {
+LightDescent::LightDescent(const SgMixture& light, float roughness, bool keep_power)
+    : count_(int(light.lobes.size())),
+      padded_((count_ + kPanel - 1) / kPanel * kPanel),
+      roughness_(roughness),
+      keep_power_(keep_power) {
   planes_.assign(size_t(kRows) * padded_, 0);
   gradient_ = m_ = v_ = planes_;
   for (int k = 0; k < count_; ++k) {
@@ -33,6 +37,13 @@ LightDescent::LightDescent(const SgMixture& light, float roughness, const Rates&
                               std::log(max(l.mu.y, kDarkest)), std::log(max(l.mu.z, kDarkest))};
     for (int j = 0; j < kRows; ++j) planes_[size_t(j) * padded_ + k] = row[j];
   }
+  first_power_ = power();
+}
+
+Vec3f LightDescent::power() const {
+  Vec3f sum{0, 0, 0};
+  for (const SgLobe& l : light().lobes) sum += l.mu * sg_integral(l.lambda);
+  return sum;
 }
 
 SgMixture LightDescent::light() const {
@@ -81,7 +92,7 @@ void LightDescent::step(const Device& device, std::span<const Hit> hits, std::sp
   ++steps_;
   const float correction = std::sqrt(1 - std::pow(kBeta2, float(steps_))) / (1 - std::pow(kBeta1, float(steps_)));
   for (int j = 0; j < kRows; ++j) {
-    const float r = j < 3 ? rates_.axis : j == 3 ? rates_.sharpness : rates_.color;
+    const float r = j < 3 ? kAxisRate : kLogRate;
     const size_t row = size_t(j) * padded_;
     device.launch<Adam>({{rate * r * correction, kBeta1, kBeta2, 1e-12f, false}, &planes_[row], &gradient_[row], &m_[row],
                          &v_[row]}, padded_);
@@ -92,6 +103,10 @@ void LightDescent::step(const Device& device, std::span<const Hit> hits, std::sp
     for (int j = 0; j < 3; ++j) at(j) = axis[j];
     at(3) = clamp(at(3), std::log(kBroadestLobe), std::log(kSharpestLobe));
   }
+  if (!keep_power_) return;
+  const Vec3f now = power();
+  for (int c = 0; c < 3; ++c)
+    for (int k = 0; k < count_; ++k) planes_[size_t(4 + c) * padded_ + k] += std::log(first_power_[c] / now[c]);
 }
 
 }  // namespace cei3d

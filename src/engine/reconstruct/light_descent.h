@@ -13,21 +13,22 @@ namespace cei3d {
 
 class LightDescent {
  public:
-  struct Rates {
-    float color = 3e-3f, sharpness = 3e-3f, axis = 5e-4f;  // of Adam
-  };
-  LightDescent(const SgMixture& light, float roughness, const Rates& rates);
+  // keep_power: the light's total power per channel stays, so that a common factor cannot wander between light and
+  // albedo.
+  LightDescent(const SgMixture& light, float roughness, bool keep_power);
 
-  // d_irradiance, d_reflected: gradient for what the free sky sends to each hit. One step, `rate` times the rates.
+  // d_irradiance, d_reflected: gradient for what the free sky sends to each hit. One step, `rate` times the full rates.
   void step(const Device&, std::span<const Hit> hits, std::span<const Vec3f> d_irradiance,
             std::span<const Vec3f> d_reflected, float rate);
   SgMixture light() const;
 
  private:
+  Vec3f power() const;  // of all lobes, over the sphere
   int count_, padded_;
   float roughness_;
-  Rates rates_;
+  bool keep_power_;
   int steps_ = 0;
+  Vec3f first_power_;
   std::vector<float> planes_;                  // [7][padded] axis, log sharpness, log colour
   std::vector<float> gradient_, m_, v_;
 };

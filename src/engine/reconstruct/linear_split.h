@@ -31,7 +31,7 @@ struct LinearSplitOptions {
   int roughness_solves = 6;    // how finely it is searched
   float fixed_roughness = 0;   // > 0: no search
   float smoothness = 1e-4f;    // of the light, relative to the mean curvature of its unknowns
-  float tolerance = 0.012f;    // the largest roughness whose residual is within this of the best is taken
+  float tolerance = 0.008f;    // the largest roughness whose residual is within this of the best is taken
   uint64_t seed = 1;
 };
 

@@ -26,10 +26,10 @@ Vec3f at_corners(const std::vector<Vec3f>& v, const std::array<uint32_t, 3>& t, 
 // splits each equal share of its energy. 1 / (1 + x)^2 has the cumulative share x / (1 + x).
 std::vector<Vec3f> lobe_directions(float roughness) {
   std::vector<Vec3f> d;
-  const float alpha = roughness * roughness;
+  const float width = 2 / std::sqrt(reflection_scale(roughness));
   for (int k = 0; k < kOcclusionRays; ++k) {
     const float u = (float(k) + 0.5f) / kOcclusionRays;
-    const float t = std::min(2 * alpha * std::sqrt(u / (1 - u)), 1.4f), a = 2.399963f * float(k);
+    const float t = std::min(width * std::sqrt(u / (1 - u)), 1.4f), a = 2.399963f * float(k);
     d.push_back({std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)});
   }
   return d;
@@ -144,7 +144,8 @@ HitLight Lighting::light_at(std::span<const Hit> hits) const {
       }
       for (const Vec3f& d : lobe) {
         b.origins.push_back(h.position + h.normal * kLift);
-        b.directions.push_back(turned(r, d));
+        const Vec3f ray = turned(r, d);  // below the horizon: folded up, since masking is in the reflectance already
+        b.directions.push_back(ray - h.normal * (2 * min(dot(ray, h.normal), 0.0f)));
       }
     }
     const int n = (end - begin + kPanel - 1) / kPanel * kPanel;

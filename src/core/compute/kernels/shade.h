@@ -103,9 +103,9 @@ struct SgShadeGrad {
 
 template <class Args>
 void set_reflection_lobe(float roughness, Args& a) {
-  const float alpha = roughness * roughness;
+  const float scale = reflection_scale(roughness);
   for (int j = 0; j < kReflectionLobes; ++j) {
-    a.sharpness[j] = kReflectionSharpness[j] / (alpha * alpha);
+    a.sharpness[j] = kReflectionNodes[j] * scale;
     a.weight[j] = kReflectionShare[j] / sg_integral(a.sharpness[j]);
   }
 }

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kernels of light and shading: every device against the scalar one, adjoints against differences of the forward pass.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "core/compute/device.h"
+#include "core/math/rng.h"
+
+namespace cei3d {
+namespace {
+
+constexpr int kPoints = 64, kLobes = 32;
+
+std::vector<float> directions(int n, uint64_t seed) {  // [3][n]
+  std::vector<float> v(3 * size_t(n));
+  for (int i = 0; i < n; ++i) {
+    Rng rng(seed, 1, uint64_t(i));
+    const Vec3f d = normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()});
+    for (int c = 0; c < 3; ++c) v[size_t(c) * n + i] = d[c];
+  }
+  return v;
+}
+
+struct LobeScene {
+  std::vector<float> lobes = directions(kLobes, 1), normals = directions(kPoints, 2), mirrors = directions(kPoints, 3);
+  std::vector<float> y1 = noise(3 * kPoints, 4), y2 = noise(3 * kPoints, 5);  // weights of the outputs in the loss
+  LobeScene() {
+    for (int k = 0; k < kLobes; ++k) lobes.push_back(0.5f + 80 * square(Rng(6, 0, k).uniform()));
+    for (int k = 0; k < 3 * kLobes; ++k) lobes.push_back(Rng(7, 0, k).uniform());
+  }
+  static std::vector<float> noise(int n, uint64_t seed) {
+    std::vector<float> v(n);
+    for (int i = 0; i < n; ++i) v[i] = 2 * Rng(seed, 0, i).uniform() - 1;
+    return v;
+  }
+  LobePlanes planes() const { return {lobes.data(), kLobes, kLobes}; }
+
+  std::vector<float> irradiance(const Device& d) const {
+    std::vector<float> out(3 * kPoints);
+    d.launch<SgIrradiance>({planes(), kPoints, normals.data(), out.data()}, kPoints);
+    return out;
+  }
+  std::vector<float> reflection(const Device& d) const {
+    std::vector<float> out(3 * kPoints);
+    SgReflection::Args a{planes(), {}, {}, kPoints, mirrors.data(), out.data()};
+    set_reflection_lobe(0.4f, a);
+    d.launch<SgReflection>(a, kPoints);
+    return out;
+  }
+  std::vector<float> gradient(const Device& d) const {
+    std::vector<float> out(7 * kLobes);
+    SgShadeGrad::Args a{planes(), {}, {}, kPoints, 0, kPoints, normals.data(), mirrors.data(), y1.data(), y2.data(), out.data()};
+    set_reflection_lobe(0.4f, a);
+    d.launch<SgShadeGrad>(a, kLobes);
+    return out;
+  }
+  double loss(const Device& d) const {
+    const auto e = irradiance(d), p = reflection(d);
+    double sum = 0;
+    for (size_t i = 0; i < e.size(); ++i) sum += double(y1[i]) * e[i] + double(y2[i]) * p[i];
+    return sum;
+  }
+};
+
+std::vector<float> fit_case(const Device& d, bool gather) {
+  LobeScene s;
+  std::vector<float> roots = LobeScene::noise(3 * kPoints, 8), weights(kPoints, 0.1f), d_radiance = LobeScene::noise(3 * kPoints, 9);
+  std::vector<float> d_lobes(7 * kLobes);
+  const SgFitArgs a{s.planes(), kPoints, s.normals.data(), roots.data(), weights.data(), d_radiance.data(), d_lobes.data()};
+  gather ? d.launch<SgFitGather>(a, kLobes) : d.launch<SgFitResidual>(a, kPoints);
+  return gather ? d_lobes : d_radiance;
+}
+
+TEST(ShadeKernels, EveryDeviceAgreesWithTheScalarOne) {
+  const std::pair<const char*, std::function<std::vector<float>(const Device&)>> cases[] = {
+      {"irradiance", [](const Device& d) { return LobeScene().irradiance(d); }},
+      {"reflection", [](const Device& d) { return LobeScene().reflection(d); }},
+      {"gradient", [](const Device& d) { return LobeScene().gradient(d); }},
+      {"fit residual", [](const Device& d) { return fit_case(d, false); }},
+      {"fit gather", [](const Device& d) { return fit_case(d, true); }},
+  };
+  for (const auto& [name, run] : cases) {
+    const std::vector<float> want = run(make_device("cpu/scalar"));
+    double scale = 0;
+    for (const float v : want) scale = std::max(scale, double(std::abs(v)));
+    for (const Device& device : all_devices()) {
+      const std::vector<float> got = run(device);
+      // Irradiance is a difference of numbers 32 times larger, hence not 1e-6.
+      for (size_t i = 0; i < want.size(); ++i) ASSERT_NEAR(got[i], want[i], 1e-4 * scale) << name << " on " << device.name();
+    }
+  }
+}
+
+TEST(ShadeKernels, AdjointEqualsDifferencesOfTheForwardPass) {
+  const Device device = make_device("cpu/scalar");
+  LobeScene s;
+  // Points that get no light are clamped at zero, where the adjoint stands for a free slope: leave them out of the loss.
+  const auto e = s.irradiance(device);
+  for (size_t i = 0; i < e.size(); ++i)
+    if (e[i] <= 0) s.y1[i] = 0;
+  const std::vector<float> g = s.gradient(device);
+  for (const int row : {3, 4, 5, 6})  // axes: next test
+    for (const int k : {0, 7, 31}) {
+      const size_t at = size_t(row) * kLobes + k;
+      const float x = s.lobes[at], h = 0.01f * std::max(0.1f, std::abs(x));
+      s.lobes[at] = x + h;
+      const double up = s.loss(device);
+      s.lobes[at] = x - h;
+      const double down = s.loss(device);
+      s.lobes[at] = x;
+      const double slope = (up - down) / (2 * double(h));
+    
+      EXPECT_NEAR(g[at], slope, 0.02 * std::abs(slope) + 0.02) << row << ' ' << k;
+    }
+}
+
+TEST(ShadeKernels, AdjointOfAnAxisEqualsDifferencesAlongTheSphere) {
+  const Device device = make_device("cpu/scalar");
+  LobeScene s;
+  const auto e = s.irradiance(device);
+  for (size_t i = 0; i < e.size(); ++i)
+    if (e[i] <= 0) s.y1[i] = 0;
+  const std::vector<float> g = s.gradient(device);
+  const auto axis = [&](const std::vector<float>& p, int k) { return Vec3f{p[k], p[kLobes + k], p[2 * kLobes + k]}; };
+  for (const int k : {2, 13, 30}) {
+    const Vec3f a = axis(s.lobes, k), t = normalize(cross(a, Vec3f{0.3f, 0.5f, 0.8f}));
+    const auto loss_at = [&](float h) {
+      LobeScene moved = s;
+      const Vec3f b = normalize(a + t * h);
+      for (int c = 0; c < 3; ++c) moved.lobes[size_t(c) * kLobes + k] = b[c];
+      return moved.loss(device);
+    };
+    const double slope = (loss_at(0.005f) - loss_at(-0.005f)) / 0.01;
+    EXPECT_NEAR(dot(axis(g, k), t), slope, 0.02 * std::abs(slope) + 0.02) << k;
+  }
+}
+
+}  // namespace
+}  // namespace cei3d

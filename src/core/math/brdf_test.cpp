@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/math/brdf.h"
+
+#include <gtest/gtest.h>
+
+#include "core/math/dual.h"
+
+namespace cei3d {
+namespace {
+
+// Integral of f(l) over the hemisphere around +Z.
+template <class F>
+double over_hemisphere(F f) {
+  const int rows = 700, columns = 700;
+  double sum = 0;
+  for (int i = 0; i < rows; ++i) {
+    const double u = (i + 0.5) / rows, t = 0.5 * M_PI * u, s = std::sin(t);
+    for (int j = 0; j < columns; ++j) {
+      const double a = 2 * M_PI * (j + 0.5) / columns;
+      sum += s * f(Vec3d{s * std::cos(a), s * std::sin(a), std::cos(t)});
+    }
+  }
+  return sum * 0.5 * M_PI / rows * 2 * M_PI / columns;
+}
+Vec3d viewer(double nv) { return {std::sqrt(1 - nv * nv), 0, nv}; }
+constexpr Vec3d kUp{0, 0, 1};
+
+TEST(Brdf, DensityOfFacetsIsNormalised) {
+  for (const double roughness : {0.2, 0.5, 1.0})
+    EXPECT_NEAR(over_hemisphere([&](Vec3d h) { return ggx_density(h.z, roughness * roughness) * h.z; }), 1, 2e-3);
+}
+
+TEST(Brdf, LightAndViewerMayTradePlaces) {
+  const Vec3d a = normalize(Vec3d{0.3, 0.5, 0.6}), b = normalize(Vec3d{-0.7, 0.2, 0.4});
+  EXPECT_NEAR(microfacet_brdf(kUp, a, b, 0.04, 0.4), microfacet_brdf(kUp, b, a, 0.04, 0.4), 1e-14);
+  EXPECT_EQ(microfacet_brdf(kUp, a, Vec3d{0, 0.8, -0.6}, 0.04, 0.4), 0);
+}
+
+TEST(Brdf, PreintegratedReflectanceIsThatOfTheWholeModelAndNeverAboveOne) {
+  for (const double roughness : {0.3, 0.6, 1.0})
+    for (const double nv : {0.15, 0.5, 0.95})
+      for (const double f0 : {0.0, 0.04, 1.0}) {
+        const EnvBrdf e = env_brdf(roughness, nv);
+        const double sum = f0 * e.scale + e.bias;
+        const double truth =
+            over_hemisphere([&](Vec3d l) { return microfacet_brdf(kUp, viewer(nv), l, f0, roughness) * l.z; });
+        EXPECT_NEAR(sum, truth, 0.01) << roughness << ' ' << nv << ' ' << f0;
+        EXPECT_LE(sum, 1.0);
+      }
+}
+
+TEST(Brdf, ASmoothWhiteMirrorLosesNothing) { EXPECT_NEAR(env_brdf(0.05, 0.7).scale + env_brdf(0.05, 0.7).bias, 1, 0.005); }
+
+TEST(Brdf, TheLobeOfGaussiansCarriesTheEnergyOfTheExactOneRingByRing) {
+  // Share of the reflected energy within an angle of the mirror direction, seen along the normal: exact lobe
+  // (density of the half vector, cosine of the light) against the mixture.
+  for (const double roughness : {0.15, 0.3, 0.45, 0.7}) {
+    const double alpha = roughness * roughness;
+    const auto exact = [&](double t) { return ggx_density(std::cos(t / 2), alpha) * std::cos(t); };
+    const auto mixture = [&](double t) {
+      double sum = 0;
+      for (int j = 0; j < kReflectionLobes; ++j) {
+        const double s = kReflectionNodes[j] * reflection_scale(float(roughness));
+        sum += kReflectionShare[j] * s / (2 * M_PI) / (1 - std::exp(-2 * s)) * std::exp(s * (std::cos(t) - 1));
+      }
+      return sum;
+    };
+    const auto within = [](auto f, double angle) {
+      double sum = 0;
+      for (int i = 0; i < 4000; ++i) {
+        const double t = angle * (i + 0.5) / 4000;
+        sum += 2 * M_PI * std::sin(t) * f(t) * angle / 4000;
+      }
+      return sum;
+    };
+    const double total = within(exact, M_PI / 2);
+    for (const double x : {0.5, 1.0, 2.0, 4.0}) {
+      const double angle = std::min(2 * alpha * x, M_PI / 2);
+      EXPECT_NEAR(within(mixture, angle), within(exact, angle) / total, roughness < 0.5 ? 0.07 : 0.1) << roughness << ' ' << x;
+    }
+    EXPECT_NEAR(kReflectionShare[0] + kReflectionShare[1] + kReflectionShare[2], 1, 1e-6);
+  }
+}
+
+TEST(Brdf, SchlickRunsFromF0ToOne) {
+  using D = Dual<double>;
+  EXPECT_DOUBLE_EQ(schlick(0.04, 1.0), 0.04);
+  EXPECT_DOUBLE_EQ(schlick(0.04, 0.0), 1.0);
+  EXPECT_NEAR(derivative_of(schlick(D(0.3), D(0.6, 1.0))), -5 * 0.7 * std::pow(0.4, 4), 1e-12);
+}
+
+}  // namespace
+}  // namespace cei3d

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/render/lighting.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/math/rng.h"
+
+namespace cei3d {
+namespace {
+
+void add_sphere(Mesh& m, Vec3f center, float radius, int n = 48) {
+  const uint32_t first = uint32_t(m.positions.size());
+  for (int i = 0; i <= n; ++i)
+    for (int j = 0; j < 2 * n; ++j) {
+      const float t = kPi * float(i) / float(n), p = kPi * float(j) / float(n);
+      const Vec3f d{std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
+      m.positions.push_back(center + d * radius);
+      m.normals.push_back(d);
+    }
+  const auto at = [&](int i, int j) { return first + uint32_t(i * 2 * n + j % (2 * n)); };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < 2 * n; ++j) {
+      m.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+      m.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+    }
+}
+
+// Hits in the middle of triangles, seen from random directions above them.
+std::vector<Hit> some_hits(const Mesh& m, size_t n) {
+  std::vector<Hit> hits;
+  for (size_t i = 0; i < n; ++i) {
+    Rng rng(3, 0, i);
+    const uint32_t f = rng.below(uint32_t(m.triangles.size()));
+    const auto& t = m.triangles[f];
+    const Vec3f p = (m.positions[t[0]] + m.positions[t[1]] + m.positions[t[2]]) / 3.0f;
+    const Vec3f normal = normalize(m.normals[t[0]] + m.normals[t[1]] + m.normals[t[2]]);
+    Vec3f v = normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()});
+    if (dot(v, normal) < 0) v = -v;
+    hits.push_back({p, normal, normalize(v + normal * 0.3f), f, 1.0f / 3, 1.0f / 3});
+  }
+  return hits;
+}
+
+SgMixture uniform_sky() { return {{{{0, 0, 1}, kBroadestLobe, {1, 1, 1}}, {{0, 0, -1}, kBroadestLobe, {1, 1, 1}}}}; }
+
+SgMixture some_sky() {
+  SgMixture light;
+  for (uint64_t k = 0; k < 20; ++k) {
+    Rng rng(9, 0, k);
+    light.lobes.push_back({normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()}), 1 + 60 * rng.uniform(),
+                           {rng.uniform(), rng.uniform(), rng.uniform()}});
+  }
+  return light;
+}
+
+TEST(Lighting, AConvexBodyUnderAUniformSkyReflectsItsAlbedoAndItsReflectance) {
+  Mesh mesh;
+  add_sphere(mesh, {0, 0, 0}, 0.8f);
+  const Surface surface(mesh);
+  const Device device = make_device();
+  const SgMixture sky = uniform_sky();
+  const float level = radiance(sky, {1, 0, 0}).x;
+  const std::vector<Vec3f> base(surface.mesh().positions.size(), Vec3f{0.5f, 0.5f, 0.5f});
+  const auto hits = some_hits(surface.mesh(), 500);
+  const std::vector<Vec3f> albedo(hits.size(), Vec3f{0.5f, 0.2f, 0.9f});
+  const std::vector<Vec2f> table = env_brdf_table(0.3f);
+  for (const float metalness : {0.0f, 1.0f}) {
+    const Material material{0.3f, 0.5f, metalness};
+    const Shading s = Lighting(device, surface, sky, base, material).shade(hits, albedo);
+    for (size_t i = 0; i < hits.size(); ++i) {
+      const float nv = dot(hits[i].normal, hits[i].to_camera);
+      const Vec2f e = env_brdf_at(table, nv);
+      EXPECT_NEAR(s.diffuse[i].y / level, (1 - metalness) * 0.2f, 0.01f);
+      const float f0 = metalness * 0.9f + (1 - metalness) * 0.04f;
+      if (nv > 0.35f) {
+        EXPECT_NEAR(s.specular[i].z / level, f0 * e.x + e.y, 0.02f) << nv;
+      }
+      EXPECT_LE(s.specular[i].z, 1.01f * level);  // no energy out of nothing
+    }
+  }
+}
+
+TEST(Lighting, AHitDoesNotCareAboutItsNeighboursInTheBatch) {
+  Mesh mesh;
+  add_sphere(mesh, {0, 0, -0.3f}, 0.5f);
+  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Surface surface(mesh);
+  const Device device = make_device();
+  const std::vector<Vec3f> base(surface.mesh().positions.size(), Vec3f{0.5f, 0.4f, 0.3f});
+  const Lighting lighting(device, surface, some_sky(), base, {0.25f, 0.5f, 0.2f});
+  const auto hits = some_hits(surface.mesh(), 5000);
+  std::vector<Vec3f> albedo;
+  for (size_t i = 0; i < hits.size(); ++i) albedo.push_back({Rng(1, 1, i).uniform(), 0.3f, 0.8f});
+  const Shading all = lighting.shade(hits, albedo);
+  for (const auto& [begin, end] : {std::pair{0, 1}, {7, 40}, {2040, 2060}, {33, 4999}}) {
+    const auto part = lighting.shade(std::span(hits).subspan(begin, end - begin), std::span(albedo).subspan(begin, end - begin));
+    for (int i = begin; i < end; ++i)
+      for (int c = 0; c < 3; ++c) {
+        ASSERT_EQ(part.diffuse[i - begin][c], all.diffuse[i][c]);
+        ASSERT_EQ(part.specular[i - begin][c], all.specular[i][c]);
+      }
+  }
+}
+
+TEST(Lighting, IrradianceIsTheIntegralOverTheSkyThatIsSeen) {
+  // Two spheres: brute-force integration with shadow rays, one bounce left out by a black surface.
+  Mesh mesh;
+  add_sphere(mesh, {0, 0, -0.35f}, 0.5f);
+  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Surface surface(mesh);
+  const Device device = make_device();
+  const SgMixture sky = some_sky();
+  const std::vector<Vec3f> black(surface.mesh().positions.size(), Vec3f{0, 0, 0});
+  const Lighting lighting(device, surface, sky, black, {0.3f, 0.5f, 0});
+  const auto hits = some_hits(surface.mesh(), 60);
+  const HitLight got = lighting.light_at(hits);
+  double error = 0, total = 0;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    std::vector<Vec3f> o, d;
+    for (int k = 0; k < 6000; ++k) {
+      const float z = 1 - (2 * float(k) + 1) / 6000, r = std::sqrt(1 - z * z), a = 2.39996323f * float(k);
+      const Vec3f w{r * std::cos(a), r * std::sin(a), z};
+      if (dot(w, hits[i].normal) <= 0) continue;
+      o.push_back(hits[i].position + hits[i].normal * 2e-3f);
+      d.push_back(w);
+    }
+    std::vector<Surface::RayHit> far(o.size());
+    surface.intersect(o, d, 0, far);
+    double truth = 0;
+    for (size_t k = 0; k < d.size(); ++k)
+      if (far[k].t < 0) truth += double(radiance(sky, d[k]).y) * dot(d[k], hits[i].normal) * 4 * M_PI / 6000;
+    error += std::abs(truth - got.irradiance[i].y);
+    total += truth;
+  }
+  EXPECT_LT(error / total, 0.04);
+}
+
+TEST(Transport, AWhiteCavityGlows) {
+  // Inside the gap between two spheres, the bounce of a white surface replaces most of what it blocks.
+  Mesh mesh;
+  add_sphere(mesh, {0, 0, -0.4f}, 0.5f);
+  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Surface surface(mesh);
+  const Transport transport(surface);
+  const SkyRadiance sky(kSkyDirections, Vec3f{1, 1, 1});
+  const auto seen = transport.sky(sky), open = transport.open_sky(sky);
+  const std::vector<Vec3f> one(seen.size(), Vec3f{1, 1, 1});
+  const auto bounce = transport.bounce(one);
+  for (size_t v = 0; v < seen.size(); ++v) {
+    EXPECT_NEAR(open[v].x, kPi, 0.02f);
+    // What is not sky is surface, and a surface as bright as the sky closes the sum (up to the lift of the rays).
+    EXPECT_NEAR(seen[v].x + bounce[v].x, open[v].x, 0.12f);
+  }
+}
+
+}  // namespace
+}  // namespace cei3d
