@@ -73,12 +73,12 @@ Preset preset_by_name(const std::string& name) {
 
 void fit_to_footprint(Preset& p, double footprint) {
   if (!p.resolution_from_views) return;
-  const int finest = int(std::clamp(3.2 / footprint, 128.0, 768.0));  // cells 1.6 times finer than pixels
+  const int finest = int(std::clamp(2.2 / footprint, 96.0, 640.0));  // cells a little finer than pixels
   EncodingConfig &sdf = p.geometry.sdf.encoding, &albedo = p.albedo.encoding;
   sdf.finest_resolution = albedo.finest_resolution = finest;
-  sdf.log2_table = finest > 450 ? 17 : 15;
-  albedo.log2_table = finest > 450 ? 18 : 16;
-  p.meshing.resolution = finest > 450 ? 256 : finest > 200 ? 192 : 96;
+  sdf.log2_table = finest > 330 ? 17 : 15;
+  albedo.log2_table = finest > 330 ? 18 : 16;
+  p.meshing.resolution = finest > 330 ? 256 : finest > 140 ? 192 : 96;
 }
 
 }  // namespace cei3d
