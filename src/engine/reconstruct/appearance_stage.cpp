@@ -30,7 +30,8 @@ LinearSplitOptions split_options(const AppearanceOptions& o) {
   if (o.seconds > 0 && o.seconds < 40) {
     s.most_hits = 200000;
     s.search_hits = 80000;
-    s.roughness_solves = 4;
+    s.scan_step = 1.6f;
+    s.refinements = 2;
     s.light_height = 32;
   }
   return s;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 
 #include "core/base/error.h"
 #include "core/math/color.h"
@@ -11,6 +13,9 @@
 
 namespace cei3d {
 namespace {
+
+constexpr float kSmoothest = 0.12f, kRoughest = 0.95f;
+constexpr double kFar = 1.25;  // a residual this much above the best ends the scan
 
 struct Solution {
   SplitUnknowns x;
@@ -69,19 +74,29 @@ class Solver {
 };
 
 // The largest roughness whose non-negative light fits within the tolerance of the best: a smaller one with a blurred
-// light fits as well as the truth, a larger one asks for negative light. Bisection in the logarithm.
+// light fits about as well as the truth, a larger one asks for negative light. A coarse scan, then bisection.
 template <class F>
 float search_roughness(F residual_at, const LinearSplitOptions& o) {
   if (o.fixed_roughness > 0) return o.fixed_roughness;
-  float low = 0.12f, high = 0.8f;
-  double least = residual_at(low);
-  for (int k = 1; k < o.roughness_solves; ++k) {
-    const float middle = std::sqrt(low * high);
-    const double residual = residual_at(middle);
-    least = std::min(least, residual);
-    (residual <= (1 + o.tolerance) * least ? low : high) = middle;
+  std::map<float, double> tried;
+  double least = std::numeric_limits<double>::infinity();
+  const auto solve = [&](float r) {
+    tried[r] = residual_at(r);
+    least = std::min(least, tried[r]);
+  };
+  for (float r = kSmoothest; r < kRoughest && (tried.empty() || tried.rbegin()->second < kFar * least); r *= o.scan_step)
+    solve(r);
+  const auto last_good = [&] {
+    auto it = std::prev(tried.end());
+    while (it->second > (1 + o.tolerance) * least) --it;
+    return it;
+  };
+  for (int k = 0; k < o.refinements; ++k) {
+    const auto good = last_good(), next = std::next(good);
+    if (next == tried.end()) break;
+    solve(std::sqrt(good->first * next->first));
   }
-  return low;
+  return last_good()->first;
 }
 
 // Light and a metal's colour share a factor per channel that reflections leave open: the light is taken to be grey on

@@ -28,7 +28,8 @@ struct LinearSplitOptions {
   int rounds = 4, steps = 12;  // of conjugate gradients; negative light is clamped and frozen between rounds
   int search_hits = 200000;    // samples, and
   int search_height = 32;      // rows of the light, while the roughness is searched
-  int roughness_solves = 6;    // how finely it is searched
+  float scan_step = 1.4f;      // from one roughness to the next, and
+  int refinements = 3;         // bisections afterwards
   float fixed_roughness = 0;   // > 0: no search
   float smoothness = 1e-4f;    // of the light, relative to the mean curvature of its unknowns
   float tolerance = 0.008f;    // the largest roughness whose residual is within this of the best is taken
