@@ -119,7 +119,8 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
   for (int r = 0; r < kRays; ++r) {
     Rng rng(seed_, uint64_t(step), uint64_t(first + r));
     const Pixel& p = store.pixels()[rng.below(uint32_t(store.pixels().size()))];
-    const float u = rng.uniform(), v = rng.uniform();
+    // Spread like the pixel's own filter, a tent of radius one pixel (engine/render/render.h).
+    const float u = rng.uniform() + rng.uniform() - 0.5f, v = rng.uniform() + rng.uniform() - 0.5f;
     batch.rays[r] = store.cameras()[p.view].ray(p.x + u, p.y + v);
     batch.targets[r] = target_of(p);
   }

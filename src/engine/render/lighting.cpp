@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -83,6 +84,15 @@ Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture
     fail("lighting: {} colours for {} vertices", base_color.size(), surface.mesh().positions.size());
   set_lobes(light);
   env_table_ = env_brdf_table(material.roughness);
+  soft_normals_ = surface.mesh().normals;
+  const int rounds = getenv("SOFT") ? atoi(getenv("SOFT")) : 0;
+  for (int k = 0; k < rounds; ++k) {
+    std::vector<Vec3f> sum = soft_normals_;
+    for (const auto& t : surface.mesh().triangles)
+      for (int c = 0; c < 3; ++c) { sum[t[c]] += soft_normals_[t[(c + 1) % 3]]*0.5f; sum[t[c]] += soft_normals_[t[(c + 2) % 3]]*0.5f; }
+    for (Vec3f& n : sum) n = normalize(n);
+    soft_normals_ = sum;
+  }
   if (!transport) transport = std::make_shared<Transport>(surface);
   const SkyRadiance sky = sky_radiance(light);
   const std::vector<Vec3f> seen = transport->sky(sky), open = transport->open_sky(sky);
@@ -138,8 +148,9 @@ HitLight Lighting::light_at(std::span<const Hit> hits) const {
     for (int i = begin; i < end; ++i) {
       const Hit& h = hits[i];
       const Vec3f r = normalize(h.normal * (2 * dot(h.normal, h.to_camera)) - h.to_camera);
+      const Vec3f soft = normalize(at_corners(soft_normals_, surface_.mesh().triangles[h.triangle], h.b1, h.b2));
       for (int c = 0; c < 3; ++c) {
-        b.normals[size_t(c) * kBlock + i - begin] = h.normal[c];
+        b.normals[size_t(c) * kBlock + i - begin] = soft[c];
         b.mirrors[size_t(c) * kBlock + i - begin] = r[c];
       }
       for (const Vec3f& d : lobe) {

@@ -57,6 +57,7 @@ class Lighting {
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
   std::vector<Vec3f> openness_;  // #V share of the open sky's irradiance that arrives
+  std::vector<Vec3f> soft_normals_;
   std::vector<Vec3f> bounce_;    // #V irradiance from the surface itself
   std::vector<Vec3f> leaving_;   // #V radiance that the surface sends out, taken as diffuse
   std::vector<Vec2f> env_table_; // scale and bias of the reflectance by the viewer's cosine

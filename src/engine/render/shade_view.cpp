@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/parallel.h"
 #include "engine/render/lighting.h"
@@ -20,8 +21,38 @@ Frame empty_frame(int width, int height) {
   return f;
 }
 
-void put_mean(Image& image, size_t pixel, Vec3f sum, float hits, float coverage) {
-  const Vec3f mean = sum / hits;
+float tent(float distance) { return std::max(0.0f, 1 - std::abs(distance)); }
+
+// Weight of sample `k` (of `samples` along an axis) of the pixel `offset` pixels away.
+float axis_weight(int offset, int k, int samples) {
+  return tent(float(offset) + (float(k) + 0.5f) / float(samples) - 0.5f);
+}
+
+// Sum of the weights along an axis that has `size` pixels: less than in the middle at the frame's border.
+float axis_total(int at, int size, int samples) {
+  float sum = 0;
+  for (int offset = -1; offset <= 1; ++offset)
+    if (at + offset >= 0 && at + offset < size)
+      for (int k = 0; k < samples; ++k) sum += axis_weight(offset, k, samples);
+  return sum;
+}
+
+// Calls visit(hit, weight) for the hits around pixel (x, y), in a fixed order.
+template <class F>
+void for_hits_around(const GBuffer& g, int x, int y, F visit) {
+  for (int qy = std::max(0, y - 1); qy <= std::min(g.height - 1, y + 1); ++qy)
+    for (int qx = std::max(0, x - 1); qx <= std::min(g.width - 1, x + 1); ++qx) {
+      const size_t q = size_t(qy) * g.width + qx;
+      for (uint32_t i = g.pixel_start[q]; i < g.pixel_start[q + 1]; ++i) {
+        const int sub = g.sub_pixels[i];
+        const float w = axis_weight(qx - x, sub % g.samples, g.samples) * axis_weight(qy - y, sub / g.samples, g.samples);
+        if (w > 0) visit(i, w);
+      }
+    }
+}
+
+void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverage) {
+  const Vec3f mean = sum / weight;
   for (int c = 0; c < 3; ++c) image.data[4 * pixel + c] = mean[c];
   image.data[4 * pixel + 3] = coverage;
 }
@@ -41,29 +72,30 @@ Frame shade_view(const Device& device, const Scene& scene, const Lighting& light
   const RoutedAlbedo routed = routed_albedo(device, *scene.albedo, scene.layers, g.hits);
   const Shading shading = lighting.shade(g.hits, routed.albedo);
   Frame f = empty_frame(g.width, g.height);
-  const float samples = float(g.samples * g.samples);
-  parallel_ranges(g.width * g.height, 4096, [&](int begin, int end) {
-    for (int p = begin; p < end; ++p) {
-      const uint32_t first = g.pixel_start[p], last = g.pixel_start[p + 1];
-      if (first == last) continue;
+  parallel_for(g.height, [&](int y) {
+    for (int x = 0; x < g.width; ++x) {
+      const size_t p = size_t(y) * g.width + x;
       Vec3f albedo{0, 0, 0}, diffuse{0, 0, 0}, specular{0, 0, 0}, normal{0, 0, 0};
-      float depth = 0;
-      for (uint32_t i = first; i < last; ++i) {
-        albedo += routed.albedo[i];
-        diffuse += shading.diffuse[i];
-        specular += shading.specular[i];
-        normal += g.hits[i].normal;
-        depth += g.depths[i];
+      float depth = 0, weight = 0;
+      for_hits_around(g, x, y, [&](uint32_t i, float w) {
+        albedo += w * routed.albedo[i];
+        diffuse += w * shading.diffuse[i];
+        specular += w * shading.specular[i];
+        normal += w * g.hits[i].normal;
+        depth += w * g.depths[i];
+        weight += w;
         f.edited[p] |= routed.layer[i] >= 0;
-      }
-      const float hits = float(last - first), coverage = hits / samples;
-      put_mean(f.albedo, p, albedo, hits, coverage);
-      put_mean(f.diffuse, p, diffuse, hits, coverage);
-      put_mean(f.specular, p, specular, hits, coverage);
-      put_mean(f.rgb, p, diffuse + specular, hits, coverage);
+      });
+      if (weight == 0) continue;
+      const float coverage =
+          std::min(1.0f, weight / (axis_total(x, g.width, g.samples) * axis_total(y, g.height, g.samples)));
+      put_mean(f.albedo, p, albedo, weight, coverage);
+      put_mean(f.diffuse, p, diffuse, weight, coverage);
+      put_mean(f.specular, p, specular, weight, coverage);
+      put_mean(f.rgb, p, diffuse + specular, weight, coverage);
       const Vec3f n = normalize(normal);
-      for (int c = 0; c < 3; ++c) f.normal.data[3 * size_t(p) + c] = n[c];
-      f.depth.data[p] = depth / hits / float(scene.normalization.scale);
+      for (int c = 0; c < 3; ++c) f.normal.data[3 * p + c] = n[c];
+      f.depth.data[p] = depth / weight / float(scene.normalization.scale);
       f.mask.data[p] = coverage;
     }
   });

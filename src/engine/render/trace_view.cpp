@@ -77,13 +77,14 @@ std::vector<Hit> trace_rays(const Device& device, const Field& sdf, const Surfac
 
 GBuffer trace_view(const Device& device, const Scene& scene, const Camera& camera, int samples) {
   const Samples s = camera_samples(camera, samples);
-  GBuffer g{camera.width, camera.height, samples, {}, {}, {}};
+  GBuffer g{camera.width, camera.height, samples, {}, {}, {}, {}};
   std::vector<uint32_t> ray_of_hit;
   g.hits = trace_rays(device, *scene.sdf, *scene.surface, s.rays, ray_of_hit);
   g.pixel_start.assign(size_t(camera.width) * camera.height + 1, 0);
   const Vec3f forward = camera.forward(), center = to_float(camera.center);
   for (size_t i = 0; i < g.hits.size(); ++i) {
     ++g.pixel_start[s.pixels[ray_of_hit[i]] + 1];
+    g.sub_pixels.push_back(uint16_t(ray_of_hit[i] % uint32_t(samples * samples)));
     g.depths.push_back(dot(g.hits[i].position - center, forward));
   }
   for (size_t p = 1; p < g.pixel_start.size(); ++p) g.pixel_start[p] += g.pixel_start[p - 1];
