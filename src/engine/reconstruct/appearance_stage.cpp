@@ -27,6 +27,7 @@ double now() {
 LinearSplitOptions split_options(const AppearanceOptions& o) {
   LinearSplitOptions s;
   s.seed = o.seed;
+  s.fixed_roughness = o.roughness;
   if (o.seconds > 0 && o.seconds < 40) {
     s.most_hits = 200000;
     s.search_hits = 80000;
@@ -36,6 +37,9 @@ LinearSplitOptions split_options(const AppearanceOptions& o) {
   }
   return s;
 }
+
+// Metals gain half a decibel: their pictures are nothing but light. Dielectrics hardly anything.
+int joint_steps_for(const Material& m, bool brief) { return m.metalness > 0 ? (brief ? 120 : 400) : (brief ? 30 : 100); }
 
 // Slope of the sRGB curve at a linear value, bounded where it is steep.
 float srgb_slope(float linear) { return 1.055f / 2.4f * std::pow(std::max(linear, 0.004f), 1 / 2.4f - 1); }
@@ -180,7 +184,7 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   const bool brief = options.seconds > 0 && options.seconds < 40;
   Descent descent(device, input, transport, options, result, progress);
   descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800);
-  descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps : brief ? 100 : 400);
+  descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps : joint_steps_for(result.material, brief));
   result.albedo = std::make_shared<const Field>(descent.take_field());
   progress.log(Json{{"stage", "appearance"}, {"seconds", now() - start}}.dump());
   return result;

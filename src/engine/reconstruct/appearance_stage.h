@@ -20,6 +20,7 @@ struct AppearanceOptions {
   double seconds = 0;      // for all of it; 0: full effort, a function of the seed alone
   int albedo_steps = -1;   // of the field under the split's light; -1: as `seconds` allow
   int joint_steps = -1;    // of field and light together; -1: as `seconds` allow
+  float roughness = 0;     // > 0: known, not searched
   uint64_t seed = 1;
   FieldConfig albedo;      // 3 outputs, sigmoid
 };

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kRows = 7;
 constexpr int kGrain = 512;  // hits a chunk
-constexpr float kLogRate = 3e-3f, kAxisRate = 5e-4f;  // of Adam, on logarithms and on unit vectors
+constexpr float kLogRate = 1e-2f, kAxisRate = 2e-3f;  // of Adam, on logarithms and on unit vectors
 constexpr float kDarkest = 1e-5f;
 constexpr float kBeta1 = 0.9f, kBeta2 = 0.99f;
 
