@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kernels of light and shading: every device against the scalar one, adjoints against differences of the forward pass.
+// Kernels of light and shading: every device against the scalar one, adjoints against differences of the
+// forward pass.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,8 +25,10 @@ std::vector<float> directions(int n, uint64_t seed) {  // [3][n]
 }
 
 struct LobeScene {
-  std::vector<float> lobes = directions(kLobes, 1), normals = directions(kPoints, 2), mirrors = directions(kPoints, 3);
-  std::vector<float> y1 = noise(3 * kPoints, 4), y2 = noise(3 * kPoints, 5);  // weights of the outputs in the loss
+  std::vector<float> lobes = directions(kLobes, 1), normals = directions(kPoints, 2),
+                     mirrors = directions(kPoints, 3);
+  std::vector<float> y1 = noise(3 * kPoints, 4),
+                     y2 = noise(3 * kPoints, 5);  // weights of the outputs in the loss
   LobeScene() {
     for (int k = 0; k < kLobes; ++k) lobes.push_back(0.5f + 80 * square(Rng(6, 0, k).uniform()));
     for (int k = 0; k < 3 * kLobes; ++k) lobes.push_back(Rng(7, 0, k).uniform());
@@ -51,7 +54,8 @@ struct LobeScene {
   }
   std::vector<float> gradient(const Device& d) const {
     std::vector<float> out(7 * kLobes);
-    SgShadeGrad::Args a{planes(), {}, {}, kPoints, 0, kPoints, normals.data(), mirrors.data(), y1.data(), y2.data(), out.data()};
+    SgShadeGrad::Args a{planes(),       {},        {},        kPoints,   0, kPoints, normals.data(),
+                        mirrors.data(), y1.data(), y2.data(), out.data()};
     set_reflection_lobe(0.4f, a);
     d.launch<SgShadeGrad>(a, kLobes);
     return out;
@@ -66,9 +70,11 @@ struct LobeScene {
 
 std::vector<float> fit_case(const Device& d, bool gather) {
   LobeScene s;
-  std::vector<float> roots = LobeScene::noise(3 * kPoints, 8), weights(kPoints, 0.1f), d_radiance = LobeScene::noise(3 * kPoints, 9);
+  std::vector<float> roots = LobeScene::noise(3 * kPoints, 8), weights(kPoints, 0.1f),
+                     d_radiance = LobeScene::noise(3 * kPoints, 9);
   std::vector<float> d_lobes(7 * kLobes);
-  const SgFitArgs a{s.planes(), kPoints, s.normals.data(), roots.data(), weights.data(), d_radiance.data(), d_lobes.data()};
+  const SgFitArgs a{s.planes(),     kPoints,           s.normals.data(), roots.data(),
+                    weights.data(), d_radiance.data(), d_lobes.data()};
   gather ? d.launch<SgFitGather>(a, kLobes) : d.launch<SgFitResidual>(a, kPoints);
   return gather ? d_lobes : d_radiance;
 }
@@ -88,7 +94,8 @@ TEST(ShadeKernels, EveryDeviceAgreesWithTheScalarOne) {
     for (const Device& device : all_devices()) {
       const std::vector<float> got = run(device);
       // Irradiance is a difference of numbers 32 times larger, hence not 1e-6.
-      for (size_t i = 0; i < want.size(); ++i) ASSERT_NEAR(got[i], want[i], 1e-4 * scale) << name << " on " << device.name();
+      for (size_t i = 0; i < want.size(); ++i)
+        ASSERT_NEAR(got[i], want[i], 1e-4 * scale) << name << " on " << device.name();
     }
   }
 }
@@ -96,7 +103,8 @@ TEST(ShadeKernels, EveryDeviceAgreesWithTheScalarOne) {
 TEST(ShadeKernels, AdjointEqualsDifferencesOfTheForwardPass) {
   const Device device = make_device("cpu/scalar");
   LobeScene s;
-  // Points that get no light are clamped at zero, where the adjoint stands for a free slope: leave them out of the loss.
+  // Points that get no light are clamped at zero, where the adjoint stands for a free slope: leave them out
+  // of the loss.
   const auto e = s.irradiance(device);
   for (size_t i = 0; i < e.size(); ++i)
     if (e[i] <= 0) s.y1[i] = 0;
@@ -111,7 +119,7 @@ TEST(ShadeKernels, AdjointEqualsDifferencesOfTheForwardPass) {
       const double down = s.loss(device);
       s.lobes[at] = x;
       const double slope = (up - down) / (2 * double(h));
-    
+
       EXPECT_NEAR(g[at], slope, 0.02 * std::abs(slope) + 0.02) << row << ' ' << k;
     }
 }
@@ -123,7 +131,9 @@ TEST(ShadeKernels, AdjointOfAnAxisEqualsDifferencesAlongTheSphere) {
   for (size_t i = 0; i < e.size(); ++i)
     if (e[i] <= 0) s.y1[i] = 0;
   const std::vector<float> g = s.gradient(device);
-  const auto axis = [&](const std::vector<float>& p, int k) { return Vec3f{p[k], p[kLobes + k], p[2 * kLobes + k]}; };
+  const auto axis = [&](const std::vector<float>& p, int k) {
+    return Vec3f{p[k], p[kLobes + k], p[2 * kLobes + k]};
+  };
   for (const int k : {2, 13, 30}) {
     const Vec3f a = axis(s.lobes, k), t = normalize(cross(a, Vec3f{0.3f, 0.5f, 0.8f}));
     const auto loss_at = [&](float h) {

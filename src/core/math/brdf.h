@@ -38,8 +38,8 @@ HD T microfacet_brdf(Vec3<T> n, Vec3<T> v, Vec3<T> l, T f0, T roughness) {
   return select((dot(n, v) > T(0.0f)) & (dot(n, l) > T(0.0f)), f, T(0.0f));
 }
 
-// What a surface reflects of a uniform sky towards a viewer at cosine nv: f0 * scale + bias. By quadrature over
-// importance-sampled facets (host only; tabulate it).
+// What a surface reflects of a uniform sky towards a viewer at cosine nv: f0 * scale + bias. By quadrature
+// over importance-sampled facets (host only; tabulate it).
 struct EnvBrdf {
   float scale, bias;
 };
@@ -49,7 +49,8 @@ inline EnvBrdf env_brdf(double roughness, double nv) {
   const int rings = 128, steps = 32;
   double scale = 0, bias = 0;
   for (int i = 0; i < rings; ++i) {
-    const double u = (i + 0.5) / rings, c = std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)), s = std::sqrt(1 - c * c);
+    const double u = (i + 0.5) / rings, c = std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)),
+                 s = std::sqrt(1 - c * c);
     for (int j = 0; j < steps; ++j) {
       const double a = M_PI * (j + 0.5) / steps;  // half a turn: the other half mirrors it
       const Vec3d h{s * std::cos(a), s * std::sin(a), c};
@@ -63,11 +64,12 @@ inline EnvBrdf env_brdf(double roughness, double nv) {
   return {float(scale / (rings * steps)), float(bias / (rings * steps))};
 }
 
-// The reflection lobe of GGX seen along the normal, in incident directions at angle t to the mirror direction:
-// proportional to 1 / (1 + x)^2 with x = (t / (2 alpha))^2 for small angles. Since 1 / (1 + x)^2 is the integral of
-// s e^-s e^(-s x) ds, the lobe is a mixture of Gaussians with sharpness s / (2 alpha^2), which three Gauss-Laguerre
-// nodes sum up. Rough lobes are cut short by the cosine and the horizon: a common factor on the sharpness, fitted to
-// the energy within each angle, follows them (0.03 root mean square up to roughness 0.5, 0.08 at 1).
+// The reflection lobe of GGX seen along the normal, in incident directions at angle t to the mirror
+// direction: proportional to 1 / (1 + x)^2 with x = (t / (2 alpha))^2 for small angles. Since 1 / (1 + x)^2
+// is the integral of s e^-s e^(-s x) ds, the lobe is a mixture of Gaussians with sharpness s / (2 alpha^2),
+// which three Gauss-Laguerre nodes sum up. Rough lobes are cut short by the cosine and the horizon: a common
+// factor on the sharpness, fitted to the energy within each angle, follows them (0.03 root mean square up to
+// roughness 0.5, 0.08 at 1).
 inline constexpr int kReflectionLobes = 3;
 inline constexpr float kReflectionNodes[3] = {0.2078873f, 1.1471402f, 3.1449727f};
 inline constexpr float kReflectionShare[3] = {0.7110930f, 0.2785177f, 0.0103893f};  // of the energy

@@ -27,7 +27,8 @@ constexpr Vec3d kUp{0, 0, 1};
 
 TEST(Brdf, DensityOfFacetsIsNormalised) {
   for (const double roughness : {0.2, 0.5, 1.0})
-    EXPECT_NEAR(over_hemisphere([&](Vec3d h) { return ggx_density(h.z, roughness * roughness) * h.z; }), 1, 2e-3);
+    EXPECT_NEAR(over_hemisphere([&](Vec3d h) { return ggx_density(h.z, roughness * roughness) * h.z; }), 1,
+                2e-3);
 }
 
 TEST(Brdf, LightAndViewerMayTradePlaces) {
@@ -42,14 +43,16 @@ TEST(Brdf, PreintegratedReflectanceIsThatOfTheWholeModelAndNeverAboveOne) {
       for (const double f0 : {0.0, 0.04, 1.0}) {
         const EnvBrdf e = env_brdf(roughness, nv);
         const double sum = f0 * e.scale + e.bias;
-        const double truth =
-            over_hemisphere([&](Vec3d l) { return microfacet_brdf(kUp, viewer(nv), l, f0, roughness) * l.z; });
+        const double truth = over_hemisphere(
+            [&](Vec3d l) { return microfacet_brdf(kUp, viewer(nv), l, f0, roughness) * l.z; });
         EXPECT_NEAR(sum, truth, 0.01) << roughness << ' ' << nv << ' ' << f0;
         EXPECT_LE(sum, 1.0);
       }
 }
 
-TEST(Brdf, ASmoothWhiteMirrorLosesNothing) { EXPECT_NEAR(env_brdf(0.05, 0.7).scale + env_brdf(0.05, 0.7).bias, 1, 0.005); }
+TEST(Brdf, ASmoothWhiteMirrorLosesNothing) {
+  EXPECT_NEAR(env_brdf(0.05, 0.7).scale + env_brdf(0.05, 0.7).bias, 1, 0.005);
+}
 
 TEST(Brdf, TheLobeOfGaussiansCarriesTheEnergyOfTheExactOneRingByRing) {
   // Share of the reflected energy within an angle of the mirror direction, seen along the normal: exact lobe
@@ -61,7 +64,8 @@ TEST(Brdf, TheLobeOfGaussiansCarriesTheEnergyOfTheExactOneRingByRing) {
       double sum = 0;
       for (int j = 0; j < kReflectionLobes; ++j) {
         const double s = kReflectionNodes[j] * reflection_scale(float(roughness));
-        sum += kReflectionShare[j] * s / (2 * M_PI) / (1 - std::exp(-2 * s)) * std::exp(s * (std::cos(t) - 1));
+        sum +=
+            kReflectionShare[j] * s / (2 * M_PI) / (1 - std::exp(-2 * s)) * std::exp(s * (std::cos(t) - 1));
       }
       return sum;
     };
@@ -76,7 +80,8 @@ TEST(Brdf, TheLobeOfGaussiansCarriesTheEnergyOfTheExactOneRingByRing) {
     const double total = within(exact, M_PI / 2);
     for (const double x : {0.5, 1.0, 2.0, 4.0}) {
       const double angle = std::min(2 * alpha * x, M_PI / 2);
-      EXPECT_NEAR(within(mixture, angle), within(exact, angle) / total, roughness < 0.5 ? 0.07 : 0.1) << roughness << ' ' << x;
+      EXPECT_NEAR(within(mixture, angle), within(exact, angle) / total, roughness < 0.5 ? 0.07 : 0.1)
+          << roughness << ' ' << x;
     }
     EXPECT_NEAR(kReflectionShare[0] + kReflectionShare[1] + kReflectionShare[2], 1, 1e-6);
   }

@@ -13,7 +13,8 @@ TEST(Dual, FirstDerivativesAreThoseOfTheTextbook) {
   const D x(0.7, 1.0);
   EXPECT_NEAR(derivative_of(exp(x) * sin(x)), std::exp(0.7) * (std::sin(0.7) + std::cos(0.7)), 1e-15);
   EXPECT_NEAR(derivative_of(sqrt(x) / log(x + D(1.0))),
-              0.5 / std::sqrt(0.7) / std::log(1.7) - std::sqrt(0.7) / (1.7 * std::log(1.7) * std::log(1.7)), 1e-14);
+              0.5 / std::sqrt(0.7) / std::log(1.7) - std::sqrt(0.7) / (1.7 * std::log(1.7) * std::log(1.7)),
+              1e-14);
   EXPECT_DOUBLE_EQ(derivative_of(abs(D(-2.0, 1.0))), -1);
   EXPECT_DOUBLE_EQ(derivative_of(max(x, D(1.0))), 0);
   EXPECT_DOUBLE_EQ(derivative_of(floor(x)), 0);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Spherical Gaussians G(w) = mu exp(lambda (w . axis - 1)): integrals in closed form, for unit mu, and their
-// derivatives. Two axes enter by their squared distance q = |axis1 - axis2|^2 = 2 (1 - cosine), which keeps sharp lobes
-// exact in single precision. [Wang et al. 2009; Meder and Bruederlin 2018; reference-facts 3.1]
+// derivatives. Two axes enter by their squared distance q = |axis1 - axis2|^2 = 2 (1 - cosine), which keeps
+// sharp lobes exact in single precision. [Wang et al. 2009; Meder and Bruederlin 2018; reference-facts 3.1]
 #pragma once
 
 #include "core/math/vec.h"
@@ -54,16 +54,16 @@ HD SgInnerSlopes<T> sg_inner_slopes(T lambda1, T lambda2, T q) {
   const SgProduct<T> p = sg_product(lambda1, lambda2, q);
   const T peak = exp(p.log_peak), integral = sg_integral(p.lambda);
   const T value = peak * integral;
-  // With n = lambda of the product: log_peak = n - lambda1 - lambda2, dn/dlambda1 = (lambda1 + lambda2 - lambda2 q / 2)
-  // / n, dn/dq = -lambda1 lambda2 / (2 n).
+  // With n = lambda of the product: log_peak = n - lambda1 - lambda2, dn/dlambda1 = (lambda1 + lambda2 -
+  // lambda2 q / 2) / n, dn/dq = -lambda1 lambda2 / (2 n).
   const T sum = lambda1 + lambda2, d_n = value + peak * sg_integral_slope(p.lambda);
   const T half = T(0.5f) * q, inverse = T(1.0f) / p.lambda;
-  return {value, d_n * (sum - lambda2 * half) * inverse - value, d_n * (sum - lambda1 * half) * inverse - value,
-          d_n * (T(-0.5f) * lambda1 * lambda2 * inverse)};
+  return {value, d_n * (sum - lambda2 * half) * inverse - value,
+          d_n * (sum - lambda1 * half) * inverse - value, d_n * (T(-0.5f) * lambda1 * lambda2 * inverse)};
 }
 
-// Integral over the hemisphere around a normal at cosine c to the axis, lambda >= 0.02: a fit that blends the integrals
-// over the hemispheres around the axis and against it by s = (1 + tanh(t c / 2) / tanh(t / 2)) / 2.
+// Integral over the hemisphere around a normal at cosine c to the axis, lambda >= 0.02: a fit that blends the
+// integrals over the hemispheres around the axis and against it by s = (1 + tanh(t c / 2) / tanh(t / 2)) / 2.
 template <class T>
 struct SgSlopes {
   T value, d_lambda, d_cosine;
@@ -71,7 +71,8 @@ struct SgSlopes {
 template <class T>
 HD SgSlopes<T> sg_hemisphere_slopes(T lambda, T c) {
   const T root = sqrt(lambda), inverse = T(1.0f) / lambda;
-  const T up = T(1.6988f) + T(10.8438f) * inverse, down = T(1.0f) + inverse * (T(6.2201f) + T(10.2415f) * inverse);
+  const T up = T(1.6988f) + T(10.8438f) * inverse,
+          down = T(1.0f) + inverse * (T(6.2201f) + T(10.2415f) * inverse);
   const T t = root * up / down;
   const T d_t = t * (T(0.5f) * inverse - T(10.8438f) * inverse * inverse / up +
                      inverse * inverse * (T(6.2201f) + T(20.483f) * inverse) / down);
@@ -99,19 +100,20 @@ HD T sg_hemisphere(T lambda, T c) {
   return T(2 * kPi) * sg_decay(lambda) * (e + s * (T(1.0f) - e));
 }
 
-// The clamped cosine as one lobe minus a constant: max(n . w, 0) ~ kCosinePeak G(w; n, kCosineLambda) - kCosineFloor,
-// within 0.008.
+// The clamped cosine as one lobe minus a constant: max(n . w, 0) ~ kCosinePeak G(w; n, kCosineLambda) -
+// kCosineFloor, within 0.008.
 inline constexpr float kCosineLambda = 0.0315f, kCosinePeak = 32.7080f, kCosineFloor = 31.7003f;
 
-// Irradiance of a surface whose normal has cosine c to the axis: integral of G(w) max(n . w, 0), lambda >= 0.1. Within
-// 1.2 % of the value at c = 1; may be slightly negative beyond the horizon. Single precision at least: a difference of
-// two numbers 32 times larger.
+// Irradiance of a surface whose normal has cosine c to the axis: integral of G(w) max(n . w, 0), lambda >=
+// 0.1. Within 1.2 % of the value at c = 1; may be slightly negative beyond the horizon. Single precision at
+// least: a difference of two numbers 32 times larger.
 template <class T>
 HD T sg_irradiance(T lambda, T c) {
   const T l2(kCosineLambda), q = T(2.0f) * (T(1.0f) - c);
   const SgProduct<T> p = sg_product(lambda, l2, q);
   const T cp = (lambda * c + l2) / p.lambda;
-  return T(kCosinePeak) * exp(p.log_peak) * sg_hemisphere(p.lambda, cp) - T(kCosineFloor) * sg_hemisphere(lambda, c);
+  return T(kCosinePeak) * exp(p.log_peak) * sg_hemisphere(p.lambda, cp) -
+         T(kCosineFloor) * sg_hemisphere(lambda, c);
 }
 template <class T>
 HD SgSlopes<T> sg_irradiance_slopes(T lambda, T c) {
@@ -125,7 +127,8 @@ HD SgSlopes<T> sg_irradiance_slopes(T lambda, T c) {
   return {peak * over.value - T(kCosineFloor) * under.value,
           peak * (over.value * (n_lambda - T(1.0f)) + over.d_lambda * n_lambda + over.d_cosine * cp_lambda) -
               T(kCosineFloor) * under.d_lambda,
-          peak * (over.value * n_c + over.d_lambda * n_c + over.d_cosine * cp_c) - T(kCosineFloor) * under.d_cosine};
+          peak * (over.value * n_c + over.d_lambda * n_c + over.d_cosine * cp_c) -
+              T(kCosineFloor) * under.d_cosine};
 }
 
 }  // namespace cei3d

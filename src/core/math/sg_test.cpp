@@ -32,8 +32,9 @@ TEST(Sg, IntegralsOfLobesAndProductsMatchQuadrature) {
     for (const double l2 : {0.8, 30.0})
       for (const double angle : {0.0, 0.4, 1.8, 3.0}) {
         const double q = 2 * (1 - std::cos(angle));
-        const double truth =
-            over_sphere([&](Vec3d w) { return lobe(w, {0, 0, 1}, l1) * lobe(w, tilted(angle), l2); });
+        const double truth = over_sphere([&](Vec3d w) {
+          return lobe(w, {0, 0, 1}, l1) * lobe(w, tilted(angle), l2);
+        });
         EXPECT_NEAR(sg_inner(l1, l2, q), truth, 1e-3 * truth + 1e-12) << l1 << ' ' << l2 << ' ' << angle;
       }
   EXPECT_NEAR(sg_integral(2.5), over_sphere([](Vec3d w) { return lobe(w, {0, 0, 1}, 2.5); }), 1e-4);
@@ -44,7 +45,9 @@ TEST(Sg, IrradianceIsWithinItsStatedError) {
     const double best = over_sphere([&](Vec3d w) { return lobe(w, {0, 0, 1}, l) * std::max(w.z, 0.0); });
     for (double angle = 0; angle < 2.7; angle += 0.3) {
       const Vec3d n = tilted(angle);
-      const double truth = over_sphere([&](Vec3d w) { return lobe(w, {0, 0, 1}, l) * std::max(dot(w, n), 0.0); });
+      const double truth = over_sphere([&](Vec3d w) {
+        return lobe(w, {0, 0, 1}, l) * std::max(dot(w, n), 0.0);
+      });
       EXPECT_NEAR(sg_irradiance(l, std::cos(angle)), truth, 0.013 * best) << l << ' ' << angle;
     }
   }

@@ -19,6 +19,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kBatch = 8192;
+constexpr double kFullEffort = 10;  // seconds on two cores that all of it needs; with less, half the work
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -28,10 +29,9 @@ LinearSplitOptions split_options(const AppearanceOptions& o) {
   LinearSplitOptions s;
   s.seed = o.seed;
   s.fixed_roughness = o.roughness;
-  if (o.seconds > 0 && o.seconds < 40) {
+  if (o.seconds > 0 && o.seconds < kFullEffort) {
     s.most_hits = 200000;
-    s.search_hits = 80000;
-    s.scan_step = 1.6f;
+    s.search_hits = 120000;
     s.refinements = 2;
     s.light_height = 32;
   }
@@ -39,7 +39,9 @@ LinearSplitOptions split_options(const AppearanceOptions& o) {
 }
 
 // Metals gain half a decibel: their pictures are nothing but light. Dielectrics hardly anything.
-int joint_steps_for(const Material& m, bool brief) { return m.metalness > 0 ? (brief ? 120 : 400) : (brief ? 30 : 100); }
+int joint_steps_for(const Material& m, bool brief) {
+  return m.metalness > 0 ? (brief ? 120 : 400) : (brief ? 30 : 100);
+}
 
 // Slope of the sRGB curve at a linear value, bounded where it is steep.
 float srgb_slope(float linear) { return 1.055f / 2.4f * std::pow(std::max(linear, 0.004f), 1 / 2.4f - 1); }
@@ -76,7 +78,8 @@ class Descent {
       choose_batch();
       const auto loss = [&](int begin, int end, const float* out, float* d_out) {
         for (int i = begin; i < end; ++i)
-          color_gradient(batch_[i], light.at(batch_[i], result_.material), out + 3 * (i - begin), d_out + 3 * (i - begin));
+          color_gradient(batch_[i], light.at(batch_[i], result_.material), out + 3 * (i - begin),
+                         d_out + 3 * (i - begin));
       };
       trainer_.step(device_, positions_, loss, std::pow(0.1f, float(step) / float(steps)));
       if (step % 50 == 0) progress_.report({"albedo", 0.92 + 0.03 * step / steps, -1, ""});
@@ -87,8 +90,10 @@ class Descent {
   void fit_jointly(int steps) {
     LightDescent light(result_.light, result_.material.roughness, result_.material.metalness == 0);
     for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
-      if (step % kRefresh == 0) relight(colors_at(device_, field_, input_.surface.mesh().positions));
-      else lighting_->set_lobes(result_.light);
+      if (step % kRefresh == 0)
+        relight(colors_at(device_, field_, input_.surface.mesh().positions));
+      else
+        lighting_->set_lobes(result_.light);
       joint_step(light, std::pow(0.1f, float(step) / float(steps)));
       if (step % 50 == 0) progress_.report({"light and albedo", 0.95 + 0.04 * step / steps, -1, ""});
     }
@@ -100,14 +105,16 @@ class Descent {
   static constexpr int kRefresh = 25;
 
   void relight(const std::vector<Vec3f>& base_color) {
-    lighting_ = std::make_unique<Lighting>(device_, input_.surface, result_.light, base_color, result_.material, transport_);
+    lighting_ = std::make_unique<Lighting>(device_, input_.surface, result_.light, base_color,
+                                           result_.material, transport_);
   }
 
   void choose_batch() {
     batch_.resize(kBatch);
     positions_.resize(kBatch);
     for (int i = 0; i < kBatch; ++i) {
-      batch_[i] = Rng(options_.seed, uint64_t(epoch_), uint64_t(i)).below(uint32_t(input_.samples.hits.size()));
+      batch_[i] =
+          Rng(options_.seed, uint64_t(epoch_), uint64_t(i)).below(uint32_t(input_.samples.hits.size()));
       positions_[i] = input_.samples.hits[batch_[i]].position;
     }
     ++epoch_;
@@ -166,25 +173,29 @@ class Descent {
 
 }  // namespace
 
-AppearanceResult fit_appearance(const Device& device, const AppearanceInput& input, const AppearanceOptions& options,
-                                Progress& progress) {
+AppearanceResult fit_appearance(const Device& device, const AppearanceInput& input,
+                                const AppearanceOptions& options, Progress& progress) {
   const double start = now();
   AppearanceResult result;
   progress.report({"light", 0.8, options.seconds, ""});
   const auto transport = std::make_shared<const Transport>(input.surface);
   result.split = linear_split(*transport, input.samples, split_options(options), progress);
   result.material = result.split.material;
-  progress.log(Json{{"stage", "linear split"}, {"seconds", now() - start}, {"roughness", result.material.roughness},
-                    {"metalness", result.material.metalness}}.dump());
+  progress.log(Json{{"stage", "linear split"},
+                    {"seconds", now() - start},
+                    {"roughness", result.material.roughness},
+                    {"metalness", result.material.metalness}}
+                   .dump());
   progress.report({"lobes", 0.9, -1, ""});
   LobeFitOptions lobes;
   lobes.height = result.split.light.height;
   lobes.seen_through = 0.5f * reflection_scale(result.material.roughness);
   result.light = fit_lobes(device, result.split.light, lobes);
-  const bool brief = options.seconds > 0 && options.seconds < 40;
+  const bool brief = options.seconds > 0 && options.seconds < kFullEffort;
   Descent descent(device, input, transport, options, result, progress);
   descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800);
-  descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps : joint_steps_for(result.material, brief));
+  descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps
+                                               : joint_steps_for(result.material, brief));
   result.albedo = std::make_shared<const Field>(descent.take_field());
   progress.log(Json{{"stage", "appearance"}, {"seconds", now() - start}}.dump());
   return result;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The appearance stage (PPD): light and material of a standing surface, started by the linear split. [architecture 1.2]
+// The appearance stage (PPD): light and material of a standing surface, started by the linear split.
+// [architecture 1.2]
 #pragma once
 
 #include <memory>
@@ -17,19 +18,20 @@ struct AppearanceInput {
 };
 
 struct AppearanceOptions {
-  double seconds = 0;      // for all of it; 0: full effort, a function of the seed alone
-  int albedo_steps = -1;   // of the field under the split's light; -1: as `seconds` allow
-  int joint_steps = -1;    // of field and light together; -1: as `seconds` allow
-  float roughness = 0;     // > 0: known, not searched
+  double seconds =
+      0;  // what there is for all of it; full effort (0) takes about 12 on two cores, the least half
+  int albedo_steps = -1;  // of the field under the split's light; -1: as `seconds` allow
+  int joint_steps = -1;   // of field and light together; -1: as `seconds` allow
+  float roughness = 0;    // > 0: known, not searched
   uint64_t seed = 1;
-  FieldConfig albedo;      // 3 outputs, sigmoid
+  FieldConfig albedo;  // 3 outputs, sigmoid
 };
 
 struct AppearanceResult {
   SgMixture light;
   Material material;
   std::shared_ptr<const Field> albedo;
-  LinearSplit split;       // what it started from, for the record
+  LinearSplit split;  // what it started from, for the record
 };
 
 AppearanceResult fit_appearance(const Device&, const AppearanceInput&, const AppearanceOptions&, Progress&);

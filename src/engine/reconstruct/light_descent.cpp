@@ -10,7 +10,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kRows = 7;
-constexpr int kGrain = 512;  // hits a chunk
+constexpr int kGrain = 512;                           // hits a chunk
 constexpr float kLogRate = 1e-2f, kAxisRate = 2e-3f;  // of Adam, on logarithms and on unit vectors
 constexpr float kDarkest = 1e-5f;
 constexpr float kBeta1 = 0.9f, kBeta2 = 0.99f;
@@ -33,8 +33,13 @@ LightDescent::LightDescent(const SgMixture& light, float roughness, bool keep_po
   gradient_ = m_ = v_ = planes_;
   for (int k = 0; k < count_; ++k) {
     const SgLobe& l = light.lobes[k];
-    const float row[kRows] = {l.axis.x, l.axis.y, l.axis.z, std::log(l.lambda), std::log(max(l.mu.x, kDarkest)),
-                              std::log(max(l.mu.y, kDarkest)), std::log(max(l.mu.z, kDarkest))};
+    const float row[kRows] = {l.axis.x,
+                              l.axis.y,
+                              l.axis.z,
+                              std::log(l.lambda),
+                              std::log(max(l.mu.x, kDarkest)),
+                              std::log(max(l.mu.y, kDarkest)),
+                              std::log(max(l.mu.z, kDarkest))};
     for (int j = 0; j < kRows; ++j) planes_[size_t(j) * padded_ + k] = row[j];
   }
   first_power_ = power();
@@ -50,7 +55,8 @@ SgMixture LightDescent::light() const {
   SgMixture out;
   for (int k = 0; k < count_; ++k) {
     const auto at = [&](int row) { return planes_[size_t(row) * padded_ + k]; };
-    out.lobes.push_back({{at(0), at(1), at(2)}, std::exp(at(3)), {std::exp(at(4)), std::exp(at(5)), std::exp(at(6))}});
+    out.lobes.push_back(
+        {{at(0), at(1), at(2)}, std::exp(at(3)), {std::exp(at(4)), std::exp(at(5)), std::exp(at(6))}});
   }
   return out;
 }
@@ -63,8 +69,8 @@ void LightDescent::step(const Device& device, std::span<const Hit> hits, std::sp
     normals[i] = hits[i].normal;
     mirrors[i] = normalize(hits[i].normal * (2 * dot(hits[i].normal, hits[i].to_camera)) - hits[i].to_camera);
   }
-  const std::vector<float> np = planes_of(normals, n), mp = planes_of(mirrors, n), ep = planes_of(d_irradiance, n),
-                           rp = planes_of(d_reflected, n);
+  const std::vector<float> np = planes_of(normals, n), mp = planes_of(mirrors, n),
+                           ep = planes_of(d_irradiance, n), rp = planes_of(d_reflected, n);
   std::vector<float> lobes(planes_);
   for (int j = 3; j < kRows; ++j)
     for (int k = 0; k < padded_; ++k) {
@@ -74,8 +80,17 @@ void LightDescent::step(const Device& device, std::span<const Hit> hits, std::sp
   const int chunks = (n + kGrain - 1) / kGrain;
   std::vector<std::vector<float>> parts(chunks, std::vector<float>(planes_.size()));
   parallel_for(chunks, [&](int c) {
-    SgShadeGrad::Args a{{lobes.data(), count_, padded_}, {}, {}, n, c * kGrain, min(n, (c + 1) * kGrain), np.data(),
-                        mp.data(), ep.data(), rp.data(), parts[c].data()};
+    SgShadeGrad::Args a{{lobes.data(), count_, padded_},
+                        {},
+                        {},
+                        n,
+                        c * kGrain,
+                        min(n, (c + 1) * kGrain),
+                        np.data(),
+                        mp.data(),
+                        ep.data(),
+                        rp.data(),
+                        parts[c].data()};
     set_reflection_lobe(roughness_, a);
     device.launch<SgShadeGrad>(a, padded_);
   });
@@ -90,12 +105,17 @@ void LightDescent::step(const Device& device, std::span<const Hit> hits, std::sp
     for (int j = 0; j < 3; ++j) at(gradient_, j) = along[j];
   }
   ++steps_;
-  const float correction = std::sqrt(1 - std::pow(kBeta2, float(steps_))) / (1 - std::pow(kBeta1, float(steps_)));
+  const float correction =
+      std::sqrt(1 - std::pow(kBeta2, float(steps_))) / (1 - std::pow(kBeta1, float(steps_)));
   for (int j = 0; j < kRows; ++j) {
     const float r = j < 3 ? kAxisRate : kLogRate;
     const size_t row = size_t(j) * padded_;
-    device.launch<Adam>({{rate * r * correction, kBeta1, kBeta2, 1e-12f, false}, &planes_[row], &gradient_[row], &m_[row],
-                         &v_[row]}, padded_);
+    device.launch<Adam>({{rate * r * correction, kBeta1, kBeta2, 1e-12f, false},
+                         &planes_[row],
+                         &gradient_[row],
+                         &m_[row],
+                         &v_[row]},
+                        padded_);
   }
   for (int k = 0; k < count_; ++k) {
     const auto at = [&](int row) -> float& { return planes_[size_t(row) * padded_ + k]; };
@@ -106,7 +126,8 @@ void LightDescent::step(const Device& device, std::span<const Hit> hits, std::sp
   if (!keep_power_) return;
   const Vec3f now = power();
   for (int c = 0; c < 3; ++c)
-    for (int k = 0; k < count_; ++k) planes_[size_t(4 + c) * padded_ + k] += std::log(first_power_[c] / now[c]);
+    for (int k = 0; k < count_; ++k)
+      planes_[size_t(4 + c) * padded_ + k] += std::log(first_power_[c] / now[c]);
 }
 
 }  // namespace cei3d

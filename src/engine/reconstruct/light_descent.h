@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gentle descent on the lobes of a light that is already nearly right: logarithms of colour and sharpness, and axes.
+// Gentle descent on the lobes of a light that is already nearly right: logarithms of colour and sharpness,
+// and axes.
 #pragma once
 
 #include <span>
@@ -13,11 +14,12 @@ namespace cei3d {
 
 class LightDescent {
  public:
-  // keep_power: the light's total power per channel stays, so that a common factor cannot wander between light and
-  // albedo.
+  // keep_power: the light's total power per channel stays, so that a common factor cannot wander between
+  // light and albedo.
   LightDescent(const SgMixture& light, float roughness, bool keep_power);
 
-  // d_irradiance, d_reflected: gradient for what the free sky sends to each hit. One step, `rate` times the full rates.
+  // d_irradiance, d_reflected: gradient for what the free sky sends to each hit. One step, `rate` times the
+  // full rates.
   void step(const Device&, std::span<const Hit> hits, std::span<const Vec3f> d_irradiance,
             std::span<const Vec3f> d_reflected, float rate);
   SgMixture light() const;
@@ -29,7 +31,7 @@ class LightDescent {
   bool keep_power_;
   int steps_ = 0;
   Vec3f first_power_;
-  std::vector<float> planes_;                  // [7][padded] axis, log sharpness, log colour
+  std::vector<float> planes_;  // [7][padded] axis, log sharpness, log colour
   std::vector<float> gradient_, m_, v_;
 };
 

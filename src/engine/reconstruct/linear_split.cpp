@@ -26,7 +26,8 @@ struct Solution {
 // Solves for one size of the problem.
 class Solver {
  public:
-  Solver(const Transport& transport, const SurfaceSamples& samples, const LinearSplitOptions& options, Progress& progress)
+  Solver(const Transport& transport, const SurfaceSamples& samples, const LinearSplitOptions& options,
+         Progress& progress)
       : mesh_(transport.surface().mesh()),
         rows_(make_split_rows(transport.surface(), samples, options)),
         options_(options),
@@ -73,8 +74,9 @@ class Solver {
   SplitUnknowns start_;
 };
 
-// The largest roughness whose non-negative light fits within the tolerance of the best: a smaller one with a blurred
-// light fits about as well as the truth, a larger one asks for negative light. A coarse scan, then bisection.
+// The largest roughness whose non-negative light fits within the tolerance of the best: a smaller one with a
+// blurred light fits about as well as the truth, a larger one asks for negative light. A coarse scan, then
+// bisection.
 template <class F>
 float search_roughness(F residual_at, const LinearSplitOptions& o) {
   if (o.fixed_roughness > 0) return o.fixed_roughness;
@@ -84,7 +86,8 @@ float search_roughness(F residual_at, const LinearSplitOptions& o) {
     tried[r] = residual_at(r);
     least = std::min(least, tried[r]);
   };
-  for (float r = kSmoothest; r < kRoughest && (tried.empty() || tried.rbegin()->second < kFar * least); r *= o.scan_step)
+  for (float r = kSmoothest; r < kRoughest && (tried.empty() || tried.rbegin()->second < kFar * least);
+       r *= o.scan_step)
     solve(r);
   const auto last_good = [&] {
     auto it = std::prev(tried.end());
@@ -99,12 +102,13 @@ float search_roughness(F residual_at, const LinearSplitOptions& o) {
   return last_good()->first;
 }
 
-// Light and a metal's colour share a factor per channel that reflections leave open: the light is taken to be grey on
-// average.
+// Light and a metal's colour share a factor per channel that reflections leave open: the light is taken to be
+// grey on average.
 void make_light_grey(Solution& s, int height) {
   Vec3f mean{0, 0, 0};
   for (int i = 0; i < height; ++i)
-    for (int j = 0; j < 2 * height; ++j) mean += s.x.light[size_t(i) * 2 * height + j] * env_solid_angle(i, 2 * height, height);
+    for (int j = 0; j < 2 * height; ++j)
+      mean += s.x.light[size_t(i) * 2 * height + j] * env_solid_angle(i, 2 * height, height);
   const float grey = luminance(mean);
   for (int c = 0; c < 3; ++c) {
     const float k = grey / max(mean[c], 1e-6f * grey);
@@ -156,17 +160,19 @@ SkyRadiance sky_radiance(const Image& light) {
   return sum;
 }
 
-LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples, const LinearSplitOptions& options,
-                         Progress& progress) {
+LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples,
+                         const LinearSplitOptions& options, Progress& progress) {
   const Mesh& mesh = transport.surface().mesh();
   LinearSplitOptions coarse = options;
   coarse.most_hits = options.search_hits;
   coarse.light_height = options.search_height;
   Solver search(transport, samples, coarse, progress);
   if (search.rows() < 1000)
-    fail("only {} pixels see the surface well enough to tell light from material; are masks and poses right?", search.rows());
+    fail("only {} pixels see the surface well enough to tell light from material; are masks and poses right?",
+         search.rows());
   // A metal explains everything by reflection: the better of the two explanations stands.
-  const double dielectric_residual = search.dielectric(0.2f).residual, metal_residual = search.metal(0.2f).residual;
+  const double dielectric_residual = search.dielectric(0.2f).residual,
+               metal_residual = search.metal(0.2f).residual;
   LinearSplit result;
   const bool is_metal = metal_residual < dielectric_residual;
   const float roughness = search_roughness(
@@ -183,11 +189,13 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
     result.material = {roughness, 0.5f, 0};
     result.light = to_image(solution.x.light, options.light_height);
     result.diffuse = clamped(solution.x.diffuse, 1e6f);
-    const std::vector<Vec3f> sky = transport.sky(sky_radiance(result.light)), bounce = transport.bounce(result.diffuse);
+    const std::vector<Vec3f> sky = transport.sky(sky_radiance(result.light)),
+                             bounce = transport.bounce(result.diffuse);
     result.albedo.resize(mesh.positions.size());
     for (size_t v = 0; v < result.albedo.size(); ++v)
       for (int c = 0; c < 3; ++c)
-        result.albedo[v][c] = clamp(kPi * result.diffuse[v][c] / max(sky[v][c] + bounce[v][c], 1e-4f), 0.0f, 1.0f);
+        result.albedo[v][c] =
+            clamp(kPi * result.diffuse[v][c] / max(sky[v][c] + bounce[v][c], 1e-4f), 0.0f, 1.0f);
   }
   result.trials = std::move(search.trials);
   result.trials.insert(result.trials.end(), fine.trials.begin(), fine.trials.end());

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light and material told apart by one linear solve. A pixel is D(x) + S(x, v; roughness) L: whatever of it does not
-// change with the view stays in D, free for every surface point, so the light L can only be read from how a point
-// changes with the view, where albedo cannot interfere. For a given roughness both are linear unknowns. Albedo then is
-// D over the irradiance of L: explicit. Metals have no D; there light and reflectance alternate.
+// Light and material told apart by one linear solve. A pixel is D(x) + S(x, v; roughness) L: whatever of it
+// does not change with the view stays in D, free for every surface point, so the light L can only be read
+// from how a point changes with the view, where albedo cannot interfere. For a given roughness both are
+// linear unknowns. Albedo then is D over the irradiance of L: explicit. Metals have no D; there light and
+// reflectance alternate.
 #pragma once
 
 #include <span>
@@ -37,16 +38,16 @@ struct LinearSplitOptions {
 };
 
 struct LinearSplit {
-  Material material;            // roughness; metalness 0 or 1
-  Image light;                  // light_height rows, 2 light_height columns, RGB, linear, >= 0
-  std::vector<Vec3f> albedo;    // #V base colour, linear, [0, 1]
-  std::vector<Vec3f> diffuse;   // #V view-independent radiance D; zero for metals
+  Material material;           // roughness; metalness 0 or 1
+  Image light;                 // light_height rows, 2 light_height columns, RGB, linear, >= 0
+  std::vector<Vec3f> albedo;   // #V base colour, linear, [0, 1]
+  std::vector<Vec3f> diffuse;  // #V view-independent radiance D; zero for metals
   struct Trial {
     bool metal;
     float roughness;
-    double residual;            // mean squared error in display units
+    double residual;  // mean squared error in display units
   };
-  std::vector<Trial> trials;    // in the order they were run
+  std::vector<Trial> trials;  // in the order they were run
 };
 
 LinearSplit linear_split(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&);

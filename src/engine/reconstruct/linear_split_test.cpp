@@ -22,7 +22,8 @@ Mesh bumpy_ball(int n = 40) {
     for (int j = 0; j < 2 * n; ++j) {
       const float t = kPi * float(i) / float(n), p = kPi * float(j) / float(n);
       const Vec3f d{std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
-      m.positions.push_back(d * (0.75f + 0.06f * std::sin(5 * d.x) * std::sin(4 * d.y + 1) + 0.05f * std::sin(6 * d.z)));
+      m.positions.push_back(
+          d * (0.75f + 0.06f * std::sin(5 * d.x) * std::sin(4 * d.y + 1) + 0.05f * std::sin(6 * d.z)));
     }
   const auto at = [&](int i, int j) { return uint32_t(i * 2 * n + j % (2 * n)); };
   for (int i = 0; i < n; ++i)
@@ -45,8 +46,10 @@ Vec3f paint(Vec3f p) {
 }
 
 SgMixture studio() {
-  return {{{normalize(Vec3f{1, 0.4f, 1}), 40, {6, 5.5f, 5}}, {normalize(Vec3f{-1, 1, 0.3f}), 25, {2, 2.5f, 3}},
-           {normalize(Vec3f{0.2f, -1, 0.5f}), 60, {4, 4, 4}}, {{0, 0, 1}, 1.5f, {0.4f, 0.45f, 0.5f}},
+  return {{{normalize(Vec3f{1, 0.4f, 1}), 40, {6, 5.5f, 5}},
+           {normalize(Vec3f{-1, 1, 0.3f}), 25, {2, 2.5f, 3}},
+           {normalize(Vec3f{0.2f, -1, 0.5f}), 60, {4, 4, 4}},
+           {{0, 0, 1}, 1.5f, {0.4f, 0.45f, 0.5f}},
            {{0, 0, -1}, 2, {0.2f, 0.18f, 0.15f}}}};
 }
 
@@ -144,7 +147,8 @@ TEST(LinearSplit, FindsLightRoughnessAndAlbedoOfADielectric) {
   for (int y = 0; y < split.light.height; ++y)
     for (int x = 0; x < split.light.width; ++x) {
       got.push_back(split.light.rgb(x, y) * env_solid_angle(y, split.light.width, split.light.height));
-      truth.push_back(radiance(studio(), env_direction(float(x) + 0.5f, float(y) + 0.5f, split.light.width, split.light.height)) *
+      truth.push_back(radiance(studio(), env_direction(float(x) + 0.5f, float(y) + 0.5f, split.light.width,
+                                                       split.light.height)) *
                       env_solid_angle(y, split.light.width, split.light.height));
       EXPECT_GE(split.light.rgb(x, y).y, 0);
     }
@@ -167,9 +171,12 @@ TEST(LinearSplit, IsTheSameEveryTimeAndSaysWhenThereIsTooLittle) {
   o.fixed_roughness = 0.3f;
   o.most_hits = 8000;
   Progress quiet;
-  const LinearSplit a = linear_split(*d.transport, d.samples(), o, quiet), b = linear_split(*d.transport, d.samples(), o, quiet);
+  const LinearSplit a = linear_split(*d.transport, d.samples(), o, quiet),
+                    b = linear_split(*d.transport, d.samples(), o, quiet);
   EXPECT_EQ(a.light.data, b.light.data);
-  EXPECT_THROW(linear_split(*d.transport, {std::span(d.hits).first(10), std::span(d.colors).first(10), {}}, o, quiet), Error);
+  EXPECT_THROW(
+      linear_split(*d.transport, {std::span(d.hits).first(10), std::span(d.colors).first(10), {}}, o, quiet),
+      Error);
 }
 
 TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
@@ -190,7 +197,8 @@ TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
   a.albedo->eval(device, x, v);
   std::vector<Vec3f> albedo(x.size());
   for (size_t i = 0; i < x.size(); ++i) albedo[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
-  const Shading s = Lighting(device, *d.surface, a.light, a.split.albedo, a.material, d.transport).shade(d.hits, albedo);
+  const Shading s =
+      Lighting(device, *d.surface, a.light, a.split.albedo, a.material, d.transport).shade(d.hits, albedo);
   double error = 0, total = 0;
   for (size_t i = 0; i < x.size(); ++i) {
     const Vec3f e = s.diffuse[i] + s.specular[i] - d.colors[i];

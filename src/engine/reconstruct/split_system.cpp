@@ -11,13 +11,14 @@
 namespace cei3d {
 namespace {
 
-constexpr int kChunks = 16;        // of rows; fixed, so that sums are the same on any machine
+constexpr int kChunks = 16;  // of rows; fixed, so that sums are the same on any machine
 constexpr int kEnvTable = 64;
 constexpr float kDielectric = 0.5f * kDielectricF0;
-constexpr float kGrazing = 0.1f;   // samples seen flatter than this are left out: silhouettes and bad normals
-constexpr float kDarkest = 0.003f; // radiance below which the display curve's slope is not followed further
+constexpr float kGrazing = 0.1f;  // samples seen flatter than this are left out: silhouettes and bad normals
+constexpr float kDarkest = 0.003f;  // radiance below which the display curve's slope is not followed further
 
-Vec3f interpolate(const std::vector<Vec3f>& values, const std::array<uint32_t, 3>& v, const std::array<float, 3>& b) {
+Vec3f interpolate(const std::vector<Vec3f>& values, const std::array<uint32_t, 3>& v,
+                  const std::array<float, 3>& b) {
   return values[v[0]] * b[0] + values[v[1]] * b[1] + values[v[2]] * b[2];
 }
 
@@ -39,7 +40,8 @@ std::vector<uint32_t> choose_samples(const SurfaceSamples& s, const LinearSplitO
   std::vector<uint32_t> kept;
   const double share = double(o.most_hits) / std::max<double>(1, double(s.hits.size()));
   for (uint32_t i = 0; i < s.hits.size(); ++i)
-    if (dot(s.hits[i].normal, s.hits[i].to_camera) > kGrazing && Rng(o.seed, 0, i).uniform() < share) kept.push_back(i);
+    if (dot(s.hits[i].normal, s.hits[i].to_camera) > kGrazing && Rng(o.seed, 0, i).uniform() < share)
+      kept.push_back(i);
   return kept;
 }
 
@@ -107,7 +109,8 @@ void LobeBlur::run(const std::vector<float>& kernel, bool transposed, const std:
     std::vector<float> sum(3 * size_t(width_), 0), k2(2 * size_t(width_));
     for (int j = 0; j < height_; ++j) {
       const float* k = &kernel[(transposed ? size_t(j) * height_ + i : size_t(i) * height_ + j) * width_];
-      for (int d = 0; d < width_; ++d) k2[d] = k2[d + width_] = k[d];  // symmetric in d, so transposing is free
+      for (int d = 0; d < width_; ++d)
+        k2[d] = k2[d + width_] = k[d];  // symmetric in d, so transposing is free
       for (int s = 0; s < width_; ++s) {
         const Vec3f v = in[size_t(j) * width_ + s];
         const float* shifted = &k2[width_ - s];
@@ -134,7 +137,8 @@ void LobeBlur::apply_squared_transposed(const std::vector<Vec3f>& blurred, std::
   run(squared, true, blurred, light);
 }
 
-SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows, const LinearSplitOptions& options)
+SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
+                         const LinearSplitOptions& options)
     : mesh_(mesh), rows_(rows), options_(options) {
   for (const auto& t : mesh.triangles)
     for (int c = 0; c < 3; ++c)
@@ -167,7 +171,8 @@ Vec3f SplitSystem::gain(const SplitRow& row) const {
   return env_gain(row.nv, metal_.empty() ? grey : interpolate(metal_, row.vertices, row.barycentric));
 }
 
-Vec3f SplitSystem::predict(const SplitRow& row, const SplitUnknowns& x, const std::vector<Vec3f>& blurred) const {
+Vec3f SplitSystem::predict(const SplitRow& row, const SplitUnknowns& x,
+                           const std::vector<Vec3f>& blurred) const {
   Vec3f seen{0, 0, 0};
   if (row.blocked)
     seen = interpolate(x.diffuse, row.far_vertices, row.far_barycentric);
@@ -384,7 +389,8 @@ std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) const {
   // Unseen vertices, and to a small part all, take the mean colour.
   Vec3f a{0, 0, 0}, b{0, 0, 0};
   for (size_t v = 0; v < n; ++v) a += above[v], b += below[v];
-  const Vec3f mean = a / (b + Vec3f{1e-20f, 1e-20f, 1e-20f}), prior = b * (0.01f / float(n)) + Vec3f{1e-20f, 1e-20f, 1e-20f};
+  const Vec3f mean = a / (b + Vec3f{1e-20f, 1e-20f, 1e-20f}),
+              prior = b * (0.01f / float(n)) + Vec3f{1e-20f, 1e-20f, 1e-20f};
   for (size_t v = 0; v < n; ++v)
     for (int c = 0; c < 3; ++c)
       above[v][c] = clamp((above[v][c] + prior[c] * mean[c]) / (below[v][c] + prior[c]), 0.0f, 4.0f);

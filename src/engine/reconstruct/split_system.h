@@ -15,27 +15,30 @@ namespace cei3d {
 struct SplitRow {
   std::array<uint32_t, 3> vertices;  // around the hit
   std::array<float, 3> barycentric;
-  float nv;                          // cosine of normal and viewer
-  bool blocked;                      // the mirror ray meets the surface again:
+  float nv;                              // cosine of normal and viewer
+  bool blocked;                          // the mirror ray meets the surface again:
   std::array<uint32_t, 3> far_vertices;  // ... here
   std::array<float, 3> far_barycentric;
-  EnvTaps taps;                      // of the sky along the mirror ray
-  Vec3f color;                       // linear
-  Vec3f weight;                      // squared slope of the display curve; 0 where the picture is clipped
+  EnvTaps taps;  // of the sky along the mirror ray
+  Vec3f color;   // linear
+  Vec3f weight;  // squared slope of the display curve; 0 where the picture is clipped
 };
 
 std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&);
 
-// Radiance of the sky blurred by the reflection lobe, on the light's own grid: P = K L. Circulant along the columns.
+// Radiance of the sky blurred by the reflection lobe, on the light's own grid: P = K L. Circulant along the
+// columns.
 class LobeBlur {
  public:
   LobeBlur(float roughness, int height);
   void apply(const std::vector<Vec3f>& light, std::vector<Vec3f>& blurred) const;
   void apply_transposed(const std::vector<Vec3f>& blurred, std::vector<Vec3f>& light) const;
-  void apply_squared_transposed(const std::vector<Vec3f>& blurred, std::vector<Vec3f>& light) const;  // entries squared
+  void apply_squared_transposed(const std::vector<Vec3f>& blurred,
+                                std::vector<Vec3f>& light) const;  // entries squared
 
  private:
-  void run(const std::vector<float>& kernel, bool transposed, const std::vector<Vec3f>& in, std::vector<Vec3f>& out) const;
+  void run(const std::vector<float>& kernel, bool transposed, const std::vector<Vec3f>& in,
+           std::vector<Vec3f>& out) const;
   int height_, width_;
   std::vector<float> kernel_;  // [row out][row in][column difference mod width], rows sum to 1
 };
@@ -51,8 +54,8 @@ class SplitSystem {
 
   void set_roughness(float roughness);
   float roughness() const { return roughness_; }
-  // Base colour of a metal: the specular gain becomes colour * scale + bias, D stays zero, and samples whose mirror ray
-  // is blocked are left out. Empty: a dielectric.
+  // Base colour of a metal: the specular gain becomes colour * scale + bias, D stays zero, and samples whose
+  // mirror ray is blocked are left out. Empty: a dielectric.
   void set_metal(std::vector<Vec3f> color);
 
   // Improves x by rounds of conjugate gradients, light kept >= 0.
@@ -66,11 +69,11 @@ class SplitSystem {
   Vec3f env_gain(float nv, Vec3f f0) const;
   Vec3f color_at(const std::array<uint32_t, 3>&, const std::array<float, 3>&) const;
   Vec3f predict(const SplitRow&, const SplitUnknowns&, const std::vector<Vec3f>& blurred) const;
-  void smooth(const SplitUnknowns& x, SplitUnknowns& out) const;           // out += gradient of the priors
+  void smooth(const SplitUnknowns& x, SplitUnknowns& out) const;  // out += gradient of the priors
   template <class F>
-  void accumulate(F row_value, SplitUnknowns& out) const;                  // out = A^T (weight * row_value)
-  void normal(const SplitUnknowns& x, SplitUnknowns& out) const;           // out = (A^T W A + priors) x
-  void right_side(SplitUnknowns& out) const;                               // out = A^T W c
+  void accumulate(F row_value, SplitUnknowns& out) const;         // out = A^T (weight * row_value)
+  void normal(const SplitUnknowns& x, SplitUnknowns& out) const;  // out = (A^T W A + priors) x
+  void right_side(SplitUnknowns& out) const;                      // out = A^T W c
   SplitUnknowns diagonal() const;
   void descend(SplitUnknowns& x, const SplitUnknowns& inverse, int steps) const;
 
@@ -80,8 +83,8 @@ class SplitSystem {
   std::vector<std::array<uint32_t, 2>> edges_;
   float roughness_ = 0;
   std::unique_ptr<LobeBlur> blur_;
-  std::vector<Vec2f> env_table_;   // scale and bias by nv
-  std::vector<Vec3f> metal_;       // #V or empty
+  std::vector<Vec2f> env_table_;  // scale and bias by nv
+  std::vector<Vec3f> metal_;      // #V or empty
   float light_smoothness_ = 0, diffuse_smoothness_ = 0;
 };
 

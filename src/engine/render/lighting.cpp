@@ -13,7 +13,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kBlock = 2048;       // hits a chunk: what it needs stays in the second-level cache
+constexpr int kBlock = 2048;  // hits a chunk: what it needs stays in the second-level cache
 constexpr int kEnvCells = 64;
 constexpr float kSkyLobe = 256;    // sharpness of a lobe as wide as the spacing of sky_directions()
 constexpr float kLift = 2e-3f;     // rays start this far above the surface
@@ -23,8 +23,8 @@ Vec3f at_corners(const std::vector<Vec3f>& v, const std::array<uint32_t, 3>& t, 
   return v[t[0]] * (1 - b1 - b2) + v[t[1]] * b1 + v[t[2]] * b2;
 }
 
-// Directions of equal weight that stand for the reflection lobe of a roughness around +Z: one ring at the radius that
-// splits each equal share of its energy. 1 / (1 + x)^2 has the cumulative share x / (1 + x).
+// Directions of equal weight that stand for the reflection lobe of a roughness around +Z: one ring at the
+// radius that splits each equal share of its energy. 1 / (1 + x)^2 has the cumulative share x / (1 + x).
 std::vector<Vec3f> lobe_directions(float roughness) {
   std::vector<Vec3f> d;
   const float width = 2 / std::sqrt(reflection_scale(roughness));
@@ -89,7 +89,10 @@ Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture
   for (int k = 0; k < rounds; ++k) {
     std::vector<Vec3f> sum = soft_normals_;
     for (const auto& t : surface.mesh().triangles)
-      for (int c = 0; c < 3; ++c) { sum[t[c]] += soft_normals_[t[(c + 1) % 3]]*0.5f; sum[t[c]] += soft_normals_[t[(c + 2) % 3]]*0.5f; }
+      for (int c = 0; c < 3; ++c) {
+        sum[t[c]] += soft_normals_[t[(c + 1) % 3]] * 0.5f;
+        sum[t[c]] += soft_normals_[t[(c + 2) % 3]] * 0.5f;
+      }
     for (Vec3f& n : sum) n = normalize(n);
     soft_normals_ = sum;
   }
@@ -98,7 +101,8 @@ Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture
   const std::vector<Vec3f> seen = transport->sky(sky), open = transport->open_sky(sky);
   openness_.resize(seen.size());
   for (size_t v = 0; v < seen.size(); ++v)
-    for (int c = 0; c < 3; ++c) openness_[v][c] = open[v][c] > 1e-6f ? min(seen[v][c] / open[v][c], 1.0f) : 1.0f;
+    for (int c = 0; c < 3; ++c)
+      openness_[v][c] = open[v][c] > 1e-6f ? min(seen[v][c] / open[v][c], 1.0f) : 1.0f;
   bounce_.assign(seen.size(), {0, 0, 0});
   leaving_.resize(seen.size());
   for (int round = 0; round < 2; ++round) {
@@ -115,7 +119,8 @@ void Lighting::set_lobes(const SgMixture& light) {
   lobe_planes_.assign(size_t(7) * padded_, 0);
   for (int k = 0; k < n_lobes_; ++k) {
     const SgLobe& l = light.lobes[k];
-    const float row[] = {l.axis.x, l.axis.y, l.axis.z, clamp(l.lambda, kBroadestLobe, kSharpestLobe), l.mu.x, l.mu.y, l.mu.z};
+    const float row[] = {l.axis.x, l.axis.y, l.axis.z, clamp(l.lambda, kBroadestLobe, kSharpestLobe),
+                         l.mu.x,   l.mu.y,   l.mu.z};
     for (int j = 0; j < 7; ++j) lobe_planes_[size_t(j) * padded_ + k] = row[j];
   }
 }
@@ -148,14 +153,16 @@ HitLight Lighting::light_at(std::span<const Hit> hits) const {
     for (int i = begin; i < end; ++i) {
       const Hit& h = hits[i];
       const Vec3f r = normalize(h.normal * (2 * dot(h.normal, h.to_camera)) - h.to_camera);
-      const Vec3f soft = normalize(at_corners(soft_normals_, surface_.mesh().triangles[h.triangle], h.b1, h.b2));
+      const Vec3f soft =
+          normalize(at_corners(soft_normals_, surface_.mesh().triangles[h.triangle], h.b1, h.b2));
       for (int c = 0; c < 3; ++c) {
         b.normals[size_t(c) * kBlock + i - begin] = soft[c];
         b.mirrors[size_t(c) * kBlock + i - begin] = r[c];
       }
       for (const Vec3f& d : lobe) {
         b.origins.push_back(h.position + h.normal * kLift);
-        const Vec3f ray = turned(r, d);  // below the horizon: folded up, since masking is in the reflectance already
+        const Vec3f ray =
+            turned(r, d);  // below the horizon: folded up, since masking is in the reflectance already
         b.directions.push_back(ray - h.normal * (2 * min(dot(ray, h.normal), 0.0f)));
       }
     }
@@ -178,8 +185,10 @@ HitLight Lighting::light_at(std::span<const Hit> hits) const {
       int free = 0;
       for (int k = 0; k < kOcclusionRays; ++k) {
         const Surface::RayHit& f = b.far[size_t(i - begin) * kOcclusionRays + k];
-        if (f.t < 0) ++free;
-        else seen += leaving(f);
+        if (f.t < 0)
+          ++free;
+        else
+          seen += leaving(f);
       }
       out.open_mirror[i] = float(free) / float(kOcclusionRays);
       out.reflected[i] = (plane(b.reflected) * float(free) + seen) / float(kOcclusionRays);

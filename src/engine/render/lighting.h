@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shading model: what a surface point sends to the camera under a light of lobes. Direct light in closed form,
-// dimmed by what the vertices around the point see of the sky, plus one diffuse bounce; reflections in closed form,
-// replaced by the surface's own radiance where rays of the reflection lobe meet it.
+// The shading model: what a surface point sends to the camera under a light of lobes. Direct light in closed
+// form, dimmed by what the vertices around the point see of the sky, plus one diffuse bounce; reflections in
+// closed form, replaced by the surface's own radiance where rays of the reflection lobe meet it.
 #pragma once
 
 #include <memory>
@@ -19,8 +19,8 @@ struct Shading {
   std::vector<Vec3f> diffuse, specular;  // #hits, linear radiance
 };
 
-// What reaches a hit: irradiance = openness * (of the free sky) + bounce, reflected = open_mirror * (of the free sky) +
-// what the surface shows. The colour is linear in the base colour: see at().
+// What reaches a hit: irradiance = openness * (of the free sky) + bounce, reflected = open_mirror * (of the
+// free sky) + what the surface shows. The colour is linear in the base colour: see at().
 struct HitLight {
   std::vector<Vec3f> irradiance, reflected;  // #hits
   std::vector<Vec3f> openness;               // #hits, per channel
@@ -35,10 +35,10 @@ struct HitLight {
 
 class Lighting {
  public:
-  // base_color: #V, of the unedited object: what bounces and what reflections see. The transport can be shared by
-  // lights; without one it is computed (a second).
-  Lighting(const Device&, const Surface&, const SgMixture&, std::span<const Vec3f> base_color, const Material&,
-           std::shared_ptr<const Transport> transport = nullptr);
+  // base_color: #V, of the unedited object: what bounces and what reflections see. The transport can be
+  // shared by lights; without one it is computed (a second).
+  Lighting(const Device&, const Surface&, const SgMixture&, std::span<const Vec3f> base_color,
+           const Material&, std::shared_ptr<const Transport> transport = nullptr);
   ~Lighting();
 
   // albedo: #hits base colour. A hit's result depends on nothing but that hit.
@@ -58,9 +58,9 @@ class Lighting {
   int n_lobes_ = 0, padded_ = 0;
   std::vector<Vec3f> openness_;  // #V share of the open sky's irradiance that arrives
   std::vector<Vec3f> soft_normals_;
-  std::vector<Vec3f> bounce_;    // #V irradiance from the surface itself
-  std::vector<Vec3f> leaving_;   // #V radiance that the surface sends out, taken as diffuse
-  std::vector<Vec2f> env_table_; // scale and bias of the reflectance by the viewer's cosine
+  std::vector<Vec3f> bounce_;     // #V irradiance from the surface itself
+  std::vector<Vec3f> leaving_;    // #V radiance that the surface sends out, taken as diffuse
+  std::vector<Vec2f> env_table_;  // scale and bias of the reflectance by the viewer's cosine
 };
 
 // Mean radiance of a light around each of sky_directions().

@@ -43,13 +43,16 @@ std::vector<Hit> some_hits(const Mesh& m, size_t n) {
   return hits;
 }
 
-SgMixture uniform_sky() { return {{{{0, 0, 1}, kBroadestLobe, {1, 1, 1}}, {{0, 0, -1}, kBroadestLobe, {1, 1, 1}}}}; }
+SgMixture uniform_sky() {
+  return {{{{0, 0, 1}, kBroadestLobe, {1, 1, 1}}, {{0, 0, -1}, kBroadestLobe, {1, 1, 1}}}};
+}
 
 SgMixture some_sky() {
   SgMixture light;
   for (uint64_t k = 0; k < 20; ++k) {
     Rng rng(9, 0, k);
-    light.lobes.push_back({normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()}), 1 + 60 * rng.uniform(),
+    light.lobes.push_back({normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()}),
+                           1 + 60 * rng.uniform(),
                            {rng.uniform(), rng.uniform(), rng.uniform()}});
   }
   return light;
@@ -95,7 +98,8 @@ TEST(Lighting, AHitDoesNotCareAboutItsNeighboursInTheBatch) {
   for (size_t i = 0; i < hits.size(); ++i) albedo.push_back({Rng(1, 1, i).uniform(), 0.3f, 0.8f});
   const Shading all = lighting.shade(hits, albedo);
   for (const auto& [begin, end] : {std::pair{0, 1}, {7, 40}, {2040, 2060}, {33, 4999}}) {
-    const auto part = lighting.shade(std::span(hits).subspan(begin, end - begin), std::span(albedo).subspan(begin, end - begin));
+    const auto part = lighting.shade(std::span(hits).subspan(begin, end - begin),
+                                     std::span(albedo).subspan(begin, end - begin));
     for (int i = begin; i < end; ++i)
       for (int c = 0; c < 3; ++c) {
         ASSERT_EQ(part.diffuse[i - begin][c], all.diffuse[i][c]);
@@ -150,7 +154,8 @@ TEST(Transport, AWhiteCavityGlows) {
   const auto bounce = transport.bounce(one);
   for (size_t v = 0; v < seen.size(); ++v) {
     EXPECT_NEAR(open[v].x, kPi, 0.02f);
-    // What is not sky is surface, and a surface as bright as the sky closes the sum (up to the lift of the rays).
+    // What is not sky is surface, and a surface as bright as the sky closes the sum (up to the lift of the
+    // rays).
     EXPECT_NEAR(seen[v].x + bounce[v].x, open[v].x, 0.12f);
   }
 }

@@ -53,8 +53,10 @@ Transport::Transport(const Surface& surface) : surface_(surface) {
     surface.intersect(origins, directions, 0, hits);
     for (size_t i = 0; i < hits.size(); ++i) {
       Blocker& b = blockers_[first + i];
-      if (hits[i].t < 0) b.weight = 0;
-      else b.vertex = nearest_corner(mesh, hits[i]);
+      if (hits[i].t < 0)
+        b.weight = 0;
+      else
+        b.vertex = nearest_corner(mesh, hits[i]);
     }
   }
 }
@@ -88,7 +90,8 @@ std::vector<Vec3f> Transport::open_sky(const SkyRadiance& radiance) const {
 std::vector<Vec3f> Transport::bounce(std::span<const Vec3f> radiance) const {
   return per_vertex(int(start_.size()) - 1, [&](int v) {
     Vec3f sum{0, 0, 0};
-    for (uint32_t i = start_[v]; i < start_[v + 1]; ++i) sum += radiance[blockers_[i].vertex] * blockers_[i].weight;
+    for (uint32_t i = start_[v]; i < start_[v + 1]; ++i)
+      sum += radiance[blockers_[i].vertex] * blockers_[i].weight;
     return sum;
   });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How distant light reaches the points of a surface: directly where the sky is free, and by one diffuse bounce from
-// what blocks it. Depends on geometry only, so one table serves every light.
+// How distant light reaches the points of a surface: directly where the sky is free, and by one diffuse
+// bounce from what blocks it. Depends on geometry only, so one table serves every light.
 #pragma once
 
 #include <span>
@@ -15,13 +15,15 @@ using SkyRadiance = std::vector<Vec3f>;
 
 class Transport {
  public:
-  explicit Transport(const Surface& surface);  // casts a ray along every blocked direction above a vertex's horizon
+  explicit Transport(
+      const Surface& surface);  // casts a ray along every blocked direction above a vertex's horizon
 
   // Irradiance of every vertex from the sky it sees. #V
   std::vector<Vec3f> sky(const SkyRadiance&) const;
   // The same if nothing were in the way: what `sky` is compared with.
   std::vector<Vec3f> open_sky(const SkyRadiance&) const;
-  // Irradiance of every vertex from the rest of the surface, given the radiance that each vertex sends out. #V
+  // Irradiance of every vertex from the rest of the surface, given the radiance that each vertex sends out.
+  // #V
   std::vector<Vec3f> bounce(std::span<const Vec3f> radiance) const;
 
   const Surface& surface() const { return surface_; }
@@ -32,7 +34,7 @@ class Transport {
     uint32_t vertex;  // nearest to the point that blocks the direction
     float weight;     // cosine times the direction's solid angle
   };
-  std::vector<uint32_t> start_;     // #V + 1
+  std::vector<uint32_t> start_;  // #V + 1
   std::vector<Blocker> blockers_;
 };
 

@@ -31,7 +31,8 @@ std::vector<Vec3f> fibonacci_sphere(int n) {
   return d;
 }
 
-// Normals of a mesh that brought none: face normals weighted by their angle at the vertex. [Thuermer and Wuethrich 1998]
+// Normals of a mesh that brought none: face normals weighted by their angle at the vertex. [Thuermer and
+// Wuethrich 1998]
 std::vector<Vec3f> angle_weighted_normals(const Mesh& mesh) {
   std::vector<Vec3f> sum(mesh.positions.size(), Vec3f{0, 0, 0});
   for (const auto& t : mesh.triangles)
@@ -50,8 +51,10 @@ std::vector<Vec3f> angle_weighted_normals(const Mesh& mesh) {
 void check_mesh(const Mesh& mesh) {
   const size_t n = mesh.positions.size();
   for (const auto& t : mesh.triangles)
-    if (std::max({t[0], t[1], t[2]}) >= n) fail("mesh: a triangle names vertex {} of {}", std::max({t[0], t[1], t[2]}), n);
-  if (!mesh.normals.empty() && mesh.normals.size() != n) fail("mesh: {} normals for {} vertices", mesh.normals.size(), n);
+    if (std::max({t[0], t[1], t[2]}) >= n)
+      fail("mesh: a triangle names vertex {} of {}", std::max({t[0], t[1], t[2]}), n);
+  if (!mesh.normals.empty() && mesh.normals.size() != n)
+    fail("mesh: {} normals for {} vertices", mesh.normals.size(), n);
 }
 
 RTCRay make_ray(Vec3f o, Vec3f d, float t_min) {
@@ -97,7 +100,8 @@ struct Surface::Bvh {
                                                           sizeof(Vec3f), mesh.positions.size()));
     auto* t = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                              3 * sizeof(uint32_t), mesh.triangles.size()));
-    if (!p || !t) fail("not enough memory for the ray index of a mesh of {} triangles", mesh.triangles.size());
+    if (!p || !t)
+      fail("not enough memory for the ray index of a mesh of {} triangles", mesh.triangles.size());
     for (const Vec3f& v : mesh.positions) *p++ = v.x, *p++ = v.y, *p++ = v.z;
     for (const auto& tri : mesh.triangles) t = std::copy(tri.begin(), tri.end(), t);
     rtcCommitGeometry(g);
@@ -139,7 +143,8 @@ struct Surface::Bvh {
       for (int v = begin; v < end; ++v) {
         const Vec3f o = mesh.positions[v] + normals[v] * kLift;
         for (int k = 0; k < kSkyDirections; ++k)
-          if (dot(sky[k], normals[v]) > 0 && !blocked(o, sky[k])) bits[size_t(v) * kRowBytes + k / 8] |= uint8_t(1 << k % 8);
+          if (dot(sky[k], normals[v]) > 0 && !blocked(o, sky[k]))
+            bits[size_t(v) * kRowBytes + k / 8] |= uint8_t(1 << k % 8);
       }
     });
     return bits;
@@ -153,11 +158,13 @@ Surface::Surface(Mesh mesh) : mesh_(std::move(mesh)) {
   visibility_ = bvh_->cast_visibility(mesh_, mesh_.normals);
 }
 
-Surface::Surface(Mesh mesh, std::vector<uint8_t> visibility) : mesh_(std::move(mesh)), visibility_(std::move(visibility)) {
+Surface::Surface(Mesh mesh, std::vector<uint8_t> visibility)
+    : mesh_(std::move(mesh)), visibility_(std::move(visibility)) {
   check_mesh(mesh_);
   if (mesh_.normals.empty()) mesh_.normals = angle_weighted_normals(mesh_);
   if (visibility_.size() != mesh_.positions.size() * kRowBytes)
-    fail("visibility table of {} bytes does not fit a mesh of {} vertices", visibility_.size(), mesh_.positions.size());
+    fail("visibility table of {} bytes does not fit a mesh of {} vertices", visibility_.size(),
+         mesh_.positions.size());
   bvh_ = std::make_unique<Bvh>(mesh_);
 }
 

@@ -50,8 +50,8 @@ TEST(Surface, AConvexBodySeesExactlyItsOwnHemisphere) {
 }
 
 TEST(Surface, ANeighbourHidesItsSolidAngle) {
-  // From the top of the unit-less small sphere at the origin, a sphere of radius .3 at height .8 covers a cone of
-  // half-angle asin(.3 / .7).
+  // From the top of the unit-less small sphere at the origin, a sphere of radius .3 at height .8 covers a
+  // cone of half-angle asin(.3 / .7).
   const Surface s(join(sphere({0, 0, 0}, 0.1f), sphere({0, 0, 0.8f}, 0.3f)));
   const uint32_t top = 0;
   ASSERT_GT(s.mesh().positions[top].z, 0.0999f);

@@ -19,7 +19,8 @@ Vec3f env_direction(float u, float v, int width, int height, EnvUp up) {
 Vec2f env_pixel(Vec3f d, int width, int height, EnvUp up) {
   const float along = up == EnvUp::z ? d.z : d.y;
   const float v = std::acos(clamp(along, -1.0f, 1.0f)) / kPi * float(height);
-  const float turn = up == EnvUp::z ? 0.5f - std::atan2(d.y, d.x) / (2 * kPi) : std::atan2(d.z, d.x) / (2 * kPi) + 0.25f;
+  const float turn =
+      up == EnvUp::z ? 0.5f - std::atan2(d.y, d.x) / (2 * kPi) : std::atan2(d.z, d.x) / (2 * kPi) + 0.25f;
   float u = (turn - std::floor(turn)) * float(width);
   if (u >= float(width)) u = 0;
   return {u, v};

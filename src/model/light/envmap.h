@@ -13,8 +13,8 @@ enum class EnvUp {
   y,  // row 0 = +Y; left border -Z, column W/4 = +X, centre = +Z, 3W/4 = -X (Mitsuba) [reference-facts 7]
 };
 
-// Unit direction towards the light at the continuous pixel position (u, v) of a width x height picture; pixel centres
-// are at +0.5.
+// Unit direction towards the light at the continuous pixel position (u, v) of a width x height picture; pixel
+// centres are at +0.5.
 Vec3f env_direction(float u, float v, int width, int height, EnvUp up = EnvUp::z);
 // ... and back, u in [0, width), v in [0, height].
 Vec2f env_pixel(Vec3f direction, int width, int height, EnvUp up = EnvUp::z);
@@ -30,7 +30,8 @@ EnvTaps env_taps(Vec3f direction, int width, int height, EnvUp up = EnvUp::z);
 // Bilinear lookup. map: 3 or more channels.
 Vec3f env_radiance(const Image& map, Vec3f direction, EnvUp up = EnvUp::z);
 
-// The picture resampled to height rows and 2 height columns, each pixel the mean radiance over its solid angle.
+// The picture resampled to height rows and 2 height columns, each pixel the mean radiance over its solid
+// angle.
 Image env_resample(const Image& map, int height);
 
 }  // namespace cei3d

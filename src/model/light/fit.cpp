@@ -45,7 +45,8 @@ SgLobe unblurred(SgLobe seen, float sharpness) {
   return {seen.axis, lambda, seen.mu * (sg_integral(seen.lambda) / sg_integral(lambda))};
 }
 
-// Unknowns: raw axis (normalised on use), logarithm of the sharpness, square root of the colour. Planes [7][padded].
+// Unknowns: raw axis (normalised on use), logarithm of the sharpness, square root of the colour. Planes
+// [7][padded].
 class LobeFit {
  public:
   LobeFit(const Image& map, int lobes, float sharpest, EnvUp up)
@@ -56,7 +57,8 @@ class LobeFit {
     weights_.assign(cells_, 0);
     for (int i = 0; i < map.width * map.height; ++i) {
       const int x = i % map.width, y = i / map.width;
-      const Vec3f d = env_direction(float(x) + 0.5f, float(y) + 0.5f, map.width, map.height, up), c = map.rgb(x, y);
+      const Vec3f d = env_direction(float(x) + 0.5f, float(y) + 0.5f, map.width, map.height, up),
+                  c = map.rgb(x, y);
       for (int k = 0; k < 3; ++k) {
         directions_[size_t(k) * cells_ + i] = d[k];
         roots_[size_t(k) * cells_ + i] = std::sqrt(max(c[k], 0.0f) + 1e-4f);
@@ -78,12 +80,14 @@ class LobeFit {
 
   void step(const Device& device, int t, float rate) {
     expand();
-    const SgFitArgs args{{planes_.data(), lobes_, p_}, cells_, directions_.data(), roots_.data(), weights_.data(),
-                         d_radiance_.data(), d_planes_.data()};
+    const SgFitArgs args{
+        {planes_.data(), lobes_, p_}, cells_,          directions_.data(), roots_.data(), weights_.data(),
+        d_radiance_.data(),           d_planes_.data()};
     device.launch<SgFitResidual>(args, cells_);
     device.launch<SgFitGather>(args, p_);
     pull_back();
-    const float correction = std::sqrt(1 - std::pow(kBeta2, float(t + 1))) / (1 - std::pow(kBeta1, float(t + 1)));
+    const float correction =
+        std::sqrt(1 - std::pow(kBeta2, float(t + 1))) / (1 - std::pow(kBeta1, float(t + 1)));
     const AdamStep adam{kRate * rate * correction, kBeta1, kBeta2, 1e-8f, false};
     device.launch<Adam>({adam, raw_.data(), gradient_.data(), m_.data(), v_.data()}, kRows * p_);
     for (int k = 0; k < lobes_; ++k) {
@@ -118,7 +122,8 @@ class LobeFit {
   }
   void pull_back() {
     for (int k = 0; k < lobes_; ++k) {
-      const Vec3f axis = normalize(raw_axis(k)), d{row(d_planes_, 0)[k], row(d_planes_, 1)[k], row(d_planes_, 2)[k]};
+      const Vec3f axis = normalize(raw_axis(k)),
+                  d{row(d_planes_, 0)[k], row(d_planes_, 1)[k], row(d_planes_, 2)[k]};
       const Vec3f along = (d - axis * dot(d, axis)) / length(raw_axis(k));
       for (int j = 0; j < 3; ++j) {
         row(gradient_, j)[k] = along[j];
@@ -145,7 +150,8 @@ SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOp
   const float kernel = options.seen_through;
   if (kernel > 0) map = blurred(map, kernel, up);
   LobeFit fit(map, options.lobes, kernel > 0 ? 0.7f * kernel : kSharpestLobe, up);
-  for (int t = 0; t < options.steps; ++t) fit.step(device, t, std::pow(0.02f, float(t) / float(options.steps)));
+  for (int t = 0; t < options.steps; ++t)
+    fit.step(device, t, std::pow(0.02f, float(t) / float(options.steps)));
   SgMixture light = fit.lobes();
   if (kernel > 0)
     for (SgLobe& l : light.lobes) l = unblurred(l, kernel);

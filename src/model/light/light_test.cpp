@@ -49,7 +49,8 @@ TEST(Envmap, SolidAnglesFillTheSphereAndResamplingKeepsTheIntegral) {
   const auto integral = [](const Image& m, int c) {
     double sum = 0;
     for (int y = 0; y < m.height; ++y)
-      for (int x = 0; x < m.width; ++x) sum += env_solid_angle(y, m.width, m.height) * (c < 0 ? 1.0 : m.at(x, y)[c]);
+      for (int x = 0; x < m.width; ++x)
+        sum += env_solid_angle(y, m.width, m.height) * (c < 0 ? 1.0 : m.at(x, y)[c]);
     return sum;
   };
   EXPECT_NEAR(integral(map, -1), 4 * M_PI, 1e-4);
@@ -66,7 +67,8 @@ TEST(Envmap, BilinearLookupHitsPixelCentresAndWraps) {
 }
 
 SgMixture some_light() {
-  return {{{normalize(Vec3f{1, 2, 3}), 30, {3, 2, 1}}, {{0, 0, -1}, 2, {0.2f, 0.3f, 0.4f}},
+  return {{{normalize(Vec3f{1, 2, 3}), 30, {3, 2, 1}},
+           {{0, 0, -1}, 2, {0.2f, 0.3f, 0.4f}},
            {normalize(Vec3f{-2, 1, 0}), 8, {0.5f, 0.6f, 0.9f}}}};
 }
 
@@ -125,14 +127,16 @@ TEST(FitLobes, RecoversALightOfLobes) {
 }
 
 TEST(FitLobes, SeesThroughTheReflectionLobe) {
-  // The light behind a blur of sharpness 60 is found again although the fit only looks at the blurred picture.
+  // The light behind a blur of sharpness 60 is found again although the fit only looks at the blurred
+  // picture.
   const SgMixture light = some_light();
   EXPECT_LT(relative_error(fit_lobes(make_device(), draw(light, 32), {64, 600, 32, 60}), light), 0.08);
 }
 
 TEST(FitLobes, IsTheSameEveryTimeAndRefusesNonsense) {
   const Image map = draw(some_light(), 16);
-  EXPECT_EQ(to_array(fit_lobes(make_device(), map, {32, 50, 16, 0})), to_array(fit_lobes(make_device(), map, {32, 50, 16, 0})));
+  EXPECT_EQ(to_array(fit_lobes(make_device(), map, {32, 50, 16, 0})),
+            to_array(fit_lobes(make_device(), map, {32, 50, 16, 0})));
   Image bad = map;
   bad.data[7] = NAN;
   EXPECT_THROW(fit_lobes(make_device(), bad), Error);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fit of spherical Gaussians to radiance on a set of directions ("cells"): squared error of square roots, so that a sun
-// does not drown the sky.
+// Fit of spherical Gaussians to radiance on a set of directions ("cells"): squared error of square roots, so
+// that a sun does not drown the sky.
 #pragma once
 
 #include "core/compute/kernel.h"
@@ -78,7 +78,8 @@ struct SgFitGather {
     T d_lambda = zero;
     for (int c = 0; c < a.cells; ++c) {
       const float *q = a.directions + c, *r = a.d_radiance + c;
-      const Vec3<T> d{T(q[0]), T(q[a.cells]), T(q[2 * a.cells])}, g{T(r[0]), T(r[a.cells]), T(r[2 * a.cells])};
+      const Vec3<T> d{T(q[0]), T(q[a.cells]), T(q[2 * a.cells])},
+          g{T(r[0]), T(r[a.cells]), T(r[2 * a.cells])};
       const T t = dot(d, axis) - T(1.0f), e = exp(lambda * t), s = dot(g, mu) * e;
       d_mu += g * e;
       d_lambda += s * t;

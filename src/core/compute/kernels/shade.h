@@ -31,10 +31,11 @@ struct SgIrradiance {
 struct SgReflection {
   struct Args {
     LobePlanes lobes;
-    float sharpness[kReflectionLobes], weight[kReflectionLobes];  // of the reflection lobe; see reflection_args
+    float sharpness[kReflectionLobes],
+        weight[kReflectionLobes];  // of the reflection lobe; see reflection_args
     int stride;
-    const float* mirrors;   // [3][stride] unit
-    float* out;             // [3][stride]
+    const float* mirrors;  // [3][stride] unit
+    float* out;            // [3][stride]
   };
   template <class T>
   static HD void run(const Args& a, int i) {
@@ -45,7 +46,8 @@ struct SgReflection {
       const Vec3<T> d = r - a.lobes.axis<T>(k);
       const T q = dot(d, d);
       T share(0.0f);
-      for (int j = 0; j < kReflectionLobes; ++j) share += T(a.weight[j]) * sg_inner(lambda, T(a.sharpness[j]), q);
+      for (int j = 0; j < kReflectionLobes; ++j)
+        share += T(a.weight[j]) * sg_inner(lambda, T(a.sharpness[j]), q);
       sum += a.lobes.mu<T>(k) * share;
     }
     store_planes(a.out, a.stride, i, sum);
@@ -58,7 +60,7 @@ struct SgShadeGrad {
     LobePlanes lobes;
     float sharpness[kReflectionLobes], weight[kReflectionLobes];
     int stride, begin, end;
-    const float *normals, *mirrors;          // [3][stride]
+    const float *normals, *mirrors;           // [3][stride]
     const float *d_irradiance, *d_reflected;  // [3][stride]
     float* d_lobes;                           // [7][padded]: axis, sharpness, colour; written
   };
@@ -76,7 +78,8 @@ struct SgShadeGrad {
       d_mu += e * diffuse.value;
       d_lambda += ye * diffuse.d_lambda;
       d_axis += n * (ye * diffuse.d_cosine);
-      const Vec3<T> r = point<T>(a.mirrors, a.stride, h), g = point<T>(a.d_reflected, a.stride, h), gap = r - axis;
+      const Vec3<T> r = point<T>(a.mirrors, a.stride, h), g = point<T>(a.d_reflected, a.stride, h),
+                    gap = r - axis;
       const T q = dot(gap, gap), yg = dot(g, mu);
       T share = zero, slope = zero, along = zero;
       for (int j = 0; j < kReflectionLobes; ++j) {
