@@ -186,6 +186,7 @@ TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
   o.albedo.width = 16;
   o.albedo.output_activation = Activation::sigmoid;
   o.seconds = 1;
+  o.roughness = 0.3f;
   o.albedo_steps = 150;
   o.joint_steps = 12;
   Progress quiet;
