@@ -27,8 +27,8 @@ struct GeometryOptions {
   int first_levels = 5;
   float step_min = 0.004f, step_max = 0.02f;  // along rays, unit-sphere units; in between: 1 / sharpness
   float keep_weight = 0.003f;                 // samples below it get no jet and no radiance
-  float huber_width = 0.05f, mask_weight = 0.5f, eikonal_weight = 0.1f;
-  float table_rate = 1e-2f, layer_rate = 2e-3f;  // Adam
+  float huber_width = 0.05f, mask_weight = 0.5f, eikonal_weight = 0.3f;
+  float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
   float decay_from = 0.3f, decay_to = 0.05f;  // exponential decay of the rate over the rest of the schedule
   float hull_margin = 0.015f;                 // the prefit surface lies this far inside the visual hull
   int prefit_steps = 300;
