@@ -25,15 +25,21 @@ constexpr const char* kAbout =
     "  cei3d VERB -h                                          everything about a verb";
 
 constexpr const char* kFooter =
-    "A CAPTURE is a folder (or its .json): NeRF-synthetic transforms_{train,val,test}.json with RGBA pictures, or PhySG\n"
-    "cam_dict_norm.json with image/ and mask/. CAPTURE:test means one split of it. A PROJECT is a folder this program writes.\n"
-    "Pixels are (column,row) from the top-left corner, centres at +0.5. Positions and lengths are in the capture's own frame.\n"
+    "A CAPTURE is a folder (or its .json): NeRF-synthetic transforms_{train,val,test}.json with RGBA "
+    "pictures, or PhySG\n"
+    "cam_dict_norm.json with image/ and mask/. CAPTURE:test means one split of it. A PROJECT is a folder "
+    "this program writes.\n"
+    "Pixels are (column,row) from the top-left corner, centres at +0.5. Positions and lengths are in the "
+    "capture's own frame.\n"
     "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (state saved).";
 
-constexpr const char* kVerbFooter = "Also, as everywhere: --quiet, --json, --log-level, --device, --threads (see `cei3d -h`).";
+constexpr const char* kVerbFooter =
+    "Also, as everywhere: --quiet, --json, --log-level, --device, --threads (see `cei3d -h`).";
 
-const std::pair<const char*, LogLevel> kLevels[] = {
-    {"error", LogLevel::error}, {"warn", LogLevel::warn}, {"info", LogLevel::info}, {"debug", LogLevel::debug}};
+const std::pair<const char*, LogLevel> kLevels[] = {{"error", LogLevel::error},
+                                                    {"warn", LogLevel::warn},
+                                                    {"info", LogLevel::info},
+                                                    {"debug", LogLevel::debug}};
 
 LogLevel level_of(const CommonOptions& o) {
   if (o.quiet) return LogLevel::error;
@@ -46,7 +52,8 @@ void add_common(CLI::App& app, CommonOptions& o) {
   app.set_version_flag("--version", std::string("cei3d ") + kVersion, "Print the version");
   app.set_help_flag("-h,--help", "Print this help");
   app.add_flag("-q,--quiet", o.quiet, "Print nothing but answers and errors")->group("Everywhere");
-  app.add_flag("--json", o.json, "Print the result as JSON on standard output, nothing else there")->group("Everywhere");
+  app.add_flag("--json", o.json, "Print the result as JSON on standard output, nothing else there")
+      ->group("Everywhere");
   app.add_option("--log-level", o.log_level, "How much to tell on standard error")
       ->check(CLI::IsMember({"error", "warn", "info", "debug"}))
       ->capture_default_str()
@@ -77,7 +84,8 @@ std::string wrapped(const std::string& text, size_t width) {
 constexpr size_t kNameColumn = 34, kTextColumn = 84;
 
 void wrap_help(CLI::App& app) {
-  for (CLI::Option* option : app.get_options()) option->description(wrapped(option->get_description(), kTextColumn));
+  for (CLI::Option* option : app.get_options())
+    option->description(wrapped(option->get_description(), kTextColumn));
   for (CLI::App* verb : app.get_subcommands({})) wrap_help(*verb);
 }
 
@@ -91,7 +99,8 @@ int guarded(Console& console, F run) {
     console.error(e.what(), e.hint(), int(e.code()));
     return int(e.code());
   } catch (const std::bad_alloc&) {
-    console.error("Out of memory; close other programs, or use fewer or smaller pictures (--downscale).", "", 1);
+    console.error("Out of memory; close other programs, or use fewer or smaller pictures (--downscale).", "",
+                  1);
   } catch (const std::exception& e) {
     console.error(e.what(), "", 1);
   }
@@ -112,7 +121,8 @@ int usage_error(const CLI::App& app, const CLI::ParseError& e, Console& console)
 
 }  // namespace
 
-int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostream& err, bool err_is_terminal) {
+int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostream& err,
+            bool err_is_terminal) {
   CommonOptions common;
   CLI::App app(kAbout, "cei3d");
   app.footer(kVerbFooter);  // verbs inherit it
@@ -120,7 +130,8 @@ int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostrea
   add_common(app, common);
   app.require_subcommand(0, 1);
   Commands commands(app, common);
-  for (const auto add : {add_check, add_reconstruct, add_render, add_edit, add_history, add_export, add_eval, add_info, add_bench})
+  for (const auto add : {add_check, add_reconstruct, add_render, add_edit, add_history, add_export, add_eval,
+                         add_info, add_bench})
     add(commands);
   app.footer(kFooter);
   wrap_help(app);

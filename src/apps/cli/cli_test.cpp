@@ -31,8 +31,8 @@ Typed type(const std::vector<std::string>& args) {
   return {code, out.str(), err.str()};
 }
 
-const std::vector<std::string> kVerbs = {"check", "reconstruct", "render", "edit", "log",    "undo",
-                                         "redo",  "toggle",      "export", "eval", "info",   "doctor"};
+const std::vector<std::string> kVerbs = {"check", "reconstruct", "render", "edit", "log",  "undo",
+                                         "redo",  "toggle",      "export", "eval", "info", "doctor"};
 
 TEST(Cli, HelpNamesEveryVerb) {
   const Typed t = type({"--help"});
@@ -116,7 +116,8 @@ TEST(Cli, FailuresAreOneAndOneSentence) {
 }
 
 TEST(Cli, ErrorsAreJsonWhenAsked) {
-  for (const auto& line : {std::vector<std::string>{"log", "/no/such/project", "--json"}, {"--json", "log", "/no/such/project"}}) {
+  for (const auto& line : {std::vector<std::string>{"log", "/no/such/project", "--json"},
+                           {"--json", "log", "/no/such/project"}}) {
     const Typed t = type(line);
     EXPECT_EQ(t.code, 1);
     EXPECT_EQ(Json::parse(t.out)["exit_code"], 1);

@@ -23,7 +23,8 @@ void bench(const Options&, Session& session, Console& console) {
 
 void add_bench(Commands& commands) {
   auto o = std::make_shared<Options>();
-  commands.on(commands.add("bench", "Speed of the kernels as a fraction of this machine's measured peak"), o, bench);
+  commands.on(commands.add("bench", "Speed of the kernels as a fraction of this machine's measured peak"), o,
+              bench);
 }
 
 }  // namespace cei3d

@@ -11,12 +11,16 @@ struct Options {
 };
 
 std::string split_text(const SplitReport& s) {
-  return fmt::format("{:<12}{} views of {} x {}; the object covers {:.0f} % of a picture ({:.0f} to {:.0f})\n", split_name(s.split),
-                     s.views, s.size.width, s.size.height, 100 * s.coverage, 100 * s.coverage_min, 100 * s.coverage_max);
+  return fmt::format(
+      "{:<12}{} views of {} x {}; the object covers {:.0f} % of a picture ({:.0f} to {:.0f})\n",
+      split_name(s.split), s.views, s.size.width, s.size.height, 100 * s.coverage, 100 * s.coverage_min,
+      100 * s.coverage_max);
 }
 
 std::string finding_text(const Finding& f) {
-  const char* word = f.severity == Severity::error ? "problem" : f.severity == Severity::warning ? "warning" : "note";
+  const char* word = f.severity == Severity::error     ? "problem"
+                     : f.severity == Severity::warning ? "warning"
+                                                       : "note";
   return fmt::format("{}: {} {}\n", word, f.what, f.fix);
 }
 
@@ -27,9 +31,10 @@ std::string report_text(const CheckReport& checked) {
   text += fmt::format("up          ({:g}, {:g}, {:g})\n", r.up.x, r.up.y, r.up.z);
   if (r.normalization) {
     const Vec3d c = r.normalization->center;
-    text += fmt::format("object      radius {:.4g} about ({:.4g}, {:.4g}, {:.4g})\n", checked.object_radius, c.x,
-                        c.y, c.z);
-    text += fmt::format("cameras     {:.4g} away ({:.4g} to {:.4g})\n", r.distance, r.distance_min, r.distance_max);
+    text += fmt::format("object      radius {:.4g} about ({:.4g}, {:.4g}, {:.4g})\n", checked.object_radius,
+                        c.x, c.y, c.z);
+    text += fmt::format("cameras     {:.4g} away ({:.4g} to {:.4g})\n", r.distance, r.distance_min,
+                        r.distance_max);
   }
   for (const Finding& f : r.findings) text += finding_text(f);
   return text + (r.usable() ? "Ready for `cei3d reconstruct`.\n" : "");
@@ -40,19 +45,24 @@ void run_check(const Options& o, Session& session, Console& console) {
   request.capture = parse_capture_spec(o.capture).path;
   const CheckReport r = session.check(request);
   console.answer(r.json(), report_text(r));
-  if (!r.report.usable()) throw Error(ErrorCode::failed, o.capture + " is not usable yet.", "The problems above say what to do.");
+  if (!r.report.usable())
+    throw Error(ErrorCode::failed, o.capture + " is not usable yet.", "The problems above say what to do.");
 }
 
 }  // namespace
 
 void add_check(Commands& commands) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("check", "Load a capture as `reconstruct` would and say what is understood and what is wrong");
+  CLI::App* verb = commands.add(
+      "check", "Load a capture as `reconstruct` would and say what is understood and what is wrong");
   verb->add_option("capture", o->capture, "Folder of posed photographs, or its .json")->required();
-  verb->add_option("--format", o->request.options.format, "nerf-synthetic or physg (default: told by the files)");
-  verb->add_option("--test-every", o->request.options.test_every, "Hold out every Nth view when the capture has no test split; 0: none")
+  verb->add_option("--format", o->request.options.format,
+                   "nerf-synthetic or physg (default: told by the files)");
+  verb->add_option("--test-every", o->request.options.test_every,
+                   "Hold out every Nth view when the capture has no test split; 0: none")
       ->capture_default_str();
-  verb->add_option("-o,--output", o->request.picture, "Draw the cameras and the object's bounding sphere into this PNG");
+  verb->add_option("-o,--output", o->request.picture,
+                   "Draw the cameras and the object's bounding sphere into this PNG");
   commands.on(verb, o, run_check);
 }
 

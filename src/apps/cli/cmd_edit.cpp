@@ -12,27 +12,35 @@ struct PaintOptions {
 
 std::string paint_text(const PaintSummary& r) {
   std::string text = fmt::format(
-      "{}: {} painted pixels on {} handler points; trace {:.2f} s, fit {:.2f} s, load and store {:.2f} s; colour error {:.4f} mean.",
-      r.id, r.painted_pixels, r.points, r.trace_seconds, r.train_seconds, r.load_seconds + r.store_seconds, r.mean_error);
+      "{}: {} painted pixels on {} handler points; trace {:.2f} s, fit {:.2f} s, load and store {:.2f} s; "
+      "colour error {:.4f} mean.",
+      r.id, r.painted_pixels, r.points, r.trace_seconds, r.train_seconds, r.load_seconds + r.store_seconds,
+      r.mean_error);
   if (r.missed_pixels > 0)
-    text += fmt::format(" {} painted pixels are beside the object or on surface that turns away; they paint nothing.",
-                        r.missed_pixels);
+    text += fmt::format(
+        " {} painted pixels are beside the object or on surface that turns away; they paint nothing.",
+        r.missed_pixels);
   return text;
 }
 
 void add_paint(Commands& commands, CLI::App* edit, std::shared_ptr<std::string> project) {
   auto o = std::make_shared<PaintOptions>();
   CLI::App* verb = commands.add("paint", "Paint on the surface that one view shows", edit);
-  verb->add_option("--view", o->command.view, "The view painted on: train/r_055, or r_055 (then the training view)")->required();
-  verb->add_option("--scribble", o->command.scribble,
-                   "RGBA PNG of the view's size; where alpha is at least one half, its sRGB colour becomes the base colour")
+  verb->add_option("--view", o->command.view,
+                   "The view painted on: train/r_055, or r_055 (then the training view)")
       ->required();
-  verb->add_option("--target", o->target, "What the painted colour means: albedo, the base colour without light")
+  verb->add_option("--scribble", o->command.scribble,
+                   "RGBA PNG of the view's size; where alpha is at least one half, its sRGB colour becomes "
+                   "the base colour")
+      ->required();
+  verb->add_option("--target", o->target,
+                   "What the painted colour means: albedo, the base colour without light")
       ->check(CLI::IsMember({"albedo"}))
       ->capture_default_str();
   verb->add_option("--seed", o->command.seed, "Of everything random in the edit")->capture_default_str();
   commands.on(verb, o, [project](const PaintOptions& options, Session& session, Console& console) {
-    if (project->empty()) fail_usage("edit needs a PROJECT: cei3d edit PROJECT paint --view NAME --scribble FILE.png.");
+    if (project->empty())
+      fail_usage("edit needs a PROJECT: cei3d edit PROJECT paint --view NAME --scribble FILE.png.");
     session.open(*project, Session::Access::write);
     const PaintSummary r = session.paint(options.command, console);
     console.done(r.json(), paint_text(r));

@@ -15,7 +15,9 @@ struct Options {
 void evaluate(const Options& o, Session& session, Console& console) {
   EvalRequest request = o.request;
   if (request.edit.empty() != request.truth.empty() || request.edit.empty() != request.masks.empty())
-    fail_usage("--edit, --truth and --mask belong together: which edit, how it should look, and where it should be.");
+    fail_usage(
+        "--edit, --truth and --mask belong together: which edit, how it should look, and where it should "
+        "be.");
   if (!o.capture.empty()) {
     const CaptureSpec spec = parse_capture_spec(o.capture);
     request.capture = spec.path;
@@ -32,9 +34,11 @@ void evaluate(const Options& o, Session& session, Console& console) {
 
 void add_eval(Commands& commands) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("eval", "Compare rendered with real views: PSNR and SSIM, on white and inside the object mask");
+  CLI::App* verb = commands.add(
+      "eval", "Compare rendered with real views: PSNR and SSIM, on white and inside the object mask");
   verb->add_option("project", o->project, "Project folder")->required();
-  verb->add_option("capture", o->capture, "CAPTURE or CAPTURE:split (default: the project's own held-out views)");
+  verb->add_option("capture", o->capture,
+                   "CAPTURE or CAPTURE:split (default: the project's own held-out views)");
   // Here --json may name a file; without one it is the flag that it is everywhere.
   verb->add_option_function<std::vector<std::string>>(
           "--json",
@@ -44,11 +48,16 @@ void add_eval(Commands& commands) {
           },
           "Write the scores to this file as JSON; without a file: print them")
       ->expected(0, 1);
-  verb->add_option("--samples", o->request.samples, "Sub-pixel samples per axis")->check(CLI::Range(1, 16))->capture_default_str();
-  verb->add_option("--edit", o->request.edit, "Also score this edit (an id of `log`): fidelity inside its mask, leakage outside");
-  verb->add_option("--truth", o->request.truth, "With --edit: folder of pictures of the edited object, named like the views")
+  verb->add_option("--samples", o->request.samples, "Sub-pixel samples per axis")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  verb->add_option("--edit", o->request.edit,
+                   "Also score this edit (an id of `log`): fidelity inside its mask, leakage outside");
+  verb->add_option("--truth", o->request.truth,
+                   "With --edit: folder of pictures of the edited object, named like the views")
       ->check(CLI::ExistingDirectory);
-  verb->add_option("--mask", o->request.masks, "With --edit: folder of masks, bright where the edit should be")
+  verb->add_option("--mask", o->request.masks,
+                   "With --edit: folder of masks, bright where the edit should be")
       ->check(CLI::ExistingDirectory);
   commands.on(verb, o, evaluate);
 }

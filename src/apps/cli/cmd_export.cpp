@@ -30,10 +30,12 @@ void add_export(Commands& commands) {
   CLI::App* verb = commands.add("export", "Write the object, edits included, as a file for other programs");
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("-o,--output", o->request.out,
-                   ".glb or .ply: mesh with base colour per vertex, in the capture's frame and scale; .npy: light lobes [M,7] "
+                   ".glb or .ply: mesh with base colour per vertex, in the capture's frame and scale; .npy: "
+                   "light lobes [M,7] "
                    "(axis, sharpness, RGB amplitude)")
       ->required();
-  verb->add_flag("--points", o->request.points, "With .ply: the handler points with their normals instead of the mesh");
+  verb->add_flag("--points", o->request.points,
+                 "With .ply: the handler points with their normals instead of the mesh");
   commands.on(verb, o, export_object);
 }
 

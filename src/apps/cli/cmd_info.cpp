@@ -13,16 +13,19 @@ struct Options {
 };
 
 std::string project_text(const ProjectInfo& i) {
-  std::string text = fmt::format("project     {}\ncapture     {} ({}; {} train, {} val, {} test views)\n", i.folder.string(),
-                                 i.capture_root.string(), i.capture_format, i.views[0], i.views[1], i.views[2]);
+  std::string text =
+      fmt::format("project     {}\ncapture     {} ({}; {} train, {} val, {} test views)\n", i.folder.string(),
+                  i.capture_root.string(), i.capture_format, i.views[0], i.views[1], i.views[2]);
   const Vec3d c = i.normalization.center;
-  text += fmt::format("frame       unit sphere = (p - ({:.4g}, {:.4g}, {:.4g})) * {:.4g}\n", c.x, c.y, c.z, i.normalization.scale);
+  text += fmt::format("frame       unit sphere = (p - ({:.4g}, {:.4g}, {:.4g})) * {:.4g}\n", c.x, c.y, c.z,
+                      i.normalization.scale);
   text += fmt::format("options     {}\n", i.options.dump());
   if (i.finished) {
     text += fmt::format("surface     {} vertices, {} triangles\n", i.vertices, i.triangles);
-    text += fmt::format("handlers    {} points, {:.4g} apart (capture units)\n", i.handler_points, i.handler_spacing);
-    text += fmt::format("material    roughness {:.3f}, specular {:.3f}, metalness {:.3f}\n", i.material.roughness,
-                        i.material.specular, i.material.metalness);
+    text += fmt::format("handlers    {} points, {:.4g} apart (capture units)\n", i.handler_points,
+                        i.handler_spacing);
+    text += fmt::format("material    roughness {:.3f}, specular {:.3f}, metalness {:.3f}\n",
+                        i.material.roughness, i.material.specular, i.material.metalness);
     text += fmt::format("light       {} lobes\n", i.lobes);
     text += fmt::format("edits       {}, {} of them on\n", i.edits, i.edits_active);
   } else {
@@ -41,17 +44,21 @@ void info(const Options& o, Session& session, Console& console) {
   const Capture c = load_capture(parse_capture_spec(o.what).path);
   size_t count[3] = {0, 0, 0};
   for (const View& v : c.views) ++count[size_t(v.split)];
-  console.answer({{"root", c.root.string()}, {"format", c.format}, {"views", {{"train", count[0]}, {"val", count[1]}, {"test", count[2]}}}},
-                 fmt::format("capture     {} ({}; {} train, {} val, {} test views)\n", c.root.string(), c.format, count[0], count[1],
-                             count[2]));
+  console.answer({{"root", c.root.string()},
+                  {"format", c.format},
+                  {"views", {{"train", count[0]}, {"val", count[1]}, {"test", count[2]}}}},
+                 fmt::format("capture     {} ({}; {} train, {} val, {} test views)\n", c.root.string(),
+                             c.format, count[0], count[1], count[2]));
 }
 
 void doctor(const Options&, Session&, Console& console) {
   const MachineInfo m = Session::machine();
   std::string devices;
   for (const std::string& d : m.devices) devices += (devices.empty() ? "" : ", ") + d;
-  console.answer(m.json(), fmt::format("cei3d       {}\nprocessor   {}\ncores       {}\nmemory      {:.1f} GiB\ndevices     {} (auto: {})\n",
-                                       m.program, m.processor, m.cores, m.memory_gib, devices, m.devices.back()));
+  console.answer(m.json(),
+                 fmt::format("cei3d       {}\nprocessor   {}\ncores       {}\nmemory      {:.1f} "
+                             "GiB\ndevices     {} (auto: {})\n",
+                             m.program, m.processor, m.cores, m.memory_gib, devices, m.devices.back()));
 }
 
 }  // namespace

@@ -51,7 +51,8 @@ CLI::App* add_verb(Commands& commands, const char* name, const char* help, F run
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add(name, help);
   verb->add_option("project", o->project, "Project folder")->required();
-  if (std::string(name) == "toggle") verb->add_option("id", o->id, "Name of the edit, as `log` lists it")->required();
+  if (std::string(name) == "toggle")
+    verb->add_option("id", o->id, "Name of the edit, as `log` lists it")->required();
   commands.on(verb, o, run);
   return verb;
 }

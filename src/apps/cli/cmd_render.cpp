@@ -34,38 +34,51 @@ void render(const Options& o, Session& session, Console& console) {
   const RenderRequest request = request_of(o);
   session.open(o.project, Session::Access::read);
   const RenderReport r = session.render(request, console);
-  console.done(r.json(), fmt::format("{}: {} view{}, {} channel{} in {:.1f} s ({:.2f} s a view: trace {:.2f}, shade {:.2f}).",
-                                     o.out, r.views, r.views == 1 ? "" : "s", r.folders.size(),
-                                     r.folders.size() == 1 ? "" : "s", r.seconds, r.seconds / double(r.views),
-                                     r.trace_seconds / double(r.views), r.shade_seconds / double(r.views)));
+  console.done(
+      r.json(),
+      fmt::format("{}: {} view{}, {} channel{} in {:.1f} s ({:.2f} s a view: trace {:.2f}, shade {:.2f}).",
+                  o.out, r.views, r.views == 1 ? "" : "s", r.folders.size(), r.folders.size() == 1 ? "" : "s",
+                  r.seconds, r.seconds / double(r.views), r.trace_seconds / double(r.views),
+                  r.shade_seconds / double(r.views)));
 }
 
 }  // namespace
 
 void add_render(Commands& commands) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("render", "Render pictures of a project: DIR/CHANNEL/VIEW.png, and DIR/render.json");
+  CLI::App* verb =
+      commands.add("render", "Render pictures of a project: DIR/CHANNEL/VIEW.png, and DIR/render.json");
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("-o,--output", o->out, "Folder for the pictures")->required();
-  CLI::Option* cameras = verb->add_option(
-      "--cameras", o->cameras,
-      "CAPTURE, CAPTURE:train, :val or :test, or a FILE.json of cameras such as a render.json (default: the project's held-out "
-      "views, all views when it has none)");
-  verb->add_option("--turntable", o->turntable, "N views on a circle about the up axis, as far and as high as the cameras were")
+  CLI::Option* cameras = verb->add_option("--cameras", o->cameras,
+                                          "CAPTURE, CAPTURE:train, :val or :test, or a FILE.json of cameras "
+                                          "such as a render.json (default: the project's held-out "
+                                          "views, all views when it has none)");
+  verb->add_option("--turntable", o->turntable,
+                   "N views on a circle about the up axis, as far and as high as the cameras were")
       ->check(CLI::Range(1, 100000))
       ->excludes(cameras);
-  verb->add_option("--channels", o->channels,
-                   "Comma-separated: rgb, albedo, diffuse, specular (RGBA, sRGB, straight alpha), normal (world space of the "
-                   "capture, (n+1)/2, 16-bit), depth (z-depth, 16-bit, scale in render.json), roughness, mask (grey)")
+  verb->add_option(
+          "--channels", o->channels,
+          "Comma-separated: rgb, albedo, diffuse, specular (RGBA, sRGB, straight alpha), normal (world space "
+          "of the "
+          "capture, (n+1)/2, 16-bit), depth (z-depth, 16-bit, scale in render.json), roughness, mask (grey)")
       ->capture_default_str();
-  verb->add_option("--size", o->size, "Size in pixels, WxH; the field of view stays (default: the cameras' own)");
-  verb->add_option("--samples", o->samples, "Sub-pixel samples per axis")->check(CLI::Range(1, 16))->capture_default_str();
+  verb->add_option("--size", o->size,
+                   "Size in pixels, WxH; the field of view stays (default: the cameras' own)");
+  verb->add_option("--samples", o->samples, "Sub-pixel samples per axis")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
   CLI::Option* env =
-      verb->add_option("--env", o->env, "Light the object by this latitude-longitude picture (.hdr, .exr) instead of its own light")
+      verb->add_option(
+              "--env", o->env,
+              "Light the object by this latitude-longitude picture (.hdr, .exr) instead of its own light")
           ->check(CLI::ExistingFile);
-  verb->add_option("--env-rotate", o->rotate, "Turn the light about the up axis, degrees, counter-clockwise seen from above")
+  verb->add_option("--env-rotate", o->rotate,
+                   "Turn the light about the up axis, degrees, counter-clockwise seen from above")
       ->capture_default_str();
-  verb->add_option("--env-convention", o->convention, "Axes of the picture: zup, yup, mitsuba, blender (default: by the capture's up axis)")
+  verb->add_option("--env-convention", o->convention,
+                   "Axes of the picture: zup, yup, mitsuba, blender (default: by the capture's up axis)")
       ->needs(env);
   commands.on(verb, o, render);
 }

@@ -32,7 +32,8 @@ class Commands {
   // What the verb does. Options: a struct that lives as long as the command line does.
   template <class Options, class F>
   void on(CLI::App* verb, std::shared_ptr<Options> options, F run) {
-    verb->callback([this, options, run] { run_ = [options, run](Session& s, Console& c) { run(*options, s, c); }; });
+    verb->callback(
+        [this, options, run] { run_ = [options, run](Session& s, Console& c) { run(*options, s, c); }; });
   }
   void run(Console& console) const {
     Session session(common_.device, common_.threads);
@@ -53,7 +54,7 @@ void add_edit(Commands&);
 void add_history(Commands&);  // log, undo, redo, toggle
 void add_export(Commands&);
 void add_eval(Commands&);
-void add_info(Commands&);     // info, doctor
+void add_info(Commands&);  // info, doctor
 void add_bench(Commands&);
 
 }  // namespace cei3d

@@ -78,8 +78,8 @@ void Console::report(const ProgressReport& r) {
 }
 
 void Console::draw_bar(const ProgressReport& r, double seconds_left) {
-  err_ << fmt::format("\r\x1b[K{:<11}[{}] {:3.0f}%  {}  {}", r.stage, bar(r.fraction), 100 * r.fraction, left(seconds_left),
-                      r.message)
+  err_ << fmt::format("\r\x1b[K{:<11}[{}] {:3.0f}%  {}  {}", r.stage, bar(r.fraction), 100 * r.fraction,
+                      left(seconds_left), r.message)
        << std::flush;
   bar_drawn_ = true;
 }

@@ -3,7 +3,8 @@
 
 namespace cei3d {
 
-// From now on Ctrl-C and SIGTERM ask the running work to save and stop; the second one ends the program at once.
+// From now on Ctrl-C and SIGTERM ask the running work to save and stop; the second one ends the program at
+// once.
 void catch_interrupts();
 bool interrupted();
 

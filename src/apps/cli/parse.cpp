@@ -41,15 +41,17 @@ double parse_duration(const std::string& text) {
 
 std::string duration_text(double seconds) {
   const long s = std::lround(seconds);
-  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
+                  : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
 PictureSize parse_size(const std::string& text) {
   PictureSize size;
   char x = 0, rest = 0;
-  if (std::sscanf(text.c_str(), "%d%c%d%c", &size.width, &x, &size.height, &rest) != 3 || x != 'x' || size.width < 1 ||
-      size.height < 1 || size.width > 65535 || size.height > 65535)
-    fail_usage("--size '{}' is not a picture size; write it as WIDTHxHEIGHT in pixels, for example 800x600.", text);
+  if (std::sscanf(text.c_str(), "%d%c%d%c", &size.width, &x, &size.height, &rest) != 3 || x != 'x' ||
+      size.width < 1 || size.height < 1 || size.width > 65535 || size.height > 65535)
+    fail_usage("--size '{}' is not a picture size; write it as WIDTHxHEIGHT in pixels, for example 800x600.",
+               text);
   return size;
 }
 
@@ -58,7 +60,11 @@ std::vector<Channel> parse_channels(const std::string& text) {
   std::istringstream in(text);
   for (std::string word; std::getline(in, word, ',');) {
     const std::optional<Channel> c = channel_from_name(word);
-    if (!c) fail_usage("There is no channel '{}'; there are rgb, albedo, diffuse, specular, normal, depth, roughness, mask.", word);
+    if (!c)
+      fail_usage(
+          "There is no channel '{}'; there are rgb, albedo, diffuse, specular, normal, depth, roughness, "
+          "mask.",
+          word);
     channels.push_back(*c);
   }
   if (channels.empty()) fail_usage("--channels names no channel; for example --channels rgb,normal.");

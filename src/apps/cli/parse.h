@@ -14,8 +14,8 @@ std::string duration_text(double seconds);       // "0:07", "12:30", "1:02:03"
 struct PictureSize {
   int width = 0, height = 0;
 };
-PictureSize parse_size(const std::string& text);                // "800x600"
-std::vector<Channel> parse_channels(const std::string& text);   // "rgb,normal"
+PictureSize parse_size(const std::string& text);               // "800x600"
+std::vector<Channel> parse_channels(const std::string& text);  // "rgb,normal"
 EnvConvention parse_env_convention(const std::string& text);
 // "FILE.json" that lists cameras of ours, else a capture with or without ":split".
 CameraChoice parse_cameras(const std::string& text);

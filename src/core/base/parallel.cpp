@@ -10,7 +10,8 @@
 namespace cei3d {
 
 void parallel_for(int chunks, const std::function<void(int)>& body) {
-  tbb::parallel_for(0, chunks, [&](int i) { body(i); }, tbb::simple_partitioner());
+  tbb::parallel_for(
+      0, chunks, [&](int i) { body(i); }, tbb::simple_partitioner());
 }
 
 void parallel_ranges(int n, int grain, const std::function<void(int, int)>& body) {

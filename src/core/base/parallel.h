@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads. Work is cut into chunks whose borders do not depend on the number of threads, so results don't either.
+// Threads. Work is cut into chunks whose borders do not depend on the number of threads, so results don't
+// either.
 #pragma once
 
 #include <functional>

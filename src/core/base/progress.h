@@ -7,10 +7,10 @@
 namespace cei3d {
 
 struct ProgressReport {
-  std::string stage;          // "geometry", "light", "albedo", ...
-  double fraction = 0;        // of the whole job, [0, 1]
-  double seconds_left = -1;   // estimate; negative: unknown
-  std::string message;        // "loss 0.0123, PSNR 31.2 dB"
+  std::string stage;         // "geometry", "light", "albedo", ...
+  double fraction = 0;       // of the whole job, [0, 1]
+  double seconds_left = -1;  // estimate; negative: unknown
+  std::string message;       // "loss 0.0123, PSNR 31.2 dB"
 };
 
 class Progress {

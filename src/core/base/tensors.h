@@ -12,13 +12,13 @@ namespace cei3d {
 
 struct Tensor {
   std::vector<int64_t> shape;
-  std::vector<float> f32;     // exactly one of f32 and u8 is used
+  std::vector<float> f32;  // exactly one of f32 and u8 is used
   std::vector<uint8_t> u8;
 };
 using Tensors = std::map<std::string, Tensor>;
 
-// Whole-file read and atomic write (temporary name, fsync, rename) in the safetensors format (dtypes F32 and U8).
-// Errors: missing, truncated or malformed file; a full disk (the old file then stands untouched).
+// Whole-file read and atomic write (temporary name, fsync, rename) in the safetensors format (dtypes F32 and
+// U8). Errors: missing, truncated or malformed file; a full disk (the old file then stands untouched).
 Tensors read_tensors(const std::filesystem::path&);
 void write_tensors(const std::filesystem::path&, const Tensors&);
 std::string tensors_to_bytes(const Tensors&);

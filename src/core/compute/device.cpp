@@ -21,8 +21,8 @@ std::vector<Device> all_devices() {
   std::vector<Device> devices{Device(scalar::table)};
 #ifdef CEI3D_X86
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) devices.emplace_back(avx2::table);
-  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw") &&
-      __builtin_cpu_supports("avx512vl"))
+  if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+      __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
     devices.emplace_back(avx512::table);
 #endif
   return devices;

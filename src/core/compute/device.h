@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The machine that kernels run on. A CPU device runs a launch on the calling thread; threads come from cutting work
-// into chunks with parallel_for. Devices have no state and can be shared by threads.
+// The machine that kernels run on. A CPU device runs a launch on the calling thread; threads come from
+// cutting work into chunks with parallel_for. Devices have no state and can be shared by threads.
 #pragma once
 
 #include <memory>
@@ -15,13 +15,14 @@ namespace cei3d {
 
 // What one instruction set offers: compiled from cpu/run.cpp.
 struct LaunchTable {
-  const char* isa;   // "scalar", "avx2", "avx512"
-  int width;         // samples a register
+  const char* isa;  // "scalar", "avx2", "avx512"
+  int width;        // samples a register
   void (*const* kernels)(const void* args, int n);
   void (*linear)(const LinearArgs&);
   void (*linear_weight_grad)(const LinearWeightGradArgs&);
   double (*fma_peak)();  // spins on multiply-adds in registers; FLOPs done, for the caller to time
-  double (*gather_peak)(const float* pairs, uint32_t mask);  // random 8-byte gathers from mask + 1 pairs; how many
+  double (*gather_peak)(const float* pairs,
+                        uint32_t mask);  // random 8-byte gathers from mask + 1 pairs; how many
 };
 
 class Device {
@@ -45,8 +46,8 @@ class Device {
   std::string name_;
 };
 
-// spec: "auto" or "cpu" (the widest instruction set this processor has), "cpu/scalar", "cpu/avx2", "cpu/avx512".
-// Errors: usage error for anything else, or for an instruction set this processor lacks.
+// spec: "auto" or "cpu" (the widest instruction set this processor has), "cpu/scalar", "cpu/avx2",
+// "cpu/avx512". Errors: usage error for anything else, or for an instruction set this processor lacks.
 Device make_device(std::string_view spec = "auto");
 
 // Every CPU device this processor can run; the scalar one, the reference of parity tests, first.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same kernels on every device of this machine against the scalar one, from one list of cases; linear layers against
-// plain loops in double.
+// The same kernels on every device of this machine against the scalar one, from one list of cases; linear
+// layers against plain loops in double.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -55,7 +55,8 @@ std::vector<float> adam_case(const Device& device, bool skip_zero) {
   auto value = noise(kN, 6), gradient = noise(kN, 7), m = noise(kN, 8, 0.1f), v = noise(kN, 9, 0.1f);
   for (float& x : v) x = std::abs(x);
   for (int i = 0; i < kN; i += 3) gradient[i] = 0;
-  device.launch<Adam>({{0.01f, 0.9f, 0.99f, 1e-8f, skip_zero}, value.data(), gradient.data(), m.data(), v.data()}, kN);
+  device.launch<Adam>(
+      {{0.01f, 0.9f, 0.99f, 1e-8f, skip_zero}, value.data(), gradient.data(), m.data(), v.data()}, kN);
   value.insert(value.end(), m.begin(), m.end());
   value.insert(value.end(), v.begin(), v.end());
   value.insert(value.end(), gradient.begin(), gradient.end());
@@ -64,10 +65,13 @@ std::vector<float> adam_case(const Device& device, bool skip_zero) {
 
 constexpr int kFeatures = 4;
 struct RadianceData {
-  std::vector<float> points = noise(kN * 3, 10), directions = noise(kN * 3, 11), sdf = noise(kN * 4 * (1 + kFeatures), 12),
+  std::vector<float> points = noise(kN * 3, 10), directions = noise(kN * 3, 11),
+                     sdf = noise(kN * 4 * (1 + kFeatures), 12),
                      d_sdf = std::vector<float>(kN * 4 * (1 + kFeatures), 0.0f),
                      input = std::vector<float>(kN * radiance_rows(kFeatures), 0.0f);
-  RadianceArgs forward() { return {points.data(), directions.data(), sdf.data(), nullptr, input.data(), kFeatures}; }
+  RadianceArgs forward() {
+    return {points.data(), directions.data(), sdf.data(), nullptr, input.data(), kFeatures};
+  }
 };
 
 std::vector<float> radiance_case(const Device& device, bool gradient) {
@@ -77,7 +81,8 @@ std::vector<float> radiance_case(const Device& device, bool gradient) {
     return d.input;
   }
   d.input = noise(d.input.size(), 13);
-  device.launch<RadianceInputGrad>({d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures}, kN);
+  device.launch<RadianceInputGrad>(
+      {d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures}, kN);
   return d.d_sdf;
 }
 
@@ -139,7 +144,8 @@ TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
   RadianceData d;
   const auto weights = noise(d.input.size(), 20);
   d.input = weights;
-  device.launch<RadianceInputGrad>({d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures}, kN);
+  device.launch<RadianceInputGrad>(
+      {d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures}, kN);
   const auto loss = [&](int sample) {
     device.launch<RadianceInput>(d.forward(), kN);
     double sum = 0;
@@ -164,7 +170,8 @@ TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
       const double down = loss(i);
       v = keep;
       const double want = (up - down) / (2 * double(h));
-      EXPECT_NEAR(d.d_sdf[panel_at(i, 4, column, 1 + kFeatures, row)], want, 0.01 * (1 + std::abs(want))) << i << " " << column;
+      EXPECT_NEAR(d.d_sdf[panel_at(i, 4, column, 1 + kFeatures, row)], want, 0.01 * (1 + std::abs(want)))
+          << i << " " << column;
     }
   }
   EXPECT_GT(checked, 10);
@@ -178,7 +185,8 @@ TEST(Linear, EqualsPlainLoopsWithBiasOnValuePanelsOnly) {
     device.linear({panels, in, out, x.data(), x_stride, w.data(), in, b.data(), 4, y.data(), y_stride});
     const auto d_y = noise(y.size(), 4);
     std::vector<float> d_w(in * out, 0.5f), d_b(out, 0.25f);
-    device.linear_weight_grad({panels, in, out, x.data(), x_stride, d_y.data(), y_stride, d_w.data(), in, d_b.data(), 4});
+    device.linear_weight_grad(
+        {panels, in, out, x.data(), x_stride, d_y.data(), y_stride, d_w.data(), in, d_b.data(), 4});
     std::vector<double> want_w(in * out, 0.5), want_b(out, 0.25);
     for (int p = 0; p < panels; ++p)
       for (int s = 0; s < kPanel; ++s) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Linear layers over panels, the first of the three things each backend writes itself (architecture 2.4).
 //
-// A panel holds 32 samples, feature-major: [feature][32]. A batch is a sequence of panels, `stride` rows of 32 apart.
+// A panel holds 32 samples, feature-major: [feature][32]. A batch is a sequence of panels, `stride` rows of
+// 32 apart.
 #pragma once
 
 namespace cei3d {
@@ -16,12 +17,13 @@ struct LinearArgs {
   const float* weights;  // [out][weight_stride]
   int weight_stride;     // floats from one output's row to the next
   const float* bias;     // [out] or null
-  int bias_every;        // bias goes to panels 0, bias_every, 2 bias_every, ... (4 for jets: the value panels)
-  float* y;              // [panels][y_stride][32]; rows [0, out) are written
+  int bias_every;  // bias goes to panels 0, bias_every, 2 bias_every, ... (4 for jets: the value panels)
+  float* y;        // [panels][y_stride][32]; rows [0, out) are written
   int y_stride;
 };
 
-// d_weights[o][i] += sum over samples of d_y[o] x[i];  d_bias[o] += sum over the panels that the bias went to.
+// d_weights[o][i] += sum over samples of d_y[o] x[i];  d_bias[o] += sum over the panels that the bias went
+// to.
 struct LinearWeightGradArgs {
   int panels, in, out;
   const float* x;

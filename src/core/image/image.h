@@ -14,7 +14,8 @@ struct Image {
   std::vector<float> data;  // [height][width][channels]
 
   Image() = default;
-  Image(int w, int h, int c, float value = 0) : width(w), height(h), channels(c), data(size_t(w) * h * c, value) {}
+  Image(int w, int h, int c, float value = 0)
+      : width(w), height(h), channels(c), data(size_t(w) * h * c, value) {}
   float* at(int x, int y) { return &data[(size_t(y) * width + x) * channels]; }
   const float* at(int x, int y) const { return &data[(size_t(y) * width + x) * channels]; }
   Vec3f rgb(int x, int y) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Activations: value, first and second derivative; and how they act on a jet (a value and its three spatial
-// derivatives), forward and backward. With z the input, s = sigma(z), a jet (z, dz_c) becomes (s, s' dz_c); the
-// adjoints are  z~ = v~ s' + sum_c d~_c s'' dz_c,  dz~_c = d~_c s'.  [architecture 2.6]
+// derivatives), forward and backward. With z the input, s = sigma(z), a jet (z, dz_c) becomes (s, s' dz_c);
+// the adjoints are  z~ = v~ s' + sum_c d~_c s'' dz_c,  dz~_c = d~_c s'.  [architecture 2.6]
 #pragma once
 
 #include "core/math/scalar.h"
@@ -34,7 +34,7 @@ struct Softplus {  // log(1 + e^(beta z)) / beta, in the form that neither overf
   template <class T>
   HD static ActivationValue<T> eval(T z, float beta) {
     const T b = T(beta), x = b * z;
-    const T e = exp(-abs(x));                    // in (0, 1]
+    const T e = exp(-abs(x));  // in (0, 1]
     const T inverse = T(1.0f) / (T(1.0f) + e);
     const T sigma = select(x > T(0.0f), inverse, e * inverse);
     return {max(z, T(0.0f)) + log(T(1.0f) + e) / b, sigma, b * sigma * (T(1.0f) - sigma)};

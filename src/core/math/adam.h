@@ -6,9 +6,9 @@
 namespace cei3d {
 
 struct AdamStep {
-  float rate;              // learning rate, bias correction included: lr sqrt(1 - beta2^t) / (1 - beta1^t)
-  float beta1, beta2, eps; // [Kingma and Ba 2015]
-  bool skip_zero;          // leave entries without gradient alone (hash tables: most are untouched in a step)
+  float rate;               // learning rate, bias correction included: lr sqrt(1 - beta2^t) / (1 - beta1^t)
+  float beta1, beta2, eps;  // [Kingma and Ba 2015]
+  bool skip_zero;  // leave entries without gradient alone (hash tables: most are untouched in a step)
 };
 
 // One parameter's update.

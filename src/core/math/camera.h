@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pinhole camera. OpenCV axes: x right, y down, z into the scene. Pixel (column, row) covers [c, c+1) x [r, r+1);
-// its centre is at +0.5. Loaders convert other conventions on the way in.
+// Pinhole camera. OpenCV axes: x right, y down, z into the scene. Pixel (column, row) covers [c, c+1) x [r,
+// r+1); its centre is at +0.5. Loaders convert other conventions on the way in.
 #pragma once
 
 #include "core/math/vec.h"
@@ -12,10 +12,10 @@ struct Ray {
 };
 
 struct Camera {
-  int width = 0, height = 0;                         // pixels
-  double fx = 0, fy = 0, cx = 0, cy = 0, skew = 0;   // pixels
-  Mat3d world_from_cam = Mat3d::identity();          // rotation
-  Vec3d center{0, 0, 0};                             // camera centre in world units
+  int width = 0, height = 0;                        // pixels
+  double fx = 0, fy = 0, cx = 0, cy = 0, skew = 0;  // pixels
+  Mat3d world_from_cam = Mat3d::identity();         // rotation
+  Vec3d center{0, 0, 0};                            // camera centre in world units
 
   // Ray through the continuous pixel position (u, v).
   Ray ray(double u, double v) const {
@@ -28,10 +28,13 @@ struct Camera {
     const Vec3d c = transpose(world_from_cam) * (p - center);
     return {(fx * c.x + skew * c.y) / c.z + cx, fy * c.y / c.z + cy, c.z};
   }
-  Vec3f forward() const { return to_float(Vec3d{world_from_cam.row[0].z, world_from_cam.row[1].z, world_from_cam.row[2].z}); }
+  Vec3f forward() const {
+    return to_float(Vec3d{world_from_cam.row[0].z, world_from_cam.row[1].z, world_from_cam.row[2].z});
+  }
 };
 
-// The same camera for a picture at 1/n of the size; columns and rows that don't fill an n x n block are cut off.
+// The same camera for a picture at 1/n of the size; columns and rows that don't fill an n x n block are cut
+// off.
 inline Camera scaled(Camera c, int n) {
   c.width /= n;
   c.height /= n;

@@ -9,7 +9,9 @@ namespace cei3d {
 inline float srgb_from_linear(float c) {
   return c <= 0.0031308f ? 12.92f * c : 1.055f * ::powf(c, 1 / 2.4f) - 0.055f;
 }
-inline float linear_from_srgb(float c) { return c <= 0.04045f ? c / 12.92f : ::powf((c + 0.055f) / 1.055f, 2.4f); }
+inline float linear_from_srgb(float c) {
+  return c <= 0.04045f ? c / 12.92f : ::powf((c + 0.055f) / 1.055f, 2.4f);
+}
 inline Vec3f srgb_from_linear(Vec3f c) {
   return {srgb_from_linear(c.x), srgb_from_linear(c.y), srgb_from_linear(c.z)};
 }

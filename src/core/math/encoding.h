@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encodings of a point in [-1, 1]^3: one level of a multi-resolution hash grid (trilinear) and the frequency encoding.
-// [Mueller et al. 2022, sec. 3; paper sec. 3.1; reference-facts 2.1]
+// Encodings of a point in [-1, 1]^3: one level of a multi-resolution hash grid (trilinear) and the frequency
+// encoding. [Mueller et al. 2022, sec. 3; paper sec. 3.1; reference-facts 2.1]
 #pragma once
 
 #include "core/math/vec.h"
 
 namespace cei3d {
 
-// One level of the grid: `resolution` cells along [-1, 1]. Levels whose (resolution + 1)^3 corners fit the table are
-// indexed densely (hash_mask 0), the others by a spatial hash.
+// One level of the grid: `resolution` cells along [-1, 1]. Levels whose (resolution + 1)^3 corners fit the
+// table are indexed densely (hash_mask 0), the others by a spatial hash.
 struct GridLevel {
   float resolution;
   uint32_t dense_stride;  // corners along an axis
@@ -31,7 +31,8 @@ struct GridCell {
   HD GridCell(const GridLevel& g, Vec3<T> p) {
     const T half = T(0.5f * g.resolution), top = T(g.resolution - 1.0f);
     const Vec3<T> u{(p.x + T(1.0f)) * half, (p.y + T(1.0f)) * half, (p.z + T(1.0f)) * half};
-    const Vec3<T> c{clamp(floor(u.x), T(0.0f), top), clamp(floor(u.y), T(0.0f), top), clamp(floor(u.z), T(0.0f), top)};
+    const Vec3<T> c{clamp(floor(u.x), T(0.0f), top), clamp(floor(u.y), T(0.0f), top),
+                    clamp(floor(u.z), T(0.0f), top)};
     t = u - c;
     x = to_index<T>(c.x);
     y = to_index<T>(c.y);
@@ -41,9 +42,7 @@ struct GridCell {
     using I = Index<T>;
     return corner_index<T>(g, x + I(uint32_t(k & 1)), y + I(uint32_t(k >> 1 & 1)), z + I(uint32_t(k >> 2)));
   }
-  HD T weight(int k) const {
-    return axis(t.x, k & 1) * axis(t.y, k >> 1 & 1) * axis(t.z, k >> 2);
-  }
+  HD T weight(int k) const { return axis(t.x, k & 1) * axis(t.y, k >> 1 & 1) * axis(t.z, k >> 2); }
   // d weight / d p
   HD Vec3<T> weight_gradient(const GridLevel& g, int k) const {
     const T half = T(0.5f * g.resolution);

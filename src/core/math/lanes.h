@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // W floats in one register, with the vocabulary of scalar.h. Included only by files that are compiled for one
-// instruction set (core/compute/cpu/run.cpp); W is the native width there, since wider vectors are lowered badly.
+// instruction set (core/compute/cpu/run.cpp); W is the native width there, since wider vectors are lowered
+// badly.
 #pragma once
 
 #include <immintrin.h>
@@ -142,7 +143,8 @@ HD typename Reg<W>::i truncate(Lanes<W> a) {
   return __builtin_convertvector(a.v, typename Reg<W>::i);
 }
 
-// e^x to 2 ulp or so: x = n ln 2 + r, |r| <= ln 2 / 2, Taylor polynomial of e^r. Saturates at about 1e-38 and 2e38.
+// e^x to 2 ulp or so: x = n ln 2 + r, |r| <= ln 2 / 2, Taylor polynomial of e^r. Saturates at about 1e-38 and
+// 2e38.
 template <int W>
 HD Lanes<W> exp(Lanes<W> x) {
   using L = Lanes<W>;
@@ -161,7 +163,8 @@ HD Lanes<W> exp(Lanes<W> x) {
   return p * L(typename Reg<W>::f(bits));
 }
 
-// ln x for x > 0 (denormals count as 1e-38): x = m 2^e, m in [sqrt 1/2, sqrt 2), ln m = 2 artanh((m - 1)/(m + 1)).
+// ln x for x > 0 (denormals count as 1e-38): x = m 2^e, m in [sqrt 1/2, sqrt 2), ln m = 2 artanh((m - 1)/(m +
+// 1)).
 template <int W>
 HD Lanes<W> log(Lanes<W> x) {
   using L = Lanes<W>;
@@ -189,7 +192,8 @@ HD void sin_cos(Lanes<W> x, Lanes<W>& s, Lanes<W>& c) {
   const L q = floor(x * L(0.636619772f) + L(0.5f));
   const L r = ((x - q * L(1.5703125f)) - q * L(4.83751297e-4f)) - q * L(7.5495e-8f);
   const L r2 = r * r;
-  const L sr = r + r * r2 * (L(-1.0f / 6) + r2 * (L(1.0f / 120) + r2 * (L(-1.0f / 5040) + r2 * L(1.0f / 362880))));
+  const L sr =
+      r + r * r2 * (L(-1.0f / 6) + r2 * (L(1.0f / 120) + r2 * (L(-1.0f / 5040) + r2 * L(1.0f / 362880))));
   const L cr = L(1.0f) + r2 * (L(-0.5f) + r2 * (L(1.0f / 24) + r2 * (L(-1.0f / 720) + r2 * L(1.0f / 40320))));
   const I n = truncate(q);
   const LaneMask<W> swap{(n & 1) != 0}, neg_s{(n & 2) != 0}, neg_c{((n + 1) & 2) != 0};
@@ -237,7 +241,8 @@ HD float sum_lanes(Lanes<8> a) {
 #ifdef __AVX512F__
 HD float sum_lanes(Lanes<16> a) {
   const __m512 v = __m512(a.v);
-  return sum_lanes(Lanes<8>(Reg<8>::f(_mm256_add_ps(_mm512_castps512_ps256(v), _mm512_extractf32x8_ps(v, 1)))));
+  return sum_lanes(
+      Lanes<8>(Reg<8>::f(_mm256_add_ps(_mm512_castps512_ps256(v), _mm512_extractf32x8_ps(v, 1)))));
 }
 #endif
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counter-based random numbers: a value is a function of (seed, step, item), so resuming equals never stopping.
+// Counter-based random numbers: a value is a function of (seed, step, item), so resuming equals never
+// stopping.
 #pragma once
 
 #include <cstdint>
@@ -18,14 +19,15 @@ HD uint64_t mix_bits(uint64_t x) {
 
 class Rng {
  public:
-  HD Rng(uint64_t seed, uint64_t step, uint64_t item) : state_(mix_bits(mix_bits(mix_bits(seed) ^ step) ^ item)) {}
+  HD Rng(uint64_t seed, uint64_t step, uint64_t item)
+      : state_(mix_bits(mix_bits(mix_bits(seed) ^ step) ^ item)) {}
   HD uint32_t bits() {
     state_ += 0x9e3779b97f4a7c15ull;
     return uint32_t(mix_bits(state_) >> 32);
   }
-  HD float uniform() { return float(bits() >> 8) * (1.0f / 16777216.0f); }               // [0, 1)
-  HD uint32_t below(uint32_t n) { return uint32_t((uint64_t(bits()) * n) >> 32); }        // [0, n)
-  HD float normal() {                                                                     // N(0, 1), Box-Muller
+  HD float uniform() { return float(bits() >> 8) * (1.0f / 16777216.0f); }          // [0, 1)
+  HD uint32_t below(uint32_t n) { return uint32_t((uint64_t(bits()) * n) >> 32); }  // [0, n)
+  HD float normal() {                                                               // N(0, 1), Box-Muller
     const float u = 1.0f - uniform(), v = uniform();
     return sqrt(-2.0f * log(u)) * cos(2.0f * kPi * v);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vocabulary that equations are written in. A number type T is float, double, Lanes<W> (core/math/lanes.h) or
-// Dual<...> (core/math/dual.h); equations use only + - * / and the functions below, never `if` on a value.
+// The vocabulary that equations are written in. A number type T is float, double, Lanes<W>
+// (core/math/lanes.h) or Dual<...> (core/math/dual.h); equations use only + - * / and the functions below,
+// never `if` on a value.
 #pragma once
 
 #include <cmath>

@@ -98,7 +98,8 @@ template <class T>
 HD Mat3<T> operator*(const Mat3<T>& a, const Mat3<T>& b) {
   const Mat3<T> bt = transpose(b);
   Mat3<T> c;
-  for (int i = 0; i < 3; ++i) c.row[i] = {dot(a.row[i], bt.row[0]), dot(a.row[i], bt.row[1]), dot(a.row[i], bt.row[2])};
+  for (int i = 0; i < 3; ++i)
+    c.row[i] = {dot(a.row[i], bt.row[0]), dot(a.row[i], bt.row[1]), dot(a.row[i], bt.row[2])};
   return c;
 }
 

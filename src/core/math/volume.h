@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volume rendering of a signed distance field, so that a surface can be found by descent. [Wang et al. 2021 (NeuS),
-// eq. 13 and its discrete form; reference-facts: preliminaries]
+// Volume rendering of a signed distance field, so that a surface can be found by descent. [Wang et al. 2021
+// (NeuS), eq. 13 and its discrete form; reference-facts: preliminaries]
 #pragma once
 
 #include "core/math/activation.h"
@@ -13,9 +13,10 @@ struct NeusSample {
   T d_sdf, d_cosine;  // of alpha
 };
 
-// Opacity of a segment of length `delta` whose middle has signed distance `sdf` and along which the distance changes by
-// `cosine` (gradient . direction) a unit; without that slope the zero set would shrink. `sharpness` is s of the logistic
-// density. NeuS softens the slope early in training; starting from the visual hull that costs 1 dB, so we don't.
+// Opacity of a segment of length `delta` whose middle has signed distance `sdf` and along which the distance
+// changes by `cosine` (gradient . direction) a unit; without that slope the zero set would shrink.
+// `sharpness` is s of the logistic density. NeuS softens the slope early in training; starting from the
+// visual hull that costs 1 dB, so we don't.
 template <class T>
 HD NeusSample<T> neus_alpha(T sdf, T cosine, T delta, T sharpness) {
   const T zero(0.0f), one(1.0f), half(0.5f), eps(1e-5f);

@@ -174,14 +174,17 @@ bool same_bytes(const Image& a, const Image& b, size_t pixel) {
          0;
 }
 
-// Whether any sample within one pixel of the centre of pixel p, all that its colour is made of, lies in the region.
+// Whether any sample within one pixel of the centre of pixel p, all that its colour is made of, lies in the
+// region.
 bool touches(const GBuffer& g, size_t p, const Region& region) {
   const int x = int(p) % g.width, y = int(p) / g.width;
   for (int qy = std::max(0, y - 1); qy <= std::min(g.height - 1, y + 1); ++qy)
     for (int qx = std::max(0, x - 1); qx <= std::min(g.width - 1, x + 1); ++qx) {
       const size_t q = size_t(qy) * g.width + qx;
       for (uint32_t h = g.pixel_start[q]; h < g.pixel_start[q + 1]; ++h) {
-        const auto away = [&](int offset, int k) { return std::abs(float(offset) + (float(k) + 0.5f) / float(g.samples) - 0.5f); };
+        const auto away = [&](int offset, int k) {
+          return std::abs(float(offset) + (float(k) + 0.5f) / float(g.samples) - 0.5f);
+        };
         const int k = g.sub_pixels[h];
         if (away(qx - x, k % g.samples) < 1 && away(qy - y, k / g.samples) < 1 &&
             region.contains(g.hits[h].position, g.hits[h].normal))

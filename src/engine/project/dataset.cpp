@@ -10,22 +10,27 @@ namespace fs = std::filesystem;
 namespace {
 
 Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
-Vec3d vector_from(const Json& j) { return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()}; }
+Vec3d vector_from(const Json& j) {
+  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+}
 
 std::string relative_to(const fs::path& file, const fs::path& root) {
-  return file.empty() ? std::string() : fs::absolute(file).lexically_normal().lexically_proximate(root).generic_string();
+  return file.empty() ? std::string()
+                      : fs::absolute(file).lexically_normal().lexically_proximate(root).generic_string();
 }
 
 fs::path below(const fs::path& root, const std::string& file) {
   return file.empty() ? fs::path() : (root / file).lexically_normal();  // an absolute file stays absolute
 }
 
-// Where the capture is now: where it was, or where it lies relative to the project when both were moved together.
+// Where the capture is now: where it was, or where it lies relative to the project when both were moved
+// together.
 fs::path find_root(const Json& j, const fs::path& project) {
   const fs::path root = j.at("root").get<std::string>();
   std::error_code error;
   if (fs::exists(root, error)) return root;
-  const fs::path moved = fs::absolute(project / j.at("root_from_project").get<std::string>()).lexically_normal();
+  const fs::path moved =
+      fs::absolute(project / j.at("root_from_project").get<std::string>()).lexically_normal();
   return fs::exists(moved, error) ? moved : root;
 }
 
@@ -54,8 +59,14 @@ uintmax_t size_of(const fs::path& file) {
 Json camera_json(const Camera& c) {
   Json rotation = Json::array();
   for (const Vec3d& row : c.world_from_cam.row) rotation.push_back(vector_json(row));
-  return {{"width", c.width}, {"height", c.height}, {"fx", c.fx},           {"fy", c.fy},
-          {"cx", c.cx},       {"cy", c.cy},         {"skew", c.skew},       {"world_from_cam", std::move(rotation)},
+  return {{"width", c.width},
+          {"height", c.height},
+          {"fx", c.fx},
+          {"fy", c.fy},
+          {"cx", c.cx},
+          {"cy", c.cy},
+          {"skew", c.skew},
+          {"world_from_cam", std::move(rotation)},
           {"center", vector_json(c.center)}};
 }
 
@@ -106,8 +117,8 @@ Capture capture_from_json(const Json& j, const fs::path& project) {
 std::string capture_fingerprint(const Capture& capture) {
   std::string text = capture.format;
   for (const View& v : capture.views)
-    text += fmt::format("\n{} {} {} {} {}", v.name, split_name(v.split), size_of(v.image_path), size_of(v.mask_path),
-                        camera_json(v.camera).dump());
+    text += fmt::format("\n{} {} {} {} {}", v.name, split_name(v.split), size_of(v.image_path),
+                        size_of(v.mask_path), camera_json(v.camera).dump());
   return content_hash(text);
 }
 

@@ -9,8 +9,8 @@
 
 namespace cei3d {
 
-// Cameras stay in the capture's frame. Pictures are named relative to the capture's folder, whose absolute path and
-// whose path relative to the project stand beside each other: either may move, or both together.
+// Cameras stay in the capture's frame. Pictures are named relative to the capture's folder, whose absolute
+// path and whose path relative to the project stand beside each other: either may move, or both together.
 Json dataset_json(const Capture&, const std::filesystem::path& project);
 Capture capture_from_json(const Json&, const std::filesystem::path& project);
 

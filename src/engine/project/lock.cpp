@@ -21,7 +21,8 @@ ProjectLock::ProjectLock(const std::filesystem::path& folder) {
   const int code = errno;
   ::close(std::exchange(fd_, -1));
   if (code == EWOULDBLOCK)
-    fail("Project {} is in use by another cei3d that changes it; wait until that is done, or stop it.", folder.string());
+    fail("Project {} is in use by another cei3d that changes it; wait until that is done, or stop it.",
+         folder.string());
   fail("Cannot lock project {}: {}.", folder.string(), std::strerror(code));
 }
 

@@ -66,8 +66,10 @@ void check_version(const Json& j, const fs::path& path) {
     fail("{} is not a cei3d project file.", path.string());
   const int version = j.at("version").get<int>();
   if (version > kProjectVersion)
-    fail("{} was written by a newer program (format {}; this one reads up to {}); update cei3d. Nothing was changed.",
-         path.string(), version, kProjectVersion);
+    fail(
+        "{} was written by a newer program (format {}; this one reads up to {}); update cei3d. Nothing was "
+        "changed.",
+        path.string(), version, kProjectVersion);
   if (version < 1) fail("{} has the impossible format version {}.", path.string(), version);
 }
 
@@ -90,7 +92,9 @@ bool is_empty_or_missing(const fs::path& folder) {
   return fs::is_empty(folder, error);
 }
 
-bool is_temporary(const fs::path& file) { return file.filename().string().find(".tmp-") != std::string::npos; }
+bool is_temporary(const fs::path& file) {
+  return file.filename().string().find(".tmp-") != std::string::npos;
+}
 
 std::vector<fs::path> children(const fs::path& folder) {
   std::vector<fs::path> found;
@@ -144,7 +148,8 @@ class FolderGuard {
   ~FolderGuard() {
     std::error_code error;
     if (kept_) return;
-    for (const char* name : {"project.json", "dataset.json", "stack.json", ".lock"}) fs::remove(folder_ / name, error);
+    for (const char* name : {"project.json", "dataset.json", "stack.json", ".lock"})
+      fs::remove(folder_ / name, error);
     if (!existed_) fs::remove(folder_, error);
   }
   FolderGuard(const FolderGuard&) = delete;
@@ -166,8 +171,9 @@ bool Project::is_project(const fs::path& folder) {
 void Project::check_place(const fs::path& folder, bool replace) {
   if (is_project(folder)) {
     if (!replace)
-      fail_usage("{} is a project already; use --resume to go on with it, --force to replace it, or another folder.",
-                 folder.string());
+      fail_usage(
+          "{} is a project already; use --resume to go on with it, --force to replace it, or another folder.",
+          folder.string());
     check_version(parse_json(folder / "project.json"), folder / "project.json");
     return;
   }
@@ -180,7 +186,8 @@ void Project::discard_if_empty() {
   if (has_base() || !checkpoint_files().empty()) return;
   std::error_code error;
   // project.json first: half removed, it is no project.
-  for (const char* name : {"project.json", "dataset.json", "stack.json", "history.jsonl", "base", "objects", "runs", ".lock"})
+  for (const char* name :
+       {"project.json", "dataset.json", "stack.json", "history.jsonl", "base", "objects", "runs", ".lock"})
     fs::remove_all(file(name), error);
   fs::remove(folder_, error);
 }
@@ -197,12 +204,14 @@ Project::Project(fs::path folder, Mode mode)
   });
 }
 
-Project Project::create(const fs::path& folder, const ProjectHead& head, const Capture& capture, bool replace) {
+Project Project::create(const fs::path& folder, const ProjectHead& head, const Capture& capture,
+                        bool replace) {
   check_place(folder, replace);
   if (is_project(folder)) {
     const ProjectLock lock(folder);
     // base/ first: without it nothing of the old object can be shown with the new one's cameras.
-    for (const char* name : {"base", "stack.json", "edits", "objects", "cache", "runs"}) fs::remove_all(folder / name);
+    for (const char* name : {"base", "stack.json", "edits", "objects", "cache", "runs"})
+      fs::remove_all(folder / name);
     write_json(folder / "stack.json", Stack().to_json());
     write_json(folder / "dataset.json", dataset_json(capture, folder));
     write_json(folder / "project.json", head_json(head));
@@ -218,7 +227,9 @@ Project Project::create(const fs::path& folder, const ProjectHead& head, const C
 
 Project Project::open(const fs::path& folder, Mode mode) {
   std::error_code error;
-  if (!fs::exists(folder, error)) fail("There is no project {}; make one with `cei3d reconstruct CAPTURE -o {}`.", folder.string(), folder.string());
+  if (!fs::exists(folder, error))
+    fail("There is no project {}; make one with `cei3d reconstruct CAPTURE -o {}`.", folder.string(),
+         folder.string());
   if (!is_project(folder)) fail("{} is not a project: it has no project.json.", folder.string());
   read_head(folder / "project.json");  // a newer format is found before the lock file is touched
   return Project(folder, mode);
@@ -280,8 +291,8 @@ bool Project::has_base() const {
 
 Scene Project::base() const {
   if (!has_base())
-    fail("Project {} holds no finished object; go on with `cei3d reconstruct --resume -o {}`.", folder_.string(),
-         folder_.string());
+    fail("Project {} holds no finished object; go on with `cei3d reconstruct --resume -o {}`.",
+         folder_.string(), folder_.string());
   return read_json(file("base/scene.json"), [&](const Json& j) {
     return load_scene(store_.get(j.at("object").get<std::string>()), j.at("head"));
   });
@@ -302,7 +313,8 @@ std::string Project::scene_key() const {
   const auto object_of = [](const Json& j) { return j.at("object").get<std::string>(); };
   std::string parts = read_json(file("base/scene.json"), object_of);
   for (const std::string& id : stack_.active())
-    parts += read_json(file("edits/" + id + "/edit.json"), [&](const Json& j) { return object_of(j.at("result")); });
+    parts += read_json(file("edits/" + id + "/edit.json"),
+                       [&](const Json& j) { return object_of(j.at("result")); });
   return content_hash(parts);
 }
 
@@ -339,7 +351,8 @@ void Project::add_edit(const EditRecord& record, const EditLayer& layer) {
 }
 
 EditRecord Project::edit(const std::string& id) const {
-  if (!stack_.contains(id)) fail_usage("Project {} has no edit '{}'; `cei3d log` lists them.", folder_.string(), id);
+  if (!stack_.contains(id))
+    fail_usage("Project {} has no edit '{}'; `cei3d log` lists them.", folder_.string(), id);
   return read_json(file("edits/" + id + "/edit.json"), [&](const Json& j) {
     EditRecord r;
     r.id = j.at("id").get<std::string>();
@@ -414,7 +427,8 @@ void Project::collect_garbage() {
   }
   std::error_code error;
   for (const fs::path& p : children(file("edits")))
-    if (!stack_.contains(p.filename().string()) && fs::exists(p / "edit.json", error)) fs::remove_all(p, error);
+    if (!stack_.contains(p.filename().string()) && fs::exists(p / "edit.json", error))
+      fs::remove_all(p, error);
   remove_temporaries(folder_);
   remove_temporaries(file("base"));
   store_.remove_all_but(keep);

@@ -11,8 +11,8 @@
 //   history.jsonl           what the user did
 //   runs/<time>-<verb>/     logs
 //
-// Every file is written under a temporary name and renamed, objects before the file that names them: whenever the
-// program dies, the folder is the project as it was before or after the running change.
+// Every file is written under a temporary name and renamed, objects before the file that names them: whenever
+// the program dies, the folder is the project as it was before or after the running change.
 #pragma once
 
 #include <filesystem>
@@ -57,14 +57,17 @@ class Project {
   static bool is_project(const std::filesystem::path& folder);
   // The usage errors of create(), before anything is computed.
   static void check_place(const std::filesystem::path& folder, bool replace);
-  // Makes the folder, or with `replace` empties the project that is there (its edits included; renders/ and exports/
-  // stay). Usage error: the folder holds something else, or a project and `replace` is not set. Nothing is left
-  // behind when it fails.
-  static Project create(const std::filesystem::path& folder, const ProjectHead&, const Capture&, bool replace);
-  // Errors: no project, a newer format, damaged files, another writer (Mode::write). Mode::read writes nothing.
+  // Makes the folder, or with `replace` empties the project that is there (its edits included; renders/ and
+  // exports/ stay). Usage error: the folder holds something else, or a project and `replace` is not set.
+  // Nothing is left behind when it fails.
+  static Project create(const std::filesystem::path& folder, const ProjectHead&, const Capture&,
+                        bool replace);
+  // Errors: no project, a newer format, damaged files, another writer (Mode::write). Mode::read writes
+  // nothing.
   static Project open(const std::filesystem::path& folder, Mode);
 
-  // Removes a project that holds neither an object nor a training state: what a reconstruction leaves that failed at once.
+  // Removes a project that holds neither an object nor a training state: what a reconstruction leaves that
+  // failed at once.
   void discard_if_empty();
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -79,17 +82,17 @@ class Project {
 
   void save_base(const Scene&);  // the reconstruction's result, without layers
   bool has_base() const;
-  Scene base() const;            // error when the reconstruction was not finished
-  Scene scene() const;           // base and the edits that are on, up to the cursor
+  Scene base() const;   // error when the reconstruction was not finished
+  Scene scene() const;  // base and the edits that are on, up to the cursor
 
   // One edit more, at the cursor. record.id must be stack().next_id(record.op), which is also the layer's.
   void add_edit(const EditRecord& record, const EditLayer& layer);
   EditRecord edit(const std::string& id) const;
-  std::string undo();                  // id of the edit
+  std::string undo();  // id of the edit
   std::string redo();
   bool toggle(const std::string& id);  // the new state
 
-  void add_history(Json event);                           // one line of history.jsonl; "time" is added
+  void add_history(Json event);                            // one line of history.jsonl; "time" is added
   std::filesystem::path new_run(const std::string& verb);  // makes runs/<time>-<verb>
 
  private:

@@ -132,8 +132,8 @@ class ProjectTest : public ::testing::Test {
  protected:
   fs::path folder() const { return temp_.path() / "object"; }
   Project make(bool replace = false) {
-    return Project::create(folder(), {{{1, 2, 3}, 0.5}, {{"preset", "fast"}}}, small_capture(temp_.path() / "photos"),
-                           replace);
+    return Project::create(folder(), {{{1, 2, 3}, 0.5}, {{"preset", "fast"}}},
+                           small_capture(temp_.path() / "photos"), replace);
   }
   Project make_with_base() {
     Project p = make();
@@ -250,7 +250,8 @@ TEST_F(ProjectTest, SurvivesKillAtAnyMoment) {
 
 TEST_F(ProjectTest, RefusesTheSecondWriterButNotReaders) {
   const Project first = make_with_base();
-  EXPECT_THAT(message_of([&] { Project::open(folder(), Project::Mode::write); }), HasSubstr("in use by another"));
+  EXPECT_THAT(message_of([&] { Project::open(folder(), Project::Mode::write); }),
+              HasSubstr("in use by another"));
   EXPECT_NO_THROW(Project::open(folder(), Project::Mode::read).scene());
 }
 
@@ -293,12 +294,14 @@ TEST_F(ProjectTest, DamagedJsonIsNamed) {
     Project p = make_with_base();
     add_paint(p, 1);
   }
-  for (const char* name : {"project.json", "dataset.json", "stack.json", "base/scene.json", "edits/0001-paint/edit.json"}) {
+  for (const char* name :
+       {"project.json", "dataset.json", "stack.json", "base/scene.json", "edits/0001-paint/edit.json"}) {
     const std::string good = read_file(folder() / name);
-    for (const std::string& bad : {good.substr(0, good.size() / 2), std::string("{}"), std::string("[]"), std::string("null"),
-                                   std::string("\xff\xfe"), std::string()}) {
+    for (const std::string& bad : {good.substr(0, good.size() / 2), std::string("{}"), std::string("[]"),
+                                   std::string("null"), std::string("\xff\xfe"), std::string()}) {
       write_file_atomic(folder() / name, bad);
-      EXPECT_THAT(message_of([&] { Project::open(folder(), Project::Mode::read).scene(); }), HasSubstr(fs::path(name).filename().string()))
+      EXPECT_THAT(message_of([&] { Project::open(folder(), Project::Mode::read).scene(); }),
+                  HasSubstr(fs::path(name).filename().string()))
           << bad.substr(0, 40);
     }
     write_file_atomic(folder() / name, good);
@@ -342,9 +345,8 @@ TEST_F(ProjectTest, AWriteThatFailsLeavesTheOldState) {
       Project p = Project::open(folder(), Project::Mode::write);
       add_paint(p, 1);
     });
-    const std::string fresh = message_of([&] {
-      Project::create(folder().string() + "2", {}, small_capture(folder()), false);
-    });
+    const std::string fresh =
+        message_of([&] { Project::create(folder().string() + "2", {}, small_capture(folder()), false); });
     ::_exit(edit.find("Cannot write") == 0 && fresh.find("Cannot write") == 0 ? 0 : 1);
   }
   int status = 0;

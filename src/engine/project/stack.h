@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The edit history: ordered edits, each on or off, and a cursor. Undo and redo move the cursor; nothing needs an
-// inverse, because the object is the base plus the edits that are on, up to the cursor. [architecture 2.8]
+// The edit history: ordered edits, each on or off, and a cursor. Undo and redo move the cursor; nothing needs
+// an inverse, because the object is the base plus the edits that are on, up to the cursor. [architecture 2.8]
 #pragma once
 
 #include <string>
@@ -27,9 +27,9 @@ class Stack {
 
   // Adds an edit at the cursor. What was undone is gone: returns the ids dropped.
   std::vector<std::string> push(const std::string& id);
-  std::string undo();                         // id of the edit that is undone now; usage error: nothing left
-  std::string redo();                         // id of the edit that is done again; usage error: nothing left
-  bool toggle(const std::string& id);         // the new state; usage error: no such edit
+  std::string undo();                  // id of the edit that is undone now; usage error: nothing left
+  std::string redo();                  // id of the edit that is done again; usage error: nothing left
+  bool toggle(const std::string& id);  // the new state; usage error: no such edit
   bool operator==(const Stack&) const = default;
 
   Json to_json() const;

@@ -33,7 +33,8 @@ std::string ObjectStore::put(const Tensors& tensors) {
   const fs::path file = path(hash);
   std::error_code error;
   // Same name and size: the same object, unless the disk lied; then writing it again heals it.
-  if (fs::file_size(file, error) == bytes.size() && !error && content_hash(read_file(file)) == hash) return hash;
+  if (fs::file_size(file, error) == bytes.size() && !error && content_hash(read_file(file)) == hash)
+    return hash;
   write_file_atomic(file, bytes);
   return hash;
 }
@@ -45,8 +46,10 @@ Tensors ObjectStore::get(const std::string& hash) const {
     fail("{} is missing; restore it from a copy of the project, or make the project again.", file.string());
   const std::string bytes = read_file(file);
   if (content_hash(bytes) != hash)
-    fail("{} is damaged: its bytes are not those that were stored; restore it from a copy of the project, or make the project again.",
-         file.string());
+    fail(
+        "{} is damaged: its bytes are not those that were stored; restore it from a copy of the project, or "
+        "make the project again.",
+        file.string());
   return tensors_from_bytes(bytes, file.string());
 }
 

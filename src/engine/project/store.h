@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Immutable tensors by content: objects/ab/cdef....safetensors, where abcdef... is the hash of the file's bytes.
+// Immutable tensors by content: objects/ab/cdef....safetensors, where abcdef... is the hash of the file's
+// bytes.
 #pragma once
 
 #include <filesystem>

@@ -382,7 +382,8 @@ void GeometryStage::save(Tensors& out) const {
   radiance_.save(out, "radiance");
   optimizer_.save(out, "adam");
   const int64_t n = grid_.resolution();
-  out["occupancy"] = {{n, n, n}, grid_.values(), {}};  // stale cells and all: resuming then equals never stopping
+  out["occupancy"] = {
+      {n, n, n}, grid_.values(), {}};  // stale cells and all: resuming then equals never stopping
 }
 
 void GeometryStage::load(const Tensors& in) {

@@ -35,7 +35,8 @@ void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin
   for (size_t k = 0; k < cells.size(); ++k) value_[cells[k]] = out[k * sdf.config().outputs];
 }
 
-void OccupancyGrid::march(const Ray& ray, float step, float band, float jitter, int most, std::vector<float>& depths) const {
+void OccupancyGrid::march(const Ray& ray, float step, float band, float jitter, int most,
+                          std::vector<float>& depths) const {
   float t, far;
   if (!unit_sphere_span(ray, t, far)) return;
   const float reach = band + half_diagonal();

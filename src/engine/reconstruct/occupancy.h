@@ -15,7 +15,8 @@ class OccupancyGrid {
  public:
   explicit OccupancyGrid(int resolution = 128) : n_(resolution), value_(size_t(n_) * n_ * n_, 1e3f) {}
 
-  // Distances at cell centres: of every cell, or of those nearer than `margin` to the surface when last asked.
+  // Distances at cell centres: of every cell, or of those nearer than `margin` to the surface when last
+  // asked.
   void refresh(const Device&, const Field& sdf, float margin);
   void set(std::vector<float> values) { value_ = std::move(values); }
 
@@ -28,9 +29,11 @@ class OccupancyGrid {
     return value_[(size_t(cell(p.z)) * n_ + cell(p.y)) * n_ + cell(p.x)];
   }
 
-  // Depths along the ray, `step` apart, that lie within `band` of the surface, front to back, from the unit sphere's
-  // entry to its exit or until the ray is deeper than `band` inside. `jitter` in [0, 1) shifts the first one.
-  void march(const Ray& ray, float step, float band, float jitter, int most, std::vector<float>& depths) const;
+  // Depths along the ray, `step` apart, that lie within `band` of the surface, front to back, from the unit
+  // sphere's entry to its exit or until the ray is deeper than `band` inside. `jitter` in [0, 1) shifts the
+  // first one.
+  void march(const Ray& ray, float step, float band, float jitter, int most,
+             std::vector<float>& depths) const;
 
  private:
   int cell(float x) const { return min(max(int((x + 1) * 0.5f * float(n_)), 0), n_ - 1); }

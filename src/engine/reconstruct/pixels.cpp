@@ -18,11 +18,13 @@ std::vector<uint8_t> dilate(const std::vector<uint8_t>& mask, int width, int hei
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       if (mask[size_t(y) * width + x])
-        for (int k = std::max(0, x - r); k <= std::min(width - 1, x + r); ++k) rows[size_t(y) * width + k] = 1;
+        for (int k = std::max(0, x - r); k <= std::min(width - 1, x + r); ++k)
+          rows[size_t(y) * width + k] = 1;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       if (rows[size_t(y) * width + x])
-        for (int k = std::max(0, y - r); k <= std::min(height - 1, y + r); ++k) out[size_t(k) * width + x] = 1;
+        for (int k = std::max(0, y - r); k <= std::min(height - 1, y + r); ++k)
+          out[size_t(k) * width + x] = 1;
   return out;
 }
 
@@ -41,9 +43,11 @@ void PixelStore::add_view(const Camera& unit_camera, const Image& image, int rim
     for (int x = 0; x < image.width; ++x) {
       if (!keep[size_t(y) * image.width + x]) continue;
       const float* p = image.at(x, y);
-      pixels_.push_back({view, uint16_t(x), uint16_t(y),
-                         {to_byte(srgb_from_linear(p[0])), to_byte(srgb_from_linear(p[1])), to_byte(srgb_from_linear(p[2])),
-                          to_byte(p[3])}});
+      pixels_.push_back({view,
+                         uint16_t(x),
+                         uint16_t(y),
+                         {to_byte(srgb_from_linear(p[0])), to_byte(srgb_from_linear(p[1])),
+                          to_byte(srgb_from_linear(p[2])), to_byte(p[3])}});
     }
   masks_.push_back(std::move(mask));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The training pixels that matter (the object and a rim around it), packed: 12 bytes each, so that 100 views of 800^2
-// fit in memory.
+// The training pixels that matter (the object and a rim around it), packed: 12 bytes each, so that 100 views
+// of 800^2 fit in memory.
 #pragma once
 
 #include <array>

@@ -22,7 +22,9 @@ void transform_line(const std::vector<float>& f, std::vector<float>& out) {
   root[0] = 0;
   border[0] = -1e20f;
   border[1] = 1e20f;
-  const auto meet = [&](int a, int b) { return ((f[b] + float(b) * b) - (f[a] + float(a) * a)) / (2.0f * float(b - a)); };
+  const auto meet = [&](int a, int b) {
+    return ((f[b] + float(b) * b) - (f[a] + float(a) * a)) / (2.0f * float(b - a));
+  };
   for (int q = 1; q < n; ++q) {
     float s = meet(root[k], q);
     while (s <= border[k]) s = meet(root[--k], q);
@@ -70,12 +72,14 @@ std::vector<float> signed_distance(const VisualHull& hull) {
   return to_inside;
 }
 
-void prefit_to_hull(const Device& device, Field& sdf, const VisualHull& hull, float margin, int steps, int levels, uint64_t seed) {
+void prefit_to_hull(const Device& device, Field& sdf, const VisualHull& hull, float margin, int steps,
+                    int levels, uint64_t seed) {
   const std::vector<float> distance = signed_distance(hull);
   std::vector<uint32_t> near;  // cells close to the surface
   for (size_t i = 0; i < distance.size(); ++i)
     if (std::abs(distance[i]) < 0.08f) near.push_back(uint32_t(i));
-  if (near.empty()) fail("the visual hull of the masks is empty: masks and camera poses disagree, or the masks are wrong");
+  if (near.empty())
+    fail("the visual hull of the masks is empty: masks and camera poses disagree, or the masks are wrong");
 
   FieldTrainer trainer(sdf, {});
   const int n = hull.n, batch = 2048, outputs = sdf.config().outputs;
@@ -85,16 +89,21 @@ void prefit_to_hull(const Device& device, Field& sdf, const VisualHull& hull, fl
   for (int step = 0; step < steps; ++step) {
     for (int i = 0; i < batch; ++i) {
       Rng rng(seed, uint64_t(step), uint64_t(i));
-      const uint32_t cell = i % 4 ? near[rng.below(uint32_t(near.size()))] : rng.below(uint32_t(distance.size()));
+      const uint32_t cell =
+          i % 4 ? near[rng.below(uint32_t(near.size()))] : rng.below(uint32_t(distance.size()));
       const float t = float(n);
       x[i] = hull.lo + size * Vec3f{(float(cell % n) + 0.5f) / t, (float(cell / n % n) + 0.5f) / t,
                                     (float(cell / n / n) + 0.5f) / t};
       target[i] = distance[cell] + margin;
     }
-    trainer.step(device, x, [&](int begin, int end, const float* out, float* d_out) {
-      for (int i = begin; i < end; ++i)
-        d_out[size_t(i - begin) * outputs] = huber(out[size_t(i - begin) * outputs] - target[i], 0.02f).gradient / float(batch);
-    }, steps > 1 ? std::pow(0.1f, float(step) / float(steps - 1)) : 1.0f, levels);
+    trainer.step(
+        device, x,
+        [&](int begin, int end, const float* out, float* d_out) {
+          for (int i = begin; i < end; ++i)
+            d_out[size_t(i - begin) * outputs] =
+                huber(out[size_t(i - begin) * outputs] - target[i], 0.02f).gradient / float(batch);
+        },
+        steps > 1 ? std::pow(0.1f, float(step) / float(steps - 1)) : 1.0f, levels);
   }
 }
 

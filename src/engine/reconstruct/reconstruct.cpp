@@ -234,8 +234,8 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   appearance.seconds = appearance_seconds;
   appearance.seed = options.seed;
   appearance.albedo = preset.albedo;
-  AppearanceResult result =
-      fit_appearance(device, {*scene.surface, {hits.hits, hits.colors, hits.saturated}}, appearance, progress);
+  AppearanceResult result = fit_appearance(device, {*scene.surface, {hits.hits, hits.colors, hits.saturated}},
+                                           appearance, progress);
   scene.light = std::move(result.light);
   scene.material = result.material;
   scene.albedo = std::move(result.albedo);

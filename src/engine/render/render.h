@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of a scene, in two steps: trace (expensive, cacheable) and shade (cheap; all that light and paint change).
+// Pictures of a scene, in two steps: trace (expensive, cacheable) and shade (cheap; all that light and paint
+// change).
 #pragma once
 
 #include <memory>
@@ -16,11 +17,11 @@ class Lighting;  // engine/render/lighting.h
 // Every sub-pixel sample that met the surface, ordered by pixel.
 struct GBuffer {
   int width = 0, height = 0;
-  int samples = 2;                     // a pixel and axis
-  std::vector<Hit> hits;               // #H
-  std::vector<float> depths;           // #H, z-depth in unit-sphere units
-  std::vector<uint16_t> sub_pixels;    // #H, which sample of its pixel: row * samples + column
-  std::vector<uint32_t> pixel_start;   // #pixels + 1: pixel p owns hits [start[p], start[p + 1])
+  int samples = 2;                    // a pixel and axis
+  std::vector<Hit> hits;              // #H
+  std::vector<float> depths;          // #H, z-depth in unit-sphere units
+  std::vector<uint16_t> sub_pixels;   // #H, which sample of its pixel: row * samples + column
+  std::vector<uint32_t> pixel_start;  // #pixels + 1: pixel p owns hits [start[p], start[p + 1])
 };
 // The hits of those rays (unit-sphere frame) that meet the surface, in order; ray_of_hit: #hits.
 std::vector<Hit> trace_rays(const Device&, const Field& sdf, const Surface&, std::span<const Ray> rays,
@@ -29,18 +30,18 @@ std::vector<Hit> trace_rays(const Device&, const Field& sdf, const Surface&, std
 // camera: unit-sphere frame.
 GBuffer trace_view(const Device&, const Scene&, const Camera& camera, int samples = 2);
 
-// A pixel is the tent-weighted mean of the samples within one pixel of its centre, which is close to the filters that
-// renderers and lenses have (Blackman-Harris of 1.5 pixels, Gaussians): on ground-truth surfaces its coverage comes 9 dB
-// nearer to the truth than a box's.
+// A pixel is the tent-weighted mean of the samples within one pixel of its centre, which is close to the
+// filters that renderers and lenses have (Blackman-Harris of 1.5 pixels, Gaussians): on ground-truth surfaces
+// its coverage comes 9 dB nearer to the truth than a box's.
 struct Frame {
   Image rgb, albedo, diffuse, specular;  // RGBA, linear, straight alpha
   Image normal;                          // RGB, unit vectors in the capture's axes; 0 where nothing was hit
   Image depth;                           // 1 channel, z-depth in capture units; 0 where nothing was hit
   Image mask;                            // 1 channel, coverage
-  std::vector<uint8_t> edited;           // #pixels, 1 where any sample of the pixel's mean routed to an edit layer
+  std::vector<uint8_t> edited;  // #pixels, 1 where any sample of the pixel's mean routed to an edit layer
 };
-// How the scene's own light reaches its surface; made once and used for every view. The bounce is that of the unedited
-// object, so that an edit changes no pixel outside its region.
+// How the scene's own light reaches its surface; made once and used for every view. The bounce is that of the
+// unedited object, so that an edit changes no pixel outside its region.
 std::shared_ptr<const Lighting> light_scene(const Device&, const Scene&);
 
 Frame shade_view(const Device&, const Scene&, const Lighting&, const GBuffer&);

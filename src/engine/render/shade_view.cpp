@@ -45,7 +45,8 @@ void for_hits_around(const GBuffer& g, int x, int y, F visit) {
       const size_t q = size_t(qy) * g.width + qx;
       for (uint32_t i = g.pixel_start[q]; i < g.pixel_start[q + 1]; ++i) {
         const int sub = g.sub_pixels[i];
-        const float w = axis_weight(qx - x, sub % g.samples, g.samples) * axis_weight(qy - y, sub / g.samples, g.samples);
+        const float w =
+            axis_weight(qx - x, sub % g.samples, g.samples) * axis_weight(qy - y, sub / g.samples, g.samples);
         if (w > 0) visit(i, w);
       }
     }
@@ -64,7 +65,8 @@ std::shared_ptr<const Lighting> light_scene(const Device& device, const Scene& s
   std::vector<float> values(positions.size() * 3);
   scene.albedo->eval(device, positions, values);
   std::vector<Vec3f> albedo(positions.size());
-  for (size_t v = 0; v < albedo.size(); ++v) albedo[v] = {values[3 * v], values[3 * v + 1], values[3 * v + 2]};
+  for (size_t v = 0; v < albedo.size(); ++v)
+    albedo[v] = {values[3 * v], values[3 * v + 1], values[3 * v + 2]};
   return std::make_shared<const Lighting>(device, *scene.surface, scene.light, albedo, scene.material);
 }
 

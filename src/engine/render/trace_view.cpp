@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rays meet the mesh first and are then moved onto the zero set of the field, so a frame costs a few field evaluations a
-// sample and silhouettes are those of the mesh.
+// Rays meet the mesh first and are then moved onto the zero set of the field, so a frame costs a few field
+// evaluations a sample and silhouettes are those of the mesh.
 #include <algorithm>
 #include <cmath>
 
@@ -33,7 +33,8 @@ Samples camera_samples(const Camera& camera, int samples) {
 
 }  // namespace
 
-void refine_hits(const Device& device, const Field& sdf, std::span<const Vec3f> directions, std::span<Hit> hits) {
+void refine_hits(const Device& device, const Field& sdf, std::span<const Vec3f> directions,
+                 std::span<Hit> hits) {
   const size_t outputs = size_t(sdf.config().outputs);
   std::vector<Vec3f> points(hits.size()), normals(hits.size());
   std::vector<float> d(hits.size() * outputs);
@@ -51,8 +52,8 @@ void refine_hits(const Device& device, const Field& sdf, std::span<const Vec3f> 
   for (size_t i = 0; i < hits.size(); ++i) hits[i].normal = normals[i];
 }
 
-std::vector<Hit> trace_rays(const Device& device, const Field& sdf, const Surface& surface, std::span<const Ray> rays,
-                            std::vector<uint32_t>& ray_of_hit) {
+std::vector<Hit> trace_rays(const Device& device, const Field& sdf, const Surface& surface,
+                            std::span<const Ray> rays, std::vector<uint32_t>& ray_of_hit) {
   std::vector<Vec3f> origins(rays.size()), directions(rays.size());
   for (size_t i = 0; i < rays.size(); ++i) origins[i] = rays[i].origin, directions[i] = rays[i].direction;
   std::vector<Surface::RayHit> found(rays.size());
@@ -66,8 +67,8 @@ std::vector<Hit> trace_rays(const Device& device, const Field& sdf, const Surfac
     const auto& t = mesh.triangles[found[i].triangle];
     const Vec3f n = mesh.normals[t[0]] * (1 - found[i].b1 - found[i].b2) + mesh.normals[t[1]] * found[i].b1 +
                     mesh.normals[t[2]] * found[i].b2;
-    hits.push_back({rays[i].origin + rays[i].direction * found[i].t, normalize(n), -rays[i].direction, found[i].triangle,
-                    found[i].b1, found[i].b2});
+    hits.push_back({rays[i].origin + rays[i].direction * found[i].t, normalize(n), -rays[i].direction,
+                    found[i].triangle, found[i].b1, found[i].b2});
     hit_directions.push_back(rays[i].direction);
     ray_of_hit.push_back(uint32_t(i));
   }

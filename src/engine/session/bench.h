@@ -11,9 +11,9 @@ namespace cei3d {
 
 struct BenchRow {
   std::string name;
-  double rate;      // best of several runs, on one core
+  double rate;  // best of several runs, on one core
   std::string unit;
-  double of_peak;   // fraction of the peak of its kind; 1 for the peaks themselves
+  double of_peak;  // fraction of the peak of its kind; 1 for the peaks themselves
 };
 
 // A few seconds on one core.

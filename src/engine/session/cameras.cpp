@@ -48,7 +48,8 @@ std::vector<NamedCamera> read_camera_file(const fs::path& path) {
     for (const Json& j : file.at("cameras"))
       cameras.push_back({j.at("name").get<std::string>(), "", camera_from_json(j)});
   } catch (const Json::exception& e) {
-    fail("{} is not a list of cameras ({}); a render.json of `cei3d render` is one.", path.string(), e.what());
+    fail("{} is not a list of cameras ({}); a render.json of `cei3d render` is one.", path.string(),
+         e.what());
   }
   for (const NamedCamera& c : cameras)
     if (c.camera.width < 1 || c.camera.height < 1 || !(c.camera.fx > 0) || !(c.camera.fy > 0))
@@ -63,7 +64,8 @@ void set_files(std::vector<NamedCamera>& cameras) {
   for (NamedCamera& c : cameras) {
     // Names may come from files: they never lead out of the output folder.
     const fs::path name = fs::path(c.name).lexically_normal();
-    if (c.name.empty() || name.is_absolute() || *name.begin() == "..") fail("'{}' is not a usable view name.", c.name);
+    if (c.name.empty() || name.is_absolute() || *name.begin() == "..")
+      fail("'{}' is not a usable view name.", c.name);
     c.file = count[stem(c.name)] == 1 ? stem(c.name) : name.generic_string();
   }
 }
@@ -81,20 +83,23 @@ std::vector<View> choose_views(const Project& project, const fs::path& path, std
   Capture capture = path.empty() ? project.capture() : load_capture(path);
   std::map<std::string, Split> known;
   for (const View& v : project.capture().views) known[v.name] = v.split;
-  const bool has_splits = std::any_of(capture.views.begin(), capture.views.end(), [](const View& v) { return v.split != Split::train; });
+  const bool has_splits = std::any_of(capture.views.begin(), capture.views.end(),
+                                      [](const View& v) { return v.split != Split::train; });
   if (!has_splits)
     for (View& v : capture.views)
       if (const auto it = known.find(v.name); it != known.end()) v.split = it->second;
   const std::vector<View> views = split ? views_of(capture, *split) : capture.views;
   if (views.empty())
-    fail("{} has no {} views.", path.empty() ? project.capture().root.string() : path.string(), split_name(*split));
+    fail("{} has no {} views.", path.empty() ? project.capture().root.string() : path.string(),
+         split_name(*split));
   return views;
 }
 
 Camera resized(Camera c, int width, int height) {
   const double sx = double(width) / c.width;
   c.cx = c.cx * sx;
-  c.cy = (c.cy - c.height / 2.0) * sx + height / 2.0;  // square pixels stay square: the centre of the picture stays
+  c.cy = (c.cy - c.height / 2.0) * sx +
+         height / 2.0;  // square pixels stay square: the centre of the picture stays
   c.fx *= sx;
   c.fy *= sx;
   c.skew *= sx;
@@ -126,14 +131,17 @@ std::vector<NamedCamera> turntable(const Capture& capture, const Normalization& 
   return cameras;
 }
 
-std::vector<NamedCamera> choose_cameras(const Project& project, const CameraChoice& choice, int width, int height) {
+std::vector<NamedCamera> choose_cameras(const Project& project, const CameraChoice& choice, int width,
+                                        int height) {
   const auto own = [&] {
     const std::vector<View> test = views_of(project.capture(), Split::test);
     return named(test.empty() ? project.capture().views : test);
   };
   std::vector<NamedCamera> cameras;
-  if (const auto* c = std::get_if<CaptureViews>(&choice)) cameras = named(choose_views(project, c->path, c->split));
-  else if (const auto* f = std::get_if<CameraFile>(&choice)) cameras = read_camera_file(f->path);
+  if (const auto* c = std::get_if<CaptureViews>(&choice))
+    cameras = named(choose_views(project, c->path, c->split));
+  else if (const auto* f = std::get_if<CameraFile>(&choice))
+    cameras = read_camera_file(f->path);
   else if (const auto* t = std::get_if<Turntable>(&choice))
     cameras = turntable(project.capture(), project.head().normalization, t->frames);
   else

@@ -19,9 +19,11 @@ struct NamedCamera {
 // Errors: no views, unreadable files. size 0: the cameras' own.
 std::vector<NamedCamera> choose_cameras(const Project&, const CameraChoice&, int width, int height);
 
-// The views of a capture that the choice names: of a split, or of every split; of the project's own capture when the path
-// is empty. Splits that the project held out itself count for the same views of a capture without splits.
-std::vector<View> choose_views(const Project&, const std::filesystem::path& capture, std::optional<Split> split);
+// The views of a capture that the choice names: of a split, or of every split; of the project's own capture
+// when the path is empty. Splits that the project held out itself count for the same views of a capture
+// without splits.
+std::vector<View> choose_views(const Project&, const std::filesystem::path& capture,
+                               std::optional<Split> split);
 
 // The same view on another raster; the horizontal field of view stays.
 Camera resized(Camera, int width, int height);

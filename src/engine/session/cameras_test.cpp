@@ -53,7 +53,8 @@ class CamerasTest : public ::testing::Test {
 TEST_F(CamerasTest, TurntableLooksAtTheObjectFromOneDistance) {
   for (const Vec3d up : {Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{-1, 0, 0}}) {
     const Normalization n{{1, 2, 3}, 0.5};
-    const std::vector<NamedCamera> cameras = turntable(capture_of({{"a", Split::train}, {"b", Split::train}}, up), n, 7);
+    const std::vector<NamedCamera> cameras =
+        turntable(capture_of({{"a", Split::train}, {"b", Split::train}}, up), n, 7);
     ASSERT_EQ(cameras.size(), 7u);
     std::set<std::string> names;
     for (const NamedCamera& c : cameras) {
@@ -78,7 +79,8 @@ TEST_F(CamerasTest, AnotherSizeKeepsTheFieldOfView) {
 }
 
 TEST_F(CamerasTest, FilesAreNamedLikeViews) {
-  const Project p = make(capture_of({{"train/r_0", Split::train}, {"train/r_1", Split::train}, {"test/r_1", Split::test}}, {0, 0, 1}));
+  const Project p = make(capture_of(
+      {{"train/r_0", Split::train}, {"train/r_1", Split::train}, {"test/r_1", Split::test}}, {0, 0, 1}));
   const std::vector<View> all = choose_views(p, "", std::nullopt);
   EXPECT_EQ(all.size(), 3u);
   EXPECT_EQ(choose_views(p, "", Split::test).size(), 1u);
@@ -111,9 +113,10 @@ TEST_F(CamerasTest, DamagedCameraFilesAreRefused) {
   Camera no_size = camera_at({0, 0, 0});
   no_size.width = 0;
   flat.update(camera_json(no_size));
-  for (const std::string& text : {std::string("{"), std::string("[]"), std::string(R"({"cameras": 3})"),
-                                  std::string(R"({"cameras": []})"), std::string(R"({"cameras": [{"name": "a"}]})"),
-                                  Json{{"cameras", Json::array({outside})}}.dump(), Json{{"cameras", Json::array({flat})}}.dump()}) {
+  for (const std::string& text :
+       {std::string("{"), std::string("[]"), std::string(R"({"cameras": 3})"),
+        std::string(R"({"cameras": []})"), std::string(R"({"cameras": [{"name": "a"}]})"),
+        Json{{"cameras", Json::array({outside})}}.dump(), Json{{"cameras", Json::array({flat})}}.dump()}) {
     write_file_atomic(file, text);
     EXPECT_THROW(choose_cameras(p, CameraFile{file}, 0, 0), Error) << text;
   }

@@ -48,7 +48,8 @@ EnvUp row_zero(EnvConvention convention, Vec3f up) {
 
 void require_lat_long(const Image& map, const std::filesystem::path& path) {
   if (map.width != 2 * map.height)
-    fail("{} is {}x{} pixels; a latitude-longitude picture is twice as wide as high.", path.string(), map.width, map.height);
+    fail("{} is {}x{} pixels; a latitude-longitude picture is twice as wide as high.", path.string(),
+         map.width, map.height);
   if (map.channels < 3) fail("{} has no colours; save the environment as RGB.", path.string());
   double sum = 0;
   for (const float v : map.data) {
@@ -72,7 +73,9 @@ SgMixture light_of_picture(const Device& device, const LightChoice& choice, Vec3
 SgMixture chosen_light(const Device& device, const LightChoice& choice, const SgMixture& own, Vec3d up) {
   const Vec3f axis = to_float(normalize(up));
   const SgMixture light = choice.env.empty() ? own : light_of_picture(device, choice, axis);
-  return choice.rotate_degrees == 0 ? light : rotated(light, about_axis(axis, float(choice.rotate_degrees) * kPi / 180));
+  return choice.rotate_degrees == 0
+             ? light
+             : rotated(light, about_axis(axis, float(choice.rotate_degrees) * kPi / 180));
 }
 
 }  // namespace cei3d

@@ -40,7 +40,9 @@ class LightChoiceTest : public ::testing::Test {
     return brightest(chosen_light(device, {file, degrees, convention}, {}, up));
   }
   // Within 17 degrees: lobes are coarse, mistaken axes are 90 degrees off.
-  static void expect_near(Vec3f a, Vec3f b) { EXPECT_GT(dot(a, b), std::cos(0.3f)) << a.x << " " << a.y << " " << a.z; }
+  static void expect_near(Vec3f a, Vec3f b) {
+    EXPECT_GT(dot(a, b), std::cos(0.3f)) << a.x << " " << a.y << " " << a.z;
+  }
   TempFolder temp_;
 };
 
@@ -70,7 +72,8 @@ TEST_F(LightChoiceTest, TheOwnLightTurnsToo) {
   const Device device = make_device();
   const SgMixture same = chosen_light(device, {}, own, {0, 0, 1});
   EXPECT_EQ(same.lobes[0].axis.x, 1);
-  expect_near(chosen_light(device, {"", 180, EnvConvention::by_up_axis}, own, {0, 0, 1}).lobes[0].axis, {-1, 0, 0});
+  expect_near(chosen_light(device, {"", 180, EnvConvention::by_up_axis}, own, {0, 0, 1}).lobes[0].axis,
+              {-1, 0, 0});
 }
 
 TEST_F(LightChoiceTest, RefusesWhatIsNoEnvironment) {
@@ -82,7 +85,8 @@ TEST_F(LightChoiceTest, RefusesWhatIsNoEnvironment) {
   };
   EXPECT_THROW(light_of(Image(64, 64, 3, 1)), Error);
   EXPECT_THROW(light_of(Image(64, 32, 3, 0)), Error);
-  EXPECT_THROW(chosen_light(device, {temp_.path() / "none.hdr", 0, EnvConvention::zup}, {}, {0, 0, 1}), Error);
+  EXPECT_THROW(chosen_light(device, {temp_.path() / "none.hdr", 0, EnvConvention::zup}, {}, {0, 0, 1}),
+               Error);
 }
 
 }  // namespace

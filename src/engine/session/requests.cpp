@@ -9,7 +9,8 @@
 namespace cei3d {
 namespace {
 
-constexpr const char* kChannels[] = {"rgb", "albedo", "diffuse", "specular", "normal", "depth", "roughness", "mask"};
+constexpr const char* kChannels[] = {"rgb",    "albedo", "diffuse",   "specular",
+                                     "normal", "depth",  "roughness", "mask"};
 constexpr const char* kSeverities[] = {"note", "warning", "error"};
 constexpr const char* kConventions[] = {"", "zup", "yup", "mitsuba", "blender"};
 
@@ -22,7 +23,9 @@ std::optional<Enum> from_name(const char* const (&names)[N], const std::string& 
 
 Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
-Json normalization_json(const Normalization& n) { return {{"center", vector_json(n.center)}, {"scale", n.scale}}; }
+Json normalization_json(const Normalization& n) {
+  return {{"center", vector_json(n.center)}, {"scale", n.scale}};
+}
 
 Json material_json(const Material& m) {
   return {{"roughness", m.roughness}, {"specular", m.specular}, {"metalness", m.metalness}};
@@ -36,21 +39,28 @@ std::string decibels_text(double v) { return std::isfinite(v) ? fmt::format("{:.
 }  // namespace
 
 const char* channel_name(Channel c) { return kChannels[size_t(c)]; }
-std::optional<Channel> channel_from_name(const std::string& name) { return from_name<Channel>(kChannels, name); }
+std::optional<Channel> channel_from_name(const std::string& name) {
+  return from_name<Channel>(kChannels, name);
+}
 std::optional<EnvConvention> env_convention_from_name(const std::string& name) {
   return from_name<EnvConvention>(kConventions, name);
 }
 
 Json MachineInfo::json() const {
-  return {{"program", program}, {"processor", processor}, {"cores", cores}, {"memory_gib", memory_gib}, {"devices", devices}};
+  return {{"program", program},
+          {"processor", processor},
+          {"cores", cores},
+          {"memory_gib", memory_gib},
+          {"devices", devices}};
 }
 
 Json CheckReport::json() const {
   Json splits = Json::object(), findings = Json::array();
   for (const SplitReport& r : report.splits)
-    splits[split_name(r.split)] = {{"views", r.views},
-                                   {"size", {r.size.width, r.size.height}},
-                                   {"coverage", {{"mean", r.coverage}, {"least", r.coverage_min}, {"most", r.coverage_max}}}};
+    splits[split_name(r.split)] = {
+        {"views", r.views},
+        {"size", {r.size.width, r.size.height}},
+        {"coverage", {{"mean", r.coverage}, {"least", r.coverage_min}, {"most", r.coverage_max}}}};
   for (const Finding& f : report.findings)
     findings.push_back({{"severity", kSeverities[size_t(f.severity)]}, {"what", f.what}, {"fix", f.fix}});
   return {{"format", report.format},
@@ -59,7 +69,8 @@ Json CheckReport::json() const {
           {"up", vector_json(report.up)},
           {"normalization", report.normalization ? normalization_json(*report.normalization) : Json()},
           {"object_radius", object_radius},
-          {"camera_distance", {{"least", report.distance_min}, {"mean", report.distance}, {"most", report.distance_max}}},
+          {"camera_distance",
+           {{"least", report.distance_min}, {"mean", report.distance}, {"most", report.distance_max}}},
           {"findings", findings},
           {"usable", report.usable()}};
 }
@@ -81,25 +92,32 @@ Json ProjectInfo::json() const {
             {"finished", finished},
             {"bytes", bytes}};
   if (finished)
-    j["object"] = {{"material", material_json(material)}, {"vertices", vertices},
-                   {"triangles", triangles},              {"handler_points", handler_points},
-                   {"handler_spacing", handler_spacing},  {"lobes", lobes},
-                   {"edits", edits},                      {"edits_active", edits_active}};
+    j["object"] = {{"material", material_json(material)},
+                   {"vertices", vertices},
+                   {"triangles", triangles},
+                   {"handler_points", handler_points},
+                   {"handler_spacing", handler_spacing},
+                   {"lobes", lobes},
+                   {"edits", edits},
+                   {"edits_active", edits_active}};
   return j;
 }
 
 Json LogEntry::json() const {
-  return {{"id", id}, {"op", op}, {"enabled", enabled}, {"done", done}, {"params", params}, {"report", report}};
+  return {{"id", id},     {"op", op},         {"enabled", enabled},
+          {"done", done}, {"params", params}, {"report", report}};
 }
 
 Json PaintSummary::json() const {
-  return {{"id", id},
-          {"painted_pixels", painted_pixels},
-          {"missed_pixels", missed_pixels},
-          {"points", points},
-          {"mean_error", mean_error},
-          {"max_error", max_error},
-          {"seconds", {{"load", load_seconds}, {"trace", trace_seconds}, {"fit", train_seconds}, {"store", store_seconds}}}};
+  return {
+      {"id", id},
+      {"painted_pixels", painted_pixels},
+      {"missed_pixels", missed_pixels},
+      {"points", points},
+      {"mean_error", mean_error},
+      {"max_error", max_error},
+      {"seconds",
+       {{"load", load_seconds}, {"trace", trace_seconds}, {"fit", train_seconds}, {"store", store_seconds}}}};
 }
 
 Json RenderReport::json() const {
@@ -117,9 +135,12 @@ Json ExportReport::json() const {
 }
 
 Json EvalReport::json() const {
-  Json j = {{"psnr", decibels(psnr)},           {"ssim", ssim},
-            {"psnr_masked", decibels(psnr_masked)}, {"psnr_worst", decibels(psnr_worst)},
-            {"worst_view", worst_view},         {"background", "white"}};
+  Json j = {{"psnr", decibels(psnr)},
+            {"ssim", ssim},
+            {"psnr_masked", decibels(psnr_masked)},
+            {"psnr_worst", decibels(psnr_worst)},
+            {"worst_view", worst_view},
+            {"background", "white"}};
   if (edit)
     j["edit"] = {{"psnr_inside", decibels(edit->psnr_inside)},
                  {"pixels_inside", edit->pixels_inside},
@@ -128,19 +149,25 @@ Json EvalReport::json() const {
                  {"views", edit->views}};
   j["views"] = Json::array();
   for (const ViewScore& v : views)
-    j["views"].push_back({{"view", v.view}, {"psnr", decibels(v.psnr)}, {"ssim", v.ssim}, {"psnr_masked", v.psnr_masked ? decibels(*v.psnr_masked) : Json()}});
+    j["views"].push_back({{"view", v.view},
+                          {"psnr", decibels(v.psnr)},
+                          {"ssim", v.ssim},
+                          {"psnr_masked", v.psnr_masked ? decibels(*v.psnr_masked) : Json()}});
   return j;
 }
 
 std::string EvalReport::markdown() const {
-  std::string text = "| views | PSNR on white | worst view | SSIM | PSNR in the mask |\n|---|---|---|---|---|\n";
+  std::string text =
+      "| views | PSNR on white | worst view | SSIM | PSNR in the mask |\n|---|---|---|---|---|\n";
   text += fmt::format("| {} | {} dB | {} dB ({}) | {:.4f} | {} dB |\n", views.size(), decibels_text(psnr),
                       decibels_text(psnr_worst), worst_view, ssim, decibels_text(psnr_masked));
   if (edit)
     text += fmt::format(
-        "\n| edit: views | PSNR inside | pixels inside | changed outside | pixels outside |\n|---|---|---|---|---|\n"
+        "\n| edit: views | PSNR inside | pixels inside | changed outside | pixels outside "
+        "|\n|---|---|---|---|---|\n"
         "| {} | {} dB | {} | {} | {} |\n",
-        edit->views, decibels_text(edit->psnr_inside), edit->pixels_inside, edit->changed_outside, edit->pixels_outside);
+        edit->views, decibels_text(edit->psnr_inside), edit->pixels_inside, edit->changed_outside,
+        edit->pixels_outside);
   return text;
 }
 

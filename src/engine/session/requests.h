@@ -16,31 +16,31 @@
 namespace cei3d {
 
 struct MachineInfo {
-  std::string program;                // version
+  std::string program;  // version
   std::string processor;
   int cores = 0;
   double memory_gib = 0;
-  std::vector<std::string> devices;   // that make_device() knows here, the one "auto" takes last
+  std::vector<std::string> devices;  // that make_device() knows here, the one "auto" takes last
   Json json() const;
 };
 
 struct CheckRequest {
   std::filesystem::path capture;
   CaptureOptions options;
-  std::filesystem::path picture;      // PNG of cameras and bounding sphere to write; empty: none
+  std::filesystem::path picture;  // PNG of cameras and bounding sphere to write; empty: none
 };
 struct CheckReport {
   Capture capture;
   CaptureReport report;
-  double object_radius = 0;           // of its bounding sphere, when the report has a normalization
+  double object_radius = 0;  // of its bounding sphere, when the report has a normalization
   Json json() const;
 };
 
 struct ReconstructRequest {
-  std::filesystem::path capture;      // may be empty with `resume`: the one the project remembers
+  std::filesystem::path capture;  // may be empty with `resume`: the one the project remembers
   std::filesystem::path project;
-  std::string format;                 // of the capture; empty: told by the files
-  ReconstructOptions options;         // with `resume`: those the project began with count instead
+  std::string format;          // of the capture; empty: told by the files
+  ReconstructOptions options;  // with `resume`: those the project began with count instead
   bool resume = false, replace = false;
 };
 struct ReconstructReport {
@@ -54,29 +54,29 @@ struct ReconstructReport {
 struct ProjectInfo {
   std::filesystem::path folder, capture_root;
   std::string capture_format;
-  bool finished = false;              // there is an object, not only training states
-  size_t views[3] = {0, 0, 0};        // train, val, test
+  bool finished = false;        // there is an object, not only training states
+  size_t views[3] = {0, 0, 0};  // train, val, test
   Normalization normalization;
-  Json options;                       // of the reconstruction
+  Json options;  // of the reconstruction
   // The rest stands when `finished`:
   Material material;
   size_t vertices = 0, triangles = 0, handler_points = 0, lobes = 0;
-  float handler_spacing = 0;          // capture units
+  float handler_spacing = 0;  // capture units
   size_t edits = 0, edits_active = 0;
-  uintmax_t bytes = 0;                // on disk
+  uintmax_t bytes = 0;  // on disk
   Json json() const;
 };
 
 struct LogEntry {
   std::string id, op;
-  bool enabled = true, done = true;   // done: not undone
+  bool enabled = true, done = true;  // done: not undone
   Json params, report;
   Json json() const;
 };
 
 struct PaintCommand {
-  std::string view;                   // a view's name
-  std::filesystem::path scribble;     // RGBA PNG of the view's size
+  std::string view;                // a view's name
+  std::filesystem::path scribble;  // RGBA PNG of the view's size
   uint64_t seed = 1;
 };
 struct PaintSummary {
@@ -94,12 +94,12 @@ struct CaptureViews {
   std::optional<Split> split;
 };
 struct CameraFile {
-  std::filesystem::path path;         // a render.json, or {"cameras": [...]} like one
+  std::filesystem::path path;  // a render.json, or {"cameras": [...]} like one
 };
 struct Turntable {
   int frames = 0;
 };
-struct ProjectViews {};               // the project's held-out views, or all when it has none
+struct ProjectViews {};  // the project's held-out views, or all when it has none
 using CameraChoice = std::variant<ProjectViews, CaptureViews, CameraFile, Turntable>;
 bool is_camera_file(const std::filesystem::path&);  // JSON with a list "cameras"
 
@@ -111,8 +111,8 @@ enum class EnvConvention { by_up_axis, zup, yup, mitsuba, blender };
 std::optional<EnvConvention> env_convention_from_name(const std::string&);  // "zup", ...
 
 struct LightChoice {
-  std::filesystem::path env;          // latitude-longitude picture; empty: the object's own light
-  double rotate_degrees = 0;          // counter-clockwise about the up axis, seen from above
+  std::filesystem::path env;  // latitude-longitude picture; empty: the object's own light
+  double rotate_degrees = 0;  // counter-clockwise about the up axis, seen from above
   EnvConvention convention = EnvConvention::by_up_axis;
 };
 
@@ -120,9 +120,9 @@ struct RenderRequest {
   std::filesystem::path out;
   CameraChoice cameras;
   std::vector<Channel> channels{Channel::rgb};
-  int width = 0, height = 0;          // 0: the cameras' own
+  int width = 0, height = 0;  // 0: the cameras' own
   LightChoice light;
-  int samples = 2;                    // a pixel and axis
+  int samples = 2;  // a pixel and axis
 };
 struct RenderReport {
   size_t views = 0;
@@ -132,8 +132,8 @@ struct RenderReport {
 };
 
 struct ExportRequest {
-  std::filesystem::path out;          // .ply, .glb or .npy
-  bool points = false;                // .ply: the handler points instead of the mesh
+  std::filesystem::path out;  // .ply, .glb or .npy
+  bool points = false;        // .ply: the handler points instead of the mesh
 };
 struct ExportReport {
   std::filesystem::path out;
@@ -142,16 +142,16 @@ struct ExportReport {
 };
 
 struct EvalRequest {
-  std::filesystem::path capture;      // empty: the project's own
-  std::optional<Split> split;         // none: test when there is one, else all
+  std::filesystem::path capture;  // empty: the project's own
+  std::optional<Split> split;     // none: test when there is one, else all
   int samples = 2;
-  std::string edit;                   // with it: fidelity inside, leakage outside the masks, against `truth`
-  std::filesystem::path truth, masks; // folders of pictures named like the views
+  std::string edit;                    // with it: fidelity inside, leakage outside the masks, against `truth`
+  std::filesystem::path truth, masks;  // folders of pictures named like the views
 };
 struct ViewScore {
   std::string view;
   double psnr = 0, ssim = 0;
-  std::optional<double> psnr_masked;    // nothing without object pixels
+  std::optional<double> psnr_masked;  // nothing without object pixels
 };
 struct EditScore {
   double psnr_inside = 0;

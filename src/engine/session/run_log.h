@@ -12,12 +12,14 @@ namespace cei3d {
 // Progress that also keeps the run's log: one JSON object a line.
 class RunLog : public Progress {
  public:
-  RunLog(Progress& listener, const std::filesystem::path& file) : listener_(listener), out_(file, std::ios::app) {}
+  RunLog(Progress& listener, const std::filesystem::path& file)
+      : listener_(listener), out_(file, std::ios::app) {}
 
   void report(const ProgressReport& r) override { listener_.report(r); }
   void log(const std::string& json_line) override {
     const std::lock_guard lock(mutex_);
-    out_ << json_line << std::endl;  // at once: it is read while the run goes on; a full disk must not stop training
+    out_ << json_line
+         << std::endl;  // at once: it is read while the run goes on; a full disk must not stop training
     listener_.log(json_line);
   }
   bool cancelled() const override { return listener_.cancelled(); }

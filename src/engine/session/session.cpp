@@ -54,7 +54,8 @@ void describe_scene(const Scene& scene, ProjectInfo& info) {
 
 }  // namespace
 
-Session::Session(const std::string& device, int threads) : device_(std::make_unique<Device>(make_device(device))) {
+Session::Session(const std::string& device, int threads)
+    : device_(std::make_unique<Device>(make_device(device))) {
   set_threads(threads);
 }
 Session::~Session() = default;

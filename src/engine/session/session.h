@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that a user can ask for, as functions: the command line (and later the server) only parse, call one of these and
-// print what comes back. Lengths and positions are in the capture's frame and units at this edge.
+// All that a user can ask for, as functions: the command line (and later the server) only parse, call one of
+// these and print what comes back. Lengths and positions are in the capture's frame and units at this edge.
 #pragma once
 
 #include <filesystem>
@@ -32,7 +32,8 @@ class Session {
   static MachineInfo machine();
   CheckReport check(const CheckRequest&);
 
-  // Makes a project, or goes on with one; it is open for writing afterwards. Interrupted Error: its state is saved.
+  // Makes a project, or goes on with one; it is open for writing afterwards. Interrupted Error: its state is
+  // saved.
   ReconstructReport reconstruct(const ReconstructRequest&, Progress&);
 
   // Everything below needs an open project; a second call opens another.
@@ -41,7 +42,7 @@ class Session {
   ProjectInfo info() const;
   std::vector<LogEntry> log() const;
   PaintSummary paint(const PaintCommand&, Progress&);
-  std::string undo();                  // id of the edit that is undone now
+  std::string undo();  // id of the edit that is undone now
   std::string redo();
   bool toggle(const std::string& id);  // the new state
   RenderReport render(const RenderRequest&, Progress&);

@@ -148,15 +148,17 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
     const GBuffer buffer = trace_view(*device_, scene, camera, request.samples);
     const Image rendered = picture(scene, buffer);
     report.views.push_back(score_view(views[i], request.edit.empty() ? rendered : picture(without, buffer)));
-    const fs::path truth = picture_like(request.truth, views[i]), mask = picture_like(request.masks, views[i]);
+    const fs::path truth = picture_like(request.truth, views[i]),
+                   mask = picture_like(request.masks, views[i]);
     if (!request.edit.empty() && fs::exists(truth) && fs::exists(mask))
-      edit.add(rendered, picture(without, buffer), read_rgba(truth, views[i].camera), read_mask(mask, views[i].camera));
+      edit.add(rendered, picture(without, buffer), read_rgba(truth, views[i].camera),
+               read_mask(mask, views[i].camera));
   }
   summarise(report);
   if (!request.edit.empty()) {
     if (edit.score.views == 0)
-      fail("{} and {} hold no pictures named like the views ({}.png).", request.truth.string(), request.masks.string(),
-           fs::path(views.front().name).filename().string());
+      fail("{} and {} hold no pictures named like the views ({}.png).", request.truth.string(),
+           request.masks.string(), fs::path(views.front().name).filename().string());
     report.edit = edit.result();
   }
   return report;

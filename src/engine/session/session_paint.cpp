@@ -33,16 +33,18 @@ Image decode_scribble(const std::string& bytes, const std::filesystem::path& pat
     fail("{} is not a PNG; save the scribble as an RGBA PNG.", path.string());
   Image image = decode_png(bytes, path.string());
   if (image.channels != 4)
-    fail("{} has no alpha channel; save the scribble as RGBA PNG, opaque where it paints and transparent elsewhere.",
-         path.string());
+    fail(
+        "{} has no alpha channel; save the scribble as RGBA PNG, opaque where it paints and transparent "
+        "elsewhere.",
+        path.string());
   return image;
 }
 
 void require_size(const Image& scribble, const View& view, const std::filesystem::path& path) {
   const Camera& c = view.camera;
   if (scribble.width != c.width || scribble.height != c.height)
-    fail("{} is {}x{} pixels, view {} is {}x{}; paint on a picture of the view's own size.", path.string(), scribble.width,
-         scribble.height, view.name, c.width, c.height);
+    fail("{} is {}x{} pixels, view {} is {}x{}; paint on a picture of the view's own size.", path.string(),
+         scribble.width, scribble.height, view.name, c.width, c.height);
 }
 
 void require_paint(const Image& scribble, const std::filesystem::path& path) {
@@ -52,8 +54,12 @@ void require_paint(const Image& scribble, const std::filesystem::path& path) {
 }
 
 Json report_json(const PaintReport& r) {
-  return {{"painted_pixels", r.painted_pixels}, {"missed_pixels", r.missed_pixels}, {"points", r.points},
-          {"mean_error", r.mean_error},         {"max_error", r.max_error},         {"trace_seconds", r.trace_seconds},
+  return {{"painted_pixels", r.painted_pixels},
+          {"missed_pixels", r.missed_pixels},
+          {"points", r.points},
+          {"mean_error", r.mean_error},
+          {"max_error", r.max_error},
+          {"trace_seconds", r.trace_seconds},
           {"fit_seconds", r.train_seconds}};
 }
 

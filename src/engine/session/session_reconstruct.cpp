@@ -30,8 +30,9 @@ class ProjectCheckpoints : public Checkpoints {
 
 Json options_json(const ReconstructRequest& r) {
   const ReconstructOptions& o = r.options;
-  return {{"preset", o.preset},       {"seconds", o.seconds},       {"iterations", o.iterations}, {"seed", o.seed},
-          {"downscale", o.downscale}, {"test_every", o.test_every}, {"format", r.format}};
+  return {{"preset", o.preset}, {"seconds", o.seconds},     {"iterations", o.iterations},
+          {"seed", o.seed},     {"downscale", o.downscale}, {"test_every", o.test_every},
+          {"format", r.format}};
 }
 
 ReconstructOptions options_from_json(const Json& j) {
@@ -48,8 +49,8 @@ ReconstructOptions options_from_json(const Json& j) {
 // Checked as `check` does, so that nothing is written for a capture that cannot work.
 Project create_project(const ReconstructRequest& request, const CheckReport& checked) {
   require_usable(checked.report);
-  return Project::create(request.project, {*checked.report.normalization, options_json(request)}, checked.capture,
-                         request.replace);
+  return Project::create(request.project, {*checked.report.normalization, options_json(request)},
+                         checked.capture, request.replace);
 }
 
 // The capture that was reconstructed must still be the one that training goes on with.
@@ -60,9 +61,11 @@ void require_same_capture(const Project& project, const fs::path& given) {
     now = load_capture(given, {o.value("format", ""), o.value("test_every", 0)});
   }
   if (capture_fingerprint(now) != project.fingerprint())
-    fail("The capture {} is not as it was when {} was begun: its views, cameras or pictures differ. Restore it, or start "
-         "anew with --force.",
-         now.root.string(), project.folder().string());
+    fail(
+        "The capture {} is not as it was when {} was begun: its views, cameras or pictures differ. Restore "
+        "it, or start "
+        "anew with --force.",
+        now.root.string(), project.folder().string());
 }
 
 ReconstructReport report_of(const Project& project, const Scene& scene, double seconds) {
@@ -92,7 +95,8 @@ ReconstructReport Session::reconstruct(const ReconstructRequest& request, Progre
   try {
     const ReconstructOptions options = options_from_json(project().head().options);
     const fs::path run = project().new_run("reconstruct");
-    project().add_history({{"do", request.resume ? "resume" : "reconstruct"}, {"options", project().head().options}});
+    project().add_history(
+        {{"do", request.resume ? "resume" : "reconstruct"}, {"options", project().head().options}});
     RunLog log(progress, run / "log.jsonl");
     ProjectCheckpoints checkpoints(project());
     const Scene scene = cei3d::reconstruct(*device_, project().capture(), CaptureImages(options.downscale),

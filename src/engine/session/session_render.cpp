@@ -18,12 +18,15 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 // One scale for every view of a run: the farthest point that any of them can see becomes 65535.
 double depth_scale(const std::vector<NamedCamera>& cameras, const Normalization& n) {
   double farthest = 0;
-  for (const NamedCamera& c : cameras) farthest = std::max(farthest, length(c.camera.center - n.center) + 1 / n.scale);
+  for (const NamedCamera& c : cameras)
+    farthest = std::max(farthest, length(c.camera.center - n.center) + 1 / n.scale);
   return 65535 / farthest;
 }
 
@@ -39,7 +42,8 @@ Json light_json(const LightChoice& light) {
   return j;
 }
 
-Json run_json(const Project& project, const RenderRequest& request, const std::vector<NamedCamera>& cameras, double depth) {
+Json run_json(const Project& project, const RenderRequest& request, const std::vector<NamedCamera>& cameras,
+              double depth) {
   Json channels = Json::array(), list = Json::array();
   for (const Channel c : request.channels) channels.push_back(channel_name(c));
   for (const NamedCamera& c : cameras) {
@@ -53,20 +57,23 @@ Json run_json(const Project& project, const RenderRequest& request, const std::v
           {"light", light_json(request.light)},
           {"channels", std::move(channels)},
           {"switches", {{"samples_per_axis", request.samples}}},
-          {"depth", {{"scale", depth}, {"meaning", "z-depth in capture units = 16-bit value / scale; 0: nothing"}}},
+          {"depth",
+           {{"scale", depth}, {"meaning", "z-depth in capture units = 16-bit value / scale; 0: nothing"}}},
           {"axes", "OpenCV: x right, y down, z forward; world: the capture's; pixel centres at +0.5"},
           {"cameras", std::move(list)}};
 }
 
 void require_running(const Progress& progress) {
-  if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Rendering was interrupted; the pictures written so far are whole.");
+  if (progress.cancelled())
+    throw Error(ErrorCode::interrupted, "Rendering was interrupted; the pictures written so far are whole.");
 }
 
 }  // namespace
 
 RenderReport Session::render(const RenderRequest& request, Progress& progress) {
   const double start = now();
-  const std::vector<NamedCamera> cameras = choose_cameras(project(), request.cameras, request.width, request.height);
+  const std::vector<NamedCamera> cameras =
+      choose_cameras(project(), request.cameras, request.width, request.height);
   Scene scene = project().scene();
   scene.light = chosen_light(*device_, request.light, scene.light, scene.up);
   const double depth = depth_scale(cameras, scene.normalization);
@@ -76,14 +83,15 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
     require_running(progress);
     progress.report({"render", double(i) / double(cameras.size()), -1, cameras[i].name});
     const double before = now();
-    const GBuffer buffer = trace_view(*device_, scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
+    const GBuffer buffer =
+        trace_view(*device_, scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
     const double traced = now();
     const Frame frame = shade_view(*device_, scene, *lighting, buffer);
     report.trace_seconds += traced - before;
     report.shade_seconds += now() - traced;
     for (const Channel c : request.channels)
-      write_png(picture_path(request.out, c, cameras[i]), channel_picture(frame, c, scene.material.roughness, depth),
-                channel_bits(c));
+      write_png(picture_path(request.out, c, cameras[i]),
+                channel_picture(frame, c, scene.material.roughness, depth), channel_bits(c));
   }
   write_file_atomic(request.out / "render.json", run_json(project(), request, cameras, depth).dump(1) + "\n");
   progress.report({"render", 1, 0, ""});

@@ -14,12 +14,19 @@ namespace cei3d {
 int encoding_rows(const EncodingConfig& e) { return 3 + 6 * e.frequencies + 2 * e.levels; }
 
 MlpConfig mlp_config(const FieldConfig& c) {
-  return {encoding_rows(c.encoding), c.hidden_layers, c.width, c.skip_layer, c.activation, c.softplus_beta, c.outputs,
+  return {encoding_rows(c.encoding),
+          c.hidden_layers,
+          c.width,
+          c.skip_layer,
+          c.activation,
+          c.softplus_beta,
+          c.outputs,
           c.output_activation};
 }
 
 GridLevel grid_level(const EncodingConfig& e, int level) {
-  const double growth = e.levels > 1 ? std::pow(double(e.finest_resolution) / e.base_resolution, 1.0 / (e.levels - 1)) : 1;
+  const double growth =
+      e.levels > 1 ? std::pow(double(e.finest_resolution) / e.base_resolution, 1.0 / (e.levels - 1)) : 1;
   const double resolution = std::floor(e.base_resolution * std::pow(growth, level) + 1e-6);
   const double corners = std::pow(resolution + 1, 3);
   const uint32_t table = 1u << e.log2_table;
@@ -56,7 +63,8 @@ Field::Field(const FieldConfig& config, uint64_t seed) : config_(config) {
   const EncodingConfig& e = config.encoding;
   for (int l = 0; l < e.levels; ++l) {
     Param& table = params_.add("encoding/level" + std::to_string(l), {level_entries(e, l), 2});
-    for (size_t i = 0; i < table.count(); ++i) table.value[i] = 1e-4f * (2 * Rng(seed, 1000 + l, i).uniform() - 1);
+    for (size_t i = 0; i < table.count(); ++i)
+      table.value[i] = 1e-4f * (2 * Rng(seed, 1000 + l, i).uniform() - 1);
   }
   add_mlp_params(mlp_config(config), params_, seed);
 }
@@ -73,7 +81,8 @@ void Field::eval(const Device& device, std::span<const Vec3f> x, std::span<float
       points_to_panels(&x[b], n, points.data());
       pass.forward(device, *this, weights, points.data(), padded, config_.encoding.levels, outputs);
       for (int i = 0; i < n; ++i)
-        for (int o = 0; o < outputs; ++o) out[size_t(b + i) * outputs + o] = pass.output()[panel_at(i, 1, 0, outputs, o)];
+        for (int o = 0; o < outputs; ++o)
+          out[size_t(b + i) * outputs + o] = pass.output()[panel_at(i, 1, 0, outputs, o)];
     }
   });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A field: an encoding of a point and a small network behind it. SDF, albedo and every edit branch are fields; what
-// tells the presets apart is data (FieldConfig), not code.
+// A field: an encoding of a point and a small network behind it. SDF, albedo and every edit branch are
+// fields; what tells the presets apart is data (FieldConfig), not code.
 #pragma once
 
 #include <cstdint>
@@ -18,23 +18,25 @@
 namespace cei3d {
 
 struct EncodingConfig {
-  int frequencies = 0;         // L of the frequency encoding, sin and cos of 2^k x, k < L [reference-facts 2.1]; 0: none
-  int levels = 0;              // of the hash grid; 0: none
-  int base_resolution = 16;    // cells along [-1, 1] at level 0
-  int finest_resolution = 256; // ... and at the last level; geometric in between
-  int log2_table = 15;         // entries a level, 2 features each
+  int frequencies =
+      0;           // L of the frequency encoding, sin and cos of 2^k x, k < L [reference-facts 2.1]; 0: none
+  int levels = 0;  // of the hash grid; 0: none
+  int base_resolution = 16;     // cells along [-1, 1] at level 0
+  int finest_resolution = 256;  // ... and at the last level; geometric in between
+  int log2_table = 15;          // entries a level, 2 features each
 };
 
 struct FieldConfig {
-  EncodingConfig encoding;     // the raw point (3 rows) always comes first
+  EncodingConfig encoding;  // the raw point (3 rows) always comes first
   int hidden_layers = 1;
   int width = 64;
-  int skip_layer = -1;         // the encoding enters again before this hidden layer, divided by sqrt 2; -1: never
+  int skip_layer = -1;  // the encoding enters again before this hidden layer, divided by sqrt 2; -1: never
   Activation activation = Activation::relu;
   float softplus_beta = 100;
   int outputs = 3;
   Activation output_activation = Activation::none;
-  float sphere_radius = 0;     // > 0: |x| - sphere_radius is added to output 0, so that an untrained SDF is a sphere
+  float sphere_radius =
+      0;  // > 0: |x| - sphere_radius is added to output 0, so that an untrained SDF is a sphere
 };
 Json to_json(const FieldConfig&);
 FieldConfig field_config_from_json(const Json&);  // error on unknown keys
@@ -73,8 +75,10 @@ class FieldTrainer {
   // loss(begin, end, out, d_out): reads the outputs of points [begin, end), row-major from out[0], and writes
   // dL/d(output) to d_out; called from several threads, on ranges that don't depend on their number.
   using Loss = std::function<void(int begin, int end, const float* out, float* d_out)>;
-  // One Adam step. x: #N. `rate` scales both learning rates (schedules); `levels`: hash levels in use, -1: all.
-  void step(const Device& device, std::span<const Vec3f> x, const Loss& loss, float rate = 1, int levels = -1);
+  // One Adam step. x: #N. `rate` scales both learning rates (schedules); `levels`: hash levels in use, -1:
+  // all.
+  void step(const Device& device, std::span<const Vec3f> x, const Loss& loss, float rate = 1,
+            int levels = -1);
 
  private:
   struct State;

@@ -10,8 +10,8 @@ FieldPass::FieldPass(const FieldConfig& config, int capacity, int columns)
 
 int FieldPass::active_rows(int levels) const { return 3 + 6 * config_.encoding.frequencies + 2 * levels; }
 
-void FieldPass::forward(const Device& device, const Field& field, const MlpWeights& weights, const float* points, int n,
-                        int levels, int outputs) {
+void FieldPass::forward(const Device& device, const Field& field, const MlpWeights& weights,
+                        const float* points, int n, int levels, int outputs) {
   const EncodingConfig& e = config_.encoding;
   EncodeArgs a{points, mlp_.input(), encoding_rows(e), 0, columns_};
   device.launch<EncodePoint>(a, n);
@@ -29,12 +29,13 @@ void FieldPass::add_sphere(const float* points, int n) {
     const Vec3f p = load_point<float>(points, i);
     const float r = length(p);
     y[panel_at(i, columns_, 0, config_.outputs, 0)] += r - config_.sphere_radius;
-    for (int c = 1; c < columns_; ++c) y[panel_at(i, columns_, c, config_.outputs, 0)] += p[c - 1] / std::max(r, 1e-9f);
+    for (int c = 1; c < columns_; ++c)
+      y[panel_at(i, columns_, c, config_.outputs, 0)] += p[c - 1] / std::max(r, 1e-9f);
   }
 }
 
-void FieldPass::backward(const Device& device, const MlpWeights& weights, int n, int levels, float* network_gradient,
-                         float* d_encoding) {
+void FieldPass::backward(const Device& device, const MlpWeights& weights, int n, int levels,
+                         float* network_gradient, float* d_encoding) {
   mlp_.backward(device, weights, n, active_rows(levels), network_gradient, d_encoding);
 }
 
@@ -43,7 +44,9 @@ void scatter_encoding(const Device& device, const FieldConfig& config, int level
   const EncodingConfig& e = config.encoding;
   const int row = 3 + 6 * e.frequencies + 2 * level;
   device.launch<EncodeGridGrad>({{points, const_cast<float*>(d_encoding), encoding_rows(e), row, columns},
-                                 grid_level(e, level), d_table}, n);
+                                 grid_level(e, level),
+                                 d_table},
+                                n);
 }
 
 void points_to_panels(const Vec3f* points, int n, float* panels) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forward and backward of one chunk of points through a field. Trainers compose these; everyone else calls Field::eval.
+// Forward and backward of one chunk of points through a field. Trainers compose these; everyone else calls
+// Field::eval.
 #pragma once
 
 #include "model/field/field.h"
@@ -11,11 +12,14 @@ class FieldPass {
   FieldPass(const FieldConfig& config, int capacity, int columns);
 
   // points: [panels][3][32]. levels: hash levels in use (coarse to fine); the others count as zero.
-  void forward(const Device&, const Field&, const MlpWeights&, const float* points, int n, int levels, int outputs);
+  void forward(const Device&, const Field&, const MlpWeights&, const float* points, int n, int levels,
+               int outputs);
   const float* output() const { return mlp_.output(); }
   float* d_output() { return mlp_.d_output(); }
-  // network_gradient: added to. d_encoding: [panels * columns][encoding_rows][32], written, for scatter_encoding.
-  void backward(const Device&, const MlpWeights&, int n, int levels, float* network_gradient, float* d_encoding);
+  // network_gradient: added to. d_encoding: [panels * columns][encoding_rows][32], written, for
+  // scatter_encoding.
+  void backward(const Device&, const MlpWeights&, int n, int levels, float* network_gradient,
+                float* d_encoding);
 
  private:
   void add_sphere(const float* points, int n);
@@ -26,8 +30,8 @@ class FieldPass {
 };
 
 // Adds d_encoding of n points into the gradient of one level's table.
-void scatter_encoding(const Device&, const FieldConfig&, int level, const float* points, const float* d_encoding, int n,
-                      int columns, float* d_table);
+void scatter_encoding(const Device&, const FieldConfig&, int level, const float* points,
+                      const float* d_encoding, int n, int columns, float* d_table);
 
 // SoA panels [panels][3][32] of points; the last panel is padded with the origin.
 void points_to_panels(const Vec3f* points, int n, float* panels);

@@ -98,9 +98,12 @@ class Reference {
  private:
   double activation(double z) const {
     switch (config_.activation) {
-      case Activation::relu: return Relu::eval(z, 1).value;
-      case Activation::elu: return Elu::eval(z, 1).value;
-      default: return Softplus::eval(z, config_.softplus_beta).value;
+      case Activation::relu:
+        return Relu::eval(z, 1).value;
+      case Activation::elu:
+        return Elu::eval(z, 1).value;
+      default:
+        return Softplus::eval(z, config_.softplus_beta).value;
     }
   }
   FieldConfig config_;
@@ -131,7 +134,9 @@ void randomize(Field& field) {
 class FieldOnDevice : public testing::TestWithParam<std::tuple<std::string, int>> {
  protected:
   static FieldConfig config(int kind) {
-    return kind == 0 ? grid_config(Activation::softplus) : kind == 1 ? grid_config(Activation::elu) : frequency_config();
+    return kind == 0   ? grid_config(Activation::softplus)
+           : kind == 1 ? grid_config(Activation::elu)
+                       : frequency_config();
   }
 };
 
@@ -156,8 +161,10 @@ TEST_P(FieldOnDevice, JetAndItsGradientEqualDoublePrecision) {
   for (int i = 0; i < n; ++i) {
     const std::vector<double> want = reference.eval_jet(to_double(x[i]));
     for (int k = 0; k < outputs + 3; ++k) {
-      const size_t at = k < outputs ? panel_at(i, 4, 0, outputs, k) : panel_at(i, 4, k - outputs + 1, outputs, 0);
-      EXPECT_NEAR(pass.output()[at], want[k], 2e-4 * (1 + std::abs(want[k]))) << "sample " << i << " output " << k;
+      const size_t at =
+          k < outputs ? panel_at(i, 4, 0, outputs, k) : panel_at(i, 4, k - outputs + 1, outputs, 0);
+      EXPECT_NEAR(pass.output()[at], want[k], 2e-4 * (1 + std::abs(want[k])))
+          << "sample " << i << " output " << k;
       c[i].push_back(Rng(5, i, k).normal());
       pass.d_output()[at] = float(c[i].back());
     }
@@ -214,9 +221,11 @@ std::vector<std::string> device_names() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(All, FieldOnDevice, testing::Combine(testing::ValuesIn(device_names()), testing::Values(0, 1, 2)),
+INSTANTIATE_TEST_SUITE_P(All, FieldOnDevice,
+                         testing::Combine(testing::ValuesIn(device_names()), testing::Values(0, 1, 2)),
                          [](const auto& info) {
-                           std::string name = std::get<0>(info.param) + "_" + std::to_string(std::get<1>(info.param));
+                           std::string name =
+                               std::get<0>(info.param) + "_" + std::to_string(std::get<1>(info.param));
                            std::replace(name.begin(), name.end(), '/', '_');
                            return name;
                          });
@@ -236,7 +245,8 @@ TEST(FieldTrainer, LearnsASphereAndRepeatsBitForBit) {
         x[i] = {2 * rng.uniform() - 1, 2 * rng.uniform() - 1, 2 * rng.uniform() - 1};
       }
       trainer.step(device, x, [&](int begin, int end, const float* out, float* d) {
-        for (int i = begin; i < end; ++i) d[i - begin] = 2 * (out[i - begin] - (length(x[i]) - 0.5f)) / float(x.size());
+        for (int i = begin; i < end; ++i)
+          d[i - begin] = 2 * (out[i - begin] - (length(x[i]) - 0.5f)) / float(x.size());
       });
     }
     std::vector<float> out(x.size());

@@ -23,7 +23,11 @@ struct FieldTrainer::State {
 FieldTrainer::FieldTrainer(Field& field, const Options& options)
     : field_(field),
       options_(options),
-      state_(new State{{}, Pool<FieldPass>([config = field.config()] { return std::make_unique<FieldPass>(config, kChunk, 1); }), {}}) {
+      state_(new State{{},
+                       Pool<FieldPass>([config = field.config()] {
+                         return std::make_unique<FieldPass>(config, kChunk, 1);
+                       }),
+                       {}}) {
   Optimizer::Group tables{options.encoding_rate}, layers{options.network_rate};
   tables.skip_zero = true;
   state_->optimizer.add(field.params(), "encoding/", tables);
@@ -31,7 +35,8 @@ FieldTrainer::FieldTrainer(Field& field, const Options& options)
 }
 FieldTrainer::~FieldTrainer() = default;
 
-void FieldTrainer::step(const Device& device, std::span<const Vec3f> x, const Loss& loss, float rate, int levels) {
+void FieldTrainer::step(const Device& device, std::span<const Vec3f> x, const Loss& loss, float rate,
+                        int levels) {
   const FieldConfig& config = field_.config();
   const MlpWeights weights(mlp_config(config), field_.params());
   const int n = int(x.size()), outputs = config.outputs;
@@ -47,7 +52,8 @@ void FieldTrainer::step(const Device& device, std::span<const Vec3f> x, const Lo
       pass.forward(device, field_, weights, g.points.data(), g.padded, levels, outputs);
       std::vector<float> y(size_t(count) * outputs), d_y(size_t(count) * outputs, 0.0f);
       for (int i = 0; i < count; ++i)
-        for (int o = 0; o < outputs; ++o) y[size_t(i) * outputs + o] = pass.output()[panel_at(i, 1, 0, outputs, o)];
+        for (int o = 0; o < outputs; ++o)
+          y[size_t(i) * outputs + o] = pass.output()[panel_at(i, 1, 0, outputs, o)];
       loss(begin, end, y.data(), d_y.data());
       for (int i = 0; i < g.padded; ++i)
         for (int o = 0; o < outputs; ++o)

@@ -16,7 +16,8 @@ void ChunkGradients::reset(const FieldConfig& config, size_t network_size, int n
   network.assign(network_size, 0.0f);
 }
 
-void accumulate_layers(const ParamSet& params, const std::vector<const std::vector<float>*>& network, Optimizer& optimizer) {
+void accumulate_layers(const ParamSet& params, const std::vector<const std::vector<float>*>& network,
+                       Optimizer& optimizer) {
   size_t offset = 0;
   for (const Param& p : params.all()) {
     if (!p.name.starts_with("layer")) continue;
@@ -27,15 +28,16 @@ void accumulate_layers(const ParamSet& params, const std::vector<const std::vect
   }
 }
 
-void accumulate_gradients(const Device& device, const Field& field, const std::vector<ChunkGradients>& chunks, int levels,
-                          Optimizer& optimizer) {
+void accumulate_gradients(const Device& device, const Field& field, const std::vector<ChunkGradients>& chunks,
+                          int levels, Optimizer& optimizer) {
   std::vector<const std::vector<float>*> network;
   for (const ChunkGradients& c : chunks) network.push_back(&c.network);
   accumulate_layers(field.params(), network, optimizer);
   parallel_for(levels, [&](int level) {
     float* d_table = optimizer.gradient(field.params().get("encoding/level" + std::to_string(level))).data();
     for (const ChunkGradients& c : chunks)
-      scatter_encoding(device, field.config(), level, c.points.data(), c.d_encoding.data(), c.padded, c.columns, d_table);
+      scatter_encoding(device, field.config(), level, c.points.data(), c.d_encoding.data(), c.padded,
+                       c.columns, d_table);
   });
 }
 

@@ -17,26 +17,37 @@ std::string layer_name(size_t l, const char* what) { return "layer" + std::to_st
 
 void launch_activation(const Device& device, Activation kind, const ActivateArgs& a, int n) {
   switch (kind) {
-    case Activation::relu: return device.launch<Activate<Relu>>(a, n);
-    case Activation::elu: return device.launch<Activate<Elu>>(a, n);
-    case Activation::softplus: return device.launch<Activate<Softplus>>(a, n);
-    case Activation::sigmoid: return device.launch<Activate<Sigmoid>>(a, n);
-    case Activation::none: break;
+    case Activation::relu:
+      return device.launch<Activate<Relu>>(a, n);
+    case Activation::elu:
+      return device.launch<Activate<Elu>>(a, n);
+    case Activation::softplus:
+      return device.launch<Activate<Softplus>>(a, n);
+    case Activation::sigmoid:
+      return device.launch<Activate<Sigmoid>>(a, n);
+    case Activation::none:
+      break;
   }
 }
 
 void launch_activation_grad(const Device& device, Activation kind, const ActivateArgs& a, int n) {
   switch (kind) {
-    case Activation::relu: return device.launch<ActivateGrad<Relu>>(a, n);
-    case Activation::elu: return device.launch<ActivateGrad<Elu>>(a, n);
-    case Activation::softplus: return device.launch<ActivateGrad<Softplus>>(a, n);
-    case Activation::sigmoid: return device.launch<ActivateGrad<Sigmoid>>(a, n);
-    case Activation::none: break;
+    case Activation::relu:
+      return device.launch<ActivateGrad<Relu>>(a, n);
+    case Activation::elu:
+      return device.launch<ActivateGrad<Elu>>(a, n);
+    case Activation::softplus:
+      return device.launch<ActivateGrad<Softplus>>(a, n);
+    case Activation::sigmoid:
+      return device.launch<ActivateGrad<Sigmoid>>(a, n);
+    case Activation::none:
+      break;
   }
 }
 
 // to[p][first + r] = scale * from[p][r] for every panel p.
-void copy_rows(const float* from, int from_stride, float* to, int to_stride, int first, int rows, int panels, float scale) {
+void copy_rows(const float* from, int from_stride, float* to, int to_stride, int first, int rows, int panels,
+               float scale) {
   for (int p = 0; p < panels; ++p) {
     const float* a = from + size_t(p) * from_stride * kPanel;
     float* b = to + (size_t(p) * to_stride + first) * kPanel;
@@ -70,7 +81,8 @@ void add_mlp_params(const MlpConfig& config, ParamSet& params, uint64_t seed) {
   }
 }
 
-MlpWeights::MlpWeights(const MlpConfig& config, const ParamSet& params) : config_(config), layers_(mlp_layers(config)) {
+MlpWeights::MlpWeights(const MlpConfig& config, const ParamSet& params)
+    : config_(config), layers_(mlp_layers(config)) {
   for (size_t l = 0; l < layers_.size(); ++l) {
     const auto& w = params.get(layer_name(l, "weight")).value;
     const int in = layers_[l].in, out = layers_[l].out;
@@ -122,18 +134,20 @@ void MlpPass::forward(const Device& device, const MlpWeights& w, int n, int acti
   const float* x = x_.data();
   for (int l = 0; l < last; ++l) {
     const MlpLayer& layer = layers_[l];
-    device.linear({panels(n), l == 0 ? active_inputs : layer.in, layer.out, x, layer.in, w.weight(l), layer.in,
-                   w.bias(l), columns_, z_[l].data(), layer.out});
+    device.linear({panels(n), l == 0 ? active_inputs : layer.in, layer.out, x, layer.in, w.weight(l),
+                   layer.in, w.bias(l), columns_, z_[l].data(), layer.out});
     activate(device, l, n);
     x = h_[l].data();
   }
-  const int in = last == 0 ? active_inputs : layers_[last].in, stride = layers_[last].in, all = config_.outputs;
+  const int in = last == 0 ? active_inputs : layers_[last].in, stride = layers_[last].in,
+            all = config_.outputs;
   float* y = y_raw_.empty() ? y_.data() : y_raw_.data();
   // Output 0 in every column; the others in the value columns only.
-  device.linear({panels(n), in, columns_ == 1 ? outputs : 1, x, stride, w.weight(last), stride, w.bias(last), columns_, y, all});
+  device.linear({panels(n), in, columns_ == 1 ? outputs : 1, x, stride, w.weight(last), stride, w.bias(last),
+                 columns_, y, all});
   if (columns_ > 1 && outputs > 1)
-    device.linear({n / kPanel, in, outputs - 1, x, stride * columns_, w.weight(last) + stride, stride, w.bias(last) + 1,
-                   1, y + kPanel, all * columns_});
+    device.linear({n / kPanel, in, outputs - 1, x, stride * columns_, w.weight(last) + stride, stride,
+                   w.bias(last) + 1, 1, y + kPanel, all * columns_});
   if (!y_raw_.empty())
     launch_activation(device, config_.output_activation, {y, y_.data(), all, all, outputs, columns_, 1}, n);
 }
@@ -149,15 +163,19 @@ void MlpPass::activate_grad(const Device& device, int l, int n, float* d) {
         dx[size_t(p) * config_.inputs * kPanel + k] = kHalfRoot * dp[out * kPanel + k];
     }
   }
-  launch_activation_grad(device, config_.activation, {z_[l].data(), d, out, stride, out, columns_, config_.softplus_beta}, n);
+  launch_activation_grad(device, config_.activation,
+                         {z_[l].data(), d, out, stride, out, columns_, config_.softplus_beta}, n);
 }
 
-void MlpPass::backward(const Device& device, const MlpWeights& w, int n, int active_inputs, float* gradient, float* d_input) {
+void MlpPass::backward(const Device& device, const MlpWeights& w, int n, int active_inputs, float* gradient,
+                       float* d_input) {
   const int last = int(layers_.size()) - 1, all = config_.outputs;
   std::vector<size_t> offset(layers_.size(), 0);
-  for (size_t l = 1; l < layers_.size(); ++l) offset[l] = offset[l - 1] + size_t(layers_[l - 1].out) * (layers_[l - 1].in + 1);
+  for (size_t l = 1; l < layers_.size(); ++l)
+    offset[l] = offset[l - 1] + size_t(layers_[l - 1].out) * (layers_[l - 1].in + 1);
   if (!y_raw_.empty())
-    launch_activation_grad(device, config_.output_activation, {y_raw_.data(), d_y_.data(), all, all, all, columns_, 1}, n);
+    launch_activation_grad(device, config_.output_activation,
+                           {y_raw_.data(), d_y_.data(), all, all, all, columns_, 1}, n);
 
   const float* d_y = d_y_.data();
   int d_stride = all;
@@ -168,15 +186,18 @@ void MlpPass::backward(const Device& device, const MlpWeights& w, int n, int act
     const int in = l == 0 ? active_inputs : layer.in;
     float *gw = gradient + offset[l], *gb = gw + size_t(layer.out) * layer.in;
     const bool split = l == last && columns_ > 1;  // outputs after the first have no derivative columns
-    device.linear_weight_grad({panels(n), in, split ? 1 : layer.out, x, layer.in, d_y, d_stride, gw, layer.in, gb, columns_});
+    device.linear_weight_grad(
+        {panels(n), in, split ? 1 : layer.out, x, layer.in, d_y, d_stride, gw, layer.in, gb, columns_});
     if (split && all > 1)
-      device.linear_weight_grad({n / kPanel, in, all - 1, x, layer.in * columns_, d_y + kPanel, all * columns_,
-                                 gw + layer.in, layer.in, gb + 1, 1});
+      device.linear_weight_grad({n / kPanel, in, all - 1, x, layer.in * columns_, d_y + kPanel,
+                                 all * columns_, gw + layer.in, layer.in, gb + 1, 1});
     if (l == 0 && !d_input) break;
     float* target = l == 0 ? d_input : d_x;
-    device.linear({panels(n), split ? 1 : layer.out, in, d_y, d_stride, w.transposed(l), layer.out, nullptr, 1, target, layer.in});
+    device.linear({panels(n), split ? 1 : layer.out, in, d_y, d_stride, w.transposed(l), layer.out, nullptr,
+                   1, target, layer.in});
     if (split && all > 1)
-      device.linear({n / kPanel, all, in, d_y, all * columns_, w.transposed(l), layer.out, nullptr, 1, target, layer.in * columns_});
+      device.linear({n / kPanel, all, in, d_y, all * columns_, w.transposed(l), layer.out, nullptr, 1, target,
+                     layer.in * columns_});
     if (l == 0) break;
     activate_grad(device, l - 1, n, target);
     d_y = target;

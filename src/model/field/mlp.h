@@ -27,8 +27,9 @@ struct MlpLayer {
 };
 std::vector<MlpLayer> mlp_layers(const MlpConfig&);
 
-// Adds "layer0/weight" [out][in], "layer0/bias" [out], ... to params; weights uniform in +-sqrt(6 / in) / sqrt(3)
-// (He for rectifiers would be 2/in; this is the variance 2/(3 in) that keeps softplus and ELU nets calm), biases zero.
+// Adds "layer0/weight" [out][in], "layer0/bias" [out], ... to params; weights uniform in +-sqrt(6 / in) /
+// sqrt(3) (He for rectifiers would be 2/in; this is the variance 2/(3 in) that keeps softplus and ELU nets
+// calm), biases zero.
 void add_mlp_params(const MlpConfig&, ParamSet& params, uint64_t seed);
 
 // Weights in the shapes that the passes need, made once a step.
@@ -37,8 +38,8 @@ class MlpWeights {
   MlpWeights(const MlpConfig& config, const ParamSet& params);
   const MlpConfig& config() const { return config_; }
   const std::vector<MlpLayer>& layers() const { return layers_; }
-  const float* weight(int layer) const { return weights_[layer].data(); }          // [out][in]
-  const float* transposed(int layer) const { return transposed_[layer].data(); }   // [in][out]
+  const float* weight(int layer) const { return weights_[layer].data(); }         // [out][in]
+  const float* transposed(int layer) const { return transposed_[layer].data(); }  // [in][out]
   const float* bias(int layer) const { return biases_[layer].data(); }
   size_t gradient_size() const;  // floats: per layer weight [out][in], then bias [out]
 
@@ -51,15 +52,15 @@ class MlpWeights {
 // Work memory and the two passes of one chunk of samples.
 class MlpPass {
  public:
-  // capacity: samples, a multiple of 32. columns: 1 values, 4 jets. Of a jet's outputs, only output 0 has derivative
-  // columns; those of the others are left zero.
+  // capacity: samples, a multiple of 32. columns: 1 values, 4 jets. Of a jet's outputs, only output 0 has
+  // derivative columns; those of the others are left zero.
   MlpPass(const MlpConfig& config, int capacity, int columns);
 
   float* input() { return x_.data(); }  // [panels * columns][inputs][32], filled by the caller
   // active_inputs: rows after these are zero and skipped. outputs: how many of the first outputs are wanted.
   void forward(const Device&, const MlpWeights&, int n, int active_inputs, int outputs);
   const float* output() const { return y_.data(); }  // [panels * columns][outputs of the config][32]
-  float* d_output() { return d_y_.data(); }          // same shape; filled by the caller; overwritten by backward
+  float* d_output() { return d_y_.data(); }  // same shape; filled by the caller; overwritten by backward
   // gradient: [MlpWeights::gradient_size()], added to. d_input: same shape as input, written; may be null.
   void backward(const Device&, const MlpWeights&, int n, int active_inputs, float* gradient, float* d_input);
 

@@ -32,7 +32,8 @@ void Optimizer::step(const Device& device, float rate_scale) {
     const AdamStep step{float(g.rate * rate_scale * correction), g.beta1, g.beta2, g.eps, g.skip_zero};
     parallel_ranges(int(s.gradient.size()), kGrain, [&](int begin, int end) {
       device.launch<Adam>({step, s.param->value.data() + begin, s.gradient.data() + begin, s.m.data() + begin,
-                           s.v.data() + begin}, end - begin);
+                           s.v.data() + begin},
+                          end - begin);
     });
   }
 }

@@ -16,7 +16,8 @@ class Optimizer {
     float rate = 1e-3f, beta1 = 0.9f, beta2 = 0.99f, eps = 1e-15f;
     bool skip_zero = false;  // see AdamStep
   };
-  // params must outlive the optimizer. Which parameters belong to the group is said by a name prefix ("": all).
+  // params must outlive the optimizer. Which parameters belong to the group is said by a name prefix ("":
+  // all).
   void add(ParamSet& params, const std::string& prefix, const Group& group);
 
   std::span<float> gradient(const Param& param);  // accumulated into by the caller; step() clears it

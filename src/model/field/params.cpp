@@ -49,7 +49,8 @@ const Tensor& require_tensor(const Tensors& in, const std::string& name, const s
   const auto it = in.find(name);
   if (it == in.end()) fail("array '{}' is missing from the project's data", name);
   if (it->second.shape != shape)
-    fail("array '{}' has shape {}, expected {}", name, fmt::join(it->second.shape, "x"), fmt::join(shape, "x"));
+    fail("array '{}' has shape {}, expected {}", name, fmt::join(it->second.shape, "x"),
+         fmt::join(shape, "x"));
   return it->second;
 }
 

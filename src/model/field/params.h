@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named parameters of a model. The only owner of weights: saving, hashing and optimising need no code per network.
+// Named parameters of a model. The only owner of weights: saving, hashing and optimising need no code per
+// network.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +14,10 @@ namespace cei3d {
 struct Param {
   std::string name;
   std::vector<int64_t> shape;
-  std::vector<float> value;  // padded with zeros to a multiple of 32 floats, so that kernels need no remainder
+  std::vector<float>
+      value;  // padded with zeros to a multiple of 32 floats, so that kernels need no remainder
 
-  size_t count() const;      // product of the shape
+  size_t count() const;  // product of the shape
 };
 
 class ParamSet {

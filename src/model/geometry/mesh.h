@@ -10,10 +10,10 @@
 namespace cei3d {
 
 struct Mesh {
-  std::vector<Vec3f> positions;                   // #V
-  std::vector<Vec3f> normals;                     // #V unit, outward; may be empty
-  std::vector<Vec3f> colors;                      // #V linear; may be empty
-  std::vector<std::array<uint32_t, 3>> triangles; // #F, counter-clockwise seen from outside
+  std::vector<Vec3f> positions;                    // #V
+  std::vector<Vec3f> normals;                      // #V unit, outward; may be empty
+  std::vector<Vec3f> colors;                       // #V linear; may be empty
+  std::vector<std::array<uint32_t, 3>> triangles;  // #F, counter-clockwise seen from outside
 };
 
 }  // namespace cei3d

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface as rays and light see it: a mesh of the zero level set, an index for rays, and for every vertex which
-// directions of the sky are free.
+// The surface as rays and light see it: a mesh of the zero level set, an index for rays, and for every vertex
+// which directions of the sky are free.
 #pragma once
 
 #include <memory>
@@ -19,14 +19,16 @@ const std::vector<Vec3f>& sky_directions();
 
 class Surface {
  public:
-  explicit Surface(Mesh mesh);                                       // casts the visibility rays (seconds)
-  Surface(Mesh mesh, std::vector<uint8_t> visibility);               // from a stored table
+  explicit Surface(Mesh mesh);                          // casts the visibility rays (seconds)
+  Surface(Mesh mesh, std::vector<uint8_t> visibility);  // from a stored table
   ~Surface();
   Surface(const Surface&) = delete;
   Surface& operator=(const Surface&) = delete;
 
   const Mesh& mesh() const { return mesh_; }
-  const std::vector<uint8_t>& visibility() const { return visibility_; }  // #V x kSkyDirections / 8, bit = free
+  const std::vector<uint8_t>& visibility() const {
+    return visibility_;
+  }  // #V x kSkyDirections / 8, bit = free
   bool sees(uint32_t vertex, int direction) const {
     return visibility_[size_t(vertex) * (kSkyDirections / 8) + direction / 8] >> (direction % 8) & 1;
   }

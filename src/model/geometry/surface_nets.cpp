@@ -46,7 +46,8 @@ CornerGrid sample_corners(const Device& device, const Field& sdf, int resolution
       for (int x = 0; x < coarse.n; ++x) points.push_back(coarse.position(x, y, z));
   coarse.value = distances(device, sdf, points);
 
-  const float reach = 2.0f * 3.4641f / float(coarse.n - 1);  // two coarse half-diagonals: fields are not quite 1-Lipschitz
+  const float reach =
+      2.0f * 3.4641f / float(coarse.n - 1);  // two coarse half-diagonals: fields are not quite 1-Lipschitz
   fine.value.assign(size_t(fine.n) * fine.n * fine.n, 0);
   std::vector<size_t> wanted;
   points.clear();
@@ -103,7 +104,9 @@ Mesh net_of(const CornerGrid& g) {
   constexpr uint32_t kNone = ~0u;
   const int cells = g.n - 1;
   std::vector<uint32_t> vertex(size_t(cells) * cells * cells, kNone);
-  const auto cell = [&](int x, int y, int z) -> uint32_t& { return vertex[(size_t(z) * cells + y) * cells + x]; };
+  const auto cell = [&](int x, int y, int z) -> uint32_t& {
+    return vertex[(size_t(z) * cells + y) * cells + x];
+  };
   for (int z = 0; z < cells; ++z)
     for (int y = 0; y < cells; ++y)
       for (int x = 0; x < cells; ++x) {
@@ -181,12 +184,14 @@ void sdf_normals(const Device& device, const Field& sdf, std::span<const Vec3f> 
       }
   const std::vector<float> d = distances(device, sdf, points);
   for (size_t i = 0; i < x.size(); ++i)
-    out[i] = normalize(Vec3f{d[6 * i] - d[6 * i + 1], d[6 * i + 2] - d[6 * i + 3], d[6 * i + 4] - d[6 * i + 5]});
+    out[i] =
+        normalize(Vec3f{d[6 * i] - d[6 * i + 1], d[6 * i + 2] - d[6 * i + 3], d[6 * i + 4] - d[6 * i + 5]});
 }
 
 Mesh extract_mesh(const Device& device, const Field& sdf, const MeshingOptions& options) {
   Mesh mesh = net_of(sample_corners(device, sdf, options.resolution));
-  if (mesh.triangles.empty()) fail("the reconstructed field has no surface: the object was lost during training");
+  if (mesh.triangles.empty())
+    fail("the reconstructed field has no surface: the object was lost during training");
   drop_small_parts(mesh, options.smallest_part);
   mesh.normals.resize(mesh.positions.size());
   sdf_normals(device, sdf, mesh.positions, mesh.normals);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The zero level set of a signed distance field as a mesh: one vertex in every cell that the surface passes through,
-// moved onto the surface. Rounder triangles than marching cubes and no case table. [Gibson 1998]
+// The zero level set of a signed distance field as a mesh: one vertex in every cell that the surface passes
+// through, moved onto the surface. Rounder triangles than marching cubes and no case table. [Gibson 1998]
 #pragma once
 
 #include "model/field/field.h"
@@ -9,16 +9,16 @@
 namespace cei3d {
 
 struct MeshingOptions {
-  int resolution = 192;           // cells along [-1, 1]; a multiple of 4
-  float smallest_part = 0.002f;   // connected pieces with a smaller share of all triangles are dropped
+  int resolution = 192;          // cells along [-1, 1]; a multiple of 4
+  float smallest_part = 0.002f;  // connected pieces with a smaller share of all triangles are dropped
 };
 
-// Vertices lie on the zero set to about 1e-4; normals come from differences of the field `normal_epsilon` wide.
-// Error when the field has no zero set in the unit sphere.
+// Vertices lie on the zero set to about 1e-4; normals come from differences of the field `normal_epsilon`
+// wide. Error when the field has no zero set in the unit sphere.
 Mesh extract_mesh(const Device&, const Field& sdf, const MeshingOptions& options);
 
-// Step of the differences that normals are taken from: three cells of the finest hash level, since a trilinear grid's
-// own gradient jumps at every cell face (prototype-findings, trap 6).
+// Step of the differences that normals are taken from: three cells of the finest hash level, since a
+// trilinear grid's own gradient jumps at every cell face (prototype-findings, trap 6).
 float normal_epsilon(const FieldConfig&);
 
 // Unit normals of the field at points, by central differences. x, out: #N.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one similarity transform between the capture's own frame ("input") and the unit sphere that fields live in.
+// The one similarity transform between the capture's own frame ("input") and the unit sphere that fields live
+// in.
 #pragma once
 
 #include "core/math/camera.h"

@@ -49,7 +49,8 @@ int64_t rows_of(const Json& j) {
   return n;
 }
 
-void save_field(const std::shared_ptr<const Field>& field, const std::string& name, Tensors& tensors, Json& head) {
+void save_field(const std::shared_ptr<const Field>& field, const std::string& name, Tensors& tensors,
+                Json& head) {
   if (!field) return;
   head[name] = to_json(field->config());
   field->params().save(tensors, name);
@@ -62,7 +63,8 @@ std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& 
   return field;
 }
 
-// Triangles travel as the bytes of three little-endian u32 each: the tensor format of the store knows F32 and U8.
+// Triangles travel as the bytes of three little-endian u32 each: the tensor format of the store knows F32 and
+// U8.
 void save_surface(const Surface& surface, Tensors& tensors, Json& head) {
   const Mesh& mesh = surface.mesh();
   head["surface"] = {{"vertices", mesh.positions.size()},
@@ -71,7 +73,8 @@ void save_surface(const Surface& surface, Tensors& tensors, Json& head) {
                      {"sky_directions", kSkyDirections}};
   tensors["surface/positions"] = pack(mesh.positions);
   if (!mesh.normals.empty()) tensors["surface/normals"] = pack(mesh.normals);
-  Tensor triangles{{int64_t(mesh.triangles.size()), 12}, {}, std::vector<uint8_t>(mesh.triangles.size() * 12)};
+  Tensor triangles{
+      {int64_t(mesh.triangles.size()), 12}, {}, std::vector<uint8_t>(mesh.triangles.size() * 12)};
   if (!mesh.triangles.empty()) std::memcpy(triangles.u8.data(), mesh.triangles.data(), triangles.u8.size());
   tensors["surface/triangles"] = std::move(triangles);
   tensors["surface/visibility"] = {
@@ -81,7 +84,8 @@ void save_surface(const Surface& surface, Tensors& tensors, Json& head) {
 void check_triangles(const Mesh& mesh) {
   for (const auto& t : mesh.triangles)
     for (const uint32_t v : t)
-      if (v >= mesh.positions.size()) fail("a triangle of the stored surface names vertex {} of {}", v, mesh.positions.size());
+      if (v >= mesh.positions.size())
+        fail("a triangle of the stored surface names vertex {} of {}", v, mesh.positions.size());
 }
 
 std::shared_ptr<const Surface> load_surface(const Tensors& tensors, const Json& j) {
@@ -138,7 +142,8 @@ auto checked(const char* what, F load) {
   try {
     return load();
   } catch (const Json::exception& e) {
-    fail("the description of the {} is damaged ({}); restore the project from a copy, or make it again", what, e.what());
+    fail("the description of the {} is damaged ({}); restore the project from a copy, or make it again", what,
+         e.what());
   }
 }
 

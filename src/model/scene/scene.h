@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The object as it stands: what reconstruct makes, edits extend and render shows. Immutable by convention: an edit
-// copies the struct (cheap: tensors are shared) and adds a layer.
+// The object as it stands: what reconstruct makes, edits extend and render shows. Immutable by convention: an
+// edit copies the struct (cheap: tensors are shared) and adds a layer.
 #pragma once
 
 #include <memory>
@@ -22,25 +22,25 @@ namespace cei3d {
 
 // One edit: where it is, and what it puts in place of the base.
 struct EditLayer {
-  std::string id;                       // "0001-paint"
+  std::string id;  // "0001-paint"
   Region region;
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: albedo of the layers below
 };
 
 struct Scene {
-  Normalization normalization;             // between the capture's frame and the unit sphere that all else is in
-  Vec3d up{0, 0, 1};                       // capture frame
-  std::shared_ptr<const Field> sdf;        // output 0: signed distance, negative inside; the rest: features
-  std::shared_ptr<const Field> albedo;     // base colour, 3 outputs in [0, 1], linear
+  Normalization normalization;          // between the capture's frame and the unit sphere that all else is in
+  Vec3d up{0, 0, 1};                    // capture frame
+  std::shared_ptr<const Field> sdf;     // output 0: signed distance, negative inside; the rest: features
+  std::shared_ptr<const Field> albedo;  // base colour, 3 outputs in [0, 1], linear
   std::shared_ptr<const Surface> surface;  // zero level set as a mesh, with what each point sees of the sky
   SgMixture light;
   Material material;
   std::shared_ptr<const HandlerPoints> handlers;
-  std::vector<EditLayer> layers;           // in the order of their making; a later one covers an earlier one
+  std::vector<EditLayer> layers;  // in the order of their making; a later one covers an earlier one
 };
 
-// A scene as named tensors plus a small JSON head (sizes, material, transform), and back. The layers are not part of it:
-// the project's stack keeps them. Errors: missing tensor, wrong shape.
+// A scene as named tensors plus a small JSON head (sizes, material, transform), and back. The layers are not
+// part of it: the project's stack keeps them. Errors: missing tensor, wrong shape.
 void save_scene(const Scene&, Tensors& tensors, Json& head);
 Scene load_scene(const Tensors& tensors, const Json& head);
 void save_layer(const EditLayer&, Tensors& tensors, Json& head);

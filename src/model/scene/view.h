@@ -14,7 +14,7 @@ namespace cei3d {
 enum class Split { train, val, test };
 
 struct View {
-  std::string name;                  // "train/r_055": split folder and stem, unique in the capture
+  std::string name;  // "train/r_055": split folder and stem, unique in the capture
   Split split = Split::train;
   Camera camera;                     // input frame; pixel centres at +0.5
   std::filesystem::path image_path;  // empty: a camera without a photograph
@@ -23,14 +23,14 @@ struct View {
 
 struct Capture {
   std::filesystem::path root;
-  std::string format;                // "nerf-synthetic", "physg"
-  std::vector<View> views;           // train first, then val, test; each sorted as the capture lists them
-  Vec3d up{0, 0, 1};                 // world axis that points to the sky, input frame
-  std::vector<std::string> warnings; // what the loader had to guess, one sentence each
+  std::string format;                 // "nerf-synthetic", "physg"
+  std::vector<View> views;            // train first, then val, test; each sorted as the capture lists them
+  Vec3d up{0, 0, 1};                  // world axis that points to the sky, input frame
+  std::vector<std::string> warnings;  // what the loader had to guess, one sentence each
 };
 
-// Pictures by view. Behind an interface because files are engine/io's business (CaptureImages there reads them).
-// May be called from several threads.
+// Pictures by view. Behind an interface because files are engine/io's business (CaptureImages there reads
+// them). May be called from several threads.
 class ImageSource {
  public:
   virtual ~ImageSource() = default;

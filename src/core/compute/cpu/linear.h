@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear layers as register tiles: 4 outputs x 2 registers of samples share every load. Included by run.cpp only.
+// Linear layers as register tiles: 4 outputs x 2 registers of samples share every load. Included by run.cpp
+// only.
 #pragma once
 
 #include <cstddef>
@@ -36,14 +37,17 @@ inline __attribute__((always_inline)) void linear_run(const LinearArgs& a) {
       float* y = a.y + size_t(p) * a.y_stride * kPanel + s;
       int o = 0;
       for (; o + 4 <= a.out; o += 4)
-        linear_tile<4, T, W>(a, x, a.weights + size_t(o) * a.weight_stride, bias ? bias + o : nullptr, y + size_t(o) * kPanel);
+        linear_tile<4, T, W>(a, x, a.weights + size_t(o) * a.weight_stride, bias ? bias + o : nullptr,
+                             y + size_t(o) * kPanel);
       for (; o < a.out; ++o)
-        linear_tile<1, T, W>(a, x, a.weights + size_t(o) * a.weight_stride, bias ? bias + o : nullptr, y + size_t(o) * kPanel);
+        linear_tile<1, T, W>(a, x, a.weights + size_t(o) * a.weight_stride, bias ? bias + o : nullptr,
+                             y + size_t(o) * kPanel);
     }
   }
 }
 
-// d_weights of R outputs x C inputs: products of whole registers are summed over panels, then across the lanes.
+// d_weights of R outputs x C inputs: products of whole registers are summed over panels, then across the
+// lanes.
 template <int R, int C, class T, int W>
 HD void weight_grad_tile(const LinearWeightGradArgs& a, int o, int i) {
   T sum[R][C];
@@ -77,13 +81,14 @@ inline __attribute__((always_inline)) void bias_grad(const LinearWeightGradArgs&
   for (int o = 0; o < a.out; ++o) {
     T sum(0.0f);
     for (int p = 0; p < a.panels; p += a.bias_every)
-      for (int s = 0; s < kPanel; s += W) sum = sum + load<T>(a.d_y + (size_t(p) * a.y_stride + o) * kPanel + s);
+      for (int s = 0; s < kPanel; s += W)
+        sum = sum + load<T>(a.d_y + (size_t(p) * a.y_stride + o) * kPanel + s);
     a.d_bias[o] += sum_lanes(sum);
   }
 }
 
-// Blocks of panels keep both operands in the second-level cache while all tiles pass over them; larger ones amortise the
-// sums across lanes.
+// Blocks of panels keep both operands in the second-level cache while all tiles pass over them; larger ones
+// amortise the sums across lanes.
 template <class T, int W>
 inline __attribute__((always_inline)) void weight_grad_run(const LinearWeightGradArgs& all) {
   constexpr int kBlock = 32;

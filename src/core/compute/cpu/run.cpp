@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every kernel for one instruction set. Compiled as scalar, avx2 and avx512 with CEI3D_ISA and CEI3D_WIDTH set; no STL
-// here and nothing that could leave a weak symbol outside namespace CEI3D_ISA (tools/check_isa.sh looks).
+// Every kernel for one instruction set. Compiled as scalar, avx2 and avx512 with CEI3D_ISA and CEI3D_WIDTH
+// set; no STL here and nothing that could leave a weak symbol outside namespace CEI3D_ISA (tools/check_isa.sh
+// looks).
 #include "core/compute/device.h"
 #if CEI3D_WIDTH > 1
 #include "core/math/lanes.h"
@@ -41,7 +42,8 @@ struct Table<KernelList<K...>> {
 void linear(const LinearArgs& a) { linear_run<Number, CEI3D_WIDTH>(a); }
 void linear_weight_grad(const LinearWeightGradArgs& a) { weight_grad_run<Number, CEI3D_WIDTH>(a); }
 
-// Independent multiply-adds in registers: what no kernel on this instruction set can exceed. Returns FLOPs done.
+// Independent multiply-adds in registers: what no kernel on this instruction set can exceed. Returns FLOPs
+// done.
 double fma_peak() {
   constexpr int kChains = 12, kRounds = 1 << 20;
   Number s[kChains];
@@ -80,7 +82,12 @@ double gather_peak(const float* pairs, uint32_t mask) {
 }  // namespace
 
 extern const LaunchTable table;
-const LaunchTable table{CEI3D_TEXT(CEI3D_ISA), CEI3D_WIDTH, Table<AllKernels>::entries, linear, linear_weight_grad,
-                        fma_peak, gather_peak};
+const LaunchTable table{CEI3D_TEXT(CEI3D_ISA),
+                        CEI3D_WIDTH,
+                        Table<AllKernels>::entries,
+                        linear,
+                        linear_weight_grad,
+                        fma_peak,
+                        gather_peak};
 
 }  // namespace cei3d::CEI3D_ISA

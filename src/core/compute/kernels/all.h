@@ -12,10 +12,11 @@
 
 namespace cei3d {
 
-using AllKernels = KernelList<EncodePoint, EncodeFrequency, EncodeGrid, EncodeGridGrad,  //
-                              Activate<Relu>, ActivateGrad<Relu>, Activate<Elu>, ActivateGrad<Elu>,
-                              Activate<Softplus>, ActivateGrad<Softplus>, Activate<Sigmoid>, ActivateGrad<Sigmoid>,
-                              Adam, RadianceInput, RadianceInputGrad, SgFitResidual, SgFitGather,  //
-                              SgIrradiance, SgReflection, SgShadeGrad>;
+using AllKernels =
+    KernelList<EncodePoint, EncodeFrequency, EncodeGrid, EncodeGridGrad,  //
+               Activate<Relu>, ActivateGrad<Relu>, Activate<Elu>, ActivateGrad<Elu>, Activate<Softplus>,
+               ActivateGrad<Softplus>, Activate<Sigmoid>, ActivateGrad<Sigmoid>, Adam, RadianceInput,
+               RadianceInputGrad, SgFitResidual, SgFitGather,  //
+               SgIrradiance, SgReflection, SgShadeGrad>;
 
 }  // namespace cei3d

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encodings of a batch of points, one hash level or one frequency a launch, so that a level's table stays in cache.
+// Encodings of a batch of points, one hash level or one frequency a launch, so that a level's table stays in
+// cache.
 #pragma once
 
 #include "core/compute/kernels/panel.h"
@@ -11,7 +12,7 @@ struct EncodeArgs {
   const float* points;  // [panels][3][32], in [-1, 1]
   float* out;           // panels of `stride` rows; this launch writes rows from `row` on
   int stride, row;
-  int columns;          // 1: values; 4: jets
+  int columns;  // 1: values; 4: jets
 };
 
 // Rows row..row+2: the point itself.
@@ -22,7 +23,8 @@ struct EncodePoint {
     const Vec3<T> p = load_point<T>(a.points, i);
     for (int r = 0; r < 3; ++r)
       for (int c = 0; c < a.columns; ++c)
-        store<T>(a.out + panel_at(i, a.columns, c, a.stride, a.row + r), c == 0 ? p[r] : T(c == r + 1 ? 1.0f : 0.0f));
+        store<T>(a.out + panel_at(i, a.columns, c, a.stride, a.row + r),
+                 c == 0 ? p[r] : T(c == r + 1 ? 1.0f : 0.0f));
   }
 };
 
@@ -39,8 +41,10 @@ struct EncodeFrequency {
       frequency_eval(p[axis], a.k, value, slope);
       for (int j = 0; j < 2; ++j)
         for (int c = 0; c < a.columns; ++c)
-          store<T>(a.out + panel_at(i, a.columns, c, a.stride, a.row + 2 * axis + j),
-                   c == 0 ? value[j] : c == axis + 1 ? slope[j] : T(0.0f));
+          store<T>(a.out + panel_at(i, a.columns, c, a.stride, a.row + 2 * axis + j), c == 0 ? value[j]
+                                                                                      : c == axis + 1
+                                                                                          ? slope[j]
+                                                                                          : T(0.0f));
     }
   }
 };

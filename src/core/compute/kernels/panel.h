@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Addresses in panels: [panel][row][32]. A jet's four columns (value, d/dx, d/dy, d/dz) are four consecutive panels.
+// Addresses in panels: [panel][row][32]. A jet's four columns (value, d/dx, d/dy, d/dz) are four consecutive
+// panels.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the auxiliary radiance network sees of a surface sample: SDF features, normal, position, direction, n.v and the
-// mirrored direction with four octaves. It only serves the geometry stage.
+// What the auxiliary radiance network sees of a surface sample: SDF features, normal, position, direction,
+// n.v and the mirrored direction with four octaves. It only serves the geometry stage.
 #pragma once
 
 #include "core/compute/kernels/panel.h"
@@ -14,9 +14,9 @@ HD constexpr int radiance_rows(int features) { return features + 3 + 3 + 3 + 1 +
 struct RadianceArgs {
   const float* points;      // [panels][3][32]
   const float* directions;  // [panels][3][32], unit, from the camera
-  float* sdf;               // jets [panels * 4][1 + features][32]: read by the forward, holds gradients in the backward
-  const float* sdf_value;   // backward only: the jets of the forward
-  float* input;             // [panels][radiance_rows][32]: written by the forward, gradients read by the backward
+  float* sdf;  // jets [panels * 4][1 + features][32]: read by the forward, holds gradients in the backward
+  const float* sdf_value;  // backward only: the jets of the forward
+  float* input;  // [panels][radiance_rows][32]: written by the forward, gradients read by the backward
   int features;
 };
 
