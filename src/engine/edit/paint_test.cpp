@@ -9,7 +9,7 @@
 #include "core/math/color.h"
 #include "core/math/rng.h"
 #include "engine/edit/stroke.h"
-#include "model/scene/dual_albedo.h"
+#include "model/scene/appearance.h"
 
 namespace cei3d {
 namespace {
@@ -155,7 +155,7 @@ TEST_F(PaintTest, ColorsComeOutExactWithASharpBorder) {
     hits.push_back({p, normalize(p), -ray.direction, 0, 0, 0});
     expected.push_back(linear_from_srgb(u < 48 ? kRed : kBlue));
   }
-  const RoutedAlbedo routed = routed_albedo(make_device(), *after_->albedo, after_->layers, hits);
+  const Appearance routed = appearance_at(make_device(), *after_, hits);
   double sum = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
     EXPECT_EQ(routed.layer[i], 0);

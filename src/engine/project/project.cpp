@@ -294,17 +294,21 @@ Scene Project::base() const {
     fail("Project {} holds no finished object; go on with `cei3d reconstruct --resume -o {}`.",
          folder_.string(), folder_.string());
   return read_json(file("base/scene.json"), [&](const Json& j) {
-    return load_scene(store_.get(j.at("object").get<std::string>()), j.at("head"));
+    const auto object = j.at("object").get<std::string>();
+    if (object != loaded_object_) loaded_base_ = load_scene(store_.get(object), j.at("head"));
+    loaded_object_ = object;
+    return loaded_base_;
   });
 }
 
 Scene Project::scene() const {
   Scene scene = base();
   for (const std::string& id : stack_.active())
-    scene.layers.push_back(read_json(file("edits/" + id + "/edit.json"), [&](const Json& j) {
-      const Json& result = j.at("result");
-      return load_layer(store_.get(result.at("object").get<std::string>()), result.at("head"));
-    }));
+    scene =
+        with_layer(std::move(scene), read_json(file("edits/" + id + "/edit.json"), [&](const Json& j) {
+                     const Json& result = j.at("result");
+                     return load_layer(store_.get(result.at("object").get<std::string>()), result.at("head"));
+                   }));
   return scene;
 }
 

@@ -82,7 +82,7 @@ class Project {
 
   void save_base(const Scene&);  // the reconstruction's result, without layers
   bool has_base() const;
-  Scene base() const;   // error when the reconstruction was not finished
+  Scene base() const;   // from one thread at a time; error when the reconstruction was not finished
   Scene scene() const;  // base and the edits that are on, up to the cursor
 
   // One edit more, at the cursor. record.id must be stack().next_id(record.op), which is also the layer's.
@@ -111,6 +111,10 @@ class Project {
   std::string fingerprint_;
   Stack stack_;
   ObjectStore store_;
+  // What base() read last, and the object it is: scenes of one project share their surface, and what depends
+  // on it.
+  mutable std::string loaded_object_;
+  mutable Scene loaded_base_;
 };
 
 }  // namespace cei3d

@@ -90,7 +90,8 @@ Drawn draw(const Material& material) {
     d.hits.push_back({origins[i] + directions[i] * far[i].t, n, -directions[i], far[i].triangle, b1, b2});
     albedo.push_back(d.base[t[0]] * (1 - b1 - b2) + d.base[t[1]] * b1 + d.base[t[2]] * b2);
   }
-  const Lighting lighting(make_device(), *d.surface, studio(), d.base, material, d.transport);
+  const Device device = make_device();
+  const Lighting lighting(device, *d.surface, studio(), d.base, material, d.transport);
   const Shading s = lighting.shade(d.hits, albedo);
   for (size_t i = 0; i < d.hits.size(); ++i) d.colors.push_back(s.diffuse[i] + s.specular[i]);
   return d;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -84,18 +83,6 @@ Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture
     fail("lighting: {} colours for {} vertices", base_color.size(), surface.mesh().positions.size());
   set_lobes(light);
   env_table_ = env_brdf_table(material.roughness);
-  soft_normals_ = surface.mesh().normals;
-  const int rounds = getenv("SOFT") ? atoi(getenv("SOFT")) : 0;
-  for (int k = 0; k < rounds; ++k) {
-    std::vector<Vec3f> sum = soft_normals_;
-    for (const auto& t : surface.mesh().triangles)
-      for (int c = 0; c < 3; ++c) {
-        sum[t[c]] += soft_normals_[t[(c + 1) % 3]] * 0.5f;
-        sum[t[c]] += soft_normals_[t[(c + 2) % 3]] * 0.5f;
-      }
-    for (Vec3f& n : sum) n = normalize(n);
-    soft_normals_ = sum;
-  }
   if (!transport) transport = std::make_shared<Transport>(surface);
   const SkyRadiance sky = sky_radiance(light);
   const std::vector<Vec3f> seen = transport->sky(sky), open = transport->open_sky(sky);
@@ -139,22 +126,25 @@ Vec3f Lighting::leaving(const Surface::RayHit& h) const {
   return at_corners(leaving_, surface_.mesh().triangles[h.triangle], h.b1, h.b2);
 }
 
-HitLight Lighting::light_at(std::span<const Hit> hits) const {
+HitLight Lighting::light_at(std::span<const Hit> hits, float roughness) const {
+  const Mesh& mesh = surface_.mesh();
+  const std::vector<Vec2f> other_table =
+      roughness == material_.roughness ? std::vector<Vec2f>() : env_brdf_table(roughness);
+  const std::vector<Vec2f>& env_table = other_table.empty() ? env_table_ : other_table;
   HitLight out;
   out.irradiance.resize(hits.size());
   out.reflected.resize(hits.size());
   out.openness.resize(hits.size());
   out.open_mirror.resize(hits.size());
   out.env.resize(hits.size());
-  const std::vector<Vec3f> lobe = lobe_directions(material_.roughness);
+  const std::vector<Vec3f> lobe = lobe_directions(roughness);
   const LobePlanes lobes{lobe_planes_.data(), n_lobes_, padded_};
   parallel_ranges(int(hits.size()), kBlock, [&](int begin, int end) {
     Block b;
     for (int i = begin; i < end; ++i) {
       const Hit& h = hits[i];
       const Vec3f r = normalize(h.normal * (2 * dot(h.normal, h.to_camera)) - h.to_camera);
-      const Vec3f soft =
-          normalize(at_corners(soft_normals_, surface_.mesh().triangles[h.triangle], h.b1, h.b2));
+      const Vec3f soft = normalize(at_corners(mesh.normals, mesh.triangles[h.triangle], h.b1, h.b2));
       for (int c = 0; c < 3; ++c) {
         b.normals[size_t(c) * kBlock + i - begin] = soft[c];
         b.mirrors[size_t(c) * kBlock + i - begin] = r[c];
@@ -169,13 +159,13 @@ HitLight Lighting::light_at(std::span<const Hit> hits) const {
     const int n = (end - begin + kPanel - 1) / kPanel * kPanel;
     device_.launch<SgIrradiance>({lobes, kBlock, b.normals.data(), b.irradiance.data()}, n);
     SgReflection::Args reflection{lobes, {}, {}, kBlock, b.mirrors.data(), b.reflected.data()};
-    set_reflection_lobe(material_.roughness, reflection);
+    set_reflection_lobe(roughness, reflection);
     device_.launch<SgReflection>(reflection, n);
     b.far.resize(b.origins.size());
     surface_.intersect(b.origins, b.directions, 0, b.far);
     for (int i = begin; i < end; ++i) {
       const Hit& h = hits[i];
-      const auto& t = surface_.mesh().triangles[h.triangle];
+      const auto& t = mesh.triangles[h.triangle];
       const auto plane = [&](const std::vector<float>& p) {
         return Vec3f{p[i - begin], p[kBlock + i - begin], p[2 * kBlock + i - begin]};
       };
@@ -192,7 +182,7 @@ HitLight Lighting::light_at(std::span<const Hit> hits) const {
       }
       out.open_mirror[i] = float(free) / float(kOcclusionRays);
       out.reflected[i] = (plane(b.reflected) * float(free) + seen) / float(kOcclusionRays);
-      out.env[i] = env_brdf_at(env_table_, dot(h.normal, h.to_camera));
+      out.env[i] = env_brdf_at(env_table, dot(h.normal, h.to_camera));
     }
   });
   return out;
@@ -204,15 +194,44 @@ HitLight::Terms HitLight::at(size_t hit, const Material& material) const {
           reflected[hit] * (dielectric * env[hit].x + env[hit].y)};
 }
 
-Shading Lighting::shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const {
-  const HitLight light = light_at(hits);
-  Shading out{std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())};
-  for (size_t i = 0; i < hits.size(); ++i) {
-    const HitLight::Terms t = light.at(i, material_);
+// The hits of one material, as a batch of their own.
+struct Lighting::Group {
+  std::vector<uint32_t> index;  // in the whole batch
+  std::vector<Hit> hits;
+};
+
+void Lighting::shade_group(const Group& group, std::span<const Vec3f> albedo, const Material& material,
+                           Shading& out) const {
+  const HitLight light = light_at(group.hits, material.roughness);
+  for (size_t k = 0; k < group.index.size(); ++k) {
+    const uint32_t i = group.index[k];
+    const HitLight::Terms t = light.at(k, material);
     out.diffuse[i] = albedo[i] * t.diffuse_gain;
     out.specular[i] = albedo[i] * t.specular_gain + t.specular_floor;
   }
+}
+
+Shading Lighting::shade(std::span<const Hit> hits, const Appearance& appearance) const {
+  std::vector<Group> groups(appearance.materials.size());
+  for (Group& group : groups) {
+    group.index.reserve(hits.size() / groups.size());
+    group.hits.reserve(hits.size() / groups.size());
+  }
+  for (size_t i = 0; i < hits.size(); ++i) {
+    Group& group = groups[appearance.material[i]];
+    group.index.push_back(uint32_t(i));
+    group.hits.push_back(hits[i]);
+  }
+  Shading out{std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())};
+  for (size_t m = 0; m < groups.size(); ++m)
+    if (!groups[m].hits.empty()) shade_group(groups[m], appearance.albedo, appearance.materials[m], out);
   return out;
+}
+
+Shading Lighting::shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const {
+  return shade(
+      hits,
+      Appearance{{albedo.begin(), albedo.end()}, std::vector<uint32_t>(hits.size(), 0), {material_}, {}});
 }
 
 }  // namespace cei3d

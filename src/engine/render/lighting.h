@@ -12,6 +12,7 @@
 #include "engine/render/transport.h"
 #include "model/light/sg_mixture.h"
 #include "model/material/material.h"
+#include "model/scene/appearance.h"
 
 namespace cei3d {
 
@@ -35,20 +36,25 @@ struct HitLight {
 
 class Lighting {
  public:
-  // base_color: #V, of the unedited object: what bounces and what reflections see. The transport can be
-  // shared by lights; without one it is computed (a second).
+  // base_color: #V, of the unedited object: what bounces and what reflections see. material: the object's
+  // own. The transport can be shared by lights; without one it is computed (a second).
   Lighting(const Device&, const Surface&, const SgMixture&, std::span<const Vec3f> base_color,
            const Material&, std::shared_ptr<const Transport> transport = nullptr);
   ~Lighting();
 
-  // albedo: #hits base colour. A hit's result depends on nothing but that hit.
+  // A hit's result depends on nothing but that hit, its base colour and its material.
+  Shading shade(std::span<const Hit> hits, const Appearance&) const;
+  // ... all of the object's own material. albedo: #hits base colour.
   Shading shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const;
-  HitLight light_at(std::span<const Hit> hits) const;
+  HitLight light_at(std::span<const Hit> hits, float roughness) const;
+  HitLight light_at(std::span<const Hit> hits) const { return light_at(hits, material_.roughness); }
   // Another light close to the first: bounce and openness stay. For descent on the light.
   void set_lobes(const SgMixture&);
 
  private:
   struct Block;
+  struct Group;
+  void shade_group(const Group&, std::span<const Vec3f> albedo, const Material&, Shading& out) const;
   Vec3f leaving(const Surface::RayHit&) const;
 
   const Device& device_;
@@ -56,8 +62,7 @@ class Lighting {
   Material material_;
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
-  std::vector<Vec3f> openness_;  // #V share of the open sky's irradiance that arrives
-  std::vector<Vec3f> soft_normals_;
+  std::vector<Vec3f> openness_;   // #V share of the open sky's irradiance that arrives
   std::vector<Vec3f> bounce_;     // #V irradiance from the surface itself
   std::vector<Vec3f> leaving_;    // #V radiance that the surface sends out, taken as diffuse
   std::vector<Vec2f> env_table_;  // scale and bias of the reflectance by the viewer's cosine

@@ -108,6 +108,36 @@ TEST(Lighting, AHitDoesNotCareAboutItsNeighboursInTheBatch) {
   }
 }
 
+TEST(Lighting, EveryHitIsShadedAsIfTheObjectWereOfItsMaterial) {
+  Mesh mesh;
+  add_sphere(mesh, {0, 0, -0.3f}, 0.5f, 24);
+  add_sphere(mesh, {0, 0, 0.5f}, 0.3f, 24);
+  const Surface surface(mesh);
+  const Device device = make_device();
+  const auto transport = std::make_shared<const Transport>(surface);
+  const std::vector<Vec3f> base(surface.mesh().positions.size(), Vec3f{0.5f, 0.4f, 0.3f});
+  const auto hits = some_hits(surface.mesh(), 3000);
+  Appearance look;
+  look.materials = {{0.25f, 0.5f, 0.2f}, {0.6f, 0.5f, 0.2f}, {0.25f, 0.9f, 1}};
+  for (size_t i = 0; i < hits.size(); ++i) {
+    look.albedo.push_back({Rng(1, 1, i).uniform(), 0.3f, 0.8f});
+    look.material.push_back(Rng(1, 2, i).below(3));
+  }
+  const Shading got =
+      Lighting(device, surface, some_sky(), base, look.materials[0], transport).shade(hits, look);
+  for (uint32_t m = 0; m < 3; ++m) {
+    const Lighting alone(device, surface, some_sky(), base, look.materials[m], transport);
+    const Shading expected = alone.shade(hits, look.albedo);
+    for (size_t i = 0; i < hits.size(); ++i) {
+      if (look.material[i] != m) continue;
+      for (int c = 0; c < 3; ++c) {  // bit for bit: an edit of one part leaves the rest alone
+        ASSERT_EQ(got.diffuse[i][c], expected.diffuse[i][c]);
+        ASSERT_EQ(got.specular[i][c], expected.specular[i][c]);
+      }
+    }
+  }
+}
+
 TEST(Lighting, IrradianceIsTheIntegralOverTheSkyThatIsSeen) {
   // Two spheres: brute-force integration with shadow rays, one bounce left out by a black surface.
   Mesh mesh;

@@ -12,7 +12,8 @@
 
 namespace cei3d {
 
-class Lighting;  // engine/render/lighting.h
+class Lighting;   // engine/render/lighting.h
+class Transport;  // engine/render/transport.h
 
 // Every sub-pixel sample that met the surface, ordered by pixel.
 struct GBuffer {
@@ -37,12 +38,16 @@ struct Frame {
   Image rgb, albedo, diffuse, specular;  // RGBA, linear, straight alpha
   Image normal;                          // RGB, unit vectors in the capture's axes; 0 where nothing was hit
   Image depth;                           // 1 channel, z-depth in capture units; 0 where nothing was hit
+  Image roughness;                       // 1 channel; 0 where nothing was hit
   Image mask;                            // 1 channel, coverage
-  std::vector<uint8_t> edited;  // #pixels, 1 where any sample of the pixel's mean routed to an edit layer
+  std::vector<uint8_t>
+      edited;  // #pixels, 1 where any sample of the pixel's mean lies in the region of an edit
 };
 // How the scene's own light reaches its surface; made once and used for every view. The bounce is that of the
-// unedited object, so that an edit changes no pixel outside its region.
-std::shared_ptr<const Lighting> light_scene(const Device&, const Scene&);
+// unedited object, so that an edit changes no pixel outside its region. The transport depends on the surface
+// only: one can serve several lights; without one it is computed (a second).
+std::shared_ptr<const Lighting> light_scene(const Device&, const Scene&,
+                                            std::shared_ptr<const Transport> transport = nullptr);
 
 Frame shade_view(const Device&, const Scene&, const Lighting&, const GBuffer&);
 Frame shade_view(const Device&, const Scene&, const GBuffer&);  // for a single view

@@ -5,7 +5,7 @@
 #include "core/base/parallel.h"
 #include "engine/render/lighting.h"
 #include "engine/render/render.h"
-#include "model/scene/dual_albedo.h"
+#include "model/scene/appearance.h"
 
 namespace cei3d {
 
@@ -15,8 +15,7 @@ Frame empty_frame(int width, int height) {
   Frame f;
   for (Image* i : {&f.rgb, &f.albedo, &f.diffuse, &f.specular}) *i = Image(width, height, 4);
   f.normal = Image(width, height, 3);
-  f.depth = Image(width, height, 1);
-  f.mask = Image(width, height, 1);
+  for (Image* i : {&f.depth, &f.roughness, &f.mask}) *i = Image(width, height, 1);
   f.edited.assign(size_t(width) * height, 0);
   return f;
 }
@@ -60,33 +59,36 @@ void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverag
 
 }  // namespace
 
-std::shared_ptr<const Lighting> light_scene(const Device& device, const Scene& scene) {
+std::shared_ptr<const Lighting> light_scene(const Device& device, const Scene& scene,
+                                            std::shared_ptr<const Transport> transport) {
   const auto& positions = scene.surface->mesh().positions;
   std::vector<float> values(positions.size() * 3);
   scene.albedo->eval(device, positions, values);
   std::vector<Vec3f> albedo(positions.size());
   for (size_t v = 0; v < albedo.size(); ++v)
     albedo[v] = {values[3 * v], values[3 * v + 1], values[3 * v + 2]};
-  return std::make_shared<const Lighting>(device, *scene.surface, scene.light, albedo, scene.material);
+  return std::make_shared<const Lighting>(device, *scene.surface, scene.light, albedo, scene.material,
+                                          transport);
 }
 
 Frame shade_view(const Device& device, const Scene& scene, const Lighting& lighting, const GBuffer& g) {
-  const RoutedAlbedo routed = routed_albedo(device, *scene.albedo, scene.layers, g.hits);
-  const Shading shading = lighting.shade(g.hits, routed.albedo);
+  const Appearance look = appearance_at(device, scene, g.hits);
+  const Shading shading = lighting.shade(g.hits, look);
   Frame f = empty_frame(g.width, g.height);
   parallel_for(g.height, [&](int y) {
     for (int x = 0; x < g.width; ++x) {
       const size_t p = size_t(y) * g.width + x;
       Vec3f albedo{0, 0, 0}, diffuse{0, 0, 0}, specular{0, 0, 0}, normal{0, 0, 0};
-      float depth = 0, weight = 0;
+      float depth = 0, roughness = 0, weight = 0;
       for_hits_around(g, x, y, [&](uint32_t i, float w) {
-        albedo += w * routed.albedo[i];
+        albedo += w * look.albedo[i];
         diffuse += w * shading.diffuse[i];
         specular += w * shading.specular[i];
         normal += w * g.hits[i].normal;
         depth += w * g.depths[i];
+        roughness += w * look.materials[look.material[i]].roughness;
         weight += w;
-        f.edited[p] |= routed.layer[i] >= 0;
+        f.edited[p] |= look.layer[i] >= 0;
       });
       if (weight == 0) continue;
       const float coverage =
@@ -98,6 +100,7 @@ Frame shade_view(const Device& device, const Scene& scene, const Lighting& light
       const Vec3f n = normalize(normal);
       for (int c = 0; c < 3; ++c) f.normal.data[3 * p + c] = n[c];
       f.depth.data[p] = depth / weight / float(scene.normalization.scale);
+      f.roughness.data[p] = roughness / weight;
       f.mask.data[p] = coverage;
     }
   });

@@ -31,15 +31,9 @@ Image scaled(Image image, float factor) {
   return image;
 }
 
-Image roughness_picture(const Image& mask, float roughness) {
-  Image out(mask.width, mask.height, 1);
-  for (size_t i = 0; i < out.data.size(); ++i) out.data[i] = mask.data[i] > 0 ? roughness : 0;
-  return out;
-}
-
 }  // namespace
 
-Image channel_picture(const Frame& f, Channel channel, float roughness, double depth_scale) {
+Image channel_picture(const Frame& f, Channel channel, double depth_scale) {
   switch (channel) {
     case Channel::rgb:
       return color_picture(f.rgb);
@@ -54,7 +48,7 @@ Image channel_picture(const Frame& f, Channel channel, float roughness, double d
     case Channel::depth:
       return scaled(f.depth, float(depth_scale / 65535));
     case Channel::roughness:
-      return roughness_picture(f.mask, roughness);
+      return f.roughness;
     case Channel::mask:
       return f.mask;
   }

@@ -8,7 +8,7 @@
 namespace cei3d {
 
 // Values as they go into the file, [0, 1]. depth_scale: file value (of 65535) per capture unit.
-Image channel_picture(const Frame&, Channel, float roughness, double depth_scale);
+Image channel_picture(const Frame&, Channel, double depth_scale);
 int channel_bits(Channel);  // 8 or 16
 
 // As the file will hold it: RGBA, sRGB, rounded to 8 bits.

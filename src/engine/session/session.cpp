@@ -12,6 +12,8 @@
 #include "engine/io/image_file.h"
 #include "engine/io/normalize.h"
 #include "engine/project/project.h"
+#include "engine/render/render.h"
+#include "engine/render/transport.h"
 #include "engine/session/version.h"
 
 namespace cei3d {
@@ -68,6 +70,14 @@ MachineInfo Session::machine() {
   m.memory_gib = memory_gib();
   for (const Device& d : all_devices()) m.devices.push_back(d.name());
   return m;
+}
+
+std::shared_ptr<const Lighting> Session::light(const Scene& scene) {
+  if (lit_surface_ != scene.surface) {
+    transport_ = std::make_shared<Transport>(*scene.surface);
+    lit_surface_ = scene.surface;
+  }
+  return light_scene(*device_, scene, transport_);
 }
 
 CheckReport Session::check(const CheckRequest& request) {

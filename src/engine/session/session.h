@@ -18,7 +18,11 @@
 namespace cei3d {
 
 class Device;
+class Lighting;
 class Project;
+class Surface;
+class Transport;
+struct Scene;
 
 class Session {
  public:
@@ -50,10 +54,13 @@ class Session {
   EvalReport evaluate(const EvalRequest&, Progress&);
 
  private:
-  Project& project() const;  // error when none is open
+  Project& project() const;                             // error when none is open
+  std::shared_ptr<const Lighting> light(const Scene&);  // lights of one surface share what depends on it only
 
   std::unique_ptr<Device> device_;
   std::unique_ptr<Project> project_;
+  std::shared_ptr<const Surface> lit_surface_;  // of the transport below
+  std::shared_ptr<const Transport> transport_;
 };
 
 }  // namespace cei3d

@@ -125,19 +125,26 @@ struct EditSums {
   }
 };
 
+// The object as if one of its edits had not been made.
+Scene scene_without(Scene base, const Scene& scene, const std::string& edit) {
+  const auto is_it = [&](const EditLayer& l) { return l.id == edit; };
+  if (std::none_of(scene.layers.begin(), scene.layers.end(), is_it))
+    fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", edit);
+  for (const EditLayer& l : scene.layers)
+    if (!is_it(l)) base = with_layer(std::move(base), l);
+  return base;
+}
+
 }  // namespace
 
 EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
   const std::vector<View> views = views_to_score(project(), request);
   const Scene scene = project().scene();
-  Scene without = scene;
-  if (!request.edit.empty()) {
-    const auto n = std::erase_if(without.layers, [&](const EditLayer& l) { return l.id == request.edit; });
-    if (n == 0) fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", request.edit);
-  }
-  const auto lighting = light_scene(*device_, scene);
+  const Scene without = request.edit.empty() ? scene : scene_without(project().base(), scene, request.edit);
+  const auto lighting = light(scene), lighting_without = request.edit.empty() ? lighting : light(without);
   const auto picture = [&](const Scene& s, const GBuffer& buffer) {
-    return rounded_srgb(shade_view(*device_, s, *lighting, buffer).rgb);
+    const Lighting& l = &s == &scene ? *lighting : *lighting_without;
+    return rounded_srgb(shade_view(*device_, s, l, buffer).rgb);
   };
   EvalReport report;
   EditSums edit;

@@ -8,7 +8,7 @@
 #include "engine/io/ply.h"
 #include "engine/project/project.h"
 #include "engine/session/session.h"
-#include "model/scene/dual_albedo.h"
+#include "model/scene/appearance.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -38,7 +38,7 @@ Mesh coloured_mesh(const Device& device, const Scene& scene) {
   std::vector<Hit> hits;
   for (size_t i = 0; i < mesh.positions.size(); ++i)
     hits.push_back({mesh.positions[i], mesh.normals[i], mesh.normals[i], 0, 0, 0});
-  mesh.colors = routed_albedo(device, *scene.albedo, scene.layers, hits).albedo;
+  mesh.colors = appearance_at(device, scene, hits).albedo;
   mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);
   return mesh;
 }

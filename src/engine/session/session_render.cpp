@@ -77,7 +77,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
   Scene scene = project().scene();
   scene.light = chosen_light(*device_, request.light, scene.light, scene.up);
   const double depth = depth_scale(cameras, scene.normalization);
-  const auto lighting = light_scene(*device_, scene);
+  const auto lighting = light(scene);
   RenderReport report;
   for (size_t i = 0; i < cameras.size(); ++i) {
     require_running(progress);
@@ -90,8 +90,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
     report.trace_seconds += traced - before;
     report.shade_seconds += now() - traced;
     for (const Channel c : request.channels)
-      write_png(picture_path(request.out, c, cameras[i]),
-                channel_picture(frame, c, scene.material.roughness, depth), channel_bits(c));
+      write_png(picture_path(request.out, c, cameras[i]), channel_picture(frame, c, depth), channel_bits(c));
   }
   write_file_atomic(request.out / "render.json", run_json(project(), request, cameras, depth).dump(1) + "\n");
   progress.report({"render", 1, 0, ""});

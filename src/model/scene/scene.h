@@ -11,21 +11,14 @@
 #include "core/base/tensors.h"
 #include "model/field/field.h"
 #include "model/geometry/handlers.h"
-#include "model/geometry/region.h"
 #include "model/geometry/surface.h"
 #include "model/light/sg_mixture.h"
 #include "model/material/material.h"
+#include "model/scene/layer.h"
 #include "model/scene/normalization.h"
 #include "model/scene/view.h"
 
 namespace cei3d {
-
-// One edit: where it is, and what it puts in place of the base.
-struct EditLayer {
-  std::string id;  // "0001-paint"
-  Region region;
-  std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: albedo of the layers below
-};
 
 struct Scene {
   Normalization normalization;          // between the capture's frame and the unit sphere that all else is in
@@ -33,17 +26,18 @@ struct Scene {
   std::shared_ptr<const Field> sdf;     // output 0: signed distance, negative inside; the rest: features
   std::shared_ptr<const Field> albedo;  // base colour, 3 outputs in [0, 1], linear
   std::shared_ptr<const Surface> surface;  // zero level set as a mesh, with what each point sees of the sky
-  SgMixture light;
+  SgMixture light;  // that of the last edit that has one, when the layers have been put on
   Material material;
   std::shared_ptr<const HandlerPoints> handlers;
   std::vector<EditLayer> layers;  // in the order of their making; a later one covers an earlier one
 };
 
+// The scene with one edit more, on top of those it has.
+Scene with_layer(Scene scene, EditLayer layer);
+
 // A scene as named tensors plus a small JSON head (sizes, material, transform), and back. The layers are not
 // part of it: the project's stack keeps them. Errors: missing tensor, wrong shape.
 void save_scene(const Scene&, Tensors& tensors, Json& head);
 Scene load_scene(const Tensors& tensors, const Json& head);
-void save_layer(const EditLayer&, Tensors& tensors, Json& head);
-EditLayer load_layer(const Tensors& tensors, const Json& head);
 
 }  // namespace cei3d

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/layer.h"
+
+#include "model/scene/stored.h"
+
+namespace cei3d {
+namespace {
+
+Json vector_json(Vec3f v) { return Json::array({v.x, v.y, v.z}); }
+
+Vec3f vector_from(const Json& j) {
+  return {j.at(0).get<float>(), j.at(1).get<float>(), j.at(2).get<float>()};
+}
+
+Json tint_json(const Tint& t) {
+  return {{"color", vector_json(t.color)}, {"keep_texture", t.keep_texture}, {"mean", vector_json(t.mean)}};
+}
+
+Tint tint_from(const Json& j) {
+  return {vector_from(j.at("color")), j.at("keep_texture").get<bool>(), vector_from(j.at("mean"))};
+}
+
+Json change_json(const MaterialChange& c) {
+  Json j = Json::object();
+  if (c.roughness) j["roughness"] = *c.roughness;
+  if (c.specular) j["specular"] = *c.specular;
+  if (c.metalness) j["metalness"] = *c.metalness;
+  return j;
+}
+
+MaterialChange change_from(const Json& j) {
+  const auto value = [&](const char* name) {
+    return j.contains(name) ? std::optional(j.at(name).get<float>()) : std::nullopt;
+  };
+  return {value("roughness"), value("specular"), value("metalness")};
+}
+
+}  // namespace
+
+// A member that is at its default leaves no key: edits of the first format, which knew region and albedo
+// only, are stored as they were.
+void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
+  head["id"] = layer.id;
+  if (layer.everywhere)
+    head["everywhere"] = true;
+  else
+    layer.region.save(tensors, head["region"]);
+  if (!layer.part.empty()) head["part"] = layer.part;
+  save_field(layer.albedo, "albedo", tensors, head);
+  if (layer.tint) head["tint"] = tint_json(*layer.tint);
+  if (!layer.material.empty()) head["material"] = change_json(layer.material);
+  if (layer.light) save_light(*layer.light, tensors, head);
+  if (layer.reshape) save_reshape(*layer.reshape, tensors, head["reshape"]);
+}
+
+EditLayer load_layer(const Tensors& tensors, const Json& head) {
+  return checked_load("edit", [&] {
+    EditLayer layer;
+    layer.id = head.at("id").get<std::string>();
+    layer.everywhere = head.value("everywhere", false);
+    if (!layer.everywhere) layer.region = Region::load(tensors, head.at("region"));
+    layer.part = head.value("part", "");
+    layer.albedo = load_field("albedo", tensors, head);
+    if (head.contains("tint")) layer.tint = tint_from(head.at("tint"));
+    if (head.contains("material")) layer.material = change_from(head.at("material"));
+    if (head.contains("light")) layer.light = load_light(tensors, head.at("light"));
+    if (head.contains("reshape"))
+      layer.reshape = std::make_shared<const Reshape>(load_reshape(tensors, head.at("reshape")));
+    return layer;
+  });
+}
+
+}  // namespace cei3d

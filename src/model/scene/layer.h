@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// One edit: where it is, and what it puts in place of what lies below it. Every member but the id is
+// optional.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "core/base/json.h"
+#include "core/base/tensors.h"
+#include "model/field/field.h"
+#include "model/geometry/region.h"
+#include "model/geometry/reshape.h"
+#include "model/light/sg_mixture.h"
+#include "model/material/change.h"
+
+namespace cei3d {
+
+struct EditLayer {
+  std::string id;           // "0001-paint"
+  bool everywhere = false;  // the whole object; else `region`
+  Region region;            // contains nothing by default
+  int pose = 0;             // of the object that region and branch live in: the number of changes of
+                            // geometry before this edit; the project's stack says it, not the store
+  std::string part;         // name of the part that the region is; empty: none
+  std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: base colour of the layers below
+  std::optional<Tint> tint;             // on top of that
+  MaterialChange material;
+  std::optional<SgMixture> light;          // in place of the object's, whatever the region
+  std::shared_ptr<const Reshape> reshape;  // null: the shape stays
+
+  bool contains(Vec3f position, Vec3f normal) const {
+    return everywhere || region.contains(position, normal);
+  }
+};
+
+// Errors of loading: missing tensors or keys, sizes that disagree.
+void save_layer(const EditLayer&, Tensors& tensors, Json& head);
+EditLayer load_layer(const Tensors& tensors, const Json& head);
+
+}  // namespace cei3d

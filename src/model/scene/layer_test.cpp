@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/layer.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "model/scene/scene.h"
+
+namespace cei3d {
+namespace {
+
+Region some_region() { return Region({{{0, 0, 0.5f}}, {{0, 0, 1}}, {0.1f}}); }
+
+std::shared_ptr<const Field> some_field() {
+  FieldConfig c;
+  c.encoding.levels = 2;
+  c.encoding.log2_table = 6;
+  c.outputs = 3;
+  return std::make_shared<Field>(c, 5);
+}
+
+std::shared_ptr<const Reshape> some_reshape() {
+  auto r = std::make_shared<Reshape>();
+  r->moved = {3};
+  r->positions = {{0, 0, 1}};
+  r->normals = {{0, 1, 0}};
+  r->gradients = {{1, 0, 0, 0, 1, 0, 0, 0, 1}};
+  return r;
+}
+
+std::vector<EditLayer> one_of_each_kind() {
+  std::vector<EditLayer> layers(7);
+  for (EditLayer& l : layers) l.id = "0001-test";
+  layers[0].region = some_region();
+  layers[0].albedo = some_field();
+  layers[1].everywhere = true;
+  layers[1].material = {0.5f, std::nullopt, 1.0f};
+  layers[2].region = some_region();
+  layers[2].part = "left ear";
+  layers[2].tint = Tint{{0.1f, 0.2f, 0.3f}, true, {0.4f, 0.5f, 0.6f}};
+  layers[3].light = SgMixture{{{{0, 0, 1}, 3.5f, {1, 2, 3}}}};
+  layers[4].reshape = some_reshape();
+  layers[5] = layers[2];
+  layers[5].tint->keep_texture = false;
+  layers[5].material.specular = 0;
+  layers[6].everywhere = true;
+  layers[6].albedo = some_field();
+  return layers;
+}
+
+std::string bytes_of(const EditLayer& layer) {
+  Tensors tensors;
+  Json head = Json::object();
+  save_layer(layer, tensors, head);
+  return tensors_to_bytes(tensors) + head.dump();
+}
+
+TEST(EditLayer, LoadGivesWhatWasSaved) {
+  for (const EditLayer& layer : one_of_each_kind()) {
+    Tensors tensors;
+    Json head = Json::object();
+    save_layer(layer, tensors, head);
+    const EditLayer again =
+        load_layer(tensors_from_bytes(tensors_to_bytes(tensors), "test"), Json::parse(head.dump()));
+    EXPECT_EQ(bytes_of(again), bytes_of(layer));
+    EXPECT_EQ(again.part, layer.part);
+    EXPECT_EQ(again.everywhere, layer.everywhere);
+    EXPECT_EQ(again.material.roughness, layer.material.roughness);
+    EXPECT_EQ(again.tint.has_value(), layer.tint.has_value());
+    EXPECT_EQ(bool(again.reshape), bool(layer.reshape));
+  }
+}
+
+TEST(EditLayer, ReadsTheFirstFormat) {  // region and albedo, nothing else
+  const EditLayer paint = one_of_each_kind()[0];
+  Tensors tensors;
+  Json head = {{"id", "0001-paint"}, {"albedo", to_json(paint.albedo->config())}};
+  paint.region.save(tensors, head["region"]);
+  paint.albedo->params().save(tensors, "albedo");
+  const EditLayer layer = load_layer(tensors, head);
+  EXPECT_TRUE(layer.contains({0, 0, 0.5f}, {0, 0, 1}));
+  EXPECT_FALSE(layer.contains({0, 0, 0.5f}, {0, 0, -1}));
+  EXPECT_TRUE(layer.albedo);
+  EXPECT_FALSE(layer.everywhere || layer.tint || layer.light || layer.reshape || !layer.material.empty());
+}
+
+TEST(EditLayer, DamageIsASentence) {
+  for (const Json& head : {Json::object(), Json{{"id", 3}}, Json{{"id", "x"}},
+                           Json{{"id", "x"}, {"everywhere", true}, {"tint", 1}}})
+    EXPECT_THROW(load_layer({}, head), Error) << head.dump();
+}
+
+TEST(Scene, LayersSayTheirPoseAndTheLastLightCounts) {
+  Scene s;
+  s.light.lobes.resize(2);
+  for (const EditLayer& layer : one_of_each_kind()) s = with_layer(std::move(s), layer);
+  s = with_layer(std::move(s), one_of_each_kind()[1]);
+  std::vector<int> poses;
+  for (const EditLayer& layer : s.layers) poses.push_back(layer.pose);
+  EXPECT_EQ(poses, (std::vector<int>{0, 0, 0, 0, 0, 1, 1, 1}));
+  ASSERT_EQ(s.light.lobes.size(), 1u);
+  EXPECT_EQ(s.light.lobes[0].lambda, 3.5f);
+}
+
+}  // namespace
+}  // namespace cei3d

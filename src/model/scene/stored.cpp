@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/stored.h"
+
+#include <cstring>
+
+#include "model/geometry/vec_tensors.h"
+
+namespace cei3d {
+
+static_assert(sizeof(SgLobe) == 7 * sizeof(float));
+
+void save_field(const std::shared_ptr<const Field>& field, const std::string& name, Tensors& tensors,
+                Json& head) {
+  if (!field) return;
+  head[name] = to_json(field->config());
+  field->params().save(tensors, name);
+}
+
+std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& tensors, const Json& head) {
+  if (!head.contains(name)) return nullptr;
+  auto field = std::make_shared<Field>(field_config_from_json(head.at(name)), 0);
+  field->params().load(tensors, name);
+  return field;
+}
+
+void save_light(const SgMixture& light, Tensors& tensors, Json& head) {
+  head["light"] = {{"lobes", light.lobes.size()}};
+  Tensor t{{int64_t(light.lobes.size()), 7}, std::vector<float>(7 * light.lobes.size()), {}};
+  if (!light.lobes.empty()) std::memcpy(t.f32.data(), light.lobes.data(), t.f32.size() * sizeof(float));
+  tensors["light"] = std::move(t);
+}
+
+SgMixture load_light(const Tensors& tensors, const Json& j) {
+  SgMixture light;
+  light.lobes.resize(size_t(rows_from(j.at("lobes"))));
+  const Tensor& t = floats_from(tensors, "light", int64_t(light.lobes.size()), 7);
+  if (!light.lobes.empty()) std::memcpy(light.lobes.data(), t.f32.data(), t.f32.size() * sizeof(float));
+  return light;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// What scenes and edits have in common on disk: fields and lights as tensors plus a JSON head.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/json.h"
+#include "core/base/tensors.h"
+#include "model/field/field.h"
+#include "model/light/sg_mixture.h"
+
+namespace cei3d {
+
+// head[name] and tensors "name/..."; nothing for a null field, and null when there is nothing.
+void save_field(const std::shared_ptr<const Field>&, const std::string& name, Tensors& tensors, Json& head);
+std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& tensors, const Json& head);
+
+// head["light"] and tensor "light".
+void save_light(const SgMixture&, Tensors& tensors, Json& head);
+SgMixture load_light(const Tensors& tensors, const Json& light_head);
+
+// A key that is missing or of another type, said as the damage it is.
+template <class F>
+auto checked_load(const char* what, F load) {
+  try {
+    return load();
+  } catch (const Json::exception& e) {
+    fail("the description of the {} is damaged ({}); restore the project from a copy, or make it again", what,
+         e.what());
+  }
+}
+
+}  // namespace cei3d
