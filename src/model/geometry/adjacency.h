@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Who is next to whom in a mesh, and the weights that make sums over neighbours a Laplacian.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/math/vec.h"
+
+namespace cei3d {
+
+// A list for every vertex, one after the other.
+struct VertexLists {
+  std::vector<uint32_t> start;  // #V + 1
+  std::vector<uint32_t> items;  // those of v: items[start[v] .. start[v + 1])
+
+  std::span<const uint32_t> of(uint32_t v) const {
+    return std::span(items).subspan(start[v], start[v + 1] - start[v]);
+  }
+};
+
+// Triangles around each vertex, ascending.
+VertexLists triangles_around(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles);
+// Vertices that share an edge with each vertex, ascending.
+VertexLists neighbours_of(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles);
+
+// Cotangent weights, one for each item of `neighbours` (0.5 (cot a + cot b), the same both ways), and the
+// area of each vertex (a third of its triangles'). Weights are clamped to [0.05, 5], so that sums of
+// differences stay positive definite on obtuse triangles and slivers do not outweigh all else; areas are at
+// least a tenth of their mean. [Pinkall and Polthier 1993]
+struct LaplaceWeights {
+  std::vector<double> edge;    // #items
+  std::vector<double> vertex;  // #V, sum of the vertex's edge weights
+  std::vector<double> area;    // #V
+};
+LaplaceWeights laplace_weights(std::span<const Vec3f> positions,
+                               std::span<const std::array<uint32_t, 3>> triangles,
+                               const VertexLists& neighbours);
+
+}  // namespace cei3d

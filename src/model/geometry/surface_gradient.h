@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// How a deformed mesh stretches and turns the matter around each vertex.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/math/vec.h"
+
+namespace cei3d {
+
+struct SurfaceGradient {
+  std::vector<std::array<float, 9>>
+      gradients;               // #vertices, row-major F: small offsets d from the vertex become F d
+  std::vector<Vec3f> normals;  // #vertices, unit: F^-T n
+};
+
+// For each of `vertices`. Along the surface F is the best fit to the edges around the vertex; offsets along
+// the normal keep their length and stay along the normal. before, after: #V positions; normals: #V, unit, of
+// the mesh before.
+SurfaceGradient surface_gradient(std::span<const Vec3f> before, std::span<const Vec3f> normals,
+                                 std::span<const Vec3f> after,
+                                 std::span<const std::array<uint32_t, 3>> triangles,
+                                 std::span<const uint32_t> vertices);
+
+}  // namespace cei3d
