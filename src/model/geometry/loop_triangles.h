@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// Triangles over a closed polygon in space, without further vertices.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/math/vec.h"
+
+namespace cei3d {
+
+// Whether two corners of the polygon (indices) are joined already by an edge that is no side of it.
+using IsJoined = std::function<bool(uint32_t, uint32_t)>;
+
+// The n - 2 triangles of least total area, which for a plane polygon of any shape are those inside it.
+// [Barequet and Sharir 1995] Corners are indices into the loop and follow its direction. Diagonals that are
+// joined already are avoided. Polygons of more than some hundred corners are first cut into chords, so that
+// time is no worse than n^1.5 beyond; n >= 3.
+std::vector<std::array<uint32_t, 3>> triangulate_loop(std::span<const Vec3f> loop, const IsJoined& joined);
+
+}  // namespace cei3d
