@@ -102,6 +102,20 @@ HD Mat3<T> operator*(const Mat3<T>& a, const Mat3<T>& b) {
     c.row[i] = {dot(a.row[i], bt.row[0]), dot(a.row[i], bt.row[1]), dot(a.row[i], bt.row[2])};
   return c;
 }
+template <class T>
+HD T determinant(const Mat3<T>& m) {
+  return dot(m.row[0], cross(m.row[1], m.row[2]));
+}
+// Transpose of the inverse: what normals turn by when points turn by m. m: not singular.
+template <class T>
+HD Mat3<T> inverse_transpose(const Mat3<T>& m) {
+  const T s = T(1) / determinant(m);
+  return {{cross(m.row[1], m.row[2]) * s, cross(m.row[2], m.row[0]) * s, cross(m.row[0], m.row[1]) * s}};
+}
+template <class T>
+HD Mat3<T> inverse(const Mat3<T>& m) {
+  return transpose(inverse_transpose(m));
+}
 
 inline Vec3f to_float(Vec3d v) { return {float(v.x), float(v.y), float(v.z)}; }
 inline Vec3d to_double(Vec3f v) { return {v.x, v.y, v.z}; }

@@ -9,69 +9,17 @@
 #include "core/math/color.h"
 #include "core/math/rng.h"
 #include "engine/edit/stroke.h"
+#include "engine/render/sphere_scene.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {
 namespace {
 
-constexpr float kRadius = 0.7f;
+constexpr float kRadius = kSphereRadius;
 constexpr int kSize = 96;
 const Vec3f kRed{0.784f, 0.118f, 0.157f}, kBlue{0.118f, 0.275f, 0.745f};  // sRGB
 
-// A sphere of triangles between meridians and circles of latitude.
-Mesh sphere_mesh(int rows, int columns) {
-  Mesh m;
-  for (int i = 0; i <= rows; ++i) {
-    for (int j = 0; j < columns; ++j) {
-      const float theta = kPi * float(i) / float(rows), phi = 2 * kPi * float(j) / float(columns);
-      const Vec3f n{sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
-      m.normals.push_back(n);
-      m.positions.push_back(n * kRadius);
-    }
-  }
-  for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < columns; ++j) {
-      const uint32_t a = uint32_t(i * columns + j), b = uint32_t(i * columns + (j + 1) % columns);
-      m.triangles.push_back({a, a + uint32_t(columns), b});
-      m.triangles.push_back({b, a + uint32_t(columns), b + uint32_t(columns)});
-    }
-  }
-  return m;
-}
-
-Scene sphere_scene() {
-  Scene s;
-  FieldConfig sdf;
-  sdf.outputs = 1;
-  sdf.activation = Activation::softplus;
-  sdf.sphere_radius = kRadius;
-  auto sdf_field = std::make_shared<Field>(sdf, 1);
-  for (Param& p : sdf_field->params().all())
-    std::fill(p.value.begin(), p.value.end(), 0.0f);  // exactly the sphere
-  s.sdf = sdf_field;
-  FieldConfig albedo;
-  albedo.encoding.levels = 4;
-  albedo.output_activation = Activation::sigmoid;
-  s.albedo = std::make_shared<Field>(albedo, 2);
-  Mesh mesh = sphere_mesh(64, 128);
-  std::vector<uint8_t> visibility(mesh.positions.size() * (kSkyDirections / 8), 0xff);
-  s.surface = std::make_shared<Surface>(std::move(mesh), std::move(visibility));
-  s.light.lobes = {{{0, 0, 1}, 2, {1, 1, 1}}, {{1, 0, 0}, 20, {2, 1, 1}}};
-  return s;
-}
-
-Camera camera_at(Vec3d center) {
-  const Vec3d z = -center / length(center), x = cross(z, Vec3d{0, 0, 1}) / length(cross(z, Vec3d{0, 0, 1}));
-  const Vec3d y = cross(z, x);
-  Camera c;
-  c.width = c.height = kSize;
-  c.fx = c.fy = 150;
-  c.cx = c.cy = kSize / 2;
-  c.center = center;
-  c.world_from_cam = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
-  return c;
-}
-
+Camera camera_at(Vec3d center) { return camera_towards_origin(center, kSize); }
 Camera front() { return camera_at({0, -3, 0.3}); }
 
 // A rectangle, red left of column 48 and blue from there on.

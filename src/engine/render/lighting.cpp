@@ -14,7 +14,6 @@ namespace {
 
 constexpr int kBlock = 2048;  // hits a chunk: what it needs stays in the second-level cache
 constexpr int kEnvCells = 64;
-constexpr float kSkyLobe = 256;    // sharpness of a lobe as wide as the spacing of sky_directions()
 constexpr float kLift = 2e-3f;     // rays start this far above the surface
 constexpr int kOcclusionRays = 6;  // of the reflection lobe
 
@@ -61,42 +60,18 @@ Vec2f env_brdf_at(const std::vector<Vec2f>& table, float nv) {
   return {table[i].x * (1 - f) + table[i + 1].x * f, table[i].y * (1 - f) + table[i + 1].y * f};
 }
 
-SkyRadiance sky_radiance(const SgMixture& light) {
-  SkyRadiance out;
-  const float unit = 1 / sg_integral(kSkyLobe);
-  for (const Vec3f d : sky_directions()) {
-    Vec3f sum{0, 0, 0};
-    for (const SgLobe& l : light.lobes) {
-      const Vec3f gap = d - l.axis;
-      sum += l.mu * (unit * sg_inner(l.lambda, kSkyLobe, dot(gap, gap)));
-    }
-    out.push_back(sum);
-  }
-  return out;
+Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture& light,
+                   const Material& material, VertexLight vertices)
+    : device_(device), surface_(surface), material_(material), vertices_(std::move(vertices)) {
+  set_lobes(light);
+  env_table_ = env_brdf_table(material.roughness);
 }
 
 Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture& light,
                    std::span<const Vec3f> base_color, const Material& material,
                    std::shared_ptr<const Transport> transport)
-    : device_(device), surface_(surface), material_(material) {
-  if (base_color.size() != surface.mesh().positions.size())
-    fail("lighting: {} colours for {} vertices", base_color.size(), surface.mesh().positions.size());
-  set_lobes(light);
-  env_table_ = env_brdf_table(material.roughness);
-  if (!transport) transport = std::make_shared<Transport>(surface);
-  const SkyRadiance sky = sky_radiance(light);
-  const std::vector<Vec3f> seen = transport->sky(sky), open = transport->open_sky(sky);
-  openness_.resize(seen.size());
-  for (size_t v = 0; v < seen.size(); ++v)
-    for (int c = 0; c < 3; ++c)
-      openness_[v][c] = open[v][c] > 1e-6f ? min(seen[v][c] / open[v][c], 1.0f) : 1.0f;
-  bounce_.assign(seen.size(), {0, 0, 0});
-  leaving_.resize(seen.size());
-  for (int round = 0; round < 2; ++round) {
-    for (size_t v = 0; v < seen.size(); ++v) leaving_[v] = base_color[v] * (seen[v] + bounce_[v]) / kPi;
-    bounce_ = transport->bounce(leaving_);
-  }
-}
+    : Lighting(device, surface, light, material,
+               vertex_light(transport ? *transport : Transport(surface), light, base_color)) {}
 
 Lighting::~Lighting() = default;
 
@@ -123,7 +98,7 @@ struct Lighting::Block {
 };
 
 Vec3f Lighting::leaving(const Surface::RayHit& h) const {
-  return at_corners(leaving_, surface_.mesh().triangles[h.triangle], h.b1, h.b2);
+  return at_corners(vertices_.leaving, surface_.mesh().triangles[h.triangle], h.b1, h.b2);
 }
 
 HitLight Lighting::light_at(std::span<const Hit> hits, float roughness) const {
@@ -169,8 +144,8 @@ HitLight Lighting::light_at(std::span<const Hit> hits, float roughness) const {
       const auto plane = [&](const std::vector<float>& p) {
         return Vec3f{p[i - begin], p[kBlock + i - begin], p[2 * kBlock + i - begin]};
       };
-      out.openness[i] = at_corners(openness_, t, h.b1, h.b2);
-      out.irradiance[i] = plane(b.irradiance) * out.openness[i] + at_corners(bounce_, t, h.b1, h.b2);
+      out.openness[i] = at_corners(vertices_.openness, t, h.b1, h.b2);
+      out.irradiance[i] = plane(b.irradiance) * out.openness[i] + at_corners(vertices_.bounce, t, h.b1, h.b2);
       Vec3f seen{0, 0, 0};
       int free = 0;
       for (int k = 0; k < kOcclusionRays; ++k) {

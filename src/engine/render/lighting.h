@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/compute/device.h"
-#include "engine/render/transport.h"
+#include "engine/render/vertex_light.h"
 #include "model/light/sg_mixture.h"
 #include "model/material/material.h"
 #include "model/scene/appearance.h"
@@ -40,6 +40,7 @@ class Lighting {
   // own. The transport can be shared by lights; without one it is computed (a second).
   Lighting(const Device&, const Surface&, const SgMixture&, std::span<const Vec3f> base_color,
            const Material&, std::shared_ptr<const Transport> transport = nullptr);
+  Lighting(const Device&, const Surface&, const SgMixture&, const Material&, VertexLight);
   ~Lighting();
 
   // A hit's result depends on nothing but that hit, its base colour and its material.
@@ -62,14 +63,9 @@ class Lighting {
   Material material_;
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
-  std::vector<Vec3f> openness_;   // #V share of the open sky's irradiance that arrives
-  std::vector<Vec3f> bounce_;     // #V irradiance from the surface itself
-  std::vector<Vec3f> leaving_;    // #V radiance that the surface sends out, taken as diffuse
+  VertexLight vertices_;
   std::vector<Vec2f> env_table_;  // scale and bias of the reflectance by the viewer's cosine
 };
-
-// Mean radiance of a light around each of sky_directions().
-SkyRadiance sky_radiance(const SgMixture& light);
 
 // The env_brdf of one roughness, tabulated over the viewer's cosine in cells of equal width.
 std::vector<Vec2f> env_brdf_table(float roughness);

@@ -12,8 +12,7 @@
 
 namespace cei3d {
 
-class Lighting;   // engine/render/lighting.h
-class Transport;  // engine/render/transport.h
+class SceneLight;  // engine/render/scene_light.h
 
 // Every sub-pixel sample that met the surface, ordered by pixel.
 struct GBuffer {
@@ -26,6 +25,10 @@ struct GBuffer {
 };
 // The hits of those rays (unit-sphere frame) that meet the surface, in order; ray_of_hit: #hits.
 std::vector<Hit> trace_rays(const Device&, const Field& sdf, const Surface&, std::span<const Ray> rays,
+                            std::vector<uint32_t>& ray_of_hit);
+
+// ... of the scene, edits of its shape included.
+std::vector<Hit> trace_rays(const Device&, const Scene&, std::span<const Ray> rays,
                             std::vector<uint32_t>& ray_of_hit);
 
 // camera: unit-sphere frame.
@@ -43,13 +46,7 @@ struct Frame {
   std::vector<uint8_t>
       edited;  // #pixels, 1 where any sample of the pixel's mean lies in the region of an edit
 };
-// How the scene's own light reaches its surface; made once and used for every view. The bounce is that of the
-// unedited object, so that an edit changes no pixel outside its region. The transport depends on the surface
-// only: one can serve several lights; without one it is computed (a second).
-std::shared_ptr<const Lighting> light_scene(const Device&, const Scene&,
-                                            std::shared_ptr<const Transport> transport = nullptr);
-
-Frame shade_view(const Device&, const Scene&, const Lighting&, const GBuffer&);
+Frame shade_view(const Device&, const Scene&, const SceneLight&, const GBuffer&);
 Frame shade_view(const Device&, const Scene&, const GBuffer&);  // for a single view
 
 }  // namespace cei3d

@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "engine/render/lighting.h"
 #include "engine/render/render.h"
+#include "engine/render/scene_light.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {
@@ -59,21 +59,9 @@ void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverag
 
 }  // namespace
 
-std::shared_ptr<const Lighting> light_scene(const Device& device, const Scene& scene,
-                                            std::shared_ptr<const Transport> transport) {
-  const auto& positions = scene.surface->mesh().positions;
-  std::vector<float> values(positions.size() * 3);
-  scene.albedo->eval(device, positions, values);
-  std::vector<Vec3f> albedo(positions.size());
-  for (size_t v = 0; v < albedo.size(); ++v)
-    albedo[v] = {values[3 * v], values[3 * v + 1], values[3 * v + 2]};
-  return std::make_shared<const Lighting>(device, *scene.surface, scene.light, albedo, scene.material,
-                                          transport);
-}
-
-Frame shade_view(const Device& device, const Scene& scene, const Lighting& lighting, const GBuffer& g) {
+Frame shade_view(const Device& device, const Scene& scene, const SceneLight& light, const GBuffer& g) {
   const Appearance look = appearance_at(device, scene, g.hits);
-  const Shading shading = lighting.shade(g.hits, look);
+  const Shading shading = light.shade(g.hits, look);
   Frame f = empty_frame(g.width, g.height);
   parallel_for(g.height, [&](int y) {
     for (int x = 0; x < g.width; ++x) {
@@ -108,7 +96,7 @@ Frame shade_view(const Device& device, const Scene& scene, const Lighting& light
 }
 
 Frame shade_view(const Device& device, const Scene& scene, const GBuffer& g) {
-  return shade_view(device, scene, *light_scene(device, scene), g);
+  return shade_view(device, scene, SceneLight(device, scene, scene_transports(scene)), g);
 }
 
 }  // namespace cei3d

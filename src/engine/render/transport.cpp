@@ -16,18 +16,19 @@ uint32_t nearest_corner(const Mesh& mesh, const Surface::RayHit& h) {
   return b0 >= h.b1 && b0 >= h.b2 ? t[0] : h.b1 >= h.b2 ? t[1] : t[2];
 }
 
+}  // namespace
+
 template <class F>
-std::vector<Vec3f> per_vertex(int n, F value) {
-  std::vector<Vec3f> out(n);
-  parallel_ranges(n, kGrain, [&](int begin, int end) {
-    for (int v = begin; v < end; ++v) out[v] = value(v);
+std::vector<Vec3f> Transport::per_vertex(F value) const {
+  std::vector<Vec3f> out(start_.size() - 1);
+  parallel_ranges(int(out.size()), kGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) out[v] = covers(v) ? value(v) : Vec3f{0, 0, 0};
   });
   return out;
 }
 
-}  // namespace
-
-Transport::Transport(const Surface& surface) : surface_(surface) {
+Transport::Transport(const Surface& surface, std::vector<uint8_t> which)
+    : surface_(surface), which_(std::move(which)) {
   const Mesh& mesh = surface.mesh();
   const auto& sky = sky_directions();
   const int n = int(mesh.positions.size());
@@ -40,7 +41,7 @@ Transport::Transport(const Surface& surface) : surface_(surface) {
     directions.clear();
     const size_t first = blockers_.size();
     for (int v = begin; v < end; ++v) {
-      for (int k = 0; k < kSkyDirections; ++k) {
+      for (int k = 0; k < kSkyDirections && covers(v); ++k) {
         const float c = dot(mesh.normals[v], sky[k]);
         if (c <= 0.02f || surface.sees(v, k)) continue;
         origins.push_back(mesh.positions[v] + mesh.normals[v] * kStart);
@@ -65,7 +66,7 @@ std::vector<Vec3f> Transport::sky(const SkyRadiance& radiance) const {
   const Mesh& mesh = surface_.mesh();
   const auto& sky = sky_directions();
   const uint8_t* bits = surface_.visibility().data();
-  return per_vertex(int(mesh.positions.size()), [&](int v) {
+  return per_vertex([&](int v) {
     const uint8_t* row = bits + size_t(v) * (kSkyDirections / 8);
     Vec3f sum{0, 0, 0};
     for (int byte = 0; byte < kSkyDirections / 8; ++byte)
@@ -80,7 +81,7 @@ std::vector<Vec3f> Transport::sky(const SkyRadiance& radiance) const {
 std::vector<Vec3f> Transport::open_sky(const SkyRadiance& radiance) const {
   const Mesh& mesh = surface_.mesh();
   const auto& sky = sky_directions();
-  return per_vertex(int(mesh.positions.size()), [&](int v) {
+  return per_vertex([&](int v) {
     Vec3f sum{0, 0, 0};
     for (int k = 0; k < kSkyDirections; ++k) sum += radiance[k] * max(dot(mesh.normals[v], sky[k]), 0.0f);
     return sum * kSolidAngle;
@@ -88,7 +89,7 @@ std::vector<Vec3f> Transport::open_sky(const SkyRadiance& radiance) const {
 }
 
 std::vector<Vec3f> Transport::bounce(std::span<const Vec3f> radiance) const {
-  return per_vertex(int(start_.size()) - 1, [&](int v) {
+  return per_vertex([&](int v) {
     Vec3f sum{0, 0, 0};
     for (uint32_t i = start_[v]; i < start_[v + 1]; ++i)
       sum += radiance[blockers_[i].vertex] * blockers_[i].weight;

@@ -15,8 +15,9 @@ using SkyRadiance = std::vector<Vec3f>;
 
 class Transport {
  public:
-  explicit Transport(
-      const Surface& surface);  // casts a ray along every blocked direction above a vertex's horizon
+  // Casts a ray along every blocked direction above a vertex's horizon. which: #V, 1 for the vertices that
+  // are asked for; the others get zeros. Empty: all.
+  explicit Transport(const Surface& surface, std::vector<uint8_t> which = {});
 
   // Irradiance of every vertex from the sky it sees. #V
   std::vector<Vec3f> sky(const SkyRadiance&) const;
@@ -27,9 +28,14 @@ class Transport {
   std::vector<Vec3f> bounce(std::span<const Vec3f> radiance) const;
 
   const Surface& surface() const { return surface_; }
+  bool covers(size_t vertex) const { return which_.empty() || which_[vertex]; }
 
  private:
+  template <class F>
+  std::vector<Vec3f> per_vertex(F value) const;
+
   const Surface& surface_;
+  std::vector<uint8_t> which_;
   struct Blocker {
     uint32_t vertex;  // nearest to the point that blocks the direction
     float weight;     // cosine times the direction's solid angle

@@ -12,8 +12,7 @@
 #include "engine/io/image_file.h"
 #include "engine/io/normalize.h"
 #include "engine/project/project.h"
-#include "engine/render/render.h"
-#include "engine/render/transport.h"
+#include "engine/render/scene_light.h"
 #include "engine/session/version.h"
 
 namespace cei3d {
@@ -72,12 +71,12 @@ MachineInfo Session::machine() {
   return m;
 }
 
-std::shared_ptr<const Lighting> Session::light(const Scene& scene) {
+SceneLight Session::light(const Scene& scene) {
   if (lit_surface_ != scene.surface) {
-    transport_ = std::make_shared<Transport>(*scene.surface);
+    transports_ = scene_transports(scene);
     lit_surface_ = scene.surface;
   }
-  return light_scene(*device_, scene, transport_);
+  return SceneLight(*device_, scene, transports_);
 }
 
 CheckReport Session::check(const CheckRequest& request) {

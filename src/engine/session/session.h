@@ -18,8 +18,8 @@
 namespace cei3d {
 
 class Device;
-class Lighting;
 class Project;
+class SceneLight;
 class Surface;
 class Transport;
 struct Scene;
@@ -54,13 +54,13 @@ class Session {
   EvalReport evaluate(const EvalRequest&, Progress&);
 
  private:
-  Project& project() const;                             // error when none is open
-  std::shared_ptr<const Lighting> light(const Scene&);  // lights of one surface share what depends on it only
+  Project& project() const;        // error when none is open
+  SceneLight light(const Scene&);  // lights of one surface share what depends on it only
 
   std::unique_ptr<Device> device_;
   std::unique_ptr<Project> project_;
-  std::shared_ptr<const Surface> lit_surface_;  // of the transport below
-  std::shared_ptr<const Transport> transport_;
+  std::shared_ptr<const Surface> lit_surface_;  // of the transports below
+  std::vector<std::shared_ptr<const Transport>> transports_;
 };
 
 }  // namespace cei3d

@@ -9,6 +9,7 @@
 #include "engine/metrics/psnr.h"
 #include "engine/metrics/ssim.h"
 #include "engine/project/project.h"
+#include "engine/render/scene_light.h"
 #include "engine/session/cameras.h"
 #include "engine/session/frame_files.h"
 #include "engine/session/session.h"
@@ -141,25 +142,28 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
   const std::vector<View> views = views_to_score(project(), request);
   const Scene scene = project().scene();
   const Scene without = request.edit.empty() ? scene : scene_without(project().base(), scene, request.edit);
-  const auto lighting = light(scene), lighting_without = request.edit.empty() ? lighting : light(without);
-  const auto picture = [&](const Scene& s, const GBuffer& buffer) {
-    const Lighting& l = &s == &scene ? *lighting : *lighting_without;
-    return rounded_srgb(shade_view(*device_, s, l, buffer).rgb);
+  const SceneLight lit = light(scene), lit_without = request.edit.empty() ? lit : light(without);
+  const auto trace = [&](const Scene& s, const View& v) {
+    return trace_view(*device_, s, s.normalization.unit_from_input(v.camera), request.samples);
+  };
+  const auto picture_without = [&](const View& v, const GBuffer& buffer) {
+    const bool same_shape = without.surface == scene.surface;
+    return rounded_srgb(
+        shade_view(*device_, without, lit_without, same_shape ? buffer : trace(without, v)).rgb);
   };
   EvalReport report;
   EditSums edit;
   for (size_t i = 0; i < views.size(); ++i) {
     if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Evaluation was interrupted.");
     progress.report({"eval", double(i) / double(views.size()), -1, views[i].name});
-    const Camera camera = scene.normalization.unit_from_input(views[i].camera);
-    const GBuffer buffer = trace_view(*device_, scene, camera, request.samples);
-    const Image rendered = picture(scene, buffer);
-    report.views.push_back(score_view(views[i], request.edit.empty() ? rendered : picture(without, buffer)));
+    const GBuffer buffer = trace(scene, views[i]);
+    const Image rendered = rounded_srgb(shade_view(*device_, scene, lit, buffer).rgb);
+    const Image before = request.edit.empty() ? rendered : picture_without(views[i], buffer);
+    report.views.push_back(score_view(views[i], before));
     const fs::path truth = picture_like(request.truth, views[i]),
                    mask = picture_like(request.masks, views[i]);
     if (!request.edit.empty() && fs::exists(truth) && fs::exists(mask))
-      edit.add(rendered, picture(without, buffer), read_rgba(truth, views[i].camera),
-               read_mask(mask, views[i].camera));
+      edit.add(rendered, before, read_rgba(truth, views[i].camera), read_mask(mask, views[i].camera));
   }
   summarise(report);
   if (!request.edit.empty()) {

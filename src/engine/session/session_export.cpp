@@ -19,26 +19,31 @@ std::vector<Vec3f> in_capture_frame(std::vector<Vec3f> points, const Normalizati
   return points;
 }
 
-// Area-weighted, for a mesh that came without.
-std::vector<Vec3f> vertex_normals(const Mesh& mesh) {
-  std::vector<Vec3f> normals(mesh.positions.size(), Vec3f{0, 0, 0});
-  for (const auto& t : mesh.triangles) {
-    const Vec3f a = mesh.positions[t[0]], n = cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a);
-    for (const uint32_t v : t) normals[v] += n;
-  }
-  for (Vec3f& n : normals) n = normalize(n);
-  return normals;
+// Without the vertices that no triangle uses: those of parts that were removed.
+Mesh compact(const Mesh& mesh) {
+  constexpr uint32_t kUnused = ~0u;
+  std::vector<uint32_t> id(mesh.positions.size(), kUnused);
+  Mesh out;
+  out.triangles = mesh.triangles;
+  for (auto& t : out.triangles)
+    for (uint32_t& v : t) {
+      if (id[v] == kUnused) {
+        id[v] = uint32_t(out.positions.size());
+        out.positions.push_back(mesh.positions[v]);
+        out.normals.push_back(mesh.normals[v]);
+        out.colors.push_back(mesh.colors[v]);
+      }
+      v = id[v];
+    }
+  return out;
 }
 
 // The surface in the capture's frame and scale, coloured by the base colour, edits included.
 Mesh coloured_mesh(const Device& device, const Scene& scene) {
   if (!scene.surface || !scene.albedo) fail("The object has no surface to export; reconstruct it again.");
   Mesh mesh = scene.surface->mesh();
-  if (mesh.normals.empty()) mesh.normals = vertex_normals(mesh);
-  std::vector<Hit> hits;
-  for (size_t i = 0; i < mesh.positions.size(); ++i)
-    hits.push_back({mesh.positions[i], mesh.normals[i], mesh.normals[i], 0, 0, 0});
-  mesh.colors = appearance_at(device, scene, hits).albedo;
+  mesh.colors = appearance_at(device, scene, vertex_hits(mesh)).albedo;
+  if (!scene.poses.empty()) mesh = compact(mesh);
   mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);
   return mesh;
 }

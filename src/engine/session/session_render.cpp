@@ -8,6 +8,7 @@
 #include "engine/io/image_file.h"
 #include "engine/project/dataset.h"
 #include "engine/project/project.h"
+#include "engine/render/scene_light.h"
 #include "engine/session/cameras.h"
 #include "engine/session/frame_files.h"
 #include "engine/session/light_choice.h"
@@ -77,7 +78,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
   Scene scene = project().scene();
   scene.light = chosen_light(*device_, request.light, scene.light, scene.up);
   const double depth = depth_scale(cameras, scene.normalization);
-  const auto lighting = light(scene);
+  const SceneLight light = this->light(scene);
   RenderReport report;
   for (size_t i = 0; i < cameras.size(); ++i) {
     require_running(progress);
@@ -86,7 +87,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
     const GBuffer buffer =
         trace_view(*device_, scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
     const double traced = now();
-    const Frame frame = shade_view(*device_, scene, *lighting, buffer);
+    const Frame frame = shade_view(*device_, scene, light, buffer);
     report.trace_seconds += traced - before;
     report.shade_seconds += now() - traced;
     for (const Channel c : request.channels)

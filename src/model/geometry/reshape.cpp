@@ -17,15 +17,17 @@ bool ascends_below(const std::vector<uint32_t>& ids, size_t end) {
 
 void check_fit(const Mesh& mesh, const Reshape& r) {
   const size_t moved = r.moved.size(), added = r.added_positions.size();
-  const size_t vertices = mesh.positions.size() + added;
+  const size_t old = mesh.positions.size();
   const bool whole = r.positions.size() == moved && r.normals.size() == moved &&
                      r.gradients.size() == moved && r.added_normals.size() == added &&
-                     r.added_colors.size() == added;
+                     r.added_colors.size() == added && r.rim_colors.size() == r.rim.size();
   const bool named = std::all_of(r.added_triangles.begin(), r.added_triangles.end(), [&](const auto& t) {
-    return std::all_of(t.begin(), t.end(), [&](uint32_t v) { return v < vertices; });
+    return std::all_of(t.begin(), t.end(), [&](uint32_t v) {
+      return v < old ? std::binary_search(r.rim.begin(), r.rim.end(), v) : v - old < added;
+    });
   });
-  if (!whole || !named || mesh.normals.size() != mesh.positions.size() ||
-      !ascends_below(r.moved, mesh.positions.size()) || !ascends_below(r.removed, mesh.triangles.size()))
+  if (!whole || !named || mesh.normals.size() != old || !ascends_below(r.moved, old) ||
+      !ascends_below(r.rim, old) || !ascends_below(r.removed, mesh.triangles.size()))
     fail("a change of shape does not fit the surface it should change; toggle it off, or make it again");
 }
 
@@ -55,22 +57,29 @@ Mesh apply(const Mesh& mesh, const Reshape& r) {
   out.normals.insert(out.normals.end(), r.added_normals.begin(), r.added_normals.end());
   if (!out.colors.empty()) out.colors.insert(out.colors.end(), r.added_colors.begin(), r.added_colors.end());
   out.triangles.clear();
+  for (const uint32_t t : kept_triangles(mesh, r)) out.triangles.push_back(mesh.triangles[t]);
+  out.triangles.insert(out.triangles.end(), r.added_triangles.begin(), r.added_triangles.end());
+  return out;
+}
+
+std::vector<uint32_t> kept_triangles(const Mesh& before, const Reshape& r) {
+  std::vector<uint32_t> kept;
   auto gone = r.removed.begin();
-  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+  for (uint32_t t = 0; t < before.triangles.size(); ++t) {
     if (gone != r.removed.end() && *gone == t)
       ++gone;
     else
-      out.triangles.push_back(mesh.triangles[t]);
+      kept.push_back(t);
   }
-  out.triangles.insert(out.triangles.end(), r.added_triangles.begin(), r.added_triangles.end());
-  return out;
+  return kept;
 }
 
 void save_reshape(const Reshape& r, Tensors& tensors, Json& head) {
   head = {{"moved", r.moved.size()},
           {"removed", r.removed.size()},
           {"added_vertices", r.added_positions.size()},
-          {"added_triangles", r.added_triangles.size()}};
+          {"added_triangles", r.added_triangles.size()},
+          {"rim", r.rim.size()}};
   tensors["reshape/moved"] = tensor_of(std::span(r.moved));
   tensors["reshape/positions"] = tensor_of(std::span(r.positions));
   tensors["reshape/normals"] = tensor_of(std::span(r.normals));
@@ -80,6 +89,8 @@ void save_reshape(const Reshape& r, Tensors& tensors, Json& head) {
   tensors["reshape/added_normals"] = tensor_of(std::span(r.added_normals));
   tensors["reshape/added_colors"] = tensor_of(std::span(r.added_colors));
   tensors["reshape/added_triangles"] = tensor_of(std::span(r.added_triangles));
+  tensors["reshape/rim"] = tensor_of(std::span(r.rim));
+  tensors["reshape/rim_colors"] = tensor_of(std::span(r.rim_colors));
 }
 
 Reshape load_reshape(const Tensors& tensors, const Json& head) {
@@ -95,6 +106,9 @@ Reshape load_reshape(const Tensors& tensors, const Json& head) {
   r.added_colors = vectors_from(tensors, "reshape/added_colors", added);
   r.added_triangles =
       triangles_from(tensors, "reshape/added_triangles", rows_from(head.at("added_triangles")));
+  const int64_t rim = rows_from(head.at("rim"));
+  r.rim = numbers_from(tensors, "reshape/rim", rim);
+  r.rim_colors = vectors_from(tensors, "reshape/rim_colors", rim);
   return r;
 }
 

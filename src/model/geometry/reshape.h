@@ -25,17 +25,26 @@ struct Reshape {
 
   std::vector<uint32_t> removed;  // triangles of the mesh before that are gone, ascending
 
-  // New vertices, numbered on from the mesh's; their unit normals and base colour (linear). Triangles of new
-  // matter may name old vertices, too.
+  // New vertices, numbered on from the mesh's; their unit normals and base colour (linear).
   std::vector<Vec3f> added_positions, added_normals, added_colors;
   std::vector<std::array<uint32_t, 3>> added_triangles;
+  // Old vertices that the added triangles name, ascending, and the base colour that the new matter has there.
+  std::vector<uint32_t> rim;
+  std::vector<Vec3f> rim_colors;
 
+  Mat3f gradient(size_t i) const {
+    const auto& m = gradients[i];
+    return {{{m[0], m[1], m[2]}, {m[3], m[4], m[5]}, {m[6], m[7], m[8]}}};
+  }
   bool empty() const { return moved.empty() && removed.empty() && added_triangles.empty(); }
 };
 
 // The mesh afterwards: old triangles that are left in their order, then the added ones. The mesh has normals.
 // Error: a reshape that does not belong to this mesh.
 Mesh apply(const Mesh&, const Reshape&);
+
+// The triangles of the mesh before that are left, in their order: the first ones afterwards.
+std::vector<uint32_t> kept_triangles(const Mesh& before, const Reshape&);
 
 // Tensors "reshape/...", sizes in the head; and back. Errors: missing tensors or keys, sizes that disagree.
 void save_reshape(const Reshape&, Tensors& tensors, Json& head);

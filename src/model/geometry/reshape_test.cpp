@@ -28,6 +28,8 @@ Reshape lift_and_replace() {
   r.added_normals = {{0, 1, 0}};
   r.added_colors = {{0.1f, 0.2f, 0.3f}};
   r.added_triangles = {{0, 4, 1}};
+  r.rim = {0, 1};
+  r.rim_colors = {{0.4f, 0.5f, 0.6f}, {0.7f, 0.8f, 0.9f}};
   return r;
 }
 
@@ -62,13 +64,14 @@ TEST(Reshape, LoadGivesWhatWasSaved) {
 
 TEST(Reshape, OfAnotherMeshIsAnError) {
   Reshape vertex = lift_and_replace(), triangle = vertex, unsorted = vertex, short_list = vertex,
-          corner = vertex;
+          corner = vertex, rim = vertex;
   vertex.moved = {4};
   triangle.removed = {2};
   unsorted.removed = {1, 0};
   short_list.normals.clear();
   corner.added_triangles = {{0, 1, 5}};
-  for (const Reshape& r : {vertex, triangle, unsorted, short_list, corner})
+  rim.added_triangles = {{0, 2, 4}};
+  for (const Reshape& r : {vertex, triangle, unsorted, short_list, corner, rim})
     EXPECT_THROW(apply(square_mesh(), r), Error);
 }
 

@@ -136,18 +136,19 @@ struct Surface::Bvh {
     return {h.ray.tfar, h.hit.primID, h.hit.u, h.hit.v};  // p = (1 - u - v) v0 + u v1 + v v2
   }
 
-  std::vector<uint8_t> cast_visibility(const Mesh& mesh, const std::vector<Vec3f>& normals) const {
+  // Writes the rows of the vertices that look; looks empty: all do.
+  void cast_visibility(const Mesh& mesh, std::span<const uint8_t> looks, std::vector<uint8_t>& bits) const {
     const std::vector<Vec3f>& sky = sky_directions();
-    std::vector<uint8_t> bits(mesh.positions.size() * kRowBytes);
     parallel_ranges(int(mesh.positions.size()), 64, [&](int begin, int end) {
       for (int v = begin; v < end; ++v) {
-        const Vec3f o = mesh.positions[v] + normals[v] * kLift;
+        if (!looks.empty() && !looks[v]) continue;
+        const Vec3f n = mesh.normals[v], o = mesh.positions[v] + n * kLift;
+        uint8_t* row = &bits[size_t(v) * kRowBytes];
+        std::fill(row, row + kRowBytes, uint8_t(0));
         for (int k = 0; k < kSkyDirections; ++k)
-          if (dot(sky[k], normals[v]) > 0 && !blocked(o, sky[k]))
-            bits[size_t(v) * kRowBytes + k / 8] |= uint8_t(1 << k % 8);
+          if (dot(sky[k], n) > 0 && !blocked(o, sky[k])) row[k / 8] |= uint8_t(1 << k % 8);
       }
     });
-    return bits;
   }
 };
 
@@ -155,7 +156,8 @@ Surface::Surface(Mesh mesh) : mesh_(std::move(mesh)) {
   check_mesh(mesh_);
   if (mesh_.normals.empty()) mesh_.normals = angle_weighted_normals(mesh_);
   bvh_ = std::make_unique<Bvh>(mesh_);
-  visibility_ = bvh_->cast_visibility(mesh_, mesh_.normals);
+  visibility_.resize(mesh_.positions.size() * kRowBytes);
+  bvh_->cast_visibility(mesh_, {}, visibility_);
 }
 
 Surface::Surface(Mesh mesh, std::vector<uint8_t> visibility)
@@ -166,6 +168,16 @@ Surface::Surface(Mesh mesh, std::vector<uint8_t> visibility)
     fail("visibility table of {} bytes does not fit a mesh of {} vertices", visibility_.size(),
          mesh_.positions.size());
   bvh_ = std::make_unique<Bvh>(mesh_);
+}
+
+Surface::Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> looks)
+    : mesh_(std::move(mesh)), visibility_(before.visibility_) {
+  check_mesh(mesh_);
+  if (looks.size() != mesh_.positions.size() || mesh_.normals.empty())
+    fail("surface: a change needs normals and {} marks, not {}", mesh_.positions.size(), looks.size());
+  bvh_ = std::make_unique<Bvh>(mesh_);
+  visibility_.resize(mesh_.positions.size() * kRowBytes);
+  bvh_->cast_visibility(mesh_, looks, visibility_);
 }
 
 Surface::~Surface() = default;

@@ -21,6 +21,8 @@ class Surface {
  public:
   explicit Surface(Mesh mesh);                          // casts the visibility rays (seconds)
   Surface(Mesh mesh, std::vector<uint8_t> visibility);  // from a stored table
+  // A changed one. looks: #V, 1 where the vertex looks at the sky again, 0 where it keeps what it saw before.
+  Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> looks);
   ~Surface();
   Surface(const Surface&) = delete;
   Surface& operator=(const Surface&) = delete;

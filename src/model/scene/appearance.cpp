@@ -12,17 +12,25 @@ namespace {
 
 constexpr int kGrain = 4096;  // hits a chunk
 
+// A step towards a hit's base colour.
+struct Op {
+  enum class Kind { branch, matter, tint } kind;
+  int layer;
+  uint32_t hit;
+  Vec3f position;  // of the hit in the layer's pose
+  Vec3f color;     // of a branch or of new matter
+};
+
 // What the layers say about a hit.
 struct Route {
-  int layer = -1;           // topmost that has a region of its own
-  int branch = -1;          // topmost that has an albedo; -1: the base
-  MaterialChange material;  // of all layers together
-  uint32_t tint_begin = 0,
-           tint_end = 0;  // of the chunk's list of tints: those above the branch, topmost first
+  int layer = -1;  // topmost that is not everywhere
+  MaterialChange material;
+  uint32_t op_begin = 0, op_end = 0;  // of the chunk's steps, the last one first
+  bool base = true;                   // the first step works on the base's colour
 };
 
 struct Chunk {
-  std::vector<const Tint*> tints;
+  std::vector<Op> ops;
 };
 
 void put_below(MaterialChange& top, const MaterialChange& below) {
@@ -33,64 +41,127 @@ void put_below(MaterialChange& top, const MaterialChange& below) {
 
 bool is_whole(const MaterialChange& c) { return c.roughness && c.specular && c.metalness; }
 
-// From the topmost layer down, and no further than anything can still change.
-Route route(std::span<const EditLayer> layers, const Hit& hit, Chunk& chunk) {
-  Route r;
-  r.tint_begin = uint32_t(chunk.tints.size());
-  for (int l = int(layers.size()) - 1; l >= 0; --l) {
-    const EditLayer& layer = layers[l];
-    const bool colours = r.branch < 0 && (layer.albedo || layer.tint),
-               marks = r.layer < 0 && !layer.everywhere;
-    const bool changes = !layer.material.empty() && !is_whole(r.material);
-    if (!colours && !changes && !marks) continue;
-    if (!layer.contains(hit.position, hit.normal)) continue;
-    if (marks) r.layer = l;
-    if (changes) put_below(r.material, layer.material);
-    if (!colours) continue;
-    if (layer.tint) chunk.tints.push_back(&*layer.tint);
-    if (layer.albedo) r.branch = l;
+// One hit on its way through the layers, from the topmost down and no further than anything can still change.
+class Walk {
+ public:
+  Walk(const Scene& scene, const Hit& hit, uint32_t index, Chunk& chunk)
+      : scene_(scene), hit_(hit), index_(index), chunk_(chunk) {
+    if (scene.poses.empty()) return;
+    born_ = scene.poses.back()->born_in(hit.triangle);
+    shaped_ = scene.poses.back()->shaped_in(hit.triangle);
   }
-  r.tint_end = uint32_t(chunk.tints.size());
-  return r;
-}
+
+  Route route() {
+    r_.op_begin = uint32_t(chunk_.ops.size());
+    for (int l = int(scene_.layers.size()) - 1; l >= 0; --l) visit(l, scene_.layers[l]);
+    r_.op_end = uint32_t(chunk_.ops.size());
+    return r_;
+  }
+
+ private:
+  void visit(int l, const EditLayer& layer) {
+    if (layer.reshape) visit_change(l, layer.pose + 1);
+    const bool colours = r_.base && (layer.albedo || layer.tint), marks = r_.layer < 0 && !layer.everywhere;
+    const bool changes = !layer.material.empty() && !is_whole(r_.material);
+    if (!colours && !changes && !marks) return;
+    const bool old = born_ <= layer.pose;  // what was made later is in no region that is older ...
+    if (!old && !layer.everywhere) return;
+    const SurfacePoint p = old ? in_pose(scene_.poses, hit_, layer.pose) : SurfacePoint{};
+    if (!layer.everywhere && !layer.region.contains(p.position, p.normal)) return;
+    if (marks) r_.layer = l;
+    if (changes) put_below(r_.material, layer.material);
+    if (!colours || !old)
+      return;  // ... and brings a colour of its own, but is of what the whole object is made of
+    if (layer.tint) add(Op::Kind::tint, l, {}, {});
+    if (layer.albedo) add(Op::Kind::branch, l, p.position, {});
+    if (layer.albedo) r_.base = false;
+  }
+
+  // The layer changed the shape into that of this pose.
+  void visit_change(int l, int pose) {
+    if (r_.layer < 0 && shaped_ == pose) r_.layer = l;
+    if (!r_.base || born_ != pose) return;
+    const Pose& now = *scene_.poses.back();
+    const auto& t = now.surface->mesh().triangles[hit_.triangle];
+    const Vec3f color =
+        now.colors[t[0]] * (1 - hit_.b1 - hit_.b2) + now.colors[t[1]] * hit_.b1 + now.colors[t[2]] * hit_.b2;
+    add(Op::Kind::matter, l, {}, color);
+    r_.base = false;
+  }
+
+  void add(Op::Kind kind, int l, Vec3f position, Vec3f color) {
+    chunk_.ops.push_back({kind, l, index_, position, color});
+  }
+
+  const Scene& scene_;
+  const Hit& hit_;
+  uint32_t index_;
+  Chunk& chunk_;
+  int born_ = 0, shaped_ = 0;
+  Route r_;
+};
 
 struct Routes {
   std::vector<Route> at;      // #hits
   std::vector<Chunk> chunks;  // of kGrain hits each
 
-  Routes(std::span<const EditLayer> layers, std::span<const Hit> hits)
+  Routes(const Scene& scene, std::span<const Hit> hits)
       : at(hits.size()), chunks((hits.size() + kGrain - 1) / kGrain) {
-    if (layers.empty()) return;
+    if (scene.layers.empty()) return;
     parallel_ranges(int(hits.size()), kGrain, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) at[i] = route(layers, hits[i], chunks[begin / kGrain]);
+      for (int i = begin; i < end; ++i)
+        at[i] = Walk(scene, hits[i], uint32_t(i), chunks[begin / kGrain]).route();
     });
   }
 };
 
-// Evaluates the field at the chosen hits only.
-void eval_at(const Device& device, const Field& field, std::span<const Hit> hits,
-             std::span<const uint32_t> chosen, std::vector<Vec3f>& albedo) {
-  if (chosen.empty()) return;
-  std::vector<Vec3f> x(chosen.size());
-  for (size_t i = 0; i < x.size(); ++i) x[i] = hits[chosen[i]].position;
+std::vector<Vec3f> eval_colors(const Device& device, const Field& field, const std::vector<Vec3f>& x) {
+  std::vector<Vec3f> out(x.size());
+  if (x.empty()) return out;
   std::vector<float> value(3 * x.size());
   field.eval(device, x, value);
-  for (size_t i = 0; i < x.size(); ++i)
-    albedo[chosen[i]] = {value[3 * i], value[3 * i + 1], value[3 * i + 2]};
+  for (size_t i = 0; i < x.size(); ++i) out[i] = {value[3 * i], value[3 * i + 1], value[3 * i + 2]};
+  return out;
 }
 
-std::vector<Vec3f> albedo_at(const Device& device, const Scene& scene, std::span<const Hit> hits,
-                             const Routes& routes) {
-  std::vector<Vec3f> albedo(hits.size());
-  std::vector<std::vector<uint32_t>> chosen(scene.layers.size() + 1);  // by branch; the base first
-  for (size_t i = 0; i < hits.size(); ++i) chosen[routes.at[i].branch + 1].push_back(uint32_t(i));
-  for (size_t b = 0; b < chosen.size(); ++b)
-    eval_at(device, b ? *scene.layers[b - 1].albedo : *scene.albedo, hits, chosen[b], albedo);
-  for (size_t i = 0; i < hits.size(); ++i) {
-    const Route& r = routes.at[i];
-    const auto& tints = routes.chunks[i / kGrain].tints;
-    for (uint32_t t = r.tint_end; t > r.tint_begin; --t) albedo[i] = tinted(*tints[t - 1], albedo[i]);
+// The branches' colours, each field evaluated at its own hits only.
+void eval_branches(const Device& device, const Scene& scene, Routes& routes) {
+  std::vector<std::vector<Op*>> ops(scene.layers.size());
+  for (Chunk& chunk : routes.chunks)
+    for (Op& op : chunk.ops)
+      if (op.kind == Op::Kind::branch) ops[op.layer].push_back(&op);
+  for (size_t l = 0; l < ops.size(); ++l) {
+    if (ops[l].empty()) continue;
+    std::vector<Vec3f> x;
+    for (const Op* op : ops[l]) x.push_back(op->position);
+    const std::vector<Vec3f> color = eval_colors(device, *scene.layers[l].albedo, x);
+    for (size_t i = 0; i < x.size(); ++i) ops[l][i]->color = color[i];
   }
+}
+
+std::vector<Vec3f> base_colors(const Device& device, const Scene& scene, std::span<const Hit> hits,
+                               const Routes& routes) {
+  std::vector<Vec3f> albedo(hits.size()), x;
+  std::vector<uint32_t> of;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    if (!routes.at[i].base) continue;
+    x.push_back(in_pose(scene.poses, hits[i], 0).position);
+    of.push_back(uint32_t(i));
+  }
+  const std::vector<Vec3f> color = eval_colors(device, *scene.albedo, x);
+  for (size_t k = 0; k < of.size(); ++k) albedo[of[k]] = color[k];
+  return albedo;
+}
+
+std::vector<Vec3f> colors_at(const Device& device, const Scene& scene, std::span<const Hit> hits,
+                             Routes& routes) {
+  eval_branches(device, scene, routes);
+  std::vector<Vec3f> albedo = base_colors(device, scene, hits, routes);
+  for (const Chunk& chunk : routes.chunks)
+    for (auto op = chunk.ops.rbegin(); op != chunk.ops.rend(); ++op) {  // a hit's last step stands first
+      Vec3f& a = albedo[op->hit];
+      a = op->kind == Op::Kind::tint ? tinted(*scene.layers[op->layer].tint, a) : op->color;
+    }
   return albedo;
 }
 
@@ -113,9 +184,9 @@ class Materials {
 }  // namespace
 
 Appearance appearance_at(const Device& device, const Scene& scene, std::span<const Hit> hits) {
-  const Routes routes(scene.layers, hits);
+  Routes routes(scene, hits);
   Appearance out;
-  out.albedo = albedo_at(device, scene, hits, routes);
+  out.albedo = colors_at(device, scene, hits, routes);
   out.material.assign(hits.size(), 0);
   out.layer.resize(hits.size());
   Materials materials(scene.material);
@@ -126,6 +197,19 @@ Appearance appearance_at(const Device& device, const Scene& scene, std::span<con
   }
   out.materials = std::move(materials.list);
   return out;
+}
+
+std::vector<Hit> vertex_hits(const Mesh& mesh) {
+  std::vector<Hit> hits(mesh.positions.size());
+  for (size_t v = 0; v < hits.size(); ++v)
+    hits[v] = {mesh.positions[v], mesh.normals[v], mesh.normals[v], 0, 0, 0};
+  for (size_t t = mesh.triangles.size(); t-- > 0;)  // backwards: the first triangle of a vertex stays
+    for (int c = 0; c < 3; ++c) {
+      Hit& h = hits[mesh.triangles[t][c]];
+      h.triangle = uint32_t(t);
+      h.b1 = c == 1, h.b2 = c == 2;
+    }
+  return hits;
 }
 
 }  // namespace cei3d

@@ -16,12 +16,17 @@ struct Appearance {
   std::vector<uint32_t> material;  // #hits, index of the hit's material
   std::vector<Material>
       materials;           // those that occur; the first is the object's own, whether it occurs or not
-  std::vector<int> layer;  // #hits, the last layer with a region of its own that contains the hit; -1: none
+  std::vector<int> layer;  // #hits, the last layer that is local and has to do with the hit; -1: none
 };
 
-// Layers are applied in their order: a branch covers what lies below it, a tint recolours it, a material
-// replaces the values it names. A hit that no layer contains gets exactly (bit for bit) the base's own value,
-// whatever else is in the batch.
+// Layers are applied in their order, each in the pose of the object that it was made in: a branch covers what
+// lies below it, a tint recolours it, a material replaces the values it names. New matter has its own base
+// colour. A hit that no layer contains gets exactly (bit for bit) the base's own value, whatever else is in
+// the batch.
 Appearance appearance_at(const Device&, const Scene&, std::span<const Hit> hits);
+
+// The vertices of a mesh as hits of one of their triangles, seen from above: for what is wanted by vertex. A
+// vertex without triangles gets the first one. mesh: the scene's present surface, with normals.
+std::vector<Hit> vertex_hits(const Mesh& mesh);
 
 }  // namespace cei3d

@@ -90,11 +90,21 @@ TEST(EditLayer, DamageIsASentence) {
     EXPECT_THROW(load_layer({}, head), Error) << head.dump();
 }
 
+std::shared_ptr<const Surface> tetrahedron() {
+  Mesh m;
+  m.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  m.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  return std::make_shared<const Surface>(std::move(m));
+}
+
 TEST(Scene, LayersSayTheirPoseAndTheLastLightCounts) {
   Scene s;
+  s.surface = tetrahedron();
   s.light.lobes.resize(2);
   for (const EditLayer& layer : one_of_each_kind()) s = with_layer(std::move(s), layer);
   s = with_layer(std::move(s), one_of_each_kind()[1]);
+  EXPECT_EQ(s.poses.size(), 2u);
+  EXPECT_EQ(s.surface, s.poses.back()->surface);
   std::vector<int> poses;
   for (const EditLayer& layer : s.layers) poses.push_back(layer.pose);
   EXPECT_EQ(poses, (std::vector<int>{0, 0, 0, 0, 0, 1, 1, 1}));

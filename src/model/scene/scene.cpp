@@ -2,6 +2,7 @@
 #include "model/scene/scene.h"
 
 #include "core/base/error.h"
+#include "model/geometry/carry.h"
 #include "model/geometry/vec_tensors.h"
 #include "model/scene/stored.h"
 
@@ -66,12 +67,23 @@ std::shared_ptr<const HandlerPoints> load_handlers(const Tensors& tensors, const
   return points;
 }
 
+Scene reshaped(Scene scene, const Reshape& change) {
+  const std::shared_ptr<const Surface> before = scene.surface;
+  if (!before) fail("The object has no surface that could be changed; reconstruct it again.");
+  scene.poses = with_pose(std::move(scene.poses), before, change);
+  scene.surface = scene.poses.back()->surface;
+  if (scene.handlers)
+    scene.handlers = std::make_shared<const HandlerPoints>(
+        carried(*scene.handlers, before->mesh(), scene.surface->mesh(), change));
+  return scene;
+}
+
 }  // namespace
 
 Scene with_layer(Scene scene, EditLayer layer) {
-  layer.pose = 0;
-  for (const EditLayer& l : scene.layers) layer.pose += l.reshape ? 1 : 0;
+  layer.pose = scene.poses.empty() ? 0 : int(scene.poses.size()) - 1;
   if (layer.light) scene.light = *layer.light;
+  if (layer.reshape) scene = reshaped(std::move(scene), *layer.reshape);
   scene.layers.push_back(std::move(layer));
   return scene;
 }

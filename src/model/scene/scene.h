@@ -11,6 +11,7 @@
 #include "core/base/tensors.h"
 #include "model/field/field.h"
 #include "model/geometry/handlers.h"
+#include "model/geometry/pose.h"
 #include "model/geometry/surface.h"
 #include "model/light/sg_mixture.h"
 #include "model/material/material.h"
@@ -25,14 +26,18 @@ struct Scene {
   Vec3d up{0, 0, 1};                    // capture frame
   std::shared_ptr<const Field> sdf;     // output 0: signed distance, negative inside; the rest: features
   std::shared_ptr<const Field> albedo;  // base colour, 3 outputs in [0, 1], linear
-  std::shared_ptr<const Surface> surface;  // zero level set as a mesh, with what each point sees of the sky
+  // Zero level set as a mesh, with what each point sees of the sky; changed by edits.
+  std::shared_ptr<const Surface> surface;
   SgMixture light;  // that of the last edit that has one, when the layers have been put on
   Material material;
-  std::shared_ptr<const HandlerPoints> handlers;
+  std::shared_ptr<const HandlerPoints> handlers;  // of the present shape
+  Poses poses;  // of the object, the last one being `surface`; empty while it has the shape it was
+                // reconstructed in
   std::vector<EditLayer> layers;  // in the order of their making; a later one covers an earlier one
 };
 
-// The scene with one edit more, on top of those it has.
+// The scene with one edit more, on top of those it has. Error: a change of geometry that does not fit the
+// surface.
 Scene with_layer(Scene scene, EditLayer layer);
 
 // A scene as named tensors plus a small JSON head (sizes, material, transform), and back. The layers are not

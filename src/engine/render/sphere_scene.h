@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: the smallest whole object, a sphere.
+#pragma once
+
+#include <algorithm>
+
+#include "model/scene/scene.h"
+
+namespace cei3d {
+
+inline constexpr float kSphereRadius = 0.7f;
+
+// A sphere of triangles between meridians and circles of latitude.
+inline Mesh sphere_mesh(int rows, int columns) {
+  Mesh m;
+  for (int i = 0; i <= rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const float theta = kPi * float(i) / float(rows), phi = 2 * kPi * float(j) / float(columns);
+      const Vec3f n{sin(theta) * cos(phi), sin(theta) * sin(phi), cos(theta)};
+      m.normals.push_back(n);
+      m.positions.push_back(n * kSphereRadius);
+    }
+  }
+  for (int i = 0; i < rows; ++i) {
+    for (int j = 0; j < columns; ++j) {
+      const uint32_t a = uint32_t(i * columns + j), b = uint32_t(i * columns + (j + 1) % columns);
+      m.triangles.push_back({a, a + uint32_t(columns), b});
+      m.triangles.push_back({b, a + uint32_t(columns), b + uint32_t(columns)});
+    }
+  }
+  return m;
+}
+
+// Its field is exactly the sphere; base colour is noise, the light has a broad and a narrow lobe.
+inline Scene sphere_scene() {
+  Scene s;
+  FieldConfig sdf;
+  sdf.outputs = 1;
+  sdf.activation = Activation::softplus;
+  sdf.sphere_radius = kSphereRadius;
+  auto sdf_field = std::make_shared<Field>(sdf, 1);
+  for (Param& p : sdf_field->params().all())
+    std::fill(p.value.begin(), p.value.end(), 0.0f);  // exactly the sphere
+  s.sdf = sdf_field;
+  FieldConfig albedo;
+  albedo.encoding.levels = 4;
+  albedo.output_activation = Activation::sigmoid;
+  s.albedo = std::make_shared<Field>(albedo, 2);
+  Mesh mesh = sphere_mesh(64, 128);
+  std::vector<uint8_t> visibility(mesh.positions.size() * (kSkyDirections / 8), 0xff);
+  s.surface = std::make_shared<Surface>(std::move(mesh), std::move(visibility));
+  s.light.lobes = {{{0, 0, 1}, 2, {1, 1, 1}}, {{1, 0, 0}, 20, {2, 1, 1}}};
+  return s;
+}
+
+// Upright, of size x size pixels that the sphere fills for the greater part.
+inline Camera camera_towards_origin(Vec3d center, int size) {
+  const Vec3d z = -center / length(center), x = cross(z, Vec3d{0, 0, 1}) / length(cross(z, Vec3d{0, 0, 1}));
+  const Vec3d y = cross(z, x);
+  Camera c;
+  c.width = c.height = size;
+  c.fx = c.fy = 150.0 / 96 * size;
+  c.cx = c.cy = size / 2.0;
+  c.center = center;
+  c.world_from_cam = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+  return c;
+}
+
+}  // namespace cei3d
