@@ -141,6 +141,16 @@ size_t count_pieces(const Mesh& mesh) {
   return pieces;
 }
 
+// The old vertices that the patches hang on, with the colour that is there.
+void name_rim(size_t vertices, std::span<const Vec3f> colors, Reshape& out) {
+  for (const auto& t : out.added_triangles)
+    for (const uint32_t v : t)
+      if (v < vertices) out.rim.push_back(v);
+  std::sort(out.rim.begin(), out.rim.end());
+  out.rim.erase(std::unique(out.rim.begin(), out.rim.end()), out.rim.end());
+  for (const uint32_t v : out.rim) out.rim_colors.push_back(colors[v]);
+}
+
 }  // namespace
 
 CutResult cut(const Mesh& mesh, std::span<const uint8_t> in_part, std::span<const Vec3f> colors) {
@@ -159,6 +169,7 @@ CutResult cut(const Mesh& mesh, std::span<const uint8_t> in_part, std::span<cons
   for (const std::vector<uint32_t>& loop : outline.loops)
     Hole(rest, around, colors, loop)
         .close(mesh.positions.size() + result.reshape.added_positions.size(), result.reshape);
+  name_rim(mesh.positions.size(), colors, result.reshape);
   result.report = {outline.loops.size(), count_pieces(rest)};
   return result;
 }
