@@ -109,6 +109,7 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   s.step = std::clamp(1 / s.sharpness, options_.step_min, options_.step_max);
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
   s.levels = levels_at(u);
+  s.views = u >= options_.view_from;
   return s;
 }
 
@@ -128,12 +129,13 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
 
 namespace {
 
-// First look at a ray, by values alone: which candidates carry weight.
+// First look at a ray, by values alone: which candidates carry weight. Where the picture shows background
+// (`empty`), also those inside the surface, however little light reaches them.
 void select_samples(const float* depth, const float* value, int n, float step, float sharpness,
-                    float keep_weight, std::vector<float>& kept) {
+                    float keep_weight, bool empty, std::vector<float>& kept) {
   float transmittance = 1;
   const size_t end = kept.size() + kKeptPerRay;
-  for (int i = 0; i < n && kept.size() < end && transmittance > 1e-3f; ++i) {
+  for (int i = 0; i < n && kept.size() < end && (empty || transmittance > 1e-3f); ++i) {
     const bool joined_before = i > 0 && depth[i] - depth[i - 1] < 1.5f * step;
     const bool joined_after = i + 1 < n && depth[i + 1] - depth[i] < 1.5f * step;
     const float half_slope = joined_after    ? 0.5f * (value[i + 1] - value[i])
@@ -143,7 +145,7 @@ void select_samples(const float* depth, const float* value, int n, float step, f
     const float after = value[i] + half_slope;
     const float p = Sigmoid::eval(sharpness * before, 1).value, q = Sigmoid::eval(sharpness * after, 1).value;
     const float alpha = std::clamp((p - q) / (p + 1e-5f), 0.0f, 1.0f), weight = transmittance * alpha;
-    if (weight > keep_weight) kept.push_back(depth[i]);
+    if (weight > keep_weight || (empty && value[i] < 0)) kept.push_back(depth[i]);
     transmittance *= 1 - alpha;
   }
 }
@@ -179,7 +181,7 @@ void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Wor
   for (int r = 0; r < batch.count; ++r) {
     const int first = w.first_candidate[r], count = w.first_candidate[r + 1] - first;
     select_samples(w.depths.data() + first, w.values.data() + first, count, s.step, s.sharpness,
-                   options_.keep_weight, w.kept_depth);
+                   options_.keep_weight, training && batch.targets[r].alpha == 0, w.kept_depth);
     w.first_kept.push_back(int(w.kept_depth.size()));
   }
 }
@@ -194,7 +196,7 @@ void GeometryStage::forward(const Schedule& s, const RayBatch& batch, Work& w) c
     const Vec3f p = i < kept ? r.origin + r.direction * w.kept_depth[i] : Vec3f{0, 0, 0};
     for (int c = 0; c < 3; ++c) {
       w.points[panel_at(i, 1, 0, 3, c)] = p[c];
-      w.directions[panel_at(i, 1, 0, 3, c)] = r.direction[c];
+      w.directions[panel_at(i, 1, 0, 3, c)] = s.views ? r.direction[c] : 0;
     }
   }
   w.jet.forward(device_, sdf_, *sdf_weights_, w.points.data(), w.padded, s.levels, options_.sdf.outputs);
@@ -228,6 +230,15 @@ void GeometryStage::composite(const Schedule& s, const RayBatch& batch, Work& w)
   }
 }
 
+namespace {
+
+// Slope of the penalty on being inside, softplus(-f), at a point on a ray that shows background. The mask loss
+// cannot open a gap that has closed: where a ray is opaque its opacity does not change with the distance any
+// more, but this still does.
+float empty_push(float sdf, float sharpness) { return -Softplus::eval(-sdf, sharpness).first; }
+
+}  // namespace
+
 void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, ChunkGradients& g,
                              std::vector<float>& radiance, GeometryStats& stats) const {
   const int rows = options_.sdf.outputs;
@@ -249,6 +260,7 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
     const float miss = w.coverage[r] - batch.targets[r].alpha;
     const float d_coverage = options_.mask_weight * per_ray * (miss > 0 ? 1.0f : -1.0f);
     stats.mask += std::abs(miss);
+    const float push = batch.targets[r].alpha == 0 ? options_.empty_weight * s.sharpness * per_ray : 0;
     float behind = 0;  // sum of weight x d_weight over the samples behind
     for (int i = w.first_kept[r + 1] - 1; i >= w.first_kept[r]; --i) {
       float d_weight = d_coverage;
@@ -262,7 +274,8 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
       const Vec3f gradient = load_sdf_gradient<float>(w.jet.output(), i, rows);
       Vec3f d_gradient;
       stats.eikonal += eikonal(gradient, d_gradient);
-      d_jet[panel_at(i, 4, 0, rows, 0)] = d_alpha * w.alpha[i].d_sdf;
+      const float sdf = w.jet.output()[panel_at(i, 4, 0, rows, 0)];
+      d_jet[panel_at(i, 4, 0, rows, 0)] = d_alpha * w.alpha[i].d_sdf + push * empty_push(sdf, s.sharpness);
       for (int c = 0; c < 3; ++c)
         d_jet[panel_at(i, 4, 1 + c, rows, 0)] = d_alpha * w.alpha[i].d_cosine * batch.rays[r].direction[c] +
                                                 options_.eikonal_weight * per_sample * d_gradient[c];

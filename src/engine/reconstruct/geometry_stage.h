@@ -20,7 +20,7 @@ struct GeometryOptions {
   FieldConfig sdf;  // outputs: 1 + features
   int radiance_layers = 2, radiance_width = 64;
   int rays = 2048;  // a step
-  float sharpness_start = 100,
+  float sharpness_start = 200,
         sharpness_end = 800;     // of the logistic density, geometric over `sharpness_until`
   float sharpness_until = 0.6f;  // fractions of the schedule
   float unlock_until = 0.3f;     // hash levels open, coarse to fine, until here
@@ -28,9 +28,11 @@ struct GeometryOptions {
   float step_min = 0.004f, step_max = 0.02f;  // along rays, unit-sphere units; in between: 1 / sharpness
   float keep_weight = 0.003f;                 // samples below it get no jet and no radiance
   float huber_width = 0.05f, mask_weight = 0.5f, eikonal_weight = 0.3f;
+  float empty_weight = 0.1f;  // of empty_push(), times the sharpness
+  float view_from = 0.25f;    // until here colours do not depend on the view: what moves with it must be the surface
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
   float decay_from = 0.3f, decay_to = 0.05f;  // exponential decay of the rate over the rest of the schedule
-  float hull_margin = 0.015f;                 // the prefit surface lies this far inside the visual hull
+  float hull_margin = 0;                      // the prefit surface lies this far inside the visual hull
   int prefit_steps = 300;
 };
 
@@ -69,6 +71,7 @@ class GeometryStage {
   struct Schedule {
     float sharpness, step, band;
     int levels;
+    bool views;  // colours depend on the view
   };
   Schedule schedule_at(double u) const;
   void sample_rays(const PixelStore&, int64_t step, int first, RayBatch&) const;
