@@ -56,6 +56,7 @@ void add_edit(Commands& commands) {
   edit->add_option("project", *project, "Project folder")->option_text("TEXT REQUIRED");
   edit->require_subcommand(1);
   add_paint(commands, edit, project);
+  add_edit_shape(commands, edit, project);
 }
 
 }  // namespace cei3d

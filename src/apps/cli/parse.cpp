@@ -77,6 +77,27 @@ EnvConvention parse_env_convention(const std::string& text) {
   return *c;
 }
 
+std::vector<double> parse_numbers(const std::string& text, size_t count, const std::string& option) {
+  std::vector<double> numbers;
+  const char *p = text.data(), *end = p + text.size();
+  for (bool more = true; more;) {
+    double value = 0;
+    const auto [after, error] = std::from_chars(p, end, value);
+    const bool ends = after == end;
+    if (error != std::errc() || !std::isfinite(value) || (!ends && *after != ',')) {
+      numbers.clear();
+      break;
+    }
+    numbers.push_back(value);
+    more = !ends;
+    p = ends ? end : after + 1;
+  }
+  if (numbers.size() != count)
+    fail_usage("{} '{}' should be {} numbers with commas between them, for example {}.", option, text, count,
+               count == 2 ? "120.5,88" : "0.1,-0.25,1");
+  return numbers;
+}
+
 CameraChoice parse_cameras(const std::string& text) {
   if (text.ends_with(".json") && is_camera_file(text)) return CameraFile{text};
   const CaptureSpec spec = parse_capture_spec(text);

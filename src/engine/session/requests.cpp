@@ -108,6 +108,26 @@ Json LogEntry::json() const {
           {"done", done}, {"params", params}, {"report", report}};
 }
 
+Json DeformSummary::json() const {
+  return {{"id", id},
+          {"from", vector_json(from)},
+          {"to", vector_json(to)},
+          {"vertices", vertices},
+          {"radius", radius},
+          {"farthest", farthest},
+          {"iterations", iterations},
+          {"seconds", {{"load", load_seconds}, {"deform", deform_seconds}, {"store", store_seconds}}}};
+}
+
+Json RemoveSummary::json() const {
+  return {{"id", id},
+          {"removed_triangles", removed_triangles},
+          {"added_triangles", added_triangles},
+          {"holes", holes},
+          {"pieces", pieces},
+          {"seconds", {{"load", load_seconds}, {"cut", cut_seconds}, {"store", store_seconds}}}};
+}
+
 Json PaintSummary::json() const {
   return {
       {"id", id},

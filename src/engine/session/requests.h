@@ -88,6 +88,42 @@ struct PaintSummary {
   Json json() const;
 };
 
+// A point of the surface and where it goes, capture frame.
+struct PointDrag {
+  Vec3d from, to;
+};
+// The same in a picture: the point seen at `pixel` moves by `drag` pixels in the plane parallel to the
+// picture.
+struct PixelDrag {
+  std::string view;
+  Vec2<double> pixel, drag;  // (column, row), pixel centres at +0.5
+};
+struct DeformCommand {
+  std::variant<PointDrag, PixelDrag> drag;
+  std::optional<double> radius;  // along the surface, capture units
+  std::string part;              // empty: the whole object
+};
+struct DeformSummary {
+  std::string id;
+  Vec3d from, to;                   // capture frame
+  size_t vertices = 0;              // that moved
+  double radius = 0, farthest = 0;  // of what moved; the longest move: capture units
+  int iterations = 0;
+  double load_seconds = 0, deform_seconds = 0, store_seconds = 0;
+  Json json() const;
+};
+
+struct RemoveCommand {
+  std::string part;
+};
+struct RemoveSummary {
+  std::string id;
+  size_t removed_triangles = 0, added_triangles = 0;
+  size_t holes = 0, pieces = 0;  // that were closed; connected ones that are left
+  double load_seconds = 0, cut_seconds = 0, store_seconds = 0;
+  Json json() const;
+};
+
 // Which cameras.
 struct CaptureViews {
   std::filesystem::path path;

@@ -46,6 +46,8 @@ class Session {
   ProjectInfo info() const;
   std::vector<LogEntry> log() const;
   PaintSummary paint(const PaintCommand&, Progress&);
+  DeformSummary deform(const DeformCommand&, Progress&);
+  RemoveSummary remove(const RemoveCommand&, Progress&);
   std::string undo();  // id of the edit that is undone now
   std::string redo();
   bool toggle(const std::string& id);  // the new state

@@ -17,6 +17,7 @@ namespace {
 // Rings of the mesh around a hole that take part in closing it. Base colours next to the outline are mixed
 // with those of the part; the patch gets its own from kMixedRings farther on.
 constexpr int kRings = 5, kMixedRings = 3;
+constexpr float kBendingShare = 0.25f;  // of the hole's radius, over which its rim is rounded
 
 using Triangle = std::array<uint32_t, 3>;
 
@@ -44,10 +45,11 @@ class Hole {
   }
 
   // Puts the closed hole into the reshape of a mesh of `vertices` vertices, those already added included.
-  void close(size_t vertices, Reshape& out) {
+  // rim: base colours of the patch at vertices of the outline.
+  void close(size_t vertices, Reshape& out, std::map<uint32_t, Vec3f>& rim) {
     std::vector<uint8_t> is_new(positions_.size());
     for (size_t i = 0; i < ids_.size(); ++i) is_new[i] = ids_[i] == kNew;
-    fair(positions_, triangles_, is_new);
+    fair(positions_, triangles_, is_new, kBendingShare * radius());
     std::vector<uint8_t> uncoloured = is_new;
     const int mixed = std::min(kMixedRings, *std::max_element(ring_of_.begin(), ring_of_.end()));
     for (size_t i = 0; i < ring_of_.size(); ++i) uncoloured[i] |= ring_of_[i] < mixed;
@@ -63,6 +65,7 @@ class Hole {
       out.added_normals.push_back(normalize(normals[i]));
       out.added_colors.push_back(colors_[i]);
     }
+    for (size_t i = 0; i < loop_size_; ++i) rim[ids_[i]] = colors_[i];
     for (size_t i = 0; i < patch_triangles_; ++i) {
       const auto [a, b, c] = triangles_[i];
       out.added_triangles.push_back({name[a], name[b], name[c]});
@@ -85,6 +88,14 @@ class Hole {
     patch_triangles_ = triangles_.size();
     ids_.resize(positions_.size(), kNew);
     ring_of_.assign(ids_.size(), 0);
+  }
+
+  // Of the circle as long as the outline.
+  float radius() const {
+    float around = 0;
+    for (size_t i = 0; i < loop_size_; ++i)
+      around += length(positions_[(i + 1) % loop_size_] - positions_[i]);
+    return around / (2 * kPi);
   }
 
   void add_rings(const VertexLists& around) {
@@ -141,16 +152,6 @@ size_t count_pieces(const Mesh& mesh) {
   return pieces;
 }
 
-// The old vertices that the patches hang on, with the colour that is there.
-void name_rim(size_t vertices, std::span<const Vec3f> colors, Reshape& out) {
-  for (const auto& t : out.added_triangles)
-    for (const uint32_t v : t)
-      if (v < vertices) out.rim.push_back(v);
-  std::sort(out.rim.begin(), out.rim.end());
-  out.rim.erase(std::unique(out.rim.begin(), out.rim.end()), out.rim.end());
-  for (const uint32_t v : out.rim) out.rim_colors.push_back(colors[v]);
-}
-
 }  // namespace
 
 CutResult cut(const Mesh& mesh, std::span<const uint8_t> in_part, std::span<const Vec3f> colors) {
@@ -166,10 +167,15 @@ CutResult cut(const Mesh& mesh, std::span<const uint8_t> in_part, std::span<cons
     fail("the part holds nothing of the surface: there is nothing to remove");
   if (rest.triangles.empty()) fail("the part is the whole surface: nothing would be left");
   const VertexLists around = triangles_around(rest.positions.size(), rest.triangles);
+  Reshape& reshape = result.reshape;
+  std::map<uint32_t, Vec3f> rim;
   for (const std::vector<uint32_t>& loop : outline.loops)
     Hole(rest, around, colors, loop)
-        .close(mesh.positions.size() + result.reshape.added_positions.size(), result.reshape);
-  name_rim(mesh.positions.size(), colors, result.reshape);
+        .close(mesh.positions.size() + reshape.added_positions.size(), reshape, rim);
+  for (const auto& [vertex, color] : rim) {
+    reshape.rim.push_back(vertex);
+    reshape.rim_colors.push_back(color);
+  }
   result.report = {outline.loops.size(), count_pieces(rest)};
   return result;
 }

@@ -140,12 +140,12 @@ TEST(Cut, ASphereWithoutItsCapIsClosedAndAlmostASphere) {
 TEST(Cut, TheOutlineOfThePatchMeetsTheNormalsAround) {
   const Mesh m = sphere_mesh(0.7f, 5);
   const CutResult r = cut_where(m, [](Vec3f p) { return p.z > 0.55f; });
-  // New vertices next to old ones: their normals differ by no more than the sphere's over an edge or two.
+  // New vertices next to old ones turn by the sphere's 0.05 an edge and some; a flat lid would turn by 0.66.
   for (const auto& t : r.reshape.added_triangles)
     for (int k = 0; k < 3; ++k) {
       const uint32_t a = t[k], b = t[(k + 1) % 3];
       if (a >= m.positions.size() || b < m.positions.size()) continue;
-      EXPECT_GT(dot(m.normals[a], r.reshape.added_normals[b - m.positions.size()]), std::cos(0.15f));
+      EXPECT_GT(dot(m.normals[a], r.reshape.added_normals[b - m.positions.size()]), std::cos(0.27f));
     }
 }
 

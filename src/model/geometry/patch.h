@@ -22,11 +22,12 @@ struct Patch {
 // good as Delaunay's. Corners 0 .. loop.size() - 1 are the loop's. [Liepa 2003]
 Patch fill_loop(std::span<const Vec3f> loop, const IsJoined& joined);
 
-// Moves the free vertices to where the square of the mesh's Laplacian has its least integral: the surface
-// continues position and tangent of the fixed ones around it, and bends as evenly as that allows. Needs two
-// rings of fixed vertices around the free ones. Vertices that no triangle uses must not be free.
+// Moves the free vertices to where a stiff film would have them: over about `bending_length` it carries on
+// the tangents of the fixed vertices around it, beyond that it spans them like a soap film. (Carrying the
+// tangents on all the way would grow most of a part again that was cut off above its foot.) Needs two rings
+// of fixed vertices around the free ones. Vertices that no triangle uses must not be free.
 void fair(std::vector<Vec3f>& positions, std::span<const std::array<uint32_t, 3>> triangles,
-          std::span<const uint8_t> free);
+          std::span<const uint8_t> free, float bending_length);
 
 // Values of the free vertices as smooth as the others allow: the discrete Laplace equation. values: #V.
 void diffuse(std::span<const Vec3f> positions, std::span<const std::array<uint32_t, 3>> triangles,

@@ -60,15 +60,17 @@ struct Laplacian {
 }  // namespace
 
 void fair(std::vector<Vec3f>& positions, std::span<const std::array<uint32_t, 3>> triangles,
-          std::span<const uint8_t> free) {
+          std::span<const uint8_t> free, float bending_length) {
   for (int round = 0; round < 2; ++round) {  // the second with the weights of the faired shape
     Relaxation relaxation(free);
     if (relaxation.empty()) return;
     const Laplacian laplacian(positions, triangles);
     for (uint32_t v = 0; v < positions.size(); ++v) {
       const auto row = laplacian.row(v);
+      const double stiffness = double(bending_length) * bending_length / laplacian.weights.area[v];
+      for (const auto& [u, w] : row) relaxation.add(v, u, w, positions);
       for (const auto& [a, wa] : row)
-        for (const auto& [b, wb] : row) relaxation.add(a, b, wa * wb / laplacian.weights.area[v], positions);
+        for (const auto& [b, wb] : row) relaxation.add(a, b, wa * wb * stiffness, positions);
     }
     relaxation.solve(positions);
   }

@@ -2,6 +2,7 @@
 // Meshes with known shapes, for tests.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <utility>
 

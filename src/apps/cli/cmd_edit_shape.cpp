@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// `edit deform` and `edit remove`: changes of the object's shape.
+#include "apps/cli/command.h"
+#include "apps/cli/parse.h"
+#include "core/base/error.h"
+
+namespace cei3d {
+namespace {
+
+struct DeformOptions {
+  std::string from, to, view, pixel, drag, part;
+  std::optional<double> radius;
+};
+
+Vec3d point_of(const std::string& text, const std::string& option) {
+  const std::vector<double> v = parse_numbers(text, 3, option);
+  return {v[0], v[1], v[2]};
+}
+
+Vec2<double> pixel_of(const std::string& text, const std::string& option) {
+  const std::vector<double> v = parse_numbers(text, 2, option);
+  return {v[0], v[1]};
+}
+
+DeformCommand command_of(const DeformOptions& o) {
+  const bool points = !o.from.empty() && !o.to.empty();
+  const bool pixels = !o.view.empty() && !o.pixel.empty() && !o.drag.empty();
+  const bool any_point = !o.from.empty() || !o.to.empty();
+  const bool any_pixel = !o.view.empty() || !o.pixel.empty() || !o.drag.empty();
+  if (any_point == any_pixel || points == pixels)
+    fail_usage(
+        "Say what is dragged where: --from X,Y,Z --to X,Y,Z, or --view NAME --pixel X,Y --drag DX,DY.");
+  DeformCommand c;
+  if (points)
+    c.drag = PointDrag{point_of(o.from, "--from"), point_of(o.to, "--to")};
+  else
+    c.drag = PixelDrag{o.view, pixel_of(o.pixel, "--pixel"), pixel_of(o.drag, "--drag")};
+  c.radius = o.radius;
+  c.part = o.part;
+  return c;
+}
+
+std::string deform_text(const DeformSummary& r) {
+  return fmt::format(
+      "{}: {} vertices within {:.3g} of the handle moved, at most by {:.3g}; deform {:.2f} s, load and store "
+      "{:.2f} s.",
+      r.id, r.vertices, r.radius, r.farthest, r.deform_seconds, r.load_seconds + r.store_seconds);
+}
+
+std::string remove_text(const RemoveSummary& r) {
+  std::string text = fmt::format(
+      "{}: {} triangles removed, {} holes closed by {} new ones; cut {:.2f} s, load and store {:.2f} s.",
+      r.id, r.removed_triangles, r.holes, r.added_triangles, r.cut_seconds, r.load_seconds + r.store_seconds);
+  if (r.pieces > 1) text += fmt::format(" The object is in {} pieces now.", r.pieces);
+  return text;
+}
+
+void open_for_edit(Session& session, const std::string& project, const char* example) {
+  if (project.empty()) fail_usage("edit needs a PROJECT: cei3d edit PROJECT {}.", example);
+  session.open(project, Session::Access::write);
+}
+
+void add_deform(Commands& commands, CLI::App* edit, std::shared_ptr<std::string> project) {
+  auto o = std::make_shared<DeformOptions>();
+  CLI::App* verb = commands.add("deform", "Drag a point of the surface; what is around it follows", edit);
+  verb->add_option("--from", o->from, "Point on the surface, X,Y,Z in the capture's frame");
+  verb->add_option("--to", o->to, "Where it goes, likewise");
+  verb->add_option("--view", o->view, "Or in the picture of a view: its name ...");
+  verb->add_option("--pixel", o->pixel,
+                   "... the point seen at X,Y (column, row from the top left corner) ...");
+  verb->add_option("--drag", o->drag, "... and by how many pixels DX,DY it moves, at its depth");
+  verb->add_option(
+      "--radius", o->radius,
+      "What is farther along the surface stays, capture units [0.3 of the object's radius, or 1.5 times the "
+      "drag if that is more]");
+  verb->add_option("--part", o->part, "What is not on this part stays");
+  commands.on(verb, o, [project](const DeformOptions& options, Session& session, Console& console) {
+    const DeformCommand command = command_of(options);
+    open_for_edit(session, *project, "deform --from X,Y,Z --to X,Y,Z");
+    const DeformSummary r = session.deform(command, console);
+    console.done(r.json(), deform_text(r));
+  });
+}
+
+void add_remove(Commands& commands, CLI::App* edit, std::shared_ptr<std::string> project) {
+  auto o = std::make_shared<RemoveCommand>();
+  CLI::App* verb = commands.add("remove", "Take a part off and close the surface behind it", edit);
+  verb->add_option("--part", o->part, "The part's name; `cei3d parts` lists them")->required();
+  commands.on(verb, o, [project](const RemoveCommand& command, Session& session, Console& console) {
+    open_for_edit(session, *project, "remove --part NAME");
+    const RemoveSummary r = session.remove(command, console);
+    console.done(r.json(), remove_text(r));
+  });
+}
+
+}  // namespace
+
+void add_edit_shape(Commands& commands, CLI::App* edit, std::shared_ptr<std::string> project) {
+  add_deform(commands, edit, project);
+  add_remove(commands, edit, project);
+}
+
+}  // namespace cei3d

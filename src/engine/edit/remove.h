@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// `edit remove`: a part is taken off the object and the surface behind it closed, to be seen from every side.
+#pragma once
+
+#include <string>
+
+#include "core/base/progress.h"
+#include "core/compute/device.h"
+#include "model/scene/scene.h"
+
+namespace cei3d {
+
+struct RemoveRequest {
+  std::string id;  // of the new layer
+  std::string part;
+};
+
+struct RemoveReport {
+  size_t removed_triangles = 0, added_triangles = 0;
+  size_t holes = 0;   // that were closed
+  size_t pieces = 0;  // connected ones that are left
+  double seconds = 0;
+};
+
+struct RemoveResult {
+  EditLayer layer;
+  RemoveReport report;
+};
+
+// Pure: the scene is not changed. Errors: no such part; a part that is nothing of the present surface, or all
+// of it.
+RemoveResult remove_part(const Device&, const Scene&, const RemoveRequest&, Progress&);
+
+}  // namespace cei3d
