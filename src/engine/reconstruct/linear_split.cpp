@@ -124,6 +124,42 @@ void make_light_grey(Solution& s, int height) {
   for (Vec3f& a : s.color) a = a / k;
 }
 
+// Base colours of a dielectric, unclamped: what it sends out diffusely over what reaches it.
+std::vector<Vec3f> base_colors(const Transport& transport, const LinearSplit& r) {
+  const std::vector<Vec3f> sky = transport.sky(sky_radiance(r.light)), bounce = transport.bounce(r.diffuse);
+  std::vector<Vec3f> color(r.diffuse.size());
+  for (size_t v = 0; v < color.size(); ++v)
+    for (int c = 0; c < 3; ++c) color[v][c] = kPi * r.diffuse[v][c] / max(sky[v][c] + bounce[v][c], 1e-4f);
+  return color;
+}
+
+float percentile(std::vector<float> values, double share) {
+  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return *at;
+}
+
+// Reflections show the product of light and specular reflectance; the split takes specular 0.5 for granted. On
+// surfaces that reflect less the light comes out too dark, and more diffuse light leaves them than arrives. No
+// base colour is above one: that bounds the light from below, and the specular reflectance from above.
+void brighten_light(const Transport& transport, LinearSplit& r) {
+  constexpr double kShare = 0.98;  // of the surface is believed
+  constexpr int kRounds = 3;       // the bounce does not scale with the light
+  float all = 1;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<Vec3f> color = base_colors(transport, r);
+    Vec3f gain;
+    for (int c = 0; c < 3; ++c) {
+      std::vector<float> channel(color.size());
+      for (size_t v = 0; v < color.size(); ++v) channel[v] = color[v][c];
+      gain[c] = max(percentile(std::move(channel), kShare), 1.0f);
+    }
+    for (size_t i = 0; i < r.light.data.size(); ++i) r.light.data[i] *= gain[int(i % 3)];
+    all *= luminance(gain);
+  }
+  r.material.specular /= all;
+}
+
 Image to_image(const std::vector<Vec3f>& light, int height) {
   Image map(2 * height, height, 3);
   for (size_t i = 0; i < light.size(); ++i)
@@ -189,13 +225,8 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
     result.material = {roughness, 0.5f, 0};
     result.light = to_image(solution.x.light, options.light_height);
     result.diffuse = clamped(solution.x.diffuse, 1e6f);
-    const std::vector<Vec3f> sky = transport.sky(sky_radiance(result.light)),
-                             bounce = transport.bounce(result.diffuse);
-    result.albedo.resize(mesh.positions.size());
-    for (size_t v = 0; v < result.albedo.size(); ++v)
-      for (int c = 0; c < 3; ++c)
-        result.albedo[v][c] =
-            clamp(kPi * result.diffuse[v][c] / max(sky[v][c] + bounce[v][c], 1e-4f), 0.0f, 1.0f);
+    brighten_light(transport, result);
+    result.albedo = clamped(base_colors(transport, result), 1);
   }
   result.trials = std::move(search.trials);
   result.trials.insert(result.trials.end(), fine.trials.begin(), fine.trials.end());
