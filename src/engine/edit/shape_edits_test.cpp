@@ -2,12 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <map>
 
 #include "core/base/error.h"
 #include "engine/edit/deform.h"
+#include "engine/edit/part_vertices.h"
 #include "engine/edit/remove.h"
 #include "model/geometry/test_meshes.h"
 
@@ -152,6 +154,32 @@ TEST_F(ShapeEdits, ARemovedPartIsGoneAndClosed) {
   for (const auto& [e, n] : edges) EXPECT_EQ(n + 10 * edges.count({e.second, e.first}), 11);
   for (const auto& t : after.triangles)
     for (const uint32_t v : t) EXPECT_LT(after.positions[v].z, 0.5f);
+}
+
+TEST_F(ShapeEdits, AFartherDragOfADraggedPartMovesTheSameMatter) {
+  const DeformResult first = drag({"0001-deform", kTop, kUp, std::nullopt, "cap"});
+  const Scene once = with_layer(*scene_, first.layer);
+  EXPECT_EQ(part_vertices(once, "cap"), part_vertices(*scene_, "cap"));
+  Progress quiet;
+  const DeformResult second =
+      deform(once, {"0002-deform", kUp, {0.1f, 0, kRadius + 0.2f}, std::nullopt, "cap"}, quiet);
+  EXPECT_EQ(second.layer.reshape->moved, first.layer.reshape->moved);
+}
+
+TEST_F(ShapeEdits, APatchCanBeDraggedAndIsNoneOfTheParts) {
+  const RemoveResult gone = remove("cap");
+  const Scene flat = with_layer(*scene_, gone.layer);
+  const std::vector<uint8_t> cap = part_vertices(flat, "cap");
+  ASSERT_EQ(cap.size(), mesh().positions.size() + gone.layer.reshape->added_positions.size());
+  EXPECT_EQ(std::count(cap.begin() + long(mesh().positions.size()), cap.end(), 1), 0);
+  uint32_t top = 0;
+  const std::vector<Vec3f>& added = gone.layer.reshape->added_positions;
+  for (uint32_t i = 0; i < added.size(); ++i)
+    if (std::hypot(added[i].x, added[i].y) < std::hypot(added[top].x, added[top].y)) top = i;
+  Progress quiet;
+  const DeformResult r = deform(flat, {"0002-deform", added[top], {0, 0, kRadius}, 0.3f, ""}, quiet);
+  const Scene hill = with_layer(flat, r.layer);
+  EXPECT_NEAR(hill.surface->mesh().positions[mesh().positions.size() + top].z, kRadius, 1e-5f);
 }
 
 TEST_F(ShapeEdits, WhatCannotBeRemovedIsSaid) {
