@@ -26,6 +26,32 @@ views "$out/toggled"
 same_pictures "$out/before" "$out/toggled"
 cei3d toggle "$project" 0001-paint
 
+cei3d edit "$project" material --roughness 0.6 --color '#8090a0'
+cei3d edit "$project" light --rotate 90 --scale 1.5
+cei3d log "$project" | grep -q '0003-light .*on .*rotate' || fail "the light is not in the log"
+views "$out/matt"
+cei3d toggle "$project" 0002-material
+cei3d undo "$project"
+views "$out/plain"
+same_pictures "$out/painted" "$out/plain"
+cei3d redo "$project"
+cei3d toggle "$project" 0002-material
+views "$out/again"
+same_pictures "$out/matt" "$out/again"
+cp -r "$object" "$out/other"
+cei3d replay "$project" --on "$out/other"
+cei3d render "$out/other" -o "$out/replayed" --cameras "$sample:test" --size 96x96 --samples 1
+same_pictures "$out/matt" "$out/replayed"
+contents "$project" >"$out/before.txt"
+refused 2 'range' edit "$project" material --roughness 1.5
+refused 2 "no part 'ear'" edit "$project" material --part ear --roughness 0.5
+refused 2 'Nothing to change' edit "$project" light
+refused 1 'twice as wide' edit "$project" light --env "$sample/edits/paint/scribble.png"
+contents "$project" >"$out/after.txt"
+same "$out/before.txt" "$out/after.txt"
+cei3d undo "$project"
+cei3d undo "$project"
+
 views "$out/relit" --env "$sample/envs/venice.hdr"
 views "$out/turned" --env "$sample/envs/venice.hdr" --env-rotate 90
 ! diff -rq -x render.json "$out/relit" "$out/turned" >/dev/null || fail "turning the light changed nothing"

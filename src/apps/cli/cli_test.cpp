@@ -32,7 +32,7 @@ Typed type(const std::vector<std::string>& args) {
 }
 
 const std::vector<std::string> kVerbs = {"check", "reconstruct", "render", "edit", "log",  "undo",
-                                         "redo",  "toggle",      "export", "eval", "info", "doctor"};
+                                         "redo",  "toggle",      "replay", "export", "eval", "info", "doctor"};
 
 TEST(Cli, HelpNamesEveryVerb) {
   const Typed t = type({"--help"});
@@ -87,6 +87,12 @@ TEST(Cli, WrongUsageIsTwo) {
       {"edit", "paint", "--view", "r_0", "--scribble", "s.png"},
       {"edit", "p", "paint", "--view", "r_0"},
       {"edit", "p", "paint", "--view", "r_0", "--scribble", "s.png", "--target", "smell"},
+      {"edit", "p", "material", "--roughness", "shiny"},
+      {"edit", "p", "material", "--replace"},
+      {"edit", "material", "--roughness", "0.5"},
+      {"edit", "p", "light", "--env", "no/such.hdr"},
+      {"edit", "p", "light", "--rotate", "left"},
+      {"replay", "p"},
       {"toggle", "p"},
       {"log"},
       {"eval", "p", "--edit", "0001-paint"},

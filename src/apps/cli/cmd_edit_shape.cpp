@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // `edit deform` and `edit remove`: changes of the object's shape.
-#include "apps/cli/command.h"
+#include "apps/cli/edit_verbs.h"
 #include "apps/cli/parse.h"
-#include "core/base/error.h"
 
 namespace cei3d {
 namespace {
@@ -40,27 +39,22 @@ DeformCommand command_of(const DeformOptions& o) {
   return c;
 }
 
-std::string deform_text(const DeformSummary& r) {
-  return fmt::format(
-      "{}: {} vertices within {:.3g} of the handle moved, at most by {:.3g}; deform {:.2f} s, load and store "
-      "{:.2f} s.",
-      r.id, r.vertices, r.radius, r.farthest, r.deform_seconds, r.load_seconds + r.store_seconds);
+std::string deform_text(const EditSummary& s) {
+  return fmt::format("{}: {} vertices within {:.3g} of the handle moved, at most by {:.3g}; {}.", s.id,
+                     s.report.at("vertices").get<size_t>(), s.report.at("radius").get<double>(),
+                     s.report.at("farthest").get<double>(), stages_text(s));
 }
 
-std::string remove_text(const RemoveSummary& r) {
-  std::string text = fmt::format(
-      "{}: {} triangles removed, {} holes closed by {} new ones; cut {:.2f} s, load and store {:.2f} s.",
-      r.id, r.removed_triangles, r.holes, r.added_triangles, r.cut_seconds, r.load_seconds + r.store_seconds);
-  if (r.pieces > 1) text += fmt::format(" The object is in {} pieces now.", r.pieces);
+std::string remove_text(const EditSummary& s) {
+  const auto count = [&](const char* key) { return s.report.at(key).get<size_t>(); };
+  std::string text =
+      fmt::format("{}: {} triangles removed, {} holes closed by {} new ones; {}.", s.id,
+                  count("removed_triangles"), count("holes"), count("added_triangles"), stages_text(s));
+  if (count("pieces") > 1) text += fmt::format(" The object is in {} pieces now.", count("pieces"));
   return text;
 }
 
-void open_for_edit(Session& session, const std::string& project, const char* example) {
-  if (project.empty()) fail_usage("edit needs a PROJECT: cei3d edit PROJECT {}.", example);
-  session.open(project, Session::Access::write);
-}
-
-void add_deform(Commands& commands, CLI::App* edit, std::shared_ptr<std::string> project) {
+void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<DeformOptions>();
   CLI::App* verb = commands.add("deform", "Drag a point of the surface; what is around it follows", edit);
   verb->add_option("--from", o->from, "Point on the surface, X,Y,Z in the capture's frame");
@@ -77,25 +71,25 @@ void add_deform(Commands& commands, CLI::App* edit, std::shared_ptr<std::string>
   commands.on(verb, o, [project](const DeformOptions& options, Session& session, Console& console) {
     const DeformCommand command = command_of(options);
     open_for_edit(session, *project, "deform --from X,Y,Z --to X,Y,Z");
-    const DeformSummary r = session.deform(command, console);
-    console.done(r.json(), deform_text(r));
+    const EditSummary s = session.deform(command, console);
+    console.done(s.json(), deform_text(s));
   });
 }
 
-void add_remove(Commands& commands, CLI::App* edit, std::shared_ptr<std::string> project) {
+void add_remove(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<RemoveCommand>();
   CLI::App* verb = commands.add("remove", "Take a part off and close the surface behind it", edit);
   verb->add_option("--part", o->part, "The part's name; `cei3d parts` lists them")->required();
   commands.on(verb, o, [project](const RemoveCommand& command, Session& session, Console& console) {
     open_for_edit(session, *project, "remove --part NAME");
-    const RemoveSummary r = session.remove(command, console);
-    console.done(r.json(), remove_text(r));
+    const EditSummary s = session.remove(command, console);
+    console.done(s.json(), remove_text(s));
   });
 }
 
 }  // namespace
 
-void add_edit_shape(Commands& commands, CLI::App* edit, std::shared_ptr<std::string> project) {
+void add_edit_shape(Commands& commands, CLI::App* edit, ProjectName project) {
   add_deform(commands, edit, project);
   add_remove(commands, edit, project);
 }

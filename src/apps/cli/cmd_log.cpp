@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// log, undo, redo, toggle.
+// log, undo, redo, toggle, replay.
 #include "apps/cli/command.h"
 #include "core/base/error.h"
 
@@ -7,16 +7,26 @@ namespace cei3d {
 namespace {
 
 struct Options {
-  std::string project, id;
+  std::string project, id, on;
 };
 
 std::string state_of(const LogEntry& e) { return !e.done ? "undone" : e.enabled ? "on" : "off"; }
 
+// "part ear, roughness 0.5": what was asked for.
+std::string what_of(const LogEntry& e) {
+  std::string text;
+  for (const auto& [key, value] : e.params.items()) {
+    if (key == "seed" || value.is_structured()) continue;
+    const std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, shown);
+  }
+  return text;
+}
+
 std::string log_text(const std::vector<LogEntry>& entries) {
   if (entries.empty()) return "No edits.";
   std::string text;
-  for (const LogEntry& e : entries)
-    text += fmt::format("{:<20} {:<7} {}\n", e.id, state_of(e), e.params.value("view", ""));
+  for (const LogEntry& e : entries) text += fmt::format("{:<20} {:<7} {}\n", e.id, state_of(e), what_of(e));
   return text;
 }
 
@@ -30,20 +40,28 @@ void show_log(const Options& o, Session& session, Console& console) {
 
 void undo(const Options& o, Session& session, Console& console) {
   session.open(o.project, Session::Access::write);
-  const std::string id = session.undo();
+  const std::string id = session.undo(console);
   console.done({{"undone", id}}, id + " is undone; `cei3d redo` brings it back.");
 }
 
 void redo(const Options& o, Session& session, Console& console) {
   session.open(o.project, Session::Access::write);
-  const std::string id = session.redo();
+  const std::string id = session.redo(console);
   console.done({{"redone", id}}, id + " is done again.");
 }
 
 void toggle(const Options& o, Session& session, Console& console) {
   session.open(o.project, Session::Access::write);
-  const bool enabled = session.toggle(o.id);
+  const bool enabled = session.toggle(o.id, console);
   console.done({{"id", o.id}, {"enabled", enabled}}, fmt::format("{} is {}.", o.id, enabled ? "on" : "off"));
+}
+
+void replay(const Options& o, Session& session, Console& console) {
+  session.open(o.project, Session::Access::read);
+  const ReplayReport r = session.replay(o.on, console);
+  std::string text = fmt::format("{} edits of {} were made on {}.", r.edits.size(), o.project, o.on);
+  for (const auto& [from, to] : r.edits) text += fmt::format("\n{:<20} as {}", from, to);
+  console.done(r.json(), text);
 }
 
 template <class F>
@@ -53,6 +71,9 @@ CLI::App* add_verb(Commands& commands, const char* name, const char* help, F run
   verb->add_option("project", o->project, "Project folder")->required();
   if (std::string(name) == "toggle")
     verb->add_option("id", o->id, "Name of the edit, as `log` lists it")->required();
+  if (std::string(name) == "replay")
+    verb->add_option("--on", o->on, "Project to make the edits on, a reconstruction of the same capture")
+        ->required();
   commands.on(verb, o, run);
   return verb;
 }
@@ -64,6 +85,7 @@ void add_history(Commands& commands) {
   add_verb(commands, "undo", "Take the last edit back", undo);
   add_verb(commands, "redo", "Do the last undone edit again", redo);
   add_verb(commands, "toggle", "Switch one edit off or on, wherever it stands in the history", toggle);
+  add_verb(commands, "replay", "Make the edits of a project on another one", replay);
 }
 
 }  // namespace cei3d

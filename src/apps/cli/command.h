@@ -51,8 +51,7 @@ void add_check(Commands&);
 void add_reconstruct(Commands&);
 void add_render(Commands&);
 void add_edit(Commands&);
-void add_edit_shape(Commands&, CLI::App* edit, std::shared_ptr<std::string> project);  // deform, remove
-void add_history(Commands&);  // log, undo, redo, toggle
+void add_history(Commands&);  // log, undo, redo, toggle, replay
 void add_export(Commands&);
 void add_eval(Commands&);
 void add_info(Commands&);  // info, doctor

@@ -73,6 +73,9 @@ inline EnvBrdf env_brdf(double roughness, double nv) {
 inline constexpr int kReflectionLobes = 3;
 inline constexpr float kReflectionNodes[3] = {0.2078873f, 1.1471402f, 3.1449727f};
 inline constexpr float kReflectionShare[3] = {0.7110930f, 0.2785177f, 0.0103893f};  // of the energy
+// Smoother surfaces are shaded like this one: sharper lobes are beyond single precision, and show no
+// difference.
+inline constexpr float kLeastRoughness = 0.05f;
 // Sharpness of lobe j is kReflectionNodes[j] * reflection_scale(roughness).
 inline float reflection_scale(float roughness) {
   const float alpha = roughness * roughness;

@@ -10,9 +10,8 @@
 #include <ctime>
 
 #include "core/base/error.h"
-#include "core/base/file.h"
-#include "core/base/hash.h"
 #include "engine/project/dataset.h"
+#include "engine/project/json_file.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -20,37 +19,6 @@ namespace {
 
 constexpr const char* kFormat = "cei3d-project";
 constexpr size_t kCheckpointsKept = 2;
-
-Json parse_json(const fs::path& path) {
-  const std::string text = read_file(path);
-  try {
-    return Json::parse(text);
-  } catch (const Json::exception& e) {
-    fail("{} is damaged (not JSON: {}); restore it from a copy of the project.", path.string(), e.what());
-  }
-}
-
-// Runs `read` on the file's JSON; a key that is missing or of another type becomes a sentence about the file.
-template <class F>
-auto read_json(const fs::path& path, F read) {
-  const Json j = parse_json(path);
-  try {
-    return read(j);
-  } catch (const Json::exception& e) {
-    fail("{} is damaged ({}); restore it from a copy of the project.", path.string(), e.what());
-  }
-}
-
-void write_json(const fs::path& path, const Json& j) { write_file_atomic(path, j.dump(1) + "\n"); }
-
-std::string time_text(const char* format) {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[64];
-  std::strftime(text, sizeof text, format, &utc);
-  return text;
-}
 
 Json head_json(const ProjectHead& head) {
   const Normalization& n = head.normalization;
@@ -74,7 +42,7 @@ void check_version(const Json& j, const fs::path& path) {
 }
 
 ProjectHead read_head(const fs::path& path) {
-  return read_json(path, [&](const Json& j) {
+  return read_json_file(path, [&](const Json& j) {
     check_version(j, path);
     ProjectHead head;
     const Json &n = j.at("normalization"), &c = n.at("center");
@@ -119,23 +87,6 @@ void append_line(const fs::path& path, const std::string& line) {
   if (!written) fail("Cannot write {}: {}.", path.string(), std::strerror(code));
 }
 
-// Removes what a failed edit has written, unless it stands.
-class EditGuard {
- public:
-  explicit EditGuard(fs::path folder) : folder_(std::move(folder)) {}
-  ~EditGuard() {
-    std::error_code error;
-    if (!kept_) fs::remove_all(folder_, error);
-  }
-  EditGuard(const EditGuard&) = delete;
-  EditGuard& operator=(const EditGuard&) = delete;
-  void keep() { kept_ = true; }
-
- private:
-  fs::path folder_;
-  bool kept_ = false;
-};
-
 // Undoes the making of a folder when something after it fails.
 class FolderGuard {
  public:
@@ -163,6 +114,15 @@ class FolderGuard {
 
 }  // namespace
 
+std::string time_text(const char* format) {
+  const std::time_t now = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  char text[64];
+  std::strftime(text, sizeof text, format, &utc);
+  return text;
+}
+
 bool Project::is_project(const fs::path& folder) {
   std::error_code error;
   return fs::is_regular_file(folder / "project.json", error);
@@ -174,7 +134,7 @@ void Project::check_place(const fs::path& folder, bool replace) {
       fail_usage(
           "{} is a project already; use --resume to go on with it, --force to replace it, or another folder.",
           folder.string());
-    check_version(parse_json(folder / "project.json"), folder / "project.json");
+    check_version(parse_json_file(folder / "project.json"), folder / "project.json");
     return;
   }
   if (!is_empty_or_missing(folder))
@@ -196,9 +156,9 @@ Project::Project(fs::path folder, Mode mode)
     : folder_(std::move(folder)),
       lock_(mode == Mode::write ? ProjectLock(folder_) : ProjectLock()),
       head_(read_head(file("project.json"))),
-      stack_(Stack::from_json(parse_json(file("stack.json")), file("stack.json").string())),
+      stack_(Stack::from_json(parse_json_file(file("stack.json")), file("stack.json").string())),
       store_(folder_ / "objects") {
-  read_json(file("dataset.json"), [&](const Json& j) {
+  read_json_file(file("dataset.json"), [&](const Json& j) {
     capture_ = capture_from_json(j, folder_);
     fingerprint_ = j.at("fingerprint").get<std::string>();
   });
@@ -212,14 +172,14 @@ Project Project::create(const fs::path& folder, const ProjectHead& head, const C
     // base/ first: without it nothing of the old object can be shown with the new one's cameras.
     for (const char* name : {"base", "stack.json", "edits", "objects", "cache", "runs"})
       fs::remove_all(folder / name);
-    write_json(folder / "stack.json", Stack().to_json());
-    write_json(folder / "dataset.json", dataset_json(capture, folder));
-    write_json(folder / "project.json", head_json(head));
+    write_json_file(folder / "stack.json", Stack().to_json());
+    write_json_file(folder / "dataset.json", dataset_json(capture, folder));
+    write_json_file(folder / "project.json", head_json(head));
   } else {
     FolderGuard guard(folder);
-    write_json(folder / "stack.json", Stack().to_json());
-    write_json(folder / "dataset.json", dataset_json(capture, folder));
-    write_json(folder / "project.json", head_json(head));  // last: it makes the folder a project
+    write_json_file(folder / "stack.json", Stack().to_json());
+    write_json_file(folder / "dataset.json", dataset_json(capture, folder));
+    write_json_file(folder / "project.json", head_json(head));  // last: it makes the folder a project
     guard.keep();
   }
   return open(folder, Mode::write);
@@ -253,7 +213,7 @@ void Project::save_checkpoint(const TrainingState& state) {
   const int number = files.empty() ? 1 : std::atoi(files.front().filename().c_str()) + 1;
   const std::string name = fmt::format("{:06}.ckpt.json", number);
   const std::string object = store_.put(state.tensors);
-  write_json(file("base") / name, {{"head", state.head}, {"object", object}});
+  write_json_file(file("base") / name, {{"head", state.head}, {"object", object}});
   write_file_atomic(file("base") / "latest", name + "\n");
   std::error_code error;
   for (size_t i = kCheckpointsKept - 1; i < files.size(); ++i) fs::remove(files[i], error);
@@ -264,7 +224,7 @@ std::optional<TrainingState> Project::latest_checkpoint() const {
   const std::vector<fs::path> files = checkpoint_files();
   for (size_t i = 0; i < files.size(); ++i) {
     try {
-      return read_json(files[i], [&](const Json& j) {
+      return read_json_file(files[i], [&](const Json& j) {
         return TrainingState{j.at("head"), store_.get(j.at("object").get<std::string>())};
       });
     } catch (const Error&) {
@@ -280,7 +240,7 @@ void Project::save_base(const Scene& scene) {
   Json head = Json::object();
   save_scene(scene, tensors, head);
   const std::string object = store_.put(tensors);
-  write_json(file("base/scene.json"), {{"object", object}, {"head", std::move(head)}});
+  write_json_file(file("base/scene.json"), {{"object", object}, {"head", std::move(head)}});
   collect_garbage();
 }
 
@@ -293,7 +253,7 @@ Scene Project::base() const {
   if (!has_base())
     fail("Project {} holds no finished object; go on with `cei3d reconstruct --resume -o {}`.",
          folder_.string(), folder_.string());
-  return read_json(file("base/scene.json"), [&](const Json& j) {
+  return read_json_file(file("base/scene.json"), [&](const Json& j) {
     const auto object = j.at("object").get<std::string>();
     if (object != loaded_object_) loaded_base_ = load_scene(store_.get(object), j.at("head"));
     loaded_object_ = object;
@@ -301,103 +261,9 @@ Scene Project::base() const {
   });
 }
 
-Scene Project::scene() const {
-  Scene scene = base();
-  for (const std::string& id : stack_.active())
-    scene =
-        with_layer(std::move(scene), read_json(file("edits/" + id + "/edit.json"), [&](const Json& j) {
-                     const Json& result = j.at("result");
-                     return load_layer(store_.get(result.at("object").get<std::string>()), result.at("head"));
-                   }));
-  return scene;
-}
-
-// What the scene is made of, as one hash: an edit's result is a function of it and of the edit's record.
-std::string Project::scene_key() const {
-  const auto object_of = [](const Json& j) { return j.at("object").get<std::string>(); };
-  std::string parts = read_json(file("base/scene.json"), object_of);
-  for (const std::string& id : stack_.active())
-    parts += read_json(file("edits/" + id + "/edit.json"),
-                       [&](const Json& j) { return object_of(j.at("result")); });
-  return content_hash(parts);
-}
-
-void Project::add_edit(const EditRecord& record, const EditLayer& layer) {
-  require_writable();
-  if (record.id != stack_.next_id(record.op) || layer.id != record.id)
-    fail("Edit '{}' is out of order (an error in the program).", record.id);
-  Tensors tensors;
-  Json head = Json::object();
-  save_layer(layer, tensors, head);
-  const std::string object = store_.put(tensors);
-  const fs::path folder = file("edits") / record.id;
-  EditGuard guard(folder);
-  Json inputs = Json::object();
-  for (const auto& [name, bytes] : record.inputs) {
-    write_file_atomic(folder / name, bytes);
-    inputs[name] = content_hash(bytes);
-  }
-  write_json(folder / "edit.json", {{"id", record.id},
-                                    {"op", record.op},
-                                    {"op_version", record.op_version},
-                                    {"time", time_text("%Y-%m-%dT%H:%M:%SZ")},
-                                    {"params", record.params},
-                                    {"inputs", std::move(inputs)},
-                                    {"scene_before", scene_key()},
-                                    {"report", record.report},
-                                    {"result", {{"object", object}, {"head", std::move(head)}}}});
-  Stack next = stack_;
-  next.push(record.id);
-  save_stack(next);
-  guard.keep();
-  collect_garbage();
-  add_history({{"do", record.op}, {"id", record.id}, {"params", record.params}});
-}
-
-EditRecord Project::edit(const std::string& id) const {
-  if (!stack_.contains(id))
-    fail_usage("Project {} has no edit '{}'; `cei3d log` lists them.", folder_.string(), id);
-  return read_json(file("edits/" + id + "/edit.json"), [&](const Json& j) {
-    EditRecord r;
-    r.id = j.at("id").get<std::string>();
-    r.op = j.at("op").get<std::string>();
-    r.op_version = j.at("op_version").get<int>();
-    r.params = j.at("params");
-    r.report = j.at("report");
-    return r;
-  });
-}
-
 void Project::save_stack(const Stack& stack) {
-  write_json(file("stack.json"), stack.to_json());
+  write_json_file(file("stack.json"), stack.to_json());
   stack_ = stack;
-}
-
-std::string Project::undo() {
-  require_writable();
-  Stack next = stack_;
-  const std::string id = next.undo();
-  save_stack(next);
-  add_history({{"do", "undo"}, {"id", id}});
-  return id;
-}
-
-std::string Project::redo() {
-  require_writable();
-  Stack next = stack_;
-  const std::string id = next.redo();
-  save_stack(next);
-  add_history({{"do", "redo"}, {"id", id}});
-  return id;
-}
-
-bool Project::toggle(const std::string& id) {
-  require_writable();
-  Stack next = stack_;
-  const bool enabled = next.toggle(id);
-  save_stack(next);
-  add_history({{"do", "toggle"}, {"id", id}, {"enabled", enabled}});
-  return enabled;
 }
 
 void Project::add_history(Json event) {
@@ -422,10 +288,10 @@ void Project::collect_garbage() {
   std::set<std::string> keep;
   const auto note = [&](const Json& j) { keep.insert(j.at("object").get<std::string>()); };
   try {
-    for (const fs::path& p : checkpoint_files()) read_json(p, note);
-    if (has_base()) read_json(file("base/scene.json"), note);
+    for (const fs::path& p : checkpoint_files()) read_json_file(p, note);
+    if (has_base()) read_json_file(file("base/scene.json"), note);
     for (const StackEntry& e : stack_.entries())
-      read_json(file("edits/" + e.id + "/edit.json"), [&](const Json& j) { note(j.at("result")); });
+      for (const std::string& object : edit_objects(e.id)) keep.insert(object);
   } catch (const Error&) {
     return;  // what cannot be read might name any object: nothing is thrown away
   }

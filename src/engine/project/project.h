@@ -6,7 +6,8 @@
 //   base/NNNNNN.ckpt.json   the last two training states; base/latest names the newest
 //   base/scene.json         the reconstructed object
 //   stack.json              ordered edits, on or off, and the cursor
-//   edits/0001-paint/       edit.json and the pictures it was made from
+//   edits/0001-paint/       edit.json, the pictures it was made from
+//   cache/                  what can be computed again; may be deleted at any time
 //   objects/ab/cdef...      tensors by content hash
 //   history.jsonl           what the user did
 //   runs/<time>-<verb>/     logs
@@ -25,11 +26,13 @@
 #include "engine/project/lock.h"
 #include "engine/project/stack.h"
 #include "engine/project/store.h"
+#include "model/scene/aspects.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {
 
-inline constexpr int kProjectVersion = 1;
+// 1: an edit has one result, that of its first making. 2: results by what they depend on.
+inline constexpr int kProjectVersion = 2;
 
 struct ProjectHead {
   Normalization normalization;
@@ -40,7 +43,8 @@ struct EditRecord {
   std::string id;      // "0001-paint"
   std::string op;      // "paint"
   int op_version = 1;  // of the operation: its results may change when this does
-  Json params;         // what was asked for: view, seed, ...
+  Json params;         // what was asked for: view, seed, ...; lengths and positions in the capture's frame
+  Aspects depends;     // what of the scene below it its result depends on, beside the base
   Json report;         // what came of it: points, seconds, ...
   std::vector<std::pair<std::string, std::string>> inputs;  // file name, bytes; not filled when read back
 };
@@ -88,9 +92,18 @@ class Project {
   // One edit more, at the cursor. record.id must be stack().next_id(record.op), which is also the layer's.
   void add_edit(const EditRecord& record, const EditLayer& layer);
   EditRecord edit(const std::string& id) const;
+  std::vector<std::pair<std::string, std::string>> edit_inputs(const std::string& id) const;
+  // Moves of the cursor and the switch. Error: an edit would stand that has to be made anew first.
   std::string undo();  // id of the edit
   std::string redo();
   bool toggle(const std::string& id);  // the new state
+
+  // What an edit made depends on its record, the base and those edits before it that change what it depends
+  // on; all that it ever made is kept by that key. With another stack, an edit that is on may have to be made
+  // anew: the first such one, the scene below it, and a place for what it makes.
+  std::optional<std::string> first_stale(const Stack&) const;
+  Scene scene_below(const Stack&, const std::string& id) const;
+  void add_result(const Stack&, const std::string& id, const EditLayer& layer);
 
   void add_history(Json event);                            // one line of history.jsonl; "time" is added
   std::filesystem::path new_run(const std::string& verb);  // makes runs/<time>-<verb>
@@ -100,8 +113,20 @@ class Project {
   std::filesystem::path file(const std::string& name) const { return folder_ / name; }
   void require_writable() const;
   void save_stack(const Stack&);
+  void move_to(const Stack& next, Json event);
   std::vector<std::filesystem::path> checkpoint_files() const;  // newest first
-  std::string scene_key() const;
+  struct StoredResult;
+  struct Resolved;
+  std::filesystem::path edit_file(const std::string& id) const {
+    return folder_ / "edits" / id / "edit.json";
+  }
+  std::vector<StoredResult> results_of(const std::string& id) const;
+  std::vector<std::string> edit_objects(const std::string& id) const;
+  Aspects depends_of(const std::string& id) const;
+  std::string result_key(Aspects depends, const std::vector<StoredResult>& before) const;
+  Resolved resolve(const Stack&) const;
+  Json store_result(const std::string& key, const EditLayer& layer);
+  EditLayer load_result(const StoredResult&) const;
   void collect_garbage();
 
   std::filesystem::path folder_;

@@ -64,7 +64,7 @@ Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture
                    const Material& material, VertexLight vertices)
     : device_(device), surface_(surface), material_(material), vertices_(std::move(vertices)) {
   set_lobes(light);
-  env_table_ = env_brdf_table(material.roughness);
+  env_table_ = env_brdf_table(max(material.roughness, kLeastRoughness));
 }
 
 Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture& light,
@@ -101,10 +101,12 @@ Vec3f Lighting::leaving(const Surface::RayHit& h) const {
   return at_corners(vertices_.leaving, surface_.mesh().triangles[h.triangle], h.b1, h.b2);
 }
 
-HitLight Lighting::light_at(std::span<const Hit> hits, float roughness) const {
+HitLight Lighting::light_at(std::span<const Hit> hits, float any_roughness) const {
+  const float roughness = max(any_roughness, kLeastRoughness);
   const Mesh& mesh = surface_.mesh();
-  const std::vector<Vec2f> other_table =
-      roughness == material_.roughness ? std::vector<Vec2f>() : env_brdf_table(roughness);
+  const std::vector<Vec2f> other_table = roughness == max(material_.roughness, kLeastRoughness)
+                                             ? std::vector<Vec2f>()
+                                             : env_brdf_table(roughness);
   const std::vector<Vec2f>& env_table = other_table.empty() ? env_table_ : other_table;
   HitLight out;
   out.irradiance.resize(hits.size());

@@ -2,9 +2,13 @@
 #include "engine/session/light_choice.h"
 
 #include <cmath>
+#include <optional>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/hash.h"
 #include "engine/io/image_file.h"
+#include "engine/io/npy.h"
 #include "model/light/fit.h"
 
 namespace cei3d {
@@ -68,14 +72,65 @@ SgMixture light_of_picture(const Device& device, const LightChoice& choice, Vec3
   return rotated(light, turning(row == EnvUp::y ? Vec3f{0, 1, 0} : Vec3f{0, 0, 1}, up));  // skies are up
 }
 
+SgMixture read_lobes(const std::filesystem::path& path) {
+  const NpyArray array = read_npy(path);
+  if (array.shape.size() != 2 || array.shape[1] != 7)
+    fail("{} does not hold lobes, which are rows of 7: axis, sharpness, colour.", path.string());
+  return light_from_array(array.data);
+}
+
+constexpr int kFit = 1;  // of fit_lobes as it is now: raise it when the same picture gives other lobes
+
+std::filesystem::path cache_file(const LightCache& cache, const LightChoice& choice, Vec3f up) {
+  const std::string picture = content_hash(read_file(choice.env));
+  const std::string key =
+      content_hash(fmt::format("{} {} {} {} {} {}", picture, kFit, int(choice.convention), up.x, up.y, up.z));
+  return cache.folder / ("light-" + key + ".npy");
+}
+
+// What is cached and does not read is computed again.
+std::optional<SgMixture> cached_light(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) return std::nullopt;
+  try {
+    return read_lobes(file);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
-SgMixture chosen_light(const Device& device, const LightChoice& choice, const SgMixture& own, Vec3d up) {
+SgMixture environment_light(const Device& device, const LightChoice& choice, Vec3d up,
+                            const LightCache& cache) {
+  if (choice.env.extension() == ".npy") return read_lobes(choice.env);
   const Vec3f axis = to_float(normalize(up));
-  const SgMixture light = choice.env.empty() ? own : light_of_picture(device, choice, axis);
-  return choice.rotate_degrees == 0
-             ? light
-             : rotated(light, about_axis(axis, float(choice.rotate_degrees) * kPi / 180));
+  if (cache.folder.empty()) return light_of_picture(device, choice, axis);
+  const std::filesystem::path file = cache_file(cache, choice, axis);
+  if (const auto light = cached_light(file)) return *light;
+  const SgMixture light = light_of_picture(device, choice, axis);
+  if (cache.writable) write_npy(file, to_array(light), int64_t(light.lobes.size()), 7);
+  return light_from_array(to_array(light));  // the very bits that the cache will give
+}
+
+void check_turn(const LightChoice& choice) {
+  if (!std::isfinite(choice.rotate_degrees)) fail_usage("The angle to turn the light by is not a number.");
+  if (!(choice.scale > 0 && choice.scale <= 1e6))
+    fail_usage("{} is not a factor for the light; give one above 0, and up to 1e6.", choice.scale);
+}
+
+SgMixture turned_light(const SgMixture& light, double degrees, double scale, Vec3d up) {
+  SgMixture out = light;
+  if (degrees != 0) out = rotated(out, about_axis(to_float(normalize(up)), float(degrees) * kPi / 180));
+  if (scale != 1) out = scaled(out, Vec3f{1, 1, 1} * float(scale));
+  return out;
+}
+
+SgMixture chosen_light(const Device& device, const LightChoice& choice, const SgMixture& own, Vec3d up,
+                       const LightCache& cache) {
+  check_turn(choice);
+  const SgMixture light = choice.env.empty() ? own : environment_light(device, choice, up, cache);
+  return turned_light(light, choice.rotate_degrees, choice.scale, up);
 }
 
 }  // namespace cei3d

@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/temp_folder.h"
 #include "engine/io/image_file.h"
+#include "engine/io/npy.h"
 #include "model/light/envmap.h"
 
 namespace cei3d {
@@ -67,6 +69,69 @@ TEST_F(LightChoiceTest, TurnsCounterClockwiseSeenFromAbove) {
   expect_near(sun(64, 32, EnvConvention::by_up_axis, {0, 1, 0}, 90), {1, 0, 0});  // z to x about y
 }
 
+// A map whose pixels are coloured by the axis that they look along most: written from the definition of the
+// layout, pixel by pixel, not by the code under test.
+const Vec3f kAxes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
+const Vec3f kLabels[6] = {{9, 1, 1}, {1, 9, 1}, {1, 1, 9}, {9, 9, 1}, {1, 9, 9}, {9, 1, 9}};
+Image labelled_sky(bool y_up) {
+  Image map(128, 64, 3);
+  for (int j = 0; j < 64; ++j)
+    for (int i = 0; i < 128; ++i) {
+      const double theta = M_PI * (j + 0.5) / 64, phi = 2 * M_PI * (0.5 - (i + 0.5) / 128);
+      Vec3d d{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
+      if (y_up) d = {d.y, d.z, d.x};  // row 0 is +Y, the centre +Z, column W/4 +X
+      int best = 0;
+      for (int a = 1; a < 6; ++a)
+        if (dot(d, to_double(kAxes[a])) > dot(d, to_double(kAxes[best]))) best = a;
+      for (int c = 0; c < 3; ++c) map.at(i, j)[c] = kLabels[best][c];
+    }
+  return map;
+}
+
+TEST_F(LightChoiceTest, EveryAxisOfALabelledMapHasItsColour) {
+  const Device device = make_device();
+  for (const bool y_up : {false, true}) {
+    const auto file = temp_.path() / "labelled.hdr";
+    write_hdr(file, labelled_sky(y_up));
+    const Vec3d up = y_up ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+    const SgMixture light = chosen_light(device, {file, 0, EnvConvention::by_up_axis}, {}, up);
+    for (int a = 0; a < 6; ++a) {
+      const Vec3f got = radiance(light, kAxes[a]);
+      for (int c = 0; c < 3; ++c) EXPECT_EQ(got[c] > 5, kLabels[a][c] > 5) << a << ' ' << c << ' ' << got[c];
+    }
+  }
+}
+
+TEST_F(LightChoiceTest, AFitIsCachedByContentAndComesBackInTheSameBits) {
+  const Device device = make_device();
+  const auto file = temp_.path() / "sky.hdr";
+  write_hdr(file, sky_with_sun(64, 32));
+  const LightChoice choice{file, 0, EnvConvention::zup};
+  const LightCache cache{temp_.path() / "cache", true};
+  const auto first = to_array(environment_light(device, choice, {0, 0, 1}, cache));
+  ASSERT_EQ(std::distance(std::filesystem::directory_iterator(cache.folder), {}), 1);
+  const auto entry = std::filesystem::directory_iterator(cache.folder)->path();
+  EXPECT_EQ(to_array(environment_light(device, choice, {0, 0, 1}, cache)), first);
+  write_hdr(file, sky_with_sun(32, 32));  // another picture of the same name
+  EXPECT_NE(to_array(environment_light(device, choice, {0, 0, 1}, cache)), first);
+  write_hdr(file, sky_with_sun(64, 32));
+  write_file_atomic(entry, "not lobes");
+  EXPECT_EQ(to_array(environment_light(device, choice, {0, 0, 1}, cache)), first);
+}
+
+TEST_F(LightChoiceTest, LobesComeAsTheyWereExported) {
+  const Device device = make_device();
+  const SgMixture own{{{{0, 0.6f, 0.8f}, 5, {1, 2, 3}}, {{1, 0, 0}, 50, {0.5f, 0, 0}}}};
+  const auto file = temp_.path() / "light.npy";
+  write_npy(file, to_array(own), 2, 7);
+  const SgMixture back = chosen_light(device, {file, 0, EnvConvention::by_up_axis, 2}, {}, {0, 1, 0});
+  ASSERT_EQ(back.lobes.size(), 2u);
+  EXPECT_NEAR(back.lobes[0].axis.y, 0.6f, 1e-6f);
+  EXPECT_EQ(back.lobes[0].mu.z, 6);
+  write_npy(file, to_array(own), 7, 2);
+  EXPECT_THROW(chosen_light(device, {file, 0, EnvConvention::zup}, {}, {0, 0, 1}), Error);
+}
+
 TEST_F(LightChoiceTest, TheOwnLightTurnsToo) {
   const SgMixture own{{{{1, 0, 0}, 5, {1, 1, 1}}}};
   const Device device = make_device();
@@ -84,6 +149,9 @@ TEST_F(LightChoiceTest, RefusesWhatIsNoEnvironment) {
     chosen_light(device, {file, 0, EnvConvention::zup}, {}, {0, 0, 1});
   };
   EXPECT_THROW(light_of(Image(64, 64, 3, 1)), Error);
+  for (const double scale : {0.0, -1.0, double(NAN), double(INFINITY)})
+    EXPECT_THROW(chosen_light(device, {"", 0, EnvConvention::zup, scale}, {}, {0, 0, 1}), Error);
+  EXPECT_THROW(chosen_light(device, {"", NAN, EnvConvention::zup, 1}, {}, {0, 0, 1}), Error);
   EXPECT_THROW(light_of(Image(64, 32, 3, 0)), Error);
   EXPECT_THROW(chosen_light(device, {temp_.path() / "none.hdr", 0, EnvConvention::zup}, {}, {0, 0, 1}),
                Error);

@@ -108,36 +108,18 @@ Json LogEntry::json() const {
           {"done", done}, {"params", params}, {"report", report}};
 }
 
-Json DeformSummary::json() const {
-  return {{"id", id},
-          {"from", vector_json(from)},
-          {"to", vector_json(to)},
-          {"vertices", vertices},
-          {"radius", radius},
-          {"farthest", farthest},
-          {"iterations", iterations},
-          {"seconds", {{"load", load_seconds}, {"deform", deform_seconds}, {"store", store_seconds}}}};
+Json EditSummary::json() const {
+  Json j = {{"id", id}};
+  j.update(report);
+  j["seconds"]["load"] = load_seconds;
+  j["seconds"]["store"] = store_seconds;
+  return j;
 }
 
-Json RemoveSummary::json() const {
-  return {{"id", id},
-          {"removed_triangles", removed_triangles},
-          {"added_triangles", added_triangles},
-          {"holes", holes},
-          {"pieces", pieces},
-          {"seconds", {{"load", load_seconds}, {"cut", cut_seconds}, {"store", store_seconds}}}};
-}
-
-Json PaintSummary::json() const {
-  return {
-      {"id", id},
-      {"painted_pixels", painted_pixels},
-      {"missed_pixels", missed_pixels},
-      {"points", points},
-      {"mean_error", mean_error},
-      {"max_error", max_error},
-      {"seconds",
-       {{"load", load_seconds}, {"trace", trace_seconds}, {"fit", train_seconds}, {"store", store_seconds}}}};
+Json ReplayReport::json() const {
+  Json list = Json::array();
+  for (const auto& [from, to] : edits) list.push_back({{"from", from}, {"to", to}});
+  return {{"edits", list}};
 }
 
 Json RenderReport::json() const {

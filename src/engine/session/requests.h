@@ -79,13 +79,16 @@ struct PaintCommand {
   std::filesystem::path scribble;  // RGBA PNG of the view's size
   uint64_t seed = 1;
 };
-struct PaintSummary {
-  std::string id;
-  int painted_pixels = 0, missed_pixels = 0;
-  size_t points = 0;
-  float mean_error = 0, max_error = 0;  // of the fitted colour on the painted surface, linear
-  double load_seconds = 0, trace_seconds = 0, train_seconds = 0, store_seconds = 0;
-  Json json() const;
+// Another material or colour.
+struct MaterialEffects {
+  std::optional<float> roughness, specular, metalness;  // [0, 1]
+  std::string color;                                    // "#RRGGBB", sRGB; empty: stays
+  bool replace = false;  // the colour replaces the texture instead of scaling it
+  bool empty() const { return !roughness && !specular && !metalness && color.empty(); }
+};
+struct MaterialCommand {
+  std::string part;  // its name; empty: the whole object
+  MaterialEffects effects;
 };
 
 // A point of the surface and where it goes, capture frame.
@@ -103,24 +106,20 @@ struct DeformCommand {
   std::optional<double> radius;  // along the surface, capture units
   std::string part;              // empty: the whole object
 };
-struct DeformSummary {
-  std::string id;
-  Vec3d from, to;                   // capture frame
-  size_t vertices = 0;              // that moved
-  double radius = 0, farthest = 0;  // of what moved; the longest move: capture units
-  int iterations = 0;
-  double load_seconds = 0, deform_seconds = 0, store_seconds = 0;
-  Json json() const;
-};
-
 struct RemoveCommand {
   std::string part;
 };
-struct RemoveSummary {
+// What came of an edit.
+struct EditSummary {
   std::string id;
-  size_t removed_triangles = 0, added_triangles = 0;
-  size_t holes = 0, pieces = 0;  // that were closed; connected ones that are left
-  double load_seconds = 0, cut_seconds = 0, store_seconds = 0;
+  Json report;  // by kind of edit; "seconds": of its stages
+  double load_seconds = 0, store_seconds = 0;
+  double seconds(const char* stage) const { return report.at("seconds").at(stage).get<double>(); }
+  Json json() const;
+};
+
+struct ReplayReport {
+  std::vector<std::pair<std::string, std::string>> edits;  // id in the project replayed, id in the other one
   Json json() const;
 };
 
@@ -147,9 +146,11 @@ enum class EnvConvention { by_up_axis, zup, yup, mitsuba, blender };
 std::optional<EnvConvention> env_convention_from_name(const std::string&);  // "zup", ...
 
 struct LightChoice {
-  std::filesystem::path env;  // latitude-longitude picture; empty: the object's own light
+  std::filesystem::path
+      env;  // latitude-longitude picture, or .npy of lobes as exported; empty: the object's own light
   double rotate_degrees = 0;  // counter-clockwise about the up axis, seen from above
   EnvConvention convention = EnvConvention::by_up_axis;
+  double scale = 1;  // times the radiance
 };
 
 struct RenderRequest {

@@ -100,6 +100,8 @@ void Session::open(const fs::path& folder, Access access) {
   project_ = std::make_unique<Project>(Project::open(folder, mode));
 }
 
+void Session::close() { project_.reset(); }
+
 ProjectInfo Session::info() const {
   const Project& p = project();
   ProjectInfo info;
@@ -127,9 +129,5 @@ std::vector<LogEntry> Session::log() const {
   }
   return entries;
 }
-
-std::string Session::undo() { return project().undo(); }
-std::string Session::redo() { return project().redo(); }
-bool Session::toggle(const std::string& id) { return project().toggle(id); }
 
 }  // namespace cei3d

@@ -23,6 +23,7 @@ class SceneLight;
 class Surface;
 class Transport;
 struct Scene;
+using EditInputs = std::vector<std::pair<std::string, std::string>>;  // file name, bytes
 
 class Session {
  public:
@@ -43,20 +44,30 @@ class Session {
   // Everything below needs an open project; a second call opens another.
   enum class Access { read, write };
   void open(const std::filesystem::path& project, Access);
+  void close();  // lets go of the project and its lock
   ProjectInfo info() const;
   std::vector<LogEntry> log() const;
-  PaintSummary paint(const PaintCommand&, Progress&);
-  DeformSummary deform(const DeformCommand&, Progress&);
-  RemoveSummary remove(const RemoveCommand&, Progress&);
-  std::string undo();  // id of the edit that is undone now
-  std::string redo();
-  bool toggle(const std::string& id);  // the new state
+  // Edits. Each adds a layer at the cursor of the history; when one fails, nothing has changed.
+  EditSummary paint(const PaintCommand&, Progress&);
+  EditSummary change_material(const MaterialCommand&, Progress&);
+  EditSummary change_light(const LightChoice&, Progress&);
+  EditSummary deform(const DeformCommand&, Progress&);
+  EditSummary remove(const RemoveCommand&, Progress&);
+  // Edits that depend on what comes or goes are made anew. Errors: one of them can't be; nothing has changed
+  // then.
+  std::string undo(Progress&);  // id of the edit that is undone now
+  std::string redo(Progress&);
+  bool toggle(const std::string& id, Progress&);  // the new state
+  // Makes the edits of this project, those that are done, on top of another one's; those that are off are
+  // switched off there, too. Error: one can't be made there; those before it stand.
+  ReplayReport replay(const std::filesystem::path& on, Progress&);
   RenderReport render(const RenderRequest&, Progress&);
   ExportReport export_to(const ExportRequest&, Progress&);
   EvalReport evaluate(const EvalRequest&, Progress&);
 
  private:
-  Project& project() const;        // error when none is open
+  Project& project() const;  // error when none is open
+  EditSummary add_edit(const char* op, Json params, EditInputs inputs, Progress&);
   SceneLight light(const Scene&);  // lights of one surface share what depends on it only
 
   std::unique_ptr<Device> device_;

@@ -76,7 +76,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
   const std::vector<NamedCamera> cameras =
       choose_cameras(project(), request.cameras, request.width, request.height);
   Scene scene = project().scene();
-  scene.light = chosen_light(*device_, request.light, scene.light, scene.up);
+  scene.light = chosen_light(*device_, request.light, scene.light, scene.up, {project().folder() / "cache"});
   const double depth = depth_scale(cameras, scene.normalization);
   const SceneLight light = this->light(scene);
   RenderReport report;

@@ -1,9 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
-
 #include "core/base/error.h"
-#include "engine/edit/deform.h"
-#include "engine/edit/remove.h"
 #include "engine/io/capture.h"
 #include "engine/project/project.h"
 #include "engine/render/render.h"
@@ -11,20 +7,6 @@
 
 namespace cei3d {
 namespace {
-
-class Stopwatch {
- public:
-  double lap() {  // seconds since the last one
-    const auto now = Clock::now();
-    const double s = std::chrono::duration<double>(now - last_).count();
-    last_ = now;
-    return s;
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  Clock::time_point last_ = Clock::now();
-};
 
 // The point that the view shows at the pixel, and where the drag takes it in the plane parallel to the
 // picture.
@@ -49,72 +31,21 @@ PointDrag drag_of(const Device& device, const Scene& scene, const Capture& captu
 
 Json list_of(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
-Json params_of(const DeformCommand& command, const PointDrag& drag) {
+}  // namespace
+
+EditSummary Session::deform(const DeformCommand& command, Progress& progress) {
+  const auto* points = std::get_if<PointDrag>(&command.drag);
+  const PointDrag drag =
+      points ? *points
+             : drag_of(*device_, project().scene(), project().capture(), std::get<PixelDrag>(command.drag));
   Json params = {{"from", list_of(drag.from)}, {"to", list_of(drag.to)}};
   if (command.radius) params["radius"] = *command.radius;
   if (!command.part.empty()) params["part"] = command.part;
-  return params;
+  return add_edit("deform", std::move(params), {}, progress);
 }
 
-}  // namespace
-
-DeformSummary Session::deform(const DeformCommand& command, Progress& progress) {
-  Stopwatch watch;
-  const Scene scene = project().scene();
-  const auto* points = std::get_if<PointDrag>(&command.drag);
-  const PointDrag drag =
-      points ? *points : drag_of(*device_, scene, project().capture(), std::get<PixelDrag>(command.drag));
-  DeformRequest request;
-  request.id = project().stack().next_id("deform");
-  request.from = to_float(scene.normalization.unit_from_input(drag.from));
-  request.to = to_float(scene.normalization.unit_from_input(drag.to));
-  if (command.radius) request.radius = float(*command.radius * scene.normalization.scale);
-  request.part = command.part;
-
-  DeformSummary s;
-  s.id = request.id;
-  s.from = drag.from;
-  s.to = drag.to;
-  s.load_seconds = watch.lap();
-  const DeformResult result = cei3d::deform(scene, request, progress);
-  s.deform_seconds = watch.lap();
-  s.vertices = result.report.vertices;
-  s.radius = result.report.radius / scene.normalization.scale;
-  s.farthest = result.report.farthest / scene.normalization.scale;
-  s.iterations = result.report.iterations;
-
-  EditRecord record;
-  record.id = request.id;
-  record.op = "deform";
-  record.params = params_of(command, drag);
-  record.report = s.json();
-  project().add_edit(record, result.layer);
-  s.store_seconds = watch.lap();
-  return s;
-}
-
-RemoveSummary Session::remove(const RemoveCommand& command, Progress& progress) {
-  Stopwatch watch;
-  const Scene scene = project().scene();
-  const RemoveRequest request{project().stack().next_id("remove"), command.part};
-  RemoveSummary s;
-  s.id = request.id;
-  s.load_seconds = watch.lap();
-  const RemoveResult result = remove_part(*device_, scene, request, progress);
-  s.cut_seconds = watch.lap();
-  s.removed_triangles = result.report.removed_triangles;
-  s.added_triangles = result.report.added_triangles;
-  s.holes = result.report.holes;
-  s.pieces = result.report.pieces;
-
-  EditRecord record;
-  record.id = request.id;
-  record.op = "remove";
-  record.params = {{"part", command.part}};
-  record.report = s.json();
-  project().add_edit(record, result.layer);
-  s.store_seconds = watch.lap();
-  return s;
+EditSummary Session::remove(const RemoveCommand& command, Progress& progress) {
+  return add_edit("remove", {{"part", command.part}}, {}, progress);
 }
 
 }  // namespace cei3d

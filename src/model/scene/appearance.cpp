@@ -60,13 +60,14 @@ class Walk {
 
  private:
   void visit(int l, const EditLayer& layer) {
-    if (layer.reshape) visit_change(l, layer.pose + 1);
+    const int pose = max(layer.pose, 0);
+    if (layer.reshape) visit_change(l, pose + 1);
     const bool colours = r_.base && (layer.albedo || layer.tint), marks = r_.layer < 0 && !layer.everywhere;
     const bool changes = !layer.material.empty() && !is_whole(r_.material);
     if (!colours && !changes && !marks) return;
-    const bool old = born_ <= layer.pose;  // what was made later is in no region that is older ...
+    const bool old = born_ <= pose;  // what was made later is in no region that is older ...
     if (!old && !layer.everywhere) return;
-    const SurfacePoint p = old ? in_pose(scene_.poses, hit_, layer.pose) : SurfacePoint{};
+    const SurfacePoint p = old ? in_pose(scene_.poses, hit_, pose) : SurfacePoint{};
     if (!layer.everywhere && !layer.region.contains(p.position, p.normal)) return;
     if (marks) r_.layer = l;
     if (changes) put_below(r_.material, layer.material);

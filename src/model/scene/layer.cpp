@@ -45,6 +45,7 @@ void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
     head["everywhere"] = true;
   else
     layer.region.save(tensors, head["region"]);
+  if (layer.pose != kLatestPose) head["pose"] = layer.pose;
   if (!layer.part.empty()) head["part"] = layer.part;
   save_field(layer.albedo, "albedo", tensors, head);
   if (layer.tint) head["tint"] = tint_json(*layer.tint);
@@ -59,6 +60,7 @@ EditLayer load_layer(const Tensors& tensors, const Json& head) {
     layer.id = head.at("id").get<std::string>();
     layer.everywhere = head.value("everywhere", false);
     if (!layer.everywhere) layer.region = Region::load(tensors, head.at("region"));
+    layer.pose = head.value("pose", kLatestPose);
     layer.part = head.value("part", "");
     layer.albedo = load_field("albedo", tensors, head);
     if (head.contains("tint")) layer.tint = tint_from(head.at("tint"));

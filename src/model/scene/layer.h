@@ -17,13 +17,16 @@
 
 namespace cei3d {
 
+inline constexpr int kLatestPose = -1;
+
 struct EditLayer {
   std::string id;           // "0001-paint"
   bool everywhere = false;  // the whole object; else `region`
   Region region;            // contains nothing by default
-  int pose = 0;             // of the object that region and branch live in: the number of changes of
-                            // geometry before this edit; the project's stack says it, not the store
-  std::string part;         // name of the part that the region is; empty: none
+  // The shape of the object that region and branch live in: the number of changes of geometry before it.
+  // kLatestPose: the one that the layer is put on.
+  int pose = kLatestPose;
+  std::string part;                     // name of the part that the region is; empty: none
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: base colour of the layers below
   std::optional<Tint> tint;             // on top of that
   MaterialChange material;

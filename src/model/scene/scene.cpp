@@ -81,7 +81,10 @@ Scene reshaped(Scene scene, const Reshape& change) {
 }  // namespace
 
 Scene with_layer(Scene scene, EditLayer layer) {
-  layer.pose = scene.poses.empty() ? 0 : int(scene.poses.size()) - 1;
+  const int latest = scene.poses.empty() ? 0 : int(scene.poses.size()) - 1;
+  if (layer.pose == kLatestPose) layer.pose = latest;
+  if (layer.pose < 0 || layer.pose > latest || (layer.reshape && layer.pose != latest))
+    fail("edit {} was made for another shape of the object; undo it, or make it again", layer.id);
   if (layer.light) scene.light = *layer.light;
   if (layer.reshape) scene = reshaped(std::move(scene), *layer.reshape);
   scene.layers.push_back(std::move(layer));

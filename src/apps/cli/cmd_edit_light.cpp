@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/edit_verbs.h"
+#include "apps/cli/parse.h"
+
+namespace cei3d {
+namespace {
+
+struct Options {
+  LightChoice light;
+  std::string env, convention;
+};
+
+}  // namespace
+
+void add_edit_light(Commands& commands, CLI::App* edit, ProjectName project) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = commands.add("light", "Light the object otherwise", edit);
+  CLI::Option* env =
+      verb->add_option("--env", o->env,
+                       "Latitude-longitude picture (.hdr, .exr), or lobes as `export` writes them (.npy), "
+                       "instead of the light there is")
+          ->check(CLI::ExistingFile);
+  verb->add_option("--env-convention", o->convention,
+                   "Axes of the picture: zup, yup, mitsuba, blender (default: by the capture's up axis)")
+      ->needs(env);
+  verb->add_option("--rotate", o->light.rotate_degrees,
+                   "Turn the light about the up axis, degrees, counter-clockwise seen from above");
+  verb->add_option("--scale", o->light.scale, "Multiply the light by this");
+  commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {
+    LightChoice choice = options.light;
+    choice.env = options.env;
+    if (!options.convention.empty()) choice.convention = parse_env_convention(options.convention);
+    open_for_edit(session, *project, "light --env FILE");
+    const EditSummary s = session.change_light(choice, console);
+    console.done(s.json(), fmt::format("{}: a light of {} lobes; {}.", s.id,
+                                       s.report.at("lobes").get<size_t>(), stages_text(s)));
+  });
+}
+
+}  // namespace cei3d

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/cli/edit_verbs.h"
+
+namespace cei3d {
+
+void add_effects(CLI::App* verb, MaterialEffects& e) {
+  verb->add_option("--roughness", e.roughness, "0 (mirror) to 1; GGX alpha is its square");
+  verb->add_option("--specular", e.specular, "0 to 1; 0.5 is the 4 % of most dielectrics. Metals have none");
+  verb->add_option("--metalness", e.metalness, "0 to 1");
+  CLI::Option* color = verb->add_option(
+      "--color", e.color,
+      "'#RRGGBB', sRGB: the base colour on average; the texture that is there is scaled to it");
+  verb->add_flag("--replace", e.replace, "The colour replaces the texture")->needs(color);
+}
+
+void add_edit_material(Commands& commands, CLI::App* edit, ProjectName project) {
+  auto o = std::make_shared<MaterialCommand>();
+  CLI::App* verb = commands.add("material", "Change what the object, or a part of it, is made of", edit);
+  verb->add_option("--part", o->part, "Name of a part, as `edit part` gave it (default: the whole object)");
+  add_effects(verb, o->effects);
+  commands.on(verb, o, [project](const MaterialCommand& command, Session& session, Console& console) {
+    open_for_edit(session, *project, "material --roughness R");
+    const EditSummary s = session.change_material(command, console);
+    const std::string where = command.part.empty() ? "the whole object" : "part " + command.part;
+    console.done(s.json(), fmt::format("{}: {}, {} points of the surface; {}.", s.id, where,
+                                       s.report.at("points").get<size_t>(), stages_text(s)));
+  });
+}
+
+}  // namespace cei3d

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the verbs below `edit` have in common.
+#pragma once
+
+#include "apps/cli/command.h"
+#include "core/base/error.h"
+
+namespace cei3d {
+
+using ProjectName = std::shared_ptr<std::string>;  // filled when the command line is parsed
+
+// Usage error without a project. example: "paint --view NAME --scribble FILE.png".
+void open_for_edit(Session&, const std::string& project, const char* example);
+
+// "trace 0.10 s, fit 0.42 s, load and store 0.08 s"
+std::string stages_text(const EditSummary&);
+
+// --roughness, --specular, --metalness, --color, --replace
+void add_effects(CLI::App* verb, MaterialEffects&);
+
+void add_edit_paint(Commands&, CLI::App* edit, ProjectName);
+void add_edit_material(Commands&, CLI::App* edit, ProjectName);
+void add_edit_light(Commands&, CLI::App* edit, ProjectName);
+void add_edit_shape(Commands&, CLI::App* edit, ProjectName);  // deform, remove
+
+}  // namespace cei3d

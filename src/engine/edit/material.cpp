@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/edit/material.h"
+
+#include "core/base/error.h"
+#include "model/scene/appearance.h"
+#include "model/scene/parts.h"
+
+namespace cei3d {
+namespace {
+
+void check_share(const std::optional<float>& value, const char* name) {
+  if (value && !(*value >= 0 && *value <= 1))
+    fail_usage("{} {} is not in the range from 0 to 1.", name, *value);
+}
+
+void check_request(const MaterialRequest& r) {
+  if (r.change.empty() && !r.color)
+    fail_usage("Nothing to change: give a roughness, a specular, a metalness or a colour.");
+  check_share(r.change.roughness, "Roughness");
+  check_share(r.change.specular, "Specular");
+  check_share(r.change.metalness, "Metalness");
+  for (int c = 0; r.color && c < 3; ++c) check_share((*r.color)[c], "A channel of the colour,");
+}
+
+// A third of the area of the triangles around each vertex.
+std::vector<float> vertex_areas(const Mesh& mesh) {
+  std::vector<float> area(mesh.positions.size(), 0);
+  for (const auto& t : mesh.triangles) {
+    const Vec3f a = mesh.positions[t[0]];
+    const float third = length(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a)) / 6;
+    for (const uint32_t v : t) area[v] += third;
+  }
+  return area;
+}
+
+// Vertices of the present surface that a layer contains, and what they weigh.
+struct Inside {
+  std::vector<Hit> hits;
+  std::vector<float> areas;
+  double area = 0;
+
+  Inside(const Scene& scene, const EditLayer& layer) {
+    const Mesh& mesh = scene.surface->mesh();
+    const std::vector<Hit> all = vertex_hits(mesh);
+    const std::vector<uint8_t> inside = inside_layer(scene, layer, all);
+    const std::vector<float> weight = vertex_areas(mesh);
+    for (size_t v = 0; v < all.size(); ++v) {
+      if (!inside[v] || weight[v] <= 0) continue;
+      hits.push_back(all[v]);
+      areas.push_back(weight[v]);
+      area += weight[v];
+    }
+  }
+};
+
+Vec3f mean_color(const Device& device, const Scene& scene, const Inside& inside) {
+  const std::vector<Vec3f> color = appearance_at(device, scene, inside.hits).albedo;
+  Vec3d sum{0, 0, 0};
+  for (size_t i = 0; i < color.size(); ++i) sum += to_double(color[i]) * double(inside.areas[i]);
+  return to_float(sum / inside.area);
+}
+
+}  // namespace
+
+Vec3f mean_color_inside(const Device& device, const Scene& scene, const EditLayer& layer) {
+  const Inside inside(scene, layer);
+  if (inside.hits.empty()) fail("The part is nowhere on the surface as it is now; was it removed?");
+  return mean_color(device, scene, inside);
+}
+
+MaterialResult change_material(const Device& device, const Scene& scene, const MaterialRequest& request) {
+  check_request(request);
+  MaterialResult result;
+  EditLayer& layer = result.layer;
+  layer.id = request.id;
+  layer.material = request.change;
+  if (request.part.empty()) {
+    layer.everywhere = true;
+    layer.pose = scene.poses.empty() ? 0 : int(scene.poses.size()) - 1;
+  } else {
+    const EditLayer& part = part_layer(scene, request.part);
+    layer.everywhere = part.everywhere;
+    layer.region = part.region;
+    layer.pose = part.pose;
+  }
+  const Inside inside(scene, layer);
+  if (inside.hits.empty())
+    fail("Part '{}' is nowhere on the surface as it is now; was it removed?", request.part);
+  result.report.points = inside.hits.size();
+  if (request.color) {
+    layer.tint = Tint{*request.color, request.keep_texture, {1, 1, 1}};
+    if (request.keep_texture) layer.tint->mean = mean_color(device, scene, inside);
+    result.report.mean = layer.tint->mean;
+  }
+  return result;
+}
+
+}  // namespace cei3d

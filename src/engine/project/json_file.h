@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The project's JSON files: reading turns what is damaged into a sentence that names the file.
+#pragma once
+
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/json.h"
+
+namespace cei3d {
+
+inline Json parse_json_file(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  try {
+    return Json::parse(text);
+  } catch (const Json::exception& e) {
+    fail("{} is damaged (not JSON: {}); restore it from a copy of the project.", path.string(), e.what());
+  }
+}
+
+// Runs `read` on the file's JSON; a key that is missing or of another type becomes a sentence about the file.
+template <class F>
+auto read_json_file(const std::filesystem::path& path, F read) {
+  const Json j = parse_json_file(path);
+  try {
+    return read(j);
+  } catch (const Json::exception& e) {
+    fail("{} is damaged ({}); restore it from a copy of the project.", path.string(), e.what());
+  }
+}
+
+inline void write_json_file(const std::filesystem::path& path, const Json& j) {
+  write_file_atomic(path, j.dump(1) + "\n");
+}
+
+// UTC, by a format of strftime.
+std::string time_text(const char* format);
+
+}  // namespace cei3d

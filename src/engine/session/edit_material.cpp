@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/edit/material.h"
+#include "engine/session/edit_ops.h"
+#include "engine/session/edit_params.h"
+
+namespace cei3d {
+namespace {
+
+EditOutcome make(const EditContext& context, const EditJob& job) {
+  const Effects effects = effects_from_params(job.params);
+  MaterialRequest request;
+  request.id = job.id;
+  request.part = job.params.value("part", "");
+  request.change = effects.change;
+  request.color = effects.color;
+  request.keep_texture = !effects.replace;
+  MaterialResult result = change_material(context.device, context.scene, request);
+  return {std::move(result.layer), {{"points", result.report.points}}};
+}
+
+Aspects depends(const Json& params) {
+  const bool part = params.contains("part"),
+             mean = params.contains("color") && !params.value("replace", false);
+  return {.shape = part || mean, .look = mean, .parts = part};
+}
+
+}  // namespace
+
+const EditOp kMaterialOp{"material", 1, make, depends};
+
+}  // namespace cei3d

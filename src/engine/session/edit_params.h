@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parameters that several edits have in common, between commands and what is stored.
+#pragma once
+
+#include "core/base/json.h"
+#include "core/math/vec.h"
+#include "engine/session/requests.h"
+#include "model/material/change.h"
+
+namespace cei3d {
+
+// A colour as users write it, '#RRGGBB' in sRGB, to linear. Usage error: anything else.
+Vec3f color_from_text(const std::string& text);
+
+// Keys "roughness", "specular", "metalness", "color" ('#rrggbb') and "replace" of the parameters of an edit.
+struct Effects {
+  MaterialChange change;
+  std::optional<Vec3f> color;  // linear
+  bool replace = false;        // of the colour: it replaces what is there instead of scaling it
+};
+Effects effects_from_params(const Json& params);
+// Writes the keys that the command has. Usage errors: values out of range, no colour, --replace without a
+// colour.
+void put_effects(const MaterialEffects&, Json& params);
+
+}  // namespace cei3d

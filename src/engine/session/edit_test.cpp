@@ -1,0 +1,346 @@
+// SPDX-License-Identifier: Apache-2.0
+// Edits by commands, on a project that holds a sphere.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/temp_folder.h"
+#include "core/math/rng.h"
+#include "engine/io/image_file.h"
+#include "engine/project/project.h"
+#include "engine/render/render.h"
+#include "engine/render/sphere_scene.h"
+#include "engine/session/session.h"
+#include "model/scene/appearance.h"
+
+namespace cei3d {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr int kSize = 48;
+
+template <class F>
+Error error_of(F run) {
+  try {
+    run();
+  } catch (const Error& e) {
+    return e;
+  }
+  return {ErrorCode::failed, "no error"};
+}
+
+Capture three_views() {
+  Capture c;
+  c.root = "/nowhere";
+  c.format = "nerf-synthetic";
+  for (const Vec3d center : {Vec3d{0, -3, 0.3}, Vec3d{2, 2, 1}, Vec3d{-2, 1, -1}}) {
+    View v;
+    v.name = "train/r_" + std::to_string(c.views.size());
+    v.camera = camera_towards_origin(center, kSize);
+    c.views.push_back(v);
+  }
+  return c;
+}
+
+// Opaque in a square about the middle.
+Image square_scribble(Vec3f srgb, int half) {
+  Image s(kSize, kSize, 4);
+  for (int y = kSize / 2 - half; y < kSize / 2 + half; ++y)
+    for (int x = kSize / 2 - half; x < kSize / 2 + half; ++x) {
+      for (int c = 0; c < 3; ++c) s.at(x, y)[c] = srgb[c];
+      s.at(x, y)[3] = 1;
+    }
+  return s;
+}
+
+Region ball(Vec3f center, float radius) { return Region({{center}, {normalize(center)}, {radius}}); }
+
+// What an edit leaves: the scene but for the names of its layers.
+std::string bytes_of(const Scene& scene) {
+  std::string bytes;
+  const auto add = [&](const Tensors& t, const Json& h) { bytes += tensors_to_bytes(t) + h.dump(); };
+  Tensors base;
+  Json head = Json::object();
+  save_scene(scene, base, head);
+  add(base, head);
+  for (EditLayer layer : scene.layers) {
+    layer.id = "";
+    Tensors t;
+    Json h = Json::object();
+    save_layer(layer, t, h);
+    add(t, h);
+  }
+  return bytes;
+}
+
+std::string files_of(const fs::path& folder) {
+  std::string list = read_file(folder / "stack.json");
+  std::vector<std::string> files;
+  for (const auto& e : fs::recursive_directory_iterator(folder)) files.push_back(e.path().string());
+  std::sort(files.begin(), files.end());
+  for (const std::string& f : files) list += f + "\n";
+  return list;
+}
+
+class EditTest : public ::testing::Test {
+ protected:
+  void SetUp() override { make("a"); }
+  fs::path folder(const std::string& name) const { return temp_.path() / name; }
+  void make(const std::string& name) {
+    Scene scene = sphere_scene();
+    auto points = std::make_shared<HandlerPoints>();
+    for (const Vec3f p : scene.surface->mesh().positions) points->positions.push_back(p);
+    points->normals = scene.surface->mesh().normals;
+    points->footprints.assign(points->positions.size(), 0.02f);
+    points->spacing = 0.02f;
+    scene.handlers = points;
+    Project::create(folder(name), {}, three_views(), false).save_base(scene);
+    session_.open(folder(name), Session::Access::write);
+  }
+  Scene scene(const std::string& name) { return Project::open(folder(name), Project::Mode::read).scene(); }
+  // As `edit part` will do it.
+  void add_part(const std::string& name, Vec3f center, float radius) {
+    session_.close();
+    {
+      Project p = Project::open(folder("a"), Project::Mode::write);
+      EditLayer layer;
+      layer.id = p.stack().next_id("part");
+      layer.region = ball(center, radius);
+      layer.part = name;
+      p.add_edit({layer.id, "part", 1, Json::object(), {}, Json::object(), {}}, layer);
+    }
+    session_.open(folder("a"), Session::Access::write);
+  }
+  PaintCommand scribble(int view, Vec3f srgb, int half) {
+    const fs::path file = temp_.path() / "scribble.png";
+    write_png(file, square_scribble(srgb, half));
+    return {"train/r_" + std::to_string(view), file, 1};
+  }
+
+  TempFolder temp_;
+  Session session_;
+  Progress quiet_;
+};
+
+TEST_F(EditTest, MaterialOfTheWholeObject) {
+  MaterialCommand c;
+  c.effects.roughness = 0.6f;
+  c.effects.color = "#bcbcbc";  // linear 0.503
+  const EditSummary s = session_.change_material(c, quiet_);
+  EXPECT_EQ(s.id, "0001-material");
+  const Scene after = scene("a");
+  const auto hits = vertex_hits(after.surface->mesh());
+  const Appearance a = appearance_at(session_.device(), after, hits);
+  Vec3f mean{0, 0, 0};
+  for (size_t i = 0; i < hits.size(); ++i) {
+    EXPECT_EQ(a.materials[a.material[i]].roughness, 0.6f);
+    EXPECT_EQ(a.layer[i], -1);         // everywhere is not local
+    const Vec3f p = hits[i].position;  // rows of a sphere's mesh: by area
+    mean += a.albedo[i] * std::sqrt(max(0.0f, 1 - square(p.z / kSphereRadius)));
+  }
+  for (int c2 = 0; c2 < 3; ++c2) EXPECT_NEAR(mean[c2] / mean[0], 1, 0.02f);
+  EXPECT_NEAR(after.layers[0].tint->color.x, 0.5029f, 1e-3f);
+}
+
+TEST_F(EditTest, MaterialOfAPartStaysInThePart) {
+  add_part("cap", {0, -kSphereRadius, 0}, 0.4f);
+  const Scene before = scene("a");
+  MaterialCommand c{"cap", {}};
+  c.effects.roughness = 0.9f;
+  c.effects.metalness = 1;
+  c.effects.color = "#ff0000";
+  c.effects.replace = true;
+  session_.change_material(c, quiet_);
+  const Scene after = scene("a");
+  const Device& device = session_.device();
+  const GBuffer g = trace_view(device, before, camera_towards_origin({0, -3, 0.3}, kSize), 2);
+  const Frame a = shade_view(device, before, g), b = shade_view(device, after, g);
+  int inside = 0, changed = 0;
+  for (size_t p = 0; p < b.edited.size(); ++p) {
+    inside += b.edited[p];
+    const bool same = std::memcmp(&a.rgb.data[4 * p], &b.rgb.data[4 * p], 16) == 0;
+    changed += !same;
+    EXPECT_TRUE(same || b.edited[p]);
+    EXPECT_TRUE(b.edited[p] || a.roughness.data[p] == b.roughness.data[p]);
+  }
+  EXPECT_GT(inside, 100);
+  EXPECT_GT(changed, inside * 9 / 10);
+  const size_t middle = size_t(kSize) * kSize / 2 + kSize / 2;
+  EXPECT_NEAR(b.roughness.data[middle], 0.9f, 1e-6f);
+  EXPECT_EQ(b.albedo.data[4 * middle], 1);
+  EXPECT_EQ(b.diffuse.data[4 * middle], 0);  // a metal
+}
+
+TEST_F(EditTest, WrongMaterialsChangeNothing) {
+  add_part("cap", {0, -kSphereRadius, 0}, 0.4f);
+  add_part("nothing", {0, 0, 3}, 0.1f);
+  const std::string before = files_of(folder("a"));
+  const auto message = [&](MaterialCommand c) {
+    return error_of([&] { session_.change_material(c, quiet_); });
+  };
+  MaterialCommand c;
+  EXPECT_EQ(message(c).code(), ErrorCode::usage);
+  for (const float r : {-0.1f, 1.1f, NAN, INFINITY}) {
+    c.effects.roughness = r;
+    EXPECT_EQ(message(c).code(), ErrorCode::usage) << r;
+  }
+  c.effects.roughness = 0.5f;
+  c.part = "ear";
+  EXPECT_EQ(message(c).code(), ErrorCode::usage);
+  EXPECT_THAT(message(c).what(), HasSubstr("'cap', 'nothing'"));
+  c.part = "nothing";
+  EXPECT_THAT(message(c).what(), HasSubstr("nowhere on the surface"));
+  c.part = "cap";
+  for (const char* color : {"red", "#12345", "#12345g", "123456#", "#1234567"}) {
+    c.effects.color = color;
+    EXPECT_THAT(message(c).what(), HasSubstr("is not a colour"));
+  }
+  EXPECT_EQ(files_of(folder("a")), before);
+}
+
+TEST_F(EditTest, LightIsTurnedScaledAndReplaced) {
+  const SgMixture own = sphere_scene().light;
+  session_.change_light({"", 90, EnvConvention::by_up_axis, 1}, quiet_);
+  session_.change_light({"", 0, EnvConvention::by_up_axis, 2}, quiet_);
+  const SgMixture turned = scene("a").light;
+  EXPECT_NEAR(turned.lobes[1].axis.y, 1, 1e-6f);  // +X, a quarter about +Z
+  EXPECT_EQ(turned.lobes[1].mu.x, 2 * own.lobes[1].mu.x);
+  // Without the first, the second works on the object's own light.
+  EXPECT_FALSE(session_.toggle("0001-light", quiet_));
+  EXPECT_EQ(scene("a").light.lobes[1].axis.x, 1);
+  EXPECT_EQ(scene("a").light.lobes[1].mu.x, 2 * own.lobes[1].mu.x);
+  EXPECT_TRUE(session_.toggle("0001-light", quiet_));
+  EXPECT_EQ(to_array(scene("a").light), to_array(turned));
+  const fs::path sky = temp_.path() / "sky.hdr";
+  Image grey(16, 8, 3, 0.5f);
+  write_hdr(sky, grey);
+  const EditSummary s = session_.change_light({sky, 0, EnvConvention::by_up_axis, 1}, quiet_);
+  EXPECT_NEAR(radiance(scene("a").light, {0, 0.6f, 0.8f}).y, 0.5f, 0.1f);
+  EXPECT_EQ(scene("a").light.lobes.size(), s.report.at("lobes").get<size_t>());
+  fs::remove(sky);  // it is not needed again
+  session_.toggle("0001-light", quiet_);
+  EXPECT_NEAR(radiance(scene("a").light, {0, 0.6f, 0.8f}).y, 0.5f, 0.1f);
+}
+
+TEST_F(EditTest, WrongLightsChangeNothing) {
+  const std::string before = files_of(folder("a"));
+  const auto code = [&](const LightChoice& c) {
+    return error_of([&] { session_.change_light(c, quiet_); }).code();
+  };
+  EXPECT_EQ(code({}), ErrorCode::usage);
+  EXPECT_EQ(code({"", 0, EnvConvention::by_up_axis, 0}), ErrorCode::usage);
+  EXPECT_EQ(code({"", NAN, EnvConvention::by_up_axis, 1}), ErrorCode::usage);
+  const fs::path sky = temp_.path() / "sky.hdr";
+  write_hdr(sky, Image(16, 16, 3, 0.5f));
+  EXPECT_EQ(code({sky, 0, EnvConvention::by_up_axis, 1}), ErrorCode::failed);
+  write_hdr(sky, Image(16, 8, 3, 0));
+  EXPECT_EQ(code({sky, 0, EnvConvention::by_up_axis, 1}), ErrorCode::failed);
+  EXPECT_EQ(files_of(folder("a")), before);
+}
+
+// A project that is edited, undone, redone and switched at random ends as one where the edits that are left
+// were simply made.
+struct Made {
+  int kind;
+  std::string id;
+  bool on = true;
+};
+
+class RandomEdits : public EditTest {
+ protected:
+  std::string make_edit(int kind) {
+    MaterialCommand m;
+    switch (kind) {
+      case 0:
+        return session_.paint(scribble(0, {0.8f, 0.1f, 0.1f}, 6), quiet_).id;
+      case 1:
+        m.effects.color = "#4060c0";
+        return session_.change_material(m, quiet_).id;
+      case 2:
+        m.effects.roughness = 0.7f;
+        m.effects.color = "#808080";
+        return session_.change_material(m, quiet_).id;
+      case 3:
+        return session_.change_light({"", 30, EnvConvention::by_up_axis, 1}, quiet_).id;
+      case 4:
+        return session_.change_light({"", 0, EnvConvention::by_up_axis, 1.5}, quiet_).id;
+      case 5:
+        m.effects.specular = 0.2f;
+        return session_.change_material(m, quiet_).id;
+      case 6:  // paint and this overlap
+        return session_.deform({PointDrag{{0.1, -0.69, 0.1}, {0.15, -0.8, 0.1}}, 0.35, ""}, quiet_).id;
+      default:
+        return session_.deform({PointDrag{{kSphereRadius, 0, 0}, {0.85, 0, 0.1}}, 0.35, ""}, quiet_).id;
+    }
+  }
+};
+
+TEST_F(RandomEdits, EndInTheSameBytesAsDoingWhatIsLeft) {
+  for (uint64_t seed = 0; seed < 3; ++seed) {
+    const std::string name = "random" + std::to_string(seed), direct = "direct" + std::to_string(seed);
+    make(name);
+    std::vector<Made> history;
+    size_t cursor = 0;
+    for (uint64_t step = 0; step < 16; ++step) {
+      Rng rng(seed, 7, step);
+      const uint32_t what = rng.below(10);
+      if (what < 5 || history.empty()) {
+        int kind = int(rng.below(8));
+        history.resize(cursor);
+        if (std::any_of(history.begin(), history.end(), [&](const Made& m) { return m.kind == kind; }))
+          kind %= 6;
+        history.push_back({kind, make_edit(kind)});
+        ++cursor;
+      } else if (what < 7 && cursor > 0) {
+        EXPECT_EQ(session_.undo(quiet_), history[--cursor].id);
+      } else if (what < 8 && cursor < history.size()) {
+        EXPECT_EQ(session_.redo(quiet_), history[cursor++].id);
+      } else {
+        Made& e = history[rng.below(uint32_t(history.size()))];
+        EXPECT_EQ(session_.toggle(e.id, quiet_), !e.on);
+        e.on = !e.on;
+      }
+    }
+    make(direct);
+    for (size_t i = 0; i < cursor; ++i)
+      if (history[i].on) make_edit(history[i].kind);
+    EXPECT_EQ(bytes_of(scene(name)), bytes_of(scene(direct))) << seed;
+  }
+}
+
+TEST_F(RandomEdits, ReplayedOnAnotherProjectGiveTheSameObject) {
+  for (const int kind : {0, 1, 3, 2, 4}) make_edit(kind);
+  session_.toggle("0002-material", quiet_);
+  session_.undo(quiet_);
+  make("b");
+  session_.open(folder("a"), Session::Access::read);
+  const ReplayReport r = session_.replay(folder("b"), quiet_);
+  ASSERT_EQ(r.edits.size(), 4u);
+  EXPECT_EQ(bytes_of(scene("a")), bytes_of(scene("b")));
+  const Project b = Project::open(folder("b"), Project::Mode::read);
+  EXPECT_EQ(b.stack().entries().size(), 4u);
+  EXPECT_FALSE(b.stack().entries()[1].enabled);
+  EXPECT_EQ(error_of([&] { session_.replay(folder("a"), quiet_); }).code(), ErrorCode::usage);
+}
+
+TEST_F(RandomEdits, WhatCannotBeMadeAnewKeepsTheHistoryAsItIs) {
+  add_part("cap", {0, -kSphereRadius, 0}, 0.4f);
+  MaterialCommand c{"cap", {}};
+  c.effects.roughness = 0.9f;
+  session_.change_material(c, quiet_);
+  const std::string before = files_of(folder("a"));
+  const Error e = error_of([&] { session_.toggle("0001-part", quiet_); });
+  EXPECT_THAT(e.what(), HasSubstr("0002-material"));
+  EXPECT_THAT(e.what(), HasSubstr("There is no part 'cap'"));
+  EXPECT_EQ(files_of(folder("a")), before);
+  session_.toggle("0002-material", quiet_);
+  EXPECT_FALSE(session_.toggle("0001-part", quiet_));
+}
+
+}  // namespace
+}  // namespace cei3d

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// Edits: commands become parameters and input files, which is all that an edit is made from; see edit_ops.h.
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/compute/device.h"
+#include "engine/io/npy.h"
+#include "engine/project/project.h"
+#include "engine/session/edit_ops.h"
+#include "engine/session/edit_params.h"
+#include "engine/session/light_choice.h"
+#include "engine/session/session.h"
+#include "engine/session/stopwatch.h"
+
+namespace cei3d {
+namespace {
+
+EditSummary add_edit_to(Project& project, const Device& device, const char* name, Json params,
+                        EditInputs inputs, Progress& progress) {
+  Stopwatch watch;
+  const EditOp& op = edit_op(name);
+  const Scene scene = project.scene();
+  EditSummary s;
+  s.load_seconds = watch.lap();
+  const EditJob job{project.stack().next_id(name), std::move(params), std::move(inputs)};
+  EditOutcome made = op.make({device, project.capture(), scene, progress}, job);
+  const double seconds = watch.lap();
+  if (!made.report.contains("seconds")) made.report["seconds"] = {{name, seconds}};
+  s.id = job.id;
+  s.report = made.report;
+  project.add_edit({job.id, name, op.version, job.params, op.depends(job.params), made.report, job.inputs},
+                   made.layer);
+  s.store_seconds = watch.lap();
+  return s;
+}
+
+// Makes what a change of the history asks for, before it is made: so the history that stands is always
+// complete.
+void make_anew(Project& project, const Device& device, const Stack& next, Progress& progress) {
+  while (const auto id = project.first_stale(next)) {
+    const EditRecord record = project.edit(*id);
+    try {
+      const Scene below = project.scene_below(next, *id);
+      const EditOutcome made = edit_op(record.op).make({device, project.capture(), below, progress},
+                                                       {*id, record.params, project.edit_inputs(*id)});
+      project.add_result(next, *id, made.layer);
+    } catch (const Error& e) {
+      if (e.code() == ErrorCode::interrupted) throw;
+      fail("Edit {} would have to be made anew, and cannot be: {} Nothing was changed.", *id, e.what());
+    }
+  }
+}
+
+bool toggle_edit(Project& project, const Device& device, const std::string& id, Progress& progress) {
+  Stack next = project.stack();
+  next.toggle(id);
+  make_anew(project, device, next, progress);
+  return project.toggle(id);
+}
+
+}  // namespace
+
+EditSummary Session::add_edit(const char* op, Json params, EditInputs inputs, Progress& progress) {
+  return add_edit_to(project(), *device_, op, std::move(params), std::move(inputs), progress);
+}
+
+EditSummary Session::paint(const PaintCommand& command, Progress& progress) {
+  const View& view = find_view(project().capture(), command.view);
+  const Json params = {
+      {"view", view.name}, {"file", command.scribble.string()}, {"target", "albedo"}, {"seed", command.seed}};
+  return add_edit("paint", params, {{"scribble.png", read_file(command.scribble)}}, progress);
+}
+
+EditSummary Session::change_material(const MaterialCommand& command, Progress& progress) {
+  if (command.effects.empty())
+    fail_usage("Nothing to change: give --roughness, --specular, --metalness or --color.");
+  Json params = Json::object();
+  if (!command.part.empty()) params["part"] = command.part;
+  put_effects(command.effects, params);
+  return add_edit("material", std::move(params), {}, progress);
+}
+
+EditSummary Session::change_light(const LightChoice& choice, Progress& progress) {
+  if (choice.env.empty() && choice.rotate_degrees == 0 && choice.scale == 1)
+    fail_usage("Nothing to change: give --env, --rotate or --scale.");
+  check_turn(choice);
+  Json params = Json::object();
+  EditInputs inputs;
+  if (!choice.env.empty()) {
+    const SgMixture light =
+        environment_light(*device_, choice, project().base().up, {project().folder() / "cache", true});
+    params["env"] = choice.env.string();
+    inputs.emplace_back("light.npy", encode_npy(to_array(light), int64_t(light.lobes.size()), 7));
+  }
+  if (choice.rotate_degrees != 0) params["rotate_degrees"] = choice.rotate_degrees;
+  if (choice.scale != 1) params["scale"] = choice.scale;
+  return add_edit("light", std::move(params), std::move(inputs), progress);
+}
+
+std::string Session::undo(Progress& progress) {
+  Stack next = project().stack();
+  next.undo();
+  make_anew(project(), *device_, next, progress);
+  return project().undo();
+}
+
+std::string Session::redo(Progress& progress) {
+  Stack next = project().stack();
+  next.redo();
+  make_anew(project(), *device_, next, progress);
+  return project().redo();
+}
+
+bool Session::toggle(const std::string& id, Progress& progress) {
+  return toggle_edit(project(), *device_, id, progress);
+}
+
+ReplayReport Session::replay(const std::filesystem::path& on, Progress& progress) {
+  std::error_code error;
+  if (std::filesystem::equivalent(project().folder(), on, error))
+    fail_usage("{} is the project itself; name another one with --on.", on.string());
+  Project other = Project::open(on, Project::Mode::write);
+  const Stack& stack = project().stack();
+  ReplayReport report;
+  for (size_t i = 0; i < stack.cursor(); ++i) {
+    const StackEntry& entry = stack.entries()[i];
+    const EditRecord record = project().edit(entry.id);
+    try {
+      const EditSummary s = add_edit_to(other, *device_, edit_op(record.op).name, record.params,
+                                        project().edit_inputs(entry.id), progress);
+      if (!entry.enabled) toggle_edit(other, *device_, s.id, progress);
+      report.edits.emplace_back(entry.id, s.id);
+    } catch (const Error& e) {
+      if (e.code() == ErrorCode::interrupted) throw;
+      fail("Edit {} cannot be made on {}: {} The {} before it were.", entry.id, on.string(), e.what(), i);
+    }
+  }
+  return report;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/scene/parts.h"
+
+#include <set>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+
+namespace cei3d {
+
+std::vector<std::string> part_names(const Scene& scene) {
+  std::set<std::string> names;
+  for (const EditLayer& l : scene.layers)
+    if (!l.part.empty()) names.insert(l.part);
+  return {names.begin(), names.end()};
+}
+
+const EditLayer& part_layer(const Scene& scene, const std::string& part) {
+  for (auto l = scene.layers.rbegin(); l != scene.layers.rend(); ++l)
+    if (!l->part.empty() && l->part == part) return *l;
+  std::string names;
+  for (const std::string& name : part_names(scene)) names += (names.empty() ? "'" : ", '") + name + "'";
+  if (names.empty())
+    fail_usage("There is no part '{}'; make one with `cei3d edit PROJECT part --name {}`.", part, part);
+  fail_usage("There is no part '{}'; there are {}.", part, names);
+}
+
+std::vector<uint8_t> inside_layer(const Scene& scene, const EditLayer& layer, std::span<const Hit> hits) {
+  std::vector<uint8_t> inside(hits.size(), 0);
+  parallel_ranges(int(hits.size()), 1024, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      if (!scene.poses.empty() && scene.poses.back()->born_in(hits[i].triangle) > layer.pose) continue;
+      const SurfacePoint p = in_pose(scene.poses, hits[i], layer.pose);
+      inside[i] = layer.contains(p.position, p.normal);
+    }
+  });
+  return inside;
+}
+
+}  // namespace cei3d
