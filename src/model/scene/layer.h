@@ -24,7 +24,7 @@ struct EditLayer {
   bool everywhere = false;  // the whole object; else `region`
   Region region;            // contains nothing by default
   // The shape of the object that region and branch live in: the number of changes of geometry before it.
-  // kLatestPose: the one that the layer is put on.
+  // kLatestPose: the one that with_layer() puts the layer on.
   int pose = kLatestPose;
   std::string part;                     // name of the part that the region is; empty: none
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: base colour of the layers below
