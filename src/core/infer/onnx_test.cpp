@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/infer/onnx.h"
+
+#include <gtest/gtest.h>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/base/temp_folder.h"
+
+namespace cei3d {
+namespace {
+
+const std::filesystem::path kFolder =
+    "build/sam";  // tests run in the repository's root; `./run sam` fills it
+
+// Protocol buffers by hand, as far as an ONNX file of one node needs them. Fields: onnx.proto.
+std::string number(int field, uint8_t value) { return {char(field << 3), char(value)}; }  // value < 128
+std::string bytes(int field, const std::string& s) {
+  return std::string{char(field << 3 | 2), char(s.size())} + s;  // size < 128
+}
+
+std::string float_vector(const std::string& name) {  // ValueInfoProto of shape [N]
+  const std::string shape = bytes(1, bytes(2, "N"));
+  return bytes(1, name) + bytes(2, bytes(1, number(1, 1) + bytes(2, shape)));
+}
+
+// c = a - b
+std::string subtraction() {
+  const std::string node = bytes(1, "a") + bytes(1, "b") + bytes(2, "c") + bytes(4, "Sub");
+  const std::string graph = bytes(1, node) + bytes(2, "g") + bytes(11, float_vector("a")) +
+                            bytes(11, float_vector("b")) + bytes(12, float_vector("c"));
+  return number(1, 7) + bytes(7, graph) + bytes(8, bytes(1, "") + number(2, 13));
+}
+
+// First: a library that is open already would be found under its name.
+TEST(OnnxMissing, SaysWhatToInstall) {
+  if (OnnxRuntime::available("nowhere")) GTEST_SKIP() << "the system has an ONNX Runtime of its own";
+  try {
+    OnnxRuntime runtime("nowhere");
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("./run sam"), std::string::npos);
+  }
+}
+
+class Onnx : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!OnnxRuntime::available(kFolder)) GTEST_SKIP() << "no ONNX Runtime here; ./run sam installs it";
+  }
+  std::shared_ptr<const OnnxModel> model(const std::string& content) {
+    const auto file = folder_.path() / "network.onnx";
+    write_file_atomic(file, content);
+    return std::make_shared<OnnxModel>(std::make_shared<OnnxRuntime>(kFolder), file, 1);
+  }
+  TempFolder folder_;
+};
+
+TEST_F(Onnx, RunsAnExpressionWhoseValueIsKnown) {
+  const auto m = model(subtraction());
+  EXPECT_EQ(m->inputs(), (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(m->outputs(), std::vector<std::string>{"c"});
+  const OnnxTensors out = m->run({{"a", {{3}, {5, 7, 9}}}, {"b", {{3}, {1, 10, 0.5f}}}}, {"c"});
+  EXPECT_EQ(out.at("c").shape, std::vector<int64_t>{3});
+  EXPECT_EQ(out.at("c").data, (std::vector<float>{4, -3, 8.5f}));
+}
+
+TEST_F(Onnx, RefusesWhatDoesNotFit) {
+  const auto m = model(subtraction());
+  EXPECT_THROW(m->run({{"a", {{1}, {1}}}}, {"c"}), Error);                        // no b
+  EXPECT_THROW(m->run({{"a", {{2}, {1}}}, {"b", {{1}, {1}}}}, {"c"}), Error);     // shape without its data
+  EXPECT_THROW(m->run({{"a", {{1, 1}, {1}}}, {"b", {{1}, {1}}}}, {"c"}), Error);  // another rank
+  EXPECT_THROW(m->run({{"a", {{1}, {1}}}, {"b", {{1}, {1}}}}, {"d"}), Error);     // no such output
+}
+
+TEST_F(Onnx, FileThatIsNoNetwork) {
+  EXPECT_THROW(model("this is text"), Error);
+  EXPECT_THROW(model(""), Error);
+  const auto runtime = std::make_shared<OnnxRuntime>(kFolder);
+  EXPECT_THROW(OnnxModel(runtime, folder_.path() / "missing.onnx"), Error);
+}
+
+}  // namespace
+}  // namespace cei3d
