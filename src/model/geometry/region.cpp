@@ -39,7 +39,10 @@ Region::Region(Points points, Projector projector)
   if (max_reach_ > 0) index_ = PointIndex(points_.positions, max_reach_);
 }
 
+Region::Region(ScoredPoints part) : scored_(std::move(part)) {}
+
 bool Region::contains(Vec3f position, Vec3f normal) const {
+  if (!scored_.empty()) return scored_.score(position, normal) >= 0.5f;
   if (!projector_.empty() && !projector_.covers(position, normal)) return false;
   return index_.any_within(position, max_reach_, [&](size_t i) {
     const Vec3f d = points_.positions[i] - position;
@@ -48,6 +51,7 @@ bool Region::contains(Vec3f position, Vec3f normal) const {
 }
 
 void Region::save(Tensors& tensors, Json& head) const {
+  if (!scored_.empty()) return scored_.save(tensors, head["scored"]);
   head["points"] = points_.positions.size();
   tensors["region/positions"] = tensor_of(points_.positions);
   tensors["region/normals"] = tensor_of(points_.normals);
@@ -56,6 +60,7 @@ void Region::save(Tensors& tensors, Json& head) const {
 }
 
 Region Region::load(const Tensors& tensors, const Json& head) {
+  if (head.contains("scored")) return Region(ScoredPoints::load(tensors, head.at("scored")));
   const size_t n = head.at("points").get<size_t>();
   Points points;
   points.positions = vectors_of(find(tensors, "region/positions", 3 * n));

@@ -7,6 +7,8 @@
 // that camera sees it inside the mask. The points say which surface is meant, the mask where the edit ends:
 // the border is as sharp as the scribble (alpha 0.5, interpolated between pixels), and nothing leaks to
 // surfaces that the view does not show.
+//
+// A part of the object is a third kind: scored points (model/geometry/scored_points.h).
 #pragma once
 
 #include <vector>
@@ -14,6 +16,7 @@
 #include "core/math/vec.h"
 #include "model/geometry/point_index.h"
 #include "model/geometry/projector.h"
+#include "model/geometry/scored_points.h"
 
 namespace cei3d {
 
@@ -26,11 +29,13 @@ class Region {
     std::vector<float> reach;      // #N, unit-sphere units
   };
   explicit Region(Points points, Projector projector = {});  // an empty projector: by the points alone
+  explicit Region(ScoredPoints part);
 
   // normal: unit, outward.
   bool contains(Vec3f position, Vec3f normal) const;
   const Points& points() const { return points_; }
   const Projector& projector() const { return projector_; }
+  const ScoredPoints& scored() const { return scored_; }  // empty: not a part
 
   // Tensors "region/...", the rest in the head; and back. Errors: missing tensors or keys, sizes that
   // disagree.
@@ -40,6 +45,7 @@ class Region {
  private:
   Points points_;
   Projector projector_;
+  ScoredPoints scored_;
   PointIndex index_;
   float max_reach_ = 0;
 };
