@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Handler points and which of them are neighbours on the surface: what a part is grown on.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "model/geometry/handlers.h"
+
+namespace cei3d {
+
+struct GraphEdge {
+  uint32_t a = 0, b = 0;  // points, a < b
+  // How unlike the two are, in Oklab units: 0.01 is just visible, 1 is black to white.
+  float length = 0;  // spacings
+  float color = 0;   // of their colours
+  float crease = 0;  // of the surface between them, see kCreaseStep
+  float step() const { return std::hypot(color, crease); }
+};
+
+struct PointGraph {
+  std::vector<Vec3f> colors;     // #N, Oklab
+  std::vector<GraphEdge> edges;  // each pair once, ordered by a, then b
+};
+
+// A concave crease counts like a difference of colour, this much for each radian: objects are made of parts
+// that meet in creases. [the minima rule: Hoffman and Richards 1984]
+inline constexpr float kCreaseStep = 0.1f;
+
+// Points are neighbours within two spacings, on the same side of the surface. base_colors: #N, linear.
+PointGraph point_graph(const HandlerPoints&, std::span<const Vec3f> base_colors);
+
+}  // namespace cei3d

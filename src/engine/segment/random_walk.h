@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where exactly a part ends: the probability that a random walker from a point meets a positive seed before a
+// negative one, where it is loath to cross steps of colour. [Grady 2006]
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/segment/compete.h"
+#include "engine/segment/point_graph.h"
+
+namespace cei3d {
+
+// prior: #N, [0, 1], what the answer is taken to be at first; it decides what the seeds hardly reach. Returns
+// #N scores in [0, 1]; they cross one half in the middle of a blurred border, finer than the points.
+std::vector<float> random_walk(const PointGraph&, std::span<const Seed> seeds, std::span<const float> prior);
+
+}  // namespace cei3d
