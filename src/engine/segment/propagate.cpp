@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/segment/propagate.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "engine/segment/seen_points.h"
+#include "model/geometry/point_index.h"
+
+namespace cei3d {
+namespace {
+
+constexpr float kMinFacing = 0.2f;       // of points that are voted on
+constexpr float kPromptFacing = 0.4f;    // of points that are prompted with
+constexpr float kBelieved = 0.7f;        // score from which a point counts as in, one minus that: as out
+constexpr float kPrior = 0.1f;           // weight of "unknown" against one frontal vote
+constexpr float kFirstWeight = 2;        // of the clicked view's vote: a person has looked at it
+constexpr float kMinAgreement = 0.6f;    // of a mask with what is known, as intersection over union
+constexpr float kGoodAgreement = 0.92f;  // from which it needs no correction
+constexpr int kCorrections = 4;          // prompts more, one at a time, where a mask is wrong
+constexpr size_t kPrompts = 5;           // of each kind, beside the user's own
+constexpr size_t kSamples = 500;         // points of the part that views are chosen by
+constexpr float kEnough = 0.5f;          // votes (as one frontal vote) that halve the need for more
+constexpr float kSurroundings = 0.5f;    // how far around the part votes are wanted, of its extent
+constexpr float kLeastGain = 0.02f;      // mean gain of a point, below which no view is worth it
+constexpr float kMinSeen = 0.07f;        // of the part, that a view must show to be segmented
+
+// Score of each point, from the votes so far.
+class Votes {
+ public:
+  explicit Votes(size_t n) : sum_(n, 0.0f), weight_(n, 0.0f) {}
+  void add(uint32_t point, float probability, float weight) {
+    sum_[point] += weight * probability;
+    weight_[point] += weight;
+  }
+  float score(size_t i) const { return (sum_[i] + 0.5f * kPrior) / (weight_[i] + kPrior); }
+  // How much a further vote would tell, [0, 1].
+  float need(size_t i) const { return 1 / (1 + weight_[i] / kEnough); }
+  bool in(size_t i) const { return score(i) >= kBelieved; }
+  bool out(size_t i) const { return score(i) <= 1 - kBelieved; }
+  size_t size() const { return sum_.size(); }
+
+ private:
+  std::vector<float> sum_, weight_;
+};
+
+// Intersection over union of the mask and the points believed in, over the points something is known of; and
+// the pixels where they differ.
+struct Comparison {
+  float agreement = 0;
+  std::vector<Vec2f> missing, surplus, right_in, right_out;
+};
+
+Comparison compare(const std::vector<SeenPoint>& seen, const Votes& votes, const Image& mask) {
+  Comparison c;
+  float both = 0, either = 0;
+  for (const SeenPoint& s : seen) {
+    const bool in = votes.in(s.point), masked = sample(mask, s.pixel) > 0;
+    if (!in && !votes.out(s.point)) continue;
+    if (in && masked) both += s.facing;
+    if (in || masked) either += s.facing;
+    if (s.facing < kPromptFacing) continue;
+    (in ? masked ? c.right_in : c.missing : masked ? c.surplus : c.right_out).push_back(s.pixel);
+  }
+  c.agreement = either > 0 ? both / either : 0;
+  return c;
+}
+
+std::vector<Vec3f> every(const std::vector<size_t>& ids, size_t most, const std::vector<Vec3f>& positions) {
+  const size_t step = std::max<size_t>(ids.size() / most, 1);
+  std::vector<Vec3f> kept;
+  for (size_t k = 0; k < ids.size(); k += step) kept.push_back(positions[ids[k]]);
+  return kept;
+}
+
+// Root mean square distance from the mean.
+float extent(const std::vector<Vec3f>& points) {
+  const auto n = float(points.size());
+  Vec3f mean{0, 0, 0};
+  for (Vec3f p : points) mean += p / n;
+  float squares = 0;
+  for (Vec3f p : points) squares += dot(p - mean, p - mean) / n;
+  return std::sqrt(squares);
+}
+
+class Propagation {
+ public:
+  Propagation(const HandlerPoints& handlers, const Surface& surface, const PropagateRequest& request,
+              ViewSegmenter& segmenter)
+      : handlers_(handlers),
+        surface_(surface),
+        request_(request),
+        segmenter_(segmenter),
+        votes_(handlers.positions.size()),
+        tolerance_(std::max(2 * handlers.spacing, 0.01f)) {
+    find_clicks(request.clicks.positive, positive_);
+    find_clicks(request.clicks.negative, negative_);
+  }
+
+  void first_view();
+  void next_view(int view);
+  int choose_view() const;  // -1: none is worth it
+  PropagateResult result() const;
+  size_t segmented() const { return report_.views.size() + report_.refused.size(); }
+
+ private:
+  struct Places {
+    std::vector<Vec3f> positions, normals;
+  };
+  void find_clicks(const std::vector<Vec2f>& pixels, Places& places) const;
+  void vote(const std::vector<SeenPoint>& seen, const Image& mask, float weight);
+  std::vector<SeenPoint> seen_by(int view, const std::vector<Vec3f>& positions,
+                                 const std::vector<Vec3f>& normals, float facing) const {
+    return seen_points(surface_, request_.cameras[view], positions, normals, facing, tolerance_);
+  }
+  Prompts prompts_for(int view, const std::vector<SeenPoint>& seen) const;
+  Places wanted(std::vector<float>& need, std::vector<uint8_t>& in) const;
+  bool used(int view) const;
+
+  const HandlerPoints& handlers_;
+  const Surface& surface_;
+  const PropagateRequest& request_;
+  ViewSegmenter& segmenter_;
+  Votes votes_;
+  float tolerance_;
+  Places positive_, negative_;  // of the surface, that the user clicked on
+  PropagateReport report_;
+};
+
+void Propagation::find_clicks(const std::vector<Vec2f>& pixels, Places& places) const {
+  std::vector<Vec3f> origins, directions;
+  for (Vec2f p : pixels) {
+    const Ray ray = request_.cameras[request_.first].ray(p.x, p.y);
+    origins.push_back(ray.origin);
+    directions.push_back(ray.direction);
+  }
+  std::vector<Surface::RayHit> hits(pixels.size());
+  surface_.intersect(origins, directions, 0, hits);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    if (hits[i].t < 0) continue;
+    const auto& corners = surface_.mesh().triangles[hits[i].triangle];
+    const auto& n = surface_.mesh().normals;
+    places.positions.push_back(origins[i] + directions[i] * hits[i].t);
+    places.normals.push_back(normalize(n[corners[0]] * (1 - hits[i].b1 - hits[i].b2) +
+                                       n[corners[1]] * hits[i].b1 + n[corners[2]] * hits[i].b2));
+  }
+}
+
+void Propagation::vote(const std::vector<SeenPoint>& seen, const Image& mask, float weight) {
+  for (const SeenPoint& s : seen)
+    votes_.add(s.point, 1 / (1 + std::exp(-sample(mask, s.pixel))), weight * s.facing);
+}
+
+void Propagation::first_view() {
+  const int view = request_.first;
+  const std::vector<SeenPoint> seen = seen_by(view, handlers_.positions, handlers_.normals, kMinFacing);
+  vote(seen, segmenter_.mask(view, request_.clicks.positive, request_.clicks.negative), kFirstWeight);
+  report_.views.push_back(view);
+  const bool found =
+      std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) { return votes_.in(s.point); });
+  if (!found)
+    fail(
+        "The network finds no part at these clicks. Click nearer to the middle of the part, or use "
+        "--segmenter grow.");
+}
+
+Prompts Propagation::prompts_for(int view, const std::vector<SeenPoint>& seen) const {
+  Prompts prompts;
+  for (const SeenPoint& s : seen_by(view, positive_.positions, positive_.normals, kPromptFacing))
+    prompts.positive.push_back(s.pixel);
+  for (const SeenPoint& s : seen_by(view, negative_.positions, negative_.normals, kPromptFacing))
+    prompts.negative.push_back(s.pixel);
+  BelievedPixels believed;
+  for (const SeenPoint& s : seen) {
+    if (s.facing < kPromptFacing)
+      believed.unknown.push_back(s.pixel);
+    else
+      (votes_.in(s.point)    ? believed.in
+       : votes_.out(s.point) ? believed.out
+                             : believed.unknown)
+          .push_back(s.pixel);
+  }
+  add_prompts(believed, kPrompts, prompts);
+  return prompts;
+}
+
+// A mask that differs from what is known gets one prompt more where it does so most, as a person would do.
+void Propagation::next_view(int view) {
+  const std::vector<SeenPoint> seen = seen_by(view, handlers_.positions, handlers_.normals, kMinFacing);
+  Prompts prompts = prompts_for(view, seen);
+  Image best;
+  float agreement = 0;
+  for (int round = 0; round <= kCorrections && !prompts.positive.empty(); ++round) {
+    Image mask = segmenter_.mask(view, prompts.positive, prompts.negative);
+    const Comparison c = compare(seen, votes_, mask);
+    if (c.agreement > agreement) {
+      agreement = c.agreement;
+      best = std::move(mask);
+    }
+    if (c.agreement >= kGoodAgreement || (c.missing.empty() && c.surplus.empty())) break;
+    if (c.missing.size() >= c.surplus.size())
+      prompts.positive.push_back(deepest(c.missing, c.right_in));
+    else
+      prompts.negative.push_back(deepest(c.surplus, c.right_out));
+  }
+  if (agreement < kMinAgreement) {
+    report_.refused.push_back(view);
+    return;
+  }
+  vote(seen, best, 1);
+  report_.views.push_back(view);
+}
+
+// Points of the part and around it, as far off as the part is large by half: those that votes are wanted for.
+Propagation::Places Propagation::wanted(std::vector<float>& need, std::vector<uint8_t>& in) const {
+  std::vector<size_t> part;
+  for (size_t i = 0; i < votes_.size(); ++i)
+    if (votes_.in(i)) part.push_back(i);
+  const std::vector<Vec3f> sample = every(part, kSamples, handlers_.positions);
+  const float reach = kSurroundings * extent(sample);
+  const PointIndex index(sample, reach);
+  std::vector<size_t> near;
+  for (size_t i = 0; i < votes_.size(); ++i)
+    if (votes_.in(i) || index.any_within(handlers_.positions[i], reach, [](size_t) { return true; }))
+      near.push_back(i);
+  Places places;
+  const size_t step = std::max<size_t>(near.size() / kSamples, 1);
+  for (size_t k = 0; k < near.size(); k += step) {
+    places.positions.push_back(handlers_.positions[near[k]]);
+    places.normals.push_back(handlers_.normals[near[k]]);
+    need.push_back(votes_.need(near[k]));
+    in.push_back(votes_.in(near[k]));
+  }
+  return places;
+}
+
+bool Propagation::used(int view) const {
+  const auto has = [&](const std::vector<int>& v) { return std::find(v.begin(), v.end(), view) != v.end(); };
+  return has(report_.views) || has(report_.refused);
+}
+
+// The view that would tell most, of those that show enough of what is known of the part to be prompted.
+int Propagation::choose_view() const {
+  std::vector<float> need;
+  std::vector<uint8_t> in;
+  const Places places = wanted(need, in);
+  const auto part = float(std::count(in.begin(), in.end(), 1));
+  float best = kLeastGain * float(need.size());
+  int chosen = -1;
+  for (int view = 0; view < int(request_.cameras.size()); ++view) {
+    if (used(view)) continue;
+    float known = 0, gain = 0;
+    for (const SeenPoint& s : seen_by(view, places.positions, places.normals, kMinFacing)) {
+      if (in[s.point]) known += s.facing;
+      gain += s.facing * need[s.point];
+    }
+    if (known < kMinSeen * part || gain <= best) continue;
+    best = gain;
+    chosen = view;
+  }
+  return chosen;
+}
+
+PropagateResult Propagation::result() const {
+  PropagateResult r;
+  r.report = report_;
+  for (size_t i = 0; i < votes_.size(); ++i) r.scores.push_back(votes_.score(i));
+  return r;
+}
+
+}  // namespace
+
+PropagateResult propagate(const HandlerPoints& handlers, const Surface& surface,
+                          const PropagateRequest& request, ViewSegmenter& segmenter, Progress& progress) {
+  Propagation p(handlers, surface, request, segmenter);
+  p.first_view();
+  while (int(p.segmented()) < request.max_views) {
+    if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Interrupted; nothing was changed.");
+    ProgressReport report;
+    report.stage = "views";
+    report.fraction = double(p.segmented()) / request.max_views;
+    progress.report(report);
+    const int view = p.choose_view();
+    if (view < 0) break;
+    p.next_view(view);
+  }
+  return p.result();
+}
+
+}  // namespace cei3d
