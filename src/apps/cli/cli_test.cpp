@@ -31,8 +31,8 @@ Typed type(const std::vector<std::string>& args) {
   return {code, out.str(), err.str()};
 }
 
-const std::vector<std::string> kVerbs = {"check", "reconstruct", "render", "edit", "log",  "undo",
-                                         "redo",  "toggle",      "replay", "export", "eval", "info", "doctor"};
+const std::vector<std::string> kVerbs = {"check",  "reconstruct", "render", "edit", "log",  "undo",  "redo",
+                                         "toggle", "replay",      "export", "eval", "info", "doctor"};
 
 TEST(Cli, HelpNamesEveryVerb) {
   const Typed t = type({"--help"});
@@ -87,6 +87,8 @@ TEST(Cli, WrongUsageIsTwo) {
       {"edit", "paint", "--view", "r_0", "--scribble", "s.png"},
       {"edit", "p", "paint", "--view", "r_0"},
       {"edit", "p", "paint", "--view", "r_0", "--scribble", "s.png", "--target", "smell"},
+      {"edit", "p", "paint", "--view", "a", "--scribble", "s.png", "--scribble", "t.png"},
+      {"edit", "p", "paint", "--view", "a", "--scribble", "s.png", "--erase", "--target", "albedo"},
       {"edit", "p", "material", "--roughness", "shiny"},
       {"edit", "p", "material", "--replace"},
       {"edit", "material", "--roughness", "0.5"},

@@ -6,8 +6,19 @@ namespace {
 
 struct Options {
   std::string target = "albedo";
+  std::vector<std::string> views, scribbles;
   PaintCommand command;
 };
+
+PaintCommand command_of(const Options& o) {
+  if (o.views.size() != o.scribbles.size())
+    fail_usage("There are {} --view and {} --scribble: each scribble needs the view it was painted on.",
+               o.views.size(), o.scribbles.size());
+  PaintCommand c = o.command;
+  c.appearance = o.target == "appearance";
+  for (size_t i = 0; i < o.views.size(); ++i) c.strokes.push_back({o.views[i], o.scribbles[i]});
+  return c;
+}
 
 std::string text_of(const EditSummary& s) {
   const auto count = [&](const char* key) { return s.report.at(key).get<size_t>(); };
@@ -18,6 +29,10 @@ std::string text_of(const EditSummary& s) {
     text += fmt::format(
         " {} painted pixels are beside the object or on surface that turns away; they paint nothing.",
         count("missed_pixels"));
+  if (const double share = s.report.at("out_of_reach").get<double>(); share > 0.005)
+    text += fmt::format(
+        " {:.0f} % of the paint is brighter or darker than any base colour there looks in this light.",
+        100 * share);
   return text;
 }
 
@@ -26,22 +41,34 @@ std::string text_of(const EditSummary& s) {
 void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add("paint", "Paint on the surface that one view shows", edit);
-  verb->add_option("--view", o->command.view,
-                   "The view painted on: train/r_055, or r_055 (then the training view)")
-      ->required();
   verb->add_option(
-          "--scribble", o->command.scribble,
-          "RGBA PNG of the view's size; where alpha is at least one half, its sRGB colour becomes the base "
-          "colour")
-      ->required();
-  verb->add_option("--target", o->target,
-                   "What the painted colour means: albedo, the base colour without light")
-      ->check(CLI::IsMember({"albedo"}))
-      ->capture_default_str();
+          "--view", o->views,
+          "The view painted on: train/r_055, or r_055 (then the training view). --view and --scribble may be "
+          "given several times, in pairs: one edit, and a later scribble covers an earlier one")
+      ->required()
+      ->expected(1)
+      ->take_all();
+  verb->add_option("--scribble", o->scribbles,
+                   "RGBA PNG of the view's size. Where it is opaque, its sRGB colour becomes the base "
+                   "colour; where it is "
+                   "semi-transparent, it covers what is there by as much as its alpha says")
+      ->required()
+      ->expected(1)
+      ->take_all();
+  CLI::Option* target = verb->add_option("--target", o->target,
+                                         "What the painted colour means: albedo, the base colour without "
+                                         "light; appearance, what the view "
+                                         "shows in the light there is now")
+                            ->check(CLI::IsMember({"albedo", "appearance"}))
+                            ->capture_default_str();
+  verb->add_flag("--erase", o->command.erase,
+                 "Show the reconstructed colours again where the scribble is opaque")
+      ->excludes(target);
   verb->add_option("--seed", o->command.seed, "Of everything random in the edit")->capture_default_str();
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {
+    const PaintCommand command = command_of(options);
     open_for_edit(session, *project, "paint --view NAME --scribble FILE.png");
-    const EditSummary s = session.paint(options.command, console);
+    const EditSummary s = session.paint(command, console);
     console.done(s.json(), text_of(s));
   });
 }

@@ -9,6 +9,8 @@
 #include "core/base/error.h"
 #include "core/math/rng.h"
 #include "engine/edit/stroke.h"
+#include "engine/render/scene_light.h"
+#include "model/scene/appearance.h"
 
 namespace cei3d {
 namespace {
@@ -17,14 +19,14 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-void check_request(const PaintRequest& r) {
-  if (r.scribble.channels != 4)
+void check_scribble(const Scribble& s) {
+  if (s.image.channels != 4)
     fail(
         "the scribble has no alpha channel; save it as RGBA, opaque where it paints and transparent "
         "elsewhere");
-  if (r.scribble.width != r.camera.width || r.scribble.height != r.camera.height)
+  if (s.image.width != s.camera.width || s.image.height != s.camera.height)
     fail("the scribble is {}x{} pixels, the view {}x{}; paint on a picture of the view's own size",
-         r.scribble.width, r.scribble.height, r.camera.width, r.camera.height);
+         s.image.width, s.image.height, s.camera.width, s.camera.height);
 }
 
 void check_stroke(const Stroke& s) {
@@ -34,17 +36,64 @@ void check_stroke(const Stroke& s) {
          s.painted_pixels);
 }
 
-// Cells of half a pixel on the finest level, a table that holds those on the stroke: borders between
-// two colours stay as sharp as the scribble shows them.
-FieldConfig branch_config(const Stroke& s) {
+// What all scribbles together want where.
+struct Paint {
+  std::vector<Hit> hits;
+  std::vector<Vec3f> targets;   // #hits, linear base colour
+  std::vector<uint8_t> inside;  // #hits, 1 in the painted region, 0 just beside it
+  float pixel = 1e9f;           // of the finest scribble, on the surface, unit-sphere units
+};
+
+float pixel_of(const Stroke& s) {
   std::vector<float> footprints = s.footprints;
   std::nth_element(footprints.begin(), footprints.begin() + footprints.size() / 2, footprints.end());
-  const float pixel = footprints[footprints.size() / 2] * float(s.scale);
+  return footprints[footprints.size() / 2] * float(s.scale);
+}
+
+// later: the regions of the strokes after this one, which cover it.
+void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
+  paint.pixel = min(paint.pixel, pixel_of(s));
+  for (size_t i = 0; i < s.hits.size(); ++i) {
+    const Hit& h = s.hits[i];
+    if (std::any_of(later.begin(), later.end(),
+                    [&](const Region& r) { return r.weight(h.position, h.normal) >= 0.5f; }))
+      continue;
+    paint.hits.push_back(h);
+    paint.targets.push_back(s.targets[i]);
+    paint.inside.push_back(s.coverage[i] >= s.least_alpha);
+  }
+}
+
+// The base colours that show the targets in the light, and the share of them that is out of reach.
+float solve_for_base_color(const Device& device, const Scene& scene, const SceneLight& light, Paint& paint) {
+  Appearance look = appearance_at(device, scene, paint.hits);
+  std::fill(look.albedo.begin(), look.albedo.end(), Vec3f{0, 0, 0});
+  const Shading black = light.shade(paint.hits, look);
+  std::fill(look.albedo.begin(), look.albedo.end(), Vec3f{1, 1, 1});
+  const Shading white = light.shade(paint.hits, look);
+  size_t outside = 0;
+  for (size_t i = 0; i < paint.hits.size(); ++i) {
+    const Vec3f floor = black.diffuse[i] + black.specular[i],
+                gain = white.diffuse[i] + white.specular[i] - floor;
+    bool reached = true;
+    for (int c = 0; c < 3; ++c) {
+      const float wanted = (paint.targets[i][c] - floor[c]) / max(gain[c], 1e-4f);
+      paint.targets[i][c] = clamp(wanted, 0.0f, 1.0f);
+      reached = reached && wanted > -0.01f && wanted < 1.01f;
+    }
+    outside += !reached;
+  }
+  return float(outside) / float(std::max<size_t>(paint.hits.size(), 1));
+}
+
+// Cells of half a pixel on the finest level, a table that holds those on the stroke: borders between
+// two colours stay as sharp as the scribble shows them.
+FieldConfig branch_config(const Paint& paint) {
   FieldConfig c;
   c.encoding.levels = 8;
   c.encoding.base_resolution = 16;
-  c.encoding.finest_resolution = int(clamp(4 / pixel, 64.0f, 4096.0f));
-  c.encoding.log2_table = std::clamp(int(std::bit_width(s.hits.size())), 14, 16);
+  c.encoding.finest_resolution = int(clamp(4 / paint.pixel, 64.0f, 4096.0f));
+  c.encoding.log2_table = std::clamp(int(std::bit_width(paint.hits.size())), 14, 16);
   c.hidden_layers = 1;
   c.width = 32;
   c.outputs = 3;
@@ -58,7 +107,7 @@ constexpr int kSteps = 400, kBatch = 2048;
 struct Batch {
   std::vector<Vec3f> x, target;
 
-  Batch(const Stroke& s, uint64_t seed, int step) : x(kBatch), target(kBatch) {
+  Batch(const Paint& s, uint64_t seed, int step) : x(kBatch), target(kBatch) {
     for (int i = 0; i < kBatch; ++i) {
       const uint32_t k = Rng(seed, step, i).below(uint32_t(s.hits.size()));
       x[i] = s.hits[k].position;
@@ -79,7 +128,7 @@ FieldTrainer::Loss cross_entropy(const std::vector<Vec3f>& target) {
   };
 }
 
-std::shared_ptr<const Field> fit_branch(const Device& device, const Stroke& s, uint64_t seed,
+std::shared_ptr<const Field> fit_branch(const Device& device, const Paint& s, uint64_t seed,
                                         Progress& progress) {
   auto field = std::make_shared<Field>(branch_config(s), seed);
   FieldTrainer trainer(*field, {.encoding_rate = 2e-2f, .network_rate = 1e-2f});
@@ -94,11 +143,11 @@ std::shared_ptr<const Field> fit_branch(const Device& device, const Stroke& s, u
   return field;
 }
 
-void measure_branch(const Device& device, const Field& branch, const Stroke& s, PaintReport& report) {
+void measure_branch(const Device& device, const Field& branch, const Paint& s, PaintReport& report) {
   std::vector<Vec3f> x;
   std::vector<size_t> index;
   for (size_t i = 0; i < s.hits.size(); ++i) {
-    if (s.coverage[i] < 0.5f) continue;
+    if (!s.inside[i]) continue;
     x.push_back(s.hits[i].position);
     index.push_back(i);
   }
@@ -115,24 +164,50 @@ void measure_branch(const Device& device, const Field& branch, const Stroke& s, 
   report.mean_error = float(sum / double(std::max<size_t>(out.size(), 1)));
 }
 
+std::vector<Stroke> trace_strokes(const Device& device, const Scene& scene, const PaintRequest& request) {
+  if (request.scribbles.empty()) fail("there is no scribble to paint");
+  for (const Scribble& s : request.scribbles) check_scribble(s);
+  std::vector<Stroke> strokes;
+  for (const Scribble& s : request.scribbles) {
+    strokes.push_back(trace_stroke(device, scene, s.camera, s.image));
+    check_stroke(strokes.back());
+  }
+  return strokes;
+}
+
+void count(const std::vector<Stroke>& strokes, const std::vector<Region>& regions, PaintReport& report) {
+  for (const Stroke& s : strokes) {
+    report.painted_pixels += s.painted_pixels;
+    report.missed_pixels += s.missed_pixels;
+  }
+  for (const Region& r : regions) report.points += r.points().positions.size();
+}
+
 }  // namespace
 
 PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& request, Progress& progress) {
-  check_request(request);
   PaintResult result;
+  PaintReport& report = result.report;
   const double start = now();
-  const Stroke stroke = trace_stroke(device, scene, request.camera, request.scribble);
-  check_stroke(stroke);
-  result.layer.id = request.id;
-  result.layer.region = stroke_region(stroke);
+  const std::vector<Stroke> strokes = trace_strokes(device, scene, request);
+  std::vector<Region> regions;
+  for (const Stroke& s : strokes) regions.push_back(stroke_region(s));
+  count(strokes, regions, report);
+  Paint paint;
+  for (size_t i = 0; i < strokes.size(); ++i)
+    add_stroke(strokes[i], std::span(regions).subspan(i + 1), paint);
+  if (request.seen_in) report.out_of_reach = solve_for_base_color(device, scene, *request.seen_in, paint);
   const double traced = now();
   progress.report({"paint", 0.2, -1, ""});
-  result.layer.albedo = fit_branch(device, stroke, request.seed, progress);
-  measure_branch(device, *result.layer.albedo, stroke, result.report);
-  PaintReport& report = result.report;
-  report.painted_pixels = stroke.painted_pixels;
-  report.missed_pixels = stroke.missed_pixels;
-  report.points = result.layer.region.points().positions.size();
+  result.layer.id = request.id;
+  result.layer.erase = request.erase;
+  if (!request.erase) {
+    result.layer.albedo = fit_branch(device, paint, request.seed, progress);
+    measure_branch(device, *result.layer.albedo, paint, report);
+  }
+  result.layer.region = std::move(regions.front());
+  result.layer.also.assign(std::make_move_iterator(regions.begin() + 1),
+                           std::make_move_iterator(regions.end()));
   report.trace_seconds = traced - start;
   report.train_seconds = now() - traced;
   return result;

@@ -11,19 +11,29 @@
 
 namespace cei3d {
 
+class SceneLight;  // engine/render/scene_light.h
+
+struct Scribble {
+  Camera camera;  // of the painted view, unit-sphere frame
+  Image image;    // RGBA, sRGB, straight alpha, of the camera's size. Painted where alpha >= 0.5; where alpha
+                // has values between nothing and all, it says how much of the colour covers what lies below
+};
+
 struct PaintRequest {
-  Camera camera;   // of the painted view, unit-sphere frame
-  Image scribble;  // RGBA, sRGB, straight alpha, of the camera's size; painted where alpha >= 0.5. Its colour
-                   // is the display colour of the base colour wanted there
-  std::string id;  // of the new layer
-  uint64_t seed = 1;  // of the branch's weights and batches
+  std::vector<Scribble> scribbles;  // where two overlap, the later one counts
+  std::string id;                   // of the new layer
+  uint64_t seed = 1;                // of the branch's weights and batches
+  bool erase = false;               // the base's own colour shows again; the scribbles' colours mean nothing
+  const SceneLight* seen_in = nullptr;  // null: colours are display colours of the base colour wanted; else
+                                        // of what the painted view shows in this light
 };
 
 struct PaintReport {
   int painted_pixels = 0;
-  int missed_pixels = 0;                        // painted, but not on a surface that faces the view
-  size_t points = 0;                            // edited handler points
-  float mean_error = 0, max_error = 0;          // of the branch on the painted surface, linear
+  int missed_pixels = 0;                // painted, but not on a surface that faces the view
+  size_t points = 0;                    // edited handler points
+  float mean_error = 0, max_error = 0;  // of the branch on the painted surface, linear
+  float out_of_reach = 0;               // share of the paint whose colour no base colour shows in the light
   double trace_seconds = 0, train_seconds = 0;  // stages
 };
 
@@ -32,8 +42,8 @@ struct PaintResult {
   PaintReport report;
 };
 
-// A pure function: the scene is not changed. Errors: scribble of another size, without alpha or with nothing
-// opaque, paint that meets no surface, cancelled.
+// A pure function: the scene is not changed. Errors: no scribble, one of another size, without alpha or with
+// nothing painted, paint that meets no surface, cancelled.
 PaintResult paint(const Device&, const Scene&, const PaintRequest&, Progress&);
 
 }  // namespace cei3d

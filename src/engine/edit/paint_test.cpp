@@ -9,6 +9,7 @@
 #include "core/math/color.h"
 #include "core/math/rng.h"
 #include "engine/edit/stroke.h"
+#include "engine/render/scene_light.h"
 #include "engine/render/sphere_scene.h"
 #include "model/scene/appearance.h"
 
@@ -40,7 +41,7 @@ Image two_colors() {
 
 PaintResult paint_two_colors(const Scene& scene) {
   Progress quiet;
-  return paint(make_device(), scene, {front(), two_colors(), "0001-paint", 1}, quiet);
+  return paint(make_device(), scene, {{{front(), two_colors()}}, "0001-paint"}, quiet);
 }
 
 std::string message_of(const Scene& scene, const PaintRequest& request) {
@@ -179,20 +180,121 @@ TEST_F(PaintTest, PaintBesideTheObjectIsLeftOut) {
   Image scribble = two_colors();
   for (int x = 0; x < 5; ++x) scribble.at(x, 1)[3] = 1;
   Progress quiet;
-  const PaintResult r = paint(make_device(), *before_, {front(), scribble, "x", 1}, quiet);
+  const PaintResult r = paint(make_device(), *before_, {{{front(), scribble}}, "x"}, quiet);
   EXPECT_EQ(r.report.missed_pixels, 5);
+}
+
+// A square of one colour and alpha in the middle of the picture.
+Image square(Vec3f srgb, float alpha, int half = 10) {
+  Image s(kSize, kSize, 4);
+  for (int y = kSize / 2 - half; y < kSize / 2 + half; ++y)
+    for (int x = kSize / 2 - half; x < kSize / 2 + half; ++x) {
+      for (int c = 0; c < 3; ++c) s.at(x, y)[c] = srgb[c];
+      s.at(x, y)[3] = alpha;
+    }
+  return s;
+}
+
+Scene painted(const Scene& scene, const PaintRequest& request) {
+  Progress quiet;
+  return with_layer(scene, paint(make_device(), scene, request, quiet).layer);
+}
+
+// Hits in the middle of what a camera sees, by `half` pixels.
+std::vector<Hit> middle_hits(const Scene& scene, const Camera& camera, int half) {
+  const GBuffer g = trace_view(make_device(), scene, camera, 1);
+  std::vector<Hit> hits;
+  for (int y = kSize / 2 - half; y < kSize / 2 + half; ++y)
+    for (int x = kSize / 2 - half; x < kSize / 2 + half; ++x)
+      hits.push_back(g.hits[g.pixel_start[size_t(y) * kSize + x]]);
+  return hits;
+}
+
+TEST_F(PaintTest, SemiTransparentPaintIsMixedWithWhatLiesBelow) {
+  const Device device = make_device();
+  const Scene twice = painted(*after_, {{{front(), square(kBlue, 0.3f)}}, "0002-paint"});
+  const auto hits = middle_hits(*after_, front(), 8);
+  const Appearance below = appearance_at(device, *after_, hits), above = appearance_at(device, twice, hits);
+  const Vec3f blue = linear_from_srgb(kBlue);
+  for (size_t i = 0; i < hits.size(); ++i)
+    for (int c = 0; c < 3; ++c)
+      EXPECT_NEAR(above.albedo[i][c], 0.7f * below.albedo[i][c] + 0.3f * blue[c], 0.3f * 0.02f);
+  // ... and ends where it ends.
+  for (const auto& [x, y] : {std::pair{30, 30}, {70, 48}, {48, 60}}) {
+    const Ray ray = front().ray(x, y);
+    const float b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - kRadius * kRadius;
+    const Vec3f p = ray.origin + ray.direction * (-b - sqrt(b * b - c));
+    EXPECT_EQ(twice.layers[1].weight(p, normalize(p)), 0) << x;
+  }
+}
+
+TEST_F(PaintTest, ALaterScribbleOfTheSameEditCoversAnEarlierOne) {
+  const Device device = make_device();
+  const Camera left = camera_at({-0.5, -2.96, 0.3});
+  const Scene both = painted(*before_, {{{front(), square(kRed, 1)}, {left, square(kBlue, 1)}}, "x"});
+  ASSERT_EQ(both.layers[0].also.size(), 1u);
+  const auto check = [&](const Camera& camera, Vec3f expected, bool covered) {
+    int seen = 0;
+    for (const Hit& h : middle_hits(*before_, camera, 8)) {
+      if (both.layers[0].also[0].contains(h.position, h.normal) != covered) continue;
+      const Vec3d at = left.project(to_double(h.position));  // a pixel from the border of the later one
+      if (std::abs(std::max(std::abs(at.x - 48), std::abs(at.y - 48)) - 10) < 1) continue;
+      const Appearance a = appearance_at(device, both, std::span(&h, 1));
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(a.albedo[0][c], linear_from_srgb(expected)[c], 0.06f);
+      ++seen;
+    }
+    EXPECT_GT(seen, 30);
+  };
+  check(front(), kRed, false);
+  check(front(), kBlue, true);
+  check(left, kBlue, true);
+}
+
+TEST_F(PaintTest, ErasingShowsTheBaseAgainBitForBit) {
+  const Device device = make_device();
+  const Scene erased =
+      painted(*after_, {.scribbles = {{front(), square(kRed, 1, 20)}}, .id = "x", .erase = true});
+  const GBuffer g = trace_view(device, *before_, front(), 2);
+  const Frame before = shade_view(device, *before_, g), after = shade_view(device, erased, g);
+  EXPECT_EQ(before.rgb.data, after.rgb.data);  // the eraser covers all of the paint
+  const Scene half =
+      painted(*after_, {.scribbles = {{front(), square(kRed, 0.5f)}}, .id = "x", .erase = true});
+  const auto hits = middle_hits(*before_, front(), 6);
+  const Appearance base = appearance_at(device, *before_, hits), paint = appearance_at(device, *after_, hits),
+                   mixed = appearance_at(device, half, hits);
+  for (size_t i = 0; i < hits.size(); ++i)
+    EXPECT_NEAR(mixed.albedo[i].x, 0.5f * (base.albedo[i].x + paint.albedo[i].x), 1e-5f);
+}
+
+TEST_F(PaintTest, TheViewShowsThePaintedColourWhereLightAllowsIt) {
+  const Device device = make_device();
+  const SceneLight light(device, *before_, scene_transports(*before_));
+  const Vec3f dim{0.35f, 0.3f, 0.4f};  // sRGB; within reach of the light's specular floor and white
+  Progress quiet;
+  const PaintResult r = paint(
+      device, *before_, {.scribbles = {{front(), square(dim, 1)}}, .id = "x", .seen_in = &light}, quiet);
+  const Scene seen = with_layer(*before_, r.layer);
+  const Frame f = shade_view(device, seen, trace_view(device, seen, front(), 2));
+  EXPECT_EQ(r.report.out_of_reach, 0);
+  for (int y = kSize / 2 - 8; y < kSize / 2 + 8; ++y)
+    for (int x = kSize / 2 - 8; x < kSize / 2 + 8; ++x)
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(f.rgb.at(x, y)[c], linear_from_srgb(dim)[c], 0.01f);
+  const PaintResult bright =
+      paint(device, *before_, {.scribbles = {{front(), square({1, 1, 1}, 1)}}, .id = "x", .seen_in = &light},
+            quiet);
+  EXPECT_GT(bright.report.out_of_reach, 0.9f);
 }
 
 TEST_F(PaintTest, BadScribblesAreRefusedWithASentence) {
   const Scene& scene = *before_;
-  EXPECT_NE(message_of(scene, {front(), Image(kSize, kSize / 2, 4, 1.0f), "x", 1}).find("96x48"),
+  EXPECT_NE(message_of(scene, {{{front(), Image(kSize, kSize / 2, 4, 1.0f)}}, "x"}).find("96x48"),
             std::string::npos);
-  EXPECT_NE(message_of(scene, {front(), Image(kSize, kSize, 3, 1.0f), "x", 1}).find("no alpha"),
+  EXPECT_NE(message_of(scene, {{{front(), Image(kSize, kSize, 3, 1.0f)}}, "x"}).find("no alpha"),
             std::string::npos);
-  EXPECT_NE(message_of(scene, {front(), Image(kSize, kSize, 4), "x", 1}).find("opaque"), std::string::npos);
+  EXPECT_NE(message_of(scene, {{{front(), Image(kSize, kSize, 4)}}, "x"}).find("opaque"), std::string::npos);
   Image corner(kSize, kSize, 4);
   corner.at(0, 0)[3] = 1;
-  EXPECT_NE(message_of(scene, {front(), corner, "x", 1}).find("on the object"), std::string::npos);
+  EXPECT_NE(message_of(scene, {{{front(), corner}}, "x"}).find("on the object"), std::string::npos);
 }
 
 }  // namespace

@@ -9,15 +9,16 @@
 namespace cei3d {
 namespace {
 
-constexpr float kPainted = 0.5f;    // alpha from which a pixel is painted
+constexpr float kHard = 0.5f, kSoft = 0.5f / 255;  // least_alpha
 constexpr float kMinFacing = 0.1f;  // least cosine between the normal and the way to the camera
 constexpr int kMaxScale = 4;
 constexpr int64_t kMaxRays = 300000;    // in the crop: about half a second
 constexpr int64_t kMaxPainted = 60000;  // painted rays: as many as training visits anyway
 
 int count_painted(const Image& rgba) {
+  const float least = least_alpha(rgba);
   int n = 0;
-  for (size_t i = 3; i < rgba.data.size(); i += 4) n += rgba.data[i] >= kPainted;
+  for (size_t i = 3; i < rgba.data.size(); i += 4) n += rgba.data[i] >= least;
   return n;
 }
 
@@ -49,7 +50,7 @@ const float* nearest_color(const Stroke& s, float u, float v) {
   const int cx = int(u), cy = int(v);
   for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, s.alpha.height - 1); ++y) {
     for (int x = std::max(cx - 1, 0); x <= std::min(cx + 1, s.alpha.width - 1); ++x) {
-      if (*s.alpha.at(x, y) < kPainted) continue;
+      if (*s.alpha.at(x, y) < s.least_alpha) continue;
       const float d = square(float(x) + 0.5f - u) + square(float(y) + 0.5f - v);
       if (d >= best_distance) continue;
       best_distance = d;
@@ -80,17 +81,24 @@ void add_hit(Stroke& s, const Projector& mask, int x, int y, const Hit& hit, flo
 // Painted pixels none of whose rays left a painted hit.
 int count_missed(const Stroke& s, const std::vector<uint8_t>& reached) {
   int missed = 0;
-  for (size_t i = 0; i < reached.size(); ++i) missed += s.alpha.data[i] >= kPainted && !reached[i];
+  for (size_t i = 0; i < reached.size(); ++i) missed += s.alpha.data[i] >= s.least_alpha && !reached[i];
   return missed;
 }
 
 }  // namespace
 
+float least_alpha(const Image& rgba) {
+  for (size_t i = 3; i < rgba.data.size(); i += 4)
+    if (rgba.data[i] >= kSoft && rgba.data[i] <= 1 - kSoft) return kSoft;
+  return kHard;
+}
+
 PixelBox painted_box(const Image& rgba, int margin) {
+  const float least = least_alpha(rgba);
   int x0 = rgba.width, y0 = rgba.height, x1 = -1, y1 = -1;
   for (int y = 0; y < rgba.height; ++y) {
     for (int x = 0; x < rgba.width; ++x) {
-      if (rgba.at(x, y)[3] < kPainted) continue;
+      if (rgba.at(x, y)[3] < least) continue;
       x0 = std::min(x0, x);
       x1 = std::max(x1, x);
       y0 = std::min(y0, y);
@@ -122,6 +130,7 @@ Stroke trace_stroke(const Device& device, const Scene& scene, const Camera& came
   const PixelBox box = painted_box(rgba, 2);
   s.painted_pixels = count_painted(rgba);
   if (s.painted_pixels == 0) return s;
+  s.least_alpha = least_alpha(rgba);
   s.scale = affordable_scale(box, s.painted_pixels);
   s.camera = crop_camera(camera, box, s.scale);
   cut_out(rgba, box, s);
@@ -150,7 +159,7 @@ Region stroke_region(const Stroke& s) {
   std::vector<Hit> painted;
   std::vector<float> footprints;
   for (size_t i = 0; i < s.hits.size(); ++i) {
-    if (s.coverage[i] < kPainted) continue;
+    if (s.coverage[i] < s.least_alpha) continue;
     painted.push_back(s.hits[i]);
     footprints.push_back(s.footprints[i]);
   }
@@ -170,6 +179,7 @@ Region stroke_region(const Stroke& s) {
   projector.alpha = s.alpha;
   projector.depth = s.depth;
   projector.min_facing = kMinFacing;
+  projector.least_alpha = s.least_alpha;
   return Region(std::move(points), std::move(projector));
 }
 

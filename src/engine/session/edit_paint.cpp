@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <optional>
+
 #include "core/base/error.h"
 #include "engine/edit/paint.h"
+#include "engine/edit/stroke.h"
 #include "engine/io/capture.h"
 #include "engine/io/image_file.h"
 #include "engine/io/png_file.h"
+#include "engine/render/scene_light.h"
 #include "engine/session/edit_ops.h"
 
 namespace cei3d {
@@ -30,9 +34,21 @@ void require_size(const Image& scribble, const View& view, const std::string& na
 }
 
 void require_paint(const Image& scribble, const std::string& name) {
+  const float least = least_alpha(scribble);
   for (size_t i = 3; i < scribble.data.size(); i += 4)
-    if (scribble.data[i] >= 0.5f) return;
+    if (scribble.data[i] >= least) return;
   fail("Nothing in {} is opaque (alpha at least one half): there is nothing to paint.", name);
+}
+
+Scribble scribble_of(const EditContext& context, const EditJob& job, const Json& stroke) {
+  const View& view = find_view(context.capture, stroke.at("view").get<std::string>());
+  const std::string name = stroke.value("file", "the scribble");
+  Scribble s;
+  s.image = decode_scribble(job.input(stroke.value("input", "scribble.png")), name);
+  require_size(s.image, view, name);
+  require_paint(s.image, name);
+  s.camera = context.scene.normalization.unit_from_input(view.camera);
+  return s;
 }
 
 Json report_json(const PaintReport& r) {
@@ -41,27 +57,39 @@ Json report_json(const PaintReport& r) {
           {"points", r.points},
           {"mean_error", r.mean_error},
           {"max_error", r.max_error},
+          {"out_of_reach", r.out_of_reach},
           {"seconds", {{"trace", r.trace_seconds}, {"fit", r.train_seconds}}}};
 }
 
+bool wants_appearance(const Json& params) { return params.value("target", "albedo") == "appearance"; }
+
+// The first version of the parameters was one stroke.
 EditOutcome make(const EditContext& context, const EditJob& job) {
-  const View& view = find_view(context.capture, job.params.at("view").get<std::string>());
-  const std::string name = job.params.value("file", "the scribble");
   PaintRequest request;
-  request.scribble = decode_scribble(job.input("scribble.png"), name);
-  require_size(request.scribble, view, name);
-  require_paint(request.scribble, name);
-  request.camera = context.scene.normalization.unit_from_input(view.camera);
   request.id = job.id;
   request.seed = job.params.at("seed").get<uint64_t>();
+  request.erase = job.params.value("erase", false);
+  if (job.params.contains("strokes"))
+    for (const Json& stroke : job.params.at("strokes"))
+      request.scribbles.push_back(scribble_of(context, job, stroke));
+  else
+    request.scribbles.push_back(scribble_of(context, job, job.params));
+  std::optional<SceneLight> light;
+  if (wants_appearance(job.params)) {
+    light.emplace(context.device, context.scene, scene_transports(context.scene));
+    request.seen_in = &*light;
+  }
   PaintResult result = paint(context.device, context.scene, request, context.progress);
   return {std::move(result.layer), report_json(result.report)};
 }
 
-Aspects depends(const Json&) { return {.shape = true}; }
+Aspects depends(const Json& params) {
+  const bool seen = wants_appearance(params);
+  return {.shape = true, .look = seen, .light = seen};
+}
 
 }  // namespace
 
-const EditOp kPaintOp{"paint", 1, make, depends};
+const EditOp kPaintOp{"paint", 2, make, depends};
 
 }  // namespace cei3d

@@ -119,7 +119,7 @@ class EditTest : public ::testing::Test {
   PaintCommand scribble(int view, Vec3f srgb, int half) {
     const fs::path file = temp_.path() / "scribble.png";
     write_png(file, square_scribble(srgb, half));
-    return {"train/r_" + std::to_string(view), file, 1};
+    return {{{"train/r_" + std::to_string(view), file}}};
   }
 
   TempFolder temp_;

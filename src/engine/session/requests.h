@@ -74,10 +74,15 @@ struct LogEntry {
   Json json() const;
 };
 
-struct PaintCommand {
+struct PaintStroke {
   std::string view;                // a view's name
   std::filesystem::path scribble;  // RGBA PNG of the view's size
+};
+struct PaintCommand {
+  std::vector<PaintStroke> strokes;  // where two overlap, the later one counts
   uint64_t seed = 1;
+  bool appearance = false;  // colours are what the view is to show in the present light, not base colours
+  bool erase = false;       // the base's own colours again where there is paint
 };
 // Another material or colour.
 struct MaterialEffects {

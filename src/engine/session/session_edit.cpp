@@ -66,10 +66,25 @@ EditSummary Session::add_edit(const char* op, Json params, EditInputs inputs, Pr
 }
 
 EditSummary Session::paint(const PaintCommand& command, Progress& progress) {
-  const View& view = find_view(project().capture(), command.view);
-  const Json params = {
-      {"view", view.name}, {"file", command.scribble.string()}, {"target", "albedo"}, {"seed", command.seed}};
-  return add_edit("paint", params, {{"scribble.png", read_file(command.scribble)}}, progress);
+  if (command.erase && command.appearance)
+    fail_usage("--erase paints no colour that --target could be about.");
+  Json strokes = Json::array();
+  EditInputs inputs;
+  std::string views;
+  for (const PaintStroke& s : command.strokes) {
+    const View& view = find_view(project().capture(), s.view);
+    const std::string input =
+        inputs.empty() ? "scribble.png" : fmt::format("scribble{}.png", inputs.size() + 1);
+    strokes.push_back({{"view", view.name}, {"file", s.scribble.string()}, {"input", input}});
+    inputs.emplace_back(input, read_file(s.scribble));
+    views += (views.empty() ? "" : " ") + view.name;
+  }
+  Json params = {{"view", views}, {"strokes", std::move(strokes)}, {"seed", command.seed}};
+  if (command.erase)
+    params["erase"] = true;
+  else
+    params["target"] = command.appearance ? "appearance" : "albedo";
+  return add_edit("paint", std::move(params), std::move(inputs), progress);
 }
 
 EditSummary Session::change_material(const MaterialCommand& command, Progress& progress) {

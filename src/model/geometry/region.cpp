@@ -50,6 +50,13 @@ bool Region::contains(Vec3f position, Vec3f normal) const {
   });
 }
 
+float Region::weight(Vec3f position, Vec3f normal) const {
+  if (!contains(position, normal)) return 0;
+  if (!projector_.soft()) return 1;
+  const Vec3d p = projector_.camera.project(to_double(position));
+  return projector_.alpha_at(p.x, p.y);
+}
+
 void Region::save(Tensors& tensors, Json& head) const {
   if (!scored_.empty()) return scored_.save(tensors, head["scored"]);
   head["points"] = points_.positions.size();

@@ -33,6 +33,8 @@ class Region {
 
   // normal: unit, outward.
   bool contains(Vec3f position, Vec3f normal) const;
+  // How much of it: 1 inside, 0 outside, the mask's alpha where that is soft.
+  float weight(Vec3f position, Vec3f normal) const;
   const Points& points() const { return points_; }
   const Projector& projector() const { return projector_; }
   const ScoredPoints& scored() const { return scored_; }  // empty: not a part

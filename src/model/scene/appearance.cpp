@@ -14,11 +14,12 @@ constexpr int kGrain = 4096;  // hits a chunk
 
 // A step towards a hit's base colour.
 struct Op {
-  enum class Kind { branch, matter, tint } kind;
+  enum class Kind { branch, base, matter, tint } kind;
   int layer;
   uint32_t hit;
-  Vec3f position;  // of the hit in the layer's pose
-  Vec3f color;     // of a branch or of new matter
+  float weight;    // of the colour, the rest being what lies below; 1: nothing of that shows
+  Vec3f position;  // of the hit in the pose of the field that has the colour
+  Vec3f color;     // of branch, base or new matter
 };
 
 // What the layers say about a hit.
@@ -62,36 +63,45 @@ class Walk {
   void visit(int l, const EditLayer& layer) {
     const int pose = max(layer.pose, 0);
     if (layer.reshape) visit_change(l, pose + 1);
-    const bool colours = r_.base && (layer.albedo || layer.tint), marks = r_.layer < 0 && !layer.everywhere;
+    const bool colours = r_.base && (layer.albedo || layer.erase || layer.tint);
+    const bool marks = r_.layer < 0 && !layer.everywhere;
     const bool changes = !layer.material.empty() && !is_whole(r_.material);
     if (!colours && !changes && !marks) return;
     const bool old = born_ <= pose;  // what was made later is in no region that is older ...
     if (!old && !layer.everywhere) return;
     const SurfacePoint p = old ? in_pose(scene_.poses, hit_, pose) : SurfacePoint{};
-    if (!layer.everywhere && !layer.region.contains(p.position, p.normal)) return;
+    const float weight = layer.everywhere ? 1 : layer.weight(p.position, p.normal);
+    if (weight <= 0) return;
     if (marks) r_.layer = l;
     if (changes) put_below(r_.material, layer.material);
-    if (!colours || !old)
-      return;  // ... and brings a colour of its own, but is of what the whole object is made of
-    if (layer.tint) add(Op::Kind::tint, l, {}, {});
-    if (layer.albedo) add(Op::Kind::branch, l, p.position, {});
-    if (layer.albedo) r_.base = false;
+    if (colours && old) visit_colours(l, layer, p, weight);  // ... but is of what the whole object is made of
+  }
+
+  void visit_colours(int l, const EditLayer& layer, const SurfacePoint& p, float weight) {
+    if (layer.tint) add(Op::Kind::tint, l, weight, {}, {});
+    if (layer.albedo) add(Op::Kind::branch, l, weight, p.position, {});
+    if (layer.erase && born_ == 0)
+      add(Op::Kind::base, l, weight, in_pose(scene_.poses, hit_, 0).position, {});
+    if (layer.erase && born_ > 0) add(Op::Kind::matter, l, weight, {}, matter_color());
   }
 
   // The layer changed the shape into that of this pose.
   void visit_change(int l, int pose) {
     if (r_.layer < 0 && shaped_ == pose) r_.layer = l;
-    if (!r_.base || born_ != pose) return;
-    const Pose& now = *scene_.poses.back();
-    const auto& t = now.surface->mesh().triangles[hit_.triangle];
-    const Vec3f color =
-        now.colors[t[0]] * (1 - hit_.b1 - hit_.b2) + now.colors[t[1]] * hit_.b1 + now.colors[t[2]] * hit_.b2;
-    add(Op::Kind::matter, l, {}, color);
-    r_.base = false;
+    if (r_.base && born_ == pose) add(Op::Kind::matter, l, 1, {}, matter_color());
   }
 
-  void add(Op::Kind kind, int l, Vec3f position, Vec3f color) {
-    chunk_.ops.push_back({kind, l, index_, position, color});
+  Vec3f matter_color() const {
+    const Pose& now = *scene_.poses.back();
+    const auto& t = now.surface->mesh().triangles[hit_.triangle];
+    return now.colors[t[0]] * (1 - hit_.b1 - hit_.b2) + now.colors[t[1]] * hit_.b1 +
+           now.colors[t[2]] * hit_.b2;
+  }
+
+  void add(Op::Kind kind, int l, float weight, Vec3f position, Vec3f color) {
+    constexpr float kOpaque = 0.9995f;
+    chunk_.ops.push_back({kind, l, index_, weight < kOpaque ? weight : 1, position, color});
+    if (weight >= kOpaque && kind != Op::Kind::tint) r_.base = false;
   }
 
   const Scene& scene_;
@@ -125,17 +135,19 @@ std::vector<Vec3f> eval_colors(const Device& device, const Field& field, const s
   return out;
 }
 
-// The branches' colours, each field evaluated at its own hits only.
-void eval_branches(const Device& device, const Scene& scene, Routes& routes) {
-  std::vector<std::vector<Op*>> ops(scene.layers.size());
+// The fields' colours, each field evaluated at its own hits only.
+void eval_fields(const Device& device, const Scene& scene, Routes& routes) {
+  std::vector<std::vector<Op*>> ops(scene.layers.size() + 1);  // by branch; the base last
   for (Chunk& chunk : routes.chunks)
     for (Op& op : chunk.ops)
-      if (op.kind == Op::Kind::branch) ops[op.layer].push_back(&op);
+      if (op.kind == Op::Kind::branch || op.kind == Op::Kind::base)
+        ops[op.kind == Op::Kind::branch ? size_t(op.layer) : scene.layers.size()].push_back(&op);
   for (size_t l = 0; l < ops.size(); ++l) {
     if (ops[l].empty()) continue;
     std::vector<Vec3f> x;
     for (const Op* op : ops[l]) x.push_back(op->position);
-    const std::vector<Vec3f> color = eval_colors(device, *scene.layers[l].albedo, x);
+    const std::vector<Vec3f> color =
+        eval_colors(device, l < scene.layers.size() ? *scene.layers[l].albedo : *scene.albedo, x);
     for (size_t i = 0; i < x.size(); ++i) ops[l][i]->color = color[i];
   }
 }
@@ -156,12 +168,13 @@ std::vector<Vec3f> base_colors(const Device& device, const Scene& scene, std::sp
 
 std::vector<Vec3f> colors_at(const Device& device, const Scene& scene, std::span<const Hit> hits,
                              Routes& routes) {
-  eval_branches(device, scene, routes);
+  eval_fields(device, scene, routes);
   std::vector<Vec3f> albedo = base_colors(device, scene, hits, routes);
   for (const Chunk& chunk : routes.chunks)
     for (auto op = chunk.ops.rbegin(); op != chunk.ops.rend(); ++op) {  // a hit's last step stands first
       Vec3f& a = albedo[op->hit];
-      a = op->kind == Op::Kind::tint ? tinted(*scene.layers[op->layer].tint, a) : op->color;
+      const Vec3f c = op->kind == Op::Kind::tint ? tinted(*scene.layers[op->layer].tint, a) : op->color;
+      a = op->weight < 1 ? a * (1 - op->weight) + c * op->weight : c;
     }
   return albedo;
 }

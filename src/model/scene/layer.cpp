@@ -35,7 +35,41 @@ MaterialChange change_from(const Json& j) {
   return {value("roughness"), value("specular"), value("metalness")};
 }
 
+// Regions name their tensors alike: each gets a prefix of its own.
+Json save_further(const std::vector<Region>& regions, Tensors& tensors) {
+  Json heads = Json::array();
+  for (const Region& region : regions) {
+    Tensors own;
+    Json head;
+    region.save(own, head);
+    const std::string prefix = fmt::format("also/{}/", heads.size());
+    for (auto& [name, tensor] : own) tensors[prefix + name] = std::move(tensor);
+    heads.push_back(std::move(head));
+  }
+  return heads;
+}
+
+std::vector<Region> load_further(const Tensors& tensors, const Json& heads) {
+  std::vector<Region> regions;
+  for (const Json& head : heads) {
+    const std::string prefix = fmt::format("also/{}/", regions.size());
+    Tensors own;
+    for (const auto& [name, tensor] : tensors)
+      if (name.starts_with(prefix)) own[name.substr(prefix.size())] = tensor;
+    regions.push_back(Region::load(own, head));
+  }
+  return regions;
+}
+
 }  // namespace
+
+float EditLayer::weight(Vec3f position, Vec3f normal) const {
+  if (everywhere) return 1;
+  float w = region.weight(position, normal);
+  for (const Region& r : also)
+    if (w < 1) w = max(w, r.weight(position, normal));
+  return w;
+}
 
 // A member that is at its default leaves no key: edits of the first format, which knew region and albedo
 // only, are stored as they were.
@@ -45,9 +79,11 @@ void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
     head["everywhere"] = true;
   else
     layer.region.save(tensors, head["region"]);
+  if (!layer.also.empty()) head["also"] = save_further(layer.also, tensors);
   if (layer.pose != kLatestPose) head["pose"] = layer.pose;
   if (!layer.part.empty()) head["part"] = layer.part;
   save_field(layer.albedo, "albedo", tensors, head);
+  if (layer.erase) head["erase"] = true;
   if (layer.tint) head["tint"] = tint_json(*layer.tint);
   if (!layer.material.empty()) head["material"] = change_json(layer.material);
   if (layer.light) save_light(*layer.light, tensors, head);
@@ -60,9 +96,11 @@ EditLayer load_layer(const Tensors& tensors, const Json& head) {
     layer.id = head.at("id").get<std::string>();
     layer.everywhere = head.value("everywhere", false);
     if (!layer.everywhere) layer.region = Region::load(tensors, head.at("region"));
+    if (head.contains("also")) layer.also = load_further(tensors, head.at("also"));
     layer.pose = head.value("pose", kLatestPose);
     layer.part = head.value("part", "");
     layer.albedo = load_field("albedo", tensors, head);
+    layer.erase = head.value("erase", false);
     if (head.contains("tint")) layer.tint = tint_from(head.at("tint"));
     if (head.contains("material")) layer.material = change_from(head.at("material"));
     if (head.contains("light")) layer.light = load_light(tensors, head.at("light"));

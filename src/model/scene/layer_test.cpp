@@ -29,7 +29,7 @@ std::shared_ptr<const Reshape> some_reshape() {
 }
 
 std::vector<EditLayer> one_of_each_kind() {
-  std::vector<EditLayer> layers(7);
+  std::vector<EditLayer> layers(8);
   for (EditLayer& l : layers) l.id = "0001-test";
   layers[0].region = some_region();
   layers[0].albedo = some_field();
@@ -45,6 +45,10 @@ std::vector<EditLayer> one_of_each_kind() {
   layers[5].material.specular = 0;
   layers[6].everywhere = true;
   layers[6].albedo = some_field();
+  layers[7] = layers[0];
+  layers[7].also = {some_region(), Region({{{0.5f, 0, 0}}, {{1, 0, 0}}, {0.2f}})};
+  layers[7].albedo = nullptr;
+  layers[7].erase = true;
   return layers;
 }
 
@@ -107,7 +111,7 @@ TEST(Scene, LayersSayTheirPoseAndTheLastLightCounts) {
   EXPECT_EQ(s.surface, s.poses.back()->surface);
   std::vector<int> poses;
   for (const EditLayer& layer : s.layers) poses.push_back(layer.pose);
-  EXPECT_EQ(poses, (std::vector<int>{0, 0, 0, 0, 0, 1, 1, 1}));
+  EXPECT_EQ(poses, (std::vector<int>{0, 0, 0, 0, 0, 1, 1, 1, 1}));
   ASSERT_EQ(s.light.lobes.size(), 1u);
   EXPECT_EQ(s.light.lobes[0].lambda, 3.5f);
 }
