@@ -27,7 +27,9 @@ same_pictures "$out/before" "$out/toggled"
 cei3d toggle "$project" 0001-paint
 
 cei3d edit "$project" material --roughness 0.6 --color '#8090a0'
-cei3d edit "$project" light --rotate 90 --scale 1.5
+cei3d edit "$project" light --rotate 90 --scale 1.5 --picture "$out/light.png" --json >"$out/light.json"
+grep -q '"changed_outside": 0' "$out/light.json" || fail "no report of what changed"
+[[ -s $out/light.png ]] || fail "no picture of what changed"
 cei3d log "$project" | grep -q '0003-light .*on .*rotate' || fail "the light is not in the log"
 views "$out/matt"
 cei3d toggle "$project" 0002-material
@@ -46,10 +48,17 @@ contents "$project" >"$out/before.txt"
 refused 2 'range' edit "$project" material --roughness 1.5
 refused 2 "no part 'ear'" edit "$project" material --part ear --roughness 0.5
 refused 2 'Nothing to change' edit "$project" light
+refused 2 'PNG' edit "$project" light --scale 2 --picture "$out/light.jpg"
+refused 2 'each scribble' edit "$project" paint --view train/r_055 --scribble "$sample/edits/paint/scribble.png" --view r_001
 refused 1 'twice as wide' edit "$project" light --env "$sample/edits/paint/scribble.png"
 contents "$project" >"$out/after.txt"
 same "$out/before.txt" "$out/after.txt"
 cei3d undo "$project"
+cei3d undo "$project"
+
+cei3d edit "$project" paint --view train/r_055 --scribble "$sample/edits/paint/scribble.png" --erase
+views "$out/erased"
+same_pictures "$out/before" "$out/erased"
 cei3d undo "$project"
 
 views "$out/relit" --env "$sample/envs/venice.hdr"

@@ -15,6 +15,29 @@ std::string stages_text(const EditSummary& s) {
   return text + fmt::format("load and store {:.2f} s", s.load_seconds + s.store_seconds);
 }
 
+void add_output(CLI::App* verb, EditOutput& o) {
+  const auto ends_in_png = [](const std::string& file) {
+    return file.ends_with(".png") ? std::string() : file + ": the picture is a PNG; end its name in .png";
+  };
+  verb->add_option("--picture", o.picture,
+                   "PNG to write: before and after side by side, in the view that the edit was made in or "
+                   "else the first "
+                   "held-out one; counts the pixels that changed, too")
+      ->check(CLI::Validator(ends_in_png, "PNG"));
+}
+
+void finish_edit(Session& session, Console& console, const EditSummary& s, std::string text,
+                 const EditOutput& o) {
+  Json json = s.json();
+  if (!o.picture.empty()) {
+    const ChangeSummary c = session.show_change({s.id, "", o.picture});
+    json["change"] = c.json();
+    text += fmt::format(" In view {}: {} pixels inside, {} changed outside; see {}.", c.view, c.pixels_inside,
+                        c.changed_outside, o.picture);
+  }
+  console.done(json, text);
+}
+
 void add_edit(Commands& commands) {
   auto project = std::make_shared<std::string>();
   CLI::App* edit = commands.add("edit", "Change the object; every edit is a layer that `undo` takes back");

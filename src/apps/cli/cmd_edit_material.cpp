@@ -2,6 +2,14 @@
 #include "apps/cli/edit_verbs.h"
 
 namespace cei3d {
+namespace {
+
+struct Options {
+  MaterialCommand command;
+  EditOutput output;
+};
+
+}  // namespace
 
 void add_effects(CLI::App* verb, MaterialEffects& e) {
   verb->add_option("--roughness", e.roughness, "0 (mirror) to 1; GGX alpha is its square");
@@ -14,16 +22,20 @@ void add_effects(CLI::App* verb, MaterialEffects& e) {
 }
 
 void add_edit_material(Commands& commands, CLI::App* edit, ProjectName project) {
-  auto o = std::make_shared<MaterialCommand>();
+  auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add("material", "Change what the object, or a part of it, is made of", edit);
-  verb->add_option("--part", o->part, "Name of a part, as `edit part` gave it (default: the whole object)");
-  add_effects(verb, o->effects);
-  commands.on(verb, o, [project](const MaterialCommand& command, Session& session, Console& console) {
+  verb->add_option("--part", o->command.part,
+                   "Name of a part, as `edit part` gave it (default: the whole object)");
+  add_effects(verb, o->command.effects);
+  add_output(verb, o->output);
+  commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {
     open_for_edit(session, *project, "material --roughness R");
-    const EditSummary s = session.change_material(command, console);
-    const std::string where = command.part.empty() ? "the whole object" : "part " + command.part;
-    console.done(s.json(), fmt::format("{}: {}, {} points of the surface; {}.", s.id, where,
-                                       s.report.at("points").get<size_t>(), stages_text(s)));
+    const EditSummary s = session.change_material(options.command, console);
+    const std::string& part = options.command.part;
+    const std::string text = fmt::format("{}: {}, {} points of the surface; {}.", s.id,
+                                         part.empty() ? "the whole object" : "part " + part,
+                                         s.report.at("points").get<size_t>(), stages_text(s));
+    finish_edit(session, console, s, text, options.output);
   });
 }
 

@@ -8,6 +8,7 @@ struct Options {
   std::string target = "albedo";
   std::vector<std::string> views, scribbles;
   PaintCommand command;
+  EditOutput output;
 };
 
 PaintCommand command_of(const Options& o) {
@@ -65,11 +66,12 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
                  "Show the reconstructed colours again where the scribble is opaque")
       ->excludes(target);
   verb->add_option("--seed", o->command.seed, "Of everything random in the edit")->capture_default_str();
+  add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {
     const PaintCommand command = command_of(options);
     open_for_edit(session, *project, "paint --view NAME --scribble FILE.png");
     const EditSummary s = session.paint(command, console);
-    console.done(s.json(), text_of(s));
+    finish_edit(session, console, s, text_of(s), options.output);
   });
 }
 

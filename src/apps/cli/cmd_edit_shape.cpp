@@ -9,6 +9,12 @@ namespace {
 struct DeformOptions {
   std::string from, to, view, pixel, drag, part;
   std::optional<double> radius;
+  EditOutput output;
+};
+
+struct RemoveOptions {
+  RemoveCommand command;
+  EditOutput output;
 };
 
 Vec3d point_of(const std::string& text, const std::string& option) {
@@ -68,22 +74,24 @@ void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
       "What is farther along the surface stays, capture units [0.3 of the object's radius, or 1.5 times the "
       "drag if that is more]");
   verb->add_option("--part", o->part, "What is not on this part stays");
+  add_output(verb, o->output);
   commands.on(verb, o, [project](const DeformOptions& options, Session& session, Console& console) {
     const DeformCommand command = command_of(options);
     open_for_edit(session, *project, "deform --from X,Y,Z --to X,Y,Z");
     const EditSummary s = session.deform(command, console);
-    console.done(s.json(), deform_text(s));
+    finish_edit(session, console, s, deform_text(s), options.output);
   });
 }
 
 void add_remove(Commands& commands, CLI::App* edit, ProjectName project) {
-  auto o = std::make_shared<RemoveCommand>();
+  auto o = std::make_shared<RemoveOptions>();
   CLI::App* verb = commands.add("remove", "Take a part off and close the surface behind it", edit);
-  verb->add_option("--part", o->part, "The part's name; `cei3d parts` lists them")->required();
-  commands.on(verb, o, [project](const RemoveCommand& command, Session& session, Console& console) {
+  verb->add_option("--part", o->command.part, "The part's name; `cei3d parts` lists them")->required();
+  add_output(verb, o->output);
+  commands.on(verb, o, [project](const RemoveOptions& options, Session& session, Console& console) {
     open_for_edit(session, *project, "remove --part NAME");
-    const EditSummary s = session.remove(command, console);
-    console.done(s.json(), remove_text(s));
+    const EditSummary s = session.remove(options.command, console);
+    finish_edit(session, console, s, remove_text(s), options.output);
   });
 }
 

@@ -15,6 +15,14 @@ void open_for_edit(Session&, const std::string& project, const char* example);
 // "trace 0.10 s, fit 0.42 s, load and store 0.08 s"
 std::string stages_text(const EditSummary&);
 
+// --picture: what every edit can show of itself.
+struct EditOutput {
+  std::string picture;
+};
+void add_output(CLI::App* verb, EditOutput&);
+// Says what was done, with the picture that was asked for.
+void finish_edit(Session&, Console&, const EditSummary&, std::string text, const EditOutput&);
+
 // --roughness, --specular, --metalness, --color, --replace
 void add_effects(CLI::App* verb, MaterialEffects&);
 

@@ -16,7 +16,7 @@ class SceneLight;  // engine/render/scene_light.h
 struct Scribble {
   Camera camera;  // of the painted view, unit-sphere frame
   Image image;    // RGBA, sRGB, straight alpha, of the camera's size. Painted where alpha >= 0.5; where alpha
-                // has values between nothing and all, it says how much of the colour covers what lies below
+                  // has values between nothing and all, it says how much of the colour covers what lies below
 };
 
 struct PaintRequest {

@@ -243,6 +243,32 @@ TEST_F(EditTest, WrongLightsChangeNothing) {
   EXPECT_EQ(files_of(folder("a")), before);
 }
 
+TEST_F(EditTest, AnEditShowsWhatItChanged) {
+  const std::string paint = session_.paint(scribble(0, {0.8f, 0.1f, 0.1f}, 6), quiet_).id;
+  const std::string deform =
+      session_.deform({PointDrag{{kSphereRadius, 0, 0}, {0.85, 0, 0.1}}, 0.35, ""}, quiet_).id;
+  const std::string light = session_.change_light({"", 30, EnvConvention::by_up_axis, 1}, quiet_).id;
+  const fs::path picture = temp_.path() / "change.png";
+  const ChangeSummary p = session_.show_change({paint, "", picture, 2});
+  EXPECT_EQ(p.view, "train/r_0");
+  // Twelve pixels each way, and the neighbours whose colours they are part of.
+  EXPECT_GE(p.pixels_inside, 12u * 12u);
+  EXPECT_LE(p.pixels_inside, 14u * 14u);
+  EXPECT_GT(p.pixels_changed, 12u * 12u * 9u / 10u);
+  EXPECT_EQ(p.changed_outside, 0u);
+  const Image image = read_image(picture);
+  EXPECT_EQ(image.width, 2 * kSize);
+  EXPECT_EQ(image.height, kSize);
+  EXPECT_GT(image.at(kSize + kSize / 2, kSize / 2)[0], image.at(kSize / 2, kSize / 2)[0]);  // red afterwards
+  const ChangeSummary d = session_.show_change({deform, "train/r_1", "", 2});
+  EXPECT_GT(d.pixels_changed, 50u);
+  EXPECT_EQ(d.changed_outside, 0u);
+  const ChangeSummary l = session_.show_change({light, "", "", 2});
+  EXPECT_GT(l.pixels_inside, 500u);
+  EXPECT_EQ(l.changed_outside, 0u);
+  EXPECT_EQ(error_of([&] { session_.show_change({"0009-paint", "", "", 2}); }).code(), ErrorCode::usage);
+}
+
 // A project that is edited, undone, redone and switched at random ends as one where the edits that are left
 // were simply made.
 struct Made {

@@ -116,6 +116,13 @@ Json EditSummary::json() const {
   return j;
 }
 
+Json ChangeSummary::json() const {
+  return {{"view", view},
+          {"pixels_inside", pixels_inside},
+          {"pixels_changed", pixels_changed},
+          {"changed_outside", changed_outside}};
+}
+
 Json ReplayReport::json() const {
   Json list = Json::array();
   for (const auto& [from, to] : edits) list.push_back({{"from", from}, {"to", to}});

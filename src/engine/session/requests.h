@@ -123,6 +123,19 @@ struct EditSummary {
   Json json() const;
 };
 
+// One view without an edit and with it.
+struct ChangeRequest {
+  std::string id;    // of the edit
+  std::string view;  // empty: the one that the edit was made in, else the first that was held out
+  std::filesystem::path picture;  // PNG, before and after side by side on white; empty: none
+  int samples = 2;
+};
+struct ChangeSummary {
+  std::string view;
+  size_t pixels_inside = 0, pixels_changed = 0, changed_outside = 0;
+  Json json() const;
+};
+
 struct ReplayReport {
   std::vector<std::pair<std::string, std::string>> edits;  // id in the project replayed, id in the other one
   Json json() const;

@@ -53,6 +53,7 @@ class Session {
   EditSummary change_light(const LightChoice&, Progress&);
   EditSummary deform(const DeformCommand&, Progress&);
   EditSummary remove(const RemoveCommand&, Progress&);
+  ChangeSummary show_change(const ChangeRequest&) const;  // of an edit that is on
   // Edits that depend on what comes or goes are made anew. Errors: one of them can't be; nothing has changed
   // then.
   std::string undo(Progress&);  // id of the edit that is undone now

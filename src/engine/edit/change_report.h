@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an edit changed in one view: its own pixels, and whether it kept to them.
+#pragma once
+
+#include "engine/render/render.h"
+
+namespace cei3d {
+
+struct ChangeReport {
+  size_t pixels_inside = 0;    // of the picture, that the edit may change: see compare_views()
+  size_t pixels_changed = 0;   // among all
+  size_t changed_outside = 0;  // 0, or something is wrong
+  Frame before, after;
+};
+
+// camera: unit-sphere frame. A pixel is inside when one of its samples meets matter that the layer contains
+// or that it reshaped, or matter elsewhere than before. An edit that is not local (light, the whole object)
+// has the whole object inside. before: the scene below the last layer of `after`.
+ChangeReport compare_views(const Device&, const Scene& before, const Scene& after, const Camera& camera,
+                           int samples);
+
+}  // namespace cei3d
