@@ -15,8 +15,10 @@ class SceneLight;  // engine/render/scene_light.h
 
 struct Scribble {
   Camera camera;  // of the painted view, unit-sphere frame
-  Image image;    // RGBA, sRGB, straight alpha, of the camera's size. Painted where alpha >= 0.5; where alpha
-                  // has values between nothing and all, it says how much of the colour covers what lies below
+  // RGBA, sRGB, straight alpha, of the camera's size. Painted where alpha >= 0.5; with semi-transparent
+  // strokes (alpha that is not just that of smooth edges) alpha says how much of the colour covers what lies
+  // below.
+  Image image;
 };
 
 struct PaintRequest {

@@ -228,6 +228,17 @@ TEST_F(PaintTest, SemiTransparentPaintIsMixedWithWhatLiesBelow) {
   }
 }
 
+TEST_F(PaintTest, SmoothEdgesAreNotSemiTransparentPaint) {
+  Image smooth = square(kRed, 1);
+  for (int y = 30; y < 66; ++y) smooth.at(37, y)[3] = smooth.at(58, y)[3] = 0.25f + 0.5f * float(y % 2);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x)
+      if (y < 38 || y >= 58) smooth.at(x, y)[3] = 0;
+  EXPECT_EQ(least_alpha(smooth), 0.5f);
+  EXPECT_EQ(least_alpha(square(kRed, 1)), 0.5f);
+  EXPECT_LT(least_alpha(square(kRed, 0.7f)), 1.0f / 255);
+}
+
 TEST_F(PaintTest, ALaterScribbleOfTheSameEditCoversAnEarlierOne) {
   const Device device = make_device();
   const Camera left = camera_at({-0.5, -2.96, 0.3});

@@ -15,6 +15,13 @@ constexpr int kMaxScale = 4;
 constexpr int64_t kMaxRays = 300000;    // in the crop: about half a second
 constexpr int64_t kMaxPainted = 60000;  // painted rays: as many as training visits anyway
 
+bool beside_opaque(const Image& rgba, int x, int y) {
+  for (int v = std::max(y - 1, 0); v <= std::min(y + 1, rgba.height - 1); ++v)
+    for (int u = std::max(x - 1, 0); u <= std::min(x + 1, rgba.width - 1); ++u)
+      if (rgba.at(u, v)[3] > 1 - kSoft) return true;
+  return false;
+}
+
 int count_painted(const Image& rgba) {
   const float least = least_alpha(rgba);
   int n = 0;
@@ -88,9 +95,13 @@ int count_missed(const Stroke& s, const std::vector<uint8_t>& reached) {
 }  // namespace
 
 float least_alpha(const Image& rgba) {
-  for (size_t i = 3; i < rgba.data.size(); i += 4)
-    if (rgba.data[i] >= kSoft && rgba.data[i] <= 1 - kSoft) return kSoft;
-  return kHard;
+  int veils = 0, edges = 0;
+  for (int y = 0; y < rgba.height; ++y)
+    for (int x = 0; x < rgba.width; ++x) {
+      const float alpha = rgba.at(x, y)[3];
+      if (alpha >= kSoft && alpha <= 1 - kSoft) ++(beside_opaque(rgba, x, y) ? edges : veils);
+    }
+  return veils > edges ? kSoft : kHard;
 }
 
 PixelBox painted_box(const Image& rgba, int margin) {

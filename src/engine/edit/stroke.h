@@ -14,8 +14,9 @@ namespace cei3d {
 struct PixelBox {
   int x0 = 0, y0 = 0, width = 0, height = 0;
 };
-// The alpha from which a pixel of the scribble is painted: one half where the scribble knows only paint and
-// no paint; else, with semi-transparent strokes, the least that 8 bits can say.
+// The alpha from which a pixel of the scribble is painted: one half where alpha between nothing and all is
+// that of smooth edges, beside opaque pixels; else, with semi-transparent strokes, the least that 8 bits can
+// say.
 float least_alpha(const Image& rgba);
 // The painted pixels with `margin` pixels around, within the picture. Width 0: nothing is painted.
 PixelBox painted_box(const Image& rgba, int margin);
