@@ -3,14 +3,12 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <set>
 
 #include "core/base/error.h"
 #include "engine/segment/seen_points.h"
-#include "engine/segment/spread.h"
 #include "model/geometry/test_meshes.h"
 
 namespace cei3d {
@@ -205,24 +203,6 @@ TEST(Prompts, KeepAwayFromTheBorderAndFromEachOther) {
     }
   const std::vector<Vec2f> wrong{{0, 0}, {5, 5}, {9, 9}}, right{{10, 10}, {0, 1}};
   EXPECT_EQ(deepest(wrong, right).x, 5);
-}
-
-TEST(Spread, UnknownPointsFollowTheirNeighbours) {
-  const HandlerPoints h = sphere_points(3000);
-  std::vector<float> scores;
-  for (Vec3f p : h.positions) scores.push_back(std::abs(p.z) > 0.4f ? p.z > 0 ? 0.9f : 0.1f : 0.5f);
-  spread_scores(h, scores);
-  for (size_t i = 0; i < scores.size(); ++i) {
-    if (h.positions[i].z > 0.1f) {
-      EXPECT_GT(scores[i], 0.5f);
-    }
-    if (h.positions[i].z < -0.1f) {
-      EXPECT_LT(scores[i], 0.5f);
-    }
-  }
-  std::vector<float> nothing(h.positions.size(), 0.5f);
-  spread_scores(h, nothing);
-  EXPECT_EQ(*std::max_element(nothing.begin(), nothing.end()), 0);
 }
 
 }  // namespace

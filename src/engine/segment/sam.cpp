@@ -109,6 +109,16 @@ Image to_picture(const std::vector<float>& plane, const SamPicture& p) {
 
 }  // namespace
 
+std::filesystem::path installed_sam() {
+  std::error_code ignored;
+  const std::filesystem::path program =
+      std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  const std::filesystem::path first = program.parent_path() / "sam";
+  for (const auto& folder : {first, program / "sam", program.parent_path() / "share/cei3d/sam"})
+    if (std::filesystem::exists(folder / "encoder.onnx", ignored)) return folder;
+  return first;
+}
+
 Sam::Sam(const std::filesystem::path& folder, int threads)
     : runtime_(std::make_shared<OnnxRuntime>(folder)),
       encoder_(runtime_, network(folder, "encoder.onnx"), threads),

@@ -16,6 +16,10 @@
 
 namespace cei3d {
 
+// Where `./run sam` puts the networks and the runtime: `sam` beside the program's folder (build/sam), in it,
+// or in share/cei3d beside it. The first of these if there is none.
+std::filesystem::path installed_sam();
+
 // A picture as the decoder wants it. The frame of 1024 pixels shows the object only, enlarged: small parts
 // get as much of the network's resolution as can be.
 struct SamPicture {
