@@ -12,6 +12,10 @@ namespace {
 
 constexpr float kSure = 0.9f;  // scores from which the views' verdict stands; one minus it likewise
 
+// Prior of points that no view told anything about: they follow their neighbours of like colour, and what has
+// none is not of the part.
+constexpr float kUntold = 0.49f;
+
 // The network on base-colour pictures, each encoded once.
 class BaseColorViews : public ViewSegmenter {
  public:
@@ -45,8 +49,7 @@ PropagateResult sam_part(const Device& device, const Scene& scene, const SamPart
   std::vector<Seed> seeds;
   for (float& score : result.scores) {
     seeds.push_back(score > kSure ? Seed::positive : score < 1 - kSure ? Seed::negative : Seed::none);
-    if (score == 0.5f)
-      score = 0;  // told by no view: follows neighbours of like colour, else is not of the part
+    if (score == 0.5f) score = kUntold;
   }
   const PointGraph graph = point_graph(*scene.handlers, handler_colors(device, scene));
   result.scores = random_walk(graph, seeds, result.scores);
