@@ -9,7 +9,7 @@
 #include "core/math/loss.h"
 #include "core/math/rng.h"
 #include "core/math/volume.h"
-#include "engine/reconstruct/prefit.h"
+#include "engine/reconstruct/carve.h"
 
 namespace cei3d {
 
@@ -22,6 +22,8 @@ constexpr int kCandidates = 96;                             // most of a ray
 constexpr int kBlock = 512;                                 // candidates evaluated at a time
 constexpr int kRefreshEvery = 25, kFullRefreshEvery = 400;  // steps between looks at the occupancy grid
 constexpr float kRefreshMargin = 0.15f;
+constexpr int kStartCells = 128;       // an axis, of the start shape
+constexpr float kAnchorWidth = 0.02f;  // of its loss
 
 }  // namespace
 
@@ -88,12 +90,17 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
 
 GeometryStage::~GeometryStage() = default;
 
-void GeometryStage::prefit() {
+void GeometryStage::prefit(Start start) {
   std::vector<HullMask> masks;
   for (size_t v = 0; v < pixels_.cameras().size(); ++v)
     masks.push_back({pixels_.cameras()[v], pixels_.masks()[v]});
-  prefit_to_hull(device_, sdf_, visual_hull(masks, 128), options_.hull_margin, options_.prefit_steps,
-                 levels_at(0), seed_);
+  VisualHull hull = visual_hull(masks, kStartCells);
+  CarveOptions carving;
+  carving.seed = seed_;
+  if (start == Start::carved) hull = carve(pixels_, hull, carving);
+  const DistanceGrid distance{hull.n, signed_distance(hull)};
+  cei3d::prefit(device_, sdf_, distance, options_.prefit_steps, levels_at(0), seed_);
+  anchor_ = start == Start::carved ? distance : DistanceGrid{};
 }
 
 int GeometryStage::levels_at(double u) const {
@@ -110,6 +117,7 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
   s.levels = levels_at(u);
   s.views = u >= options_.view_from;
+  s.anchor = anchor_.n ? options_.anchor_weight * s.sharpness * float(std::max(0.0, 1 - u / options_.anchor_until)) : 0;
   return s;
 }
 
@@ -275,7 +283,13 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
       Vec3f d_gradient;
       stats.eikonal += eikonal(gradient, d_gradient);
       const float sdf = w.jet.output()[panel_at(i, 4, 0, rows, 0)];
-      d_jet[panel_at(i, 4, 0, rows, 0)] = d_alpha * w.alpha[i].d_sdf + push * empty_push(sdf, s.sharpness);
+      float d_sdf = d_alpha * w.alpha[i].d_sdf + push * empty_push(sdf, s.sharpness);
+      if (s.anchor > 0) {
+        const Vec3f x{w.points[panel_at(i, 1, 0, 3, 0)], w.points[panel_at(i, 1, 0, 3, 1)],
+                      w.points[panel_at(i, 1, 0, 3, 2)]};
+        d_sdf += s.anchor * per_ray * huber(sdf - anchor_.at(x), kAnchorWidth).gradient;
+      }
+      d_jet[panel_at(i, 4, 0, rows, 0)] = d_sdf;
       for (int c = 0; c < 3; ++c)
         d_jet[panel_at(i, 4, 1 + c, rows, 0)] = d_alpha * w.alpha[i].d_cosine * batch.rays[r].direction[c] +
                                                 options_.eikonal_weight * per_sample * d_gradient[c];
@@ -395,6 +409,7 @@ void GeometryStage::save(Tensors& out) const {
   radiance_.save(out, "radiance");
   optimizer_.save(out, "adam");
   const int64_t n = grid_.resolution();
+  if (anchor_.n) out["anchor"] = {{anchor_.n, anchor_.n, anchor_.n}, anchor_.values, {}};
   out["occupancy"] = {
       {n, n, n}, grid_.values(), {}};  // stale cells and all: resuming then equals never stopping
 }
@@ -405,6 +420,8 @@ void GeometryStage::load(const Tensors& in) {
   optimizer_.load(in, "adam");
   const int64_t n = grid_.resolution();
   grid_.set(require_tensor(in, "occupancy", {n, n, n}).f32);
+  if (in.contains("anchor"))
+    anchor_ = {kStartCells, require_tensor(in, "anchor", {kStartCells, kStartCells, kStartCells}).f32};
 }
 
 }  // namespace cei3d

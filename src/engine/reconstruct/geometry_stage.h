@@ -9,6 +9,7 @@
 #include "core/base/pool.h"
 #include "engine/reconstruct/occupancy.h"
 #include "engine/reconstruct/pixels.h"
+#include "engine/reconstruct/prefit.h"
 #include "model/field/field.h"
 #include "model/field/field_pass.h"
 #include "model/field/gradients.h"
@@ -32,8 +33,9 @@ struct GeometryOptions {
   float view_from = 0.25f;    // until here colours do not depend on the view: what moves with it must be the surface
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
   float decay_from = 0.3f, decay_to = 0.05f;  // exponential decay of the rate over the rest of the schedule
-  float hull_margin = 0;                      // the prefit surface lies this far inside the visual hull
   int prefit_steps = 300;
+  float anchor_until = 0.2f;    // a carved start holds the surface, less and less, until here: colours that know
+  float anchor_weight = 0.15f;  // nothing yet would blow it up again. Times the sharpness
 };
 
 struct GeometryStats {
@@ -50,9 +52,10 @@ class GeometryStage {
 
   ~GeometryStage();
 
-  // Fits the field to the distance to the visual hull: descent then starts from the right object. Error:
-  // empty hull.
-  void prefit();
+  // Fits the field to the visual hull, as it is or carved by the colours (engine/reconstruct/carve.h): descent
+  // then starts from the right object. Error: empty hull.
+  enum class Start { hull, carved };
+  void prefit(Start);
   // One training step at schedule position u in [0, 1).
   GeometryStats step(int64_t step, double u);
   // Loss statistics of random pixels of another store (held-out views), no training.
@@ -71,7 +74,8 @@ class GeometryStage {
   struct Schedule {
     float sharpness, step, band;
     int levels;
-    bool views;  // colours depend on the view
+    bool views;    // colours depend on the view
+    float anchor;  // weight of the start shape
   };
   Schedule schedule_at(double u) const;
   void sample_rays(const PixelStore&, int64_t step, int first, RayBatch&) const;
@@ -90,6 +94,7 @@ class GeometryStage {
   ParamSet radiance_;
   Optimizer optimizer_;
   OccupancyGrid grid_;
+  DistanceGrid anchor_;  // of a carved start; else empty
   std::unique_ptr<MlpWeights> sdf_weights_, radiance_weights_;  // of the current step
   Pool<Work> work_;
   std::vector<ChunkGradients> sdf_gradients_;

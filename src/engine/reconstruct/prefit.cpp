@@ -72,18 +72,33 @@ std::vector<float> signed_distance(const VisualHull& hull) {
   return to_inside;
 }
 
-void prefit_to_hull(const Device& device, Field& sdf, const VisualHull& hull, float margin, int steps,
-                    int levels, uint64_t seed) {
-  const std::vector<float> distance = signed_distance(hull);
+float DistanceGrid::at(Vec3f p) const {
+  float fraction[3];
+  size_t base[3];
+  for (int c = 0; c < 3; ++c) {
+    const float t = clamp((p[c] + 1) * 0.5f * float(n) - 0.5f, 0.0f, float(n) - 1.001f);
+    base[c] = size_t(t);
+    fraction[c] = t - float(base[c]);
+  }
+  float sum = 0;
+  for (int k = 0; k < 8; ++k) {
+    const size_t corner[3] = {size_t(k & 1), size_t(k >> 1 & 1), size_t(k >> 2)};
+    float weight = 1;
+    for (int c = 0; c < 3; ++c) weight *= corner[c] ? fraction[c] : 1 - fraction[c];
+    sum += weight * values[((base[2] + corner[2]) * n + base[1] + corner[1]) * n + base[0] + corner[0]];
+  }
+  return sum;
+}
+
+void prefit(const Device& device, Field& sdf, const DistanceGrid& grid, int steps, int levels, uint64_t seed) {
+  const std::vector<float>& distance = grid.values;
   std::vector<uint32_t> near;  // cells close to the surface
   for (size_t i = 0; i < distance.size(); ++i)
     if (std::abs(distance[i]) < 0.08f) near.push_back(uint32_t(i));
-  if (near.empty())
-    fail("the visual hull of the masks is empty: masks and camera poses disagree, or the masks are wrong");
+  if (near.empty()) fail("the visual hull of the masks is empty: masks and camera poses disagree, or the masks are wrong");
 
   FieldTrainer trainer(sdf, {});
-  const int n = hull.n, batch = 2048, outputs = sdf.config().outputs;
-  const Vec3f size = hull.hi - hull.lo;
+  const int n = grid.n, batch = 2048, outputs = sdf.config().outputs;
   std::vector<Vec3f> x(batch);
   std::vector<float> target(batch);
   for (int step = 0; step < steps; ++step) {
@@ -91,10 +106,9 @@ void prefit_to_hull(const Device& device, Field& sdf, const VisualHull& hull, fl
       Rng rng(seed, uint64_t(step), uint64_t(i));
       const uint32_t cell =
           i % 4 ? near[rng.below(uint32_t(near.size()))] : rng.below(uint32_t(distance.size()));
-      const float t = float(n);
-      x[i] = hull.lo + size * Vec3f{(float(cell % n) + 0.5f) / t, (float(cell / n % n) + 0.5f) / t,
-                                    (float(cell / n / n) + 0.5f) / t};
-      target[i] = distance[cell] + margin;
+      const auto at = [n](uint32_t k) { return (float(k) + 0.5f) * 2 / float(n) - 1; };
+      x[i] = {at(cell % n), at(cell / n % n), at(cell / n / n)};
+      target[i] = distance[cell];
     }
     trainer.step(
         device, x,

@@ -20,6 +20,8 @@ namespace {
 
 constexpr int kRim = 6;  // pixels around the object that are trained on
 constexpr double kCheckpointSeconds = 30;
+constexpr double kLongRun = 120;  // seconds of training from which two starts are tried,
+constexpr int kLongRunSteps = 4000;  // or steps
 constexpr double kGeometryShare = 0.72;  // of the time that is asked for
 constexpr double kMostAppearance = 90;   // seconds: more brings nothing
 constexpr size_t kMostHits = 600000;     // training pixels of the appearance stage
@@ -81,9 +83,30 @@ void save_geometry(Checkpoints& checkpoints, const GeometryStage& stage, int64_t
   checkpoints.save(state);
 }
 
+// Carving opens what the visual hull cannot (the inside of a shovel), but mirror images deceive it (a metal body
+// is hollowed out where the reflections seem to be). A short training from either start tells: that which explains
+// the pictures better goes on.
+GeometryStage::Start choose_start(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
+                                  uint64_t seed, Progress& progress) {
+  constexpr int kSteps = 400, kRays = 32768;
+  double psnr[2];
+  for (const auto start : {GeometryStage::Start::hull, GeometryStage::Start::carved}) {
+    GeometryStage trial(device, pixels, options, seed);
+    trial.prefit(start);
+    for (int step = 0; step < kSteps; ++step) {
+      if (progress.cancelled()) throw Error(ErrorCode::interrupted, "interrupted before there was a state to save");
+      trial.step(step, double(step) / kSteps);
+      if (step % 20 == 0) progress.report({"choosing a start", 0.01, -1, ""});
+    }
+    psnr[int(start)] = trial.evaluate(pixels, kRays, 1).psnr();
+  }
+  progress.log(Json{{"stage", "start"}, {"hull_psnr", psnr[0]}, {"carved_psnr", psnr[1]}}.dump());
+  return psnr[1] > psnr[0] ? GeometryStage::Start::carved : GeometryStage::Start::hull;
+}
+
 // Trains until the schedule is over. Returns the number of steps.
-int64_t train_geometry(GeometryStage& stage, const TrainingViews& views, Schedule schedule,
-                       Checkpoints& checkpoints, Progress& progress) {
+int64_t train_geometry(GeometryStage& stage, GeometryStage::Start start, const TrainingViews& views,
+                       Schedule schedule, Checkpoints& checkpoints, Progress& progress) {
   int64_t step = 0;
   if (const auto state = checkpoints.latest()) {
     stage.load(state->tensors);
@@ -91,7 +114,7 @@ int64_t train_geometry(GeometryStage& stage, const TrainingViews& views, Schedul
     schedule.resume_at(state->head.at("elapsed").get<double>());
   } else {
     progress.report({"visual hull", 0.01, -1, ""});
-    stage.prefit();
+    stage.prefit(start);
     schedule.resume_at(0);
   }
   const PixelStore& judged = views.held_out.pixels().empty() ? views.train : views.held_out;
@@ -217,8 +240,14 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   scene.normalization = normalization;
   scene.up = capture.up;
   {
+    const double begin = now();
+    const bool long_run = geometry_seconds > 0 ? geometry_seconds >= kLongRun : iterations >= kLongRunSteps;
+    const auto start = long_run && !checkpoints.latest()
+                           ? choose_start(device, views.train, preset.geometry, options.seed, progress)
+                           : GeometryStage::Start::hull;
+    const double seconds = geometry_seconds > 0 ? std::max(geometry_seconds - (now() - begin), 1.0) : 0;
     GeometryStage stage(device, views.train, preset.geometry, options.seed);
-    train_geometry(stage, views, Schedule(geometry_seconds, iterations), checkpoints, progress);
+    train_geometry(stage, start, views, Schedule(seconds, iterations), checkpoints, progress);
     report_radiance(stage, capture, images, normalization, progress);
     scene.sdf = std::make_shared<const Field>(stage.sdf());
   }
