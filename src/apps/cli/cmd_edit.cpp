@@ -45,6 +45,7 @@ void add_edit(Commands& commands) {
   edit->add_option("project", *project, "Project folder")->option_text("TEXT REQUIRED");
   edit->require_subcommand(1);
   add_edit_paint(commands, edit, project);
+  add_edit_part(commands, edit, project);
   add_edit_material(commands, edit, project);
   add_edit_light(commands, edit, project);
   add_edit_shape(commands, edit, project);

@@ -11,10 +11,14 @@ struct Options {
 
 }  // namespace
 
-void add_effects(CLI::App* verb, MaterialEffects& e) {
+void add_material_values(CLI::App* verb, MaterialEffects& e) {
   verb->add_option("--roughness", e.roughness, "0 (mirror) to 1; GGX alpha is its square");
   verb->add_option("--specular", e.specular, "0 to 1; 0.5 is the 4 % of most dielectrics. Metals have none");
   verb->add_option("--metalness", e.metalness, "0 to 1");
+}
+
+void add_effects(CLI::App* verb, MaterialEffects& e) {
+  add_material_values(verb, e);
   CLI::Option* color = verb->add_option(
       "--color", e.color,
       "'#RRGGBB', sRGB: the base colour on average; the texture that is there is scaled to it");

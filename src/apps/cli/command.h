@@ -51,6 +51,7 @@ void add_check(Commands&);
 void add_reconstruct(Commands&);
 void add_render(Commands&);
 void add_edit(Commands&);
+void add_parts(Commands&);
 void add_history(Commands&);  // log, undo, redo, toggle, replay
 void add_export(Commands&);
 void add_eval(Commands&);

@@ -23,12 +23,15 @@ void add_output(CLI::App* verb, EditOutput&);
 // Says what was done, with the picture that was asked for.
 void finish_edit(Session&, Console&, const EditSummary&, std::string text, const EditOutput&);
 
-// --roughness, --specular, --metalness, --color, --replace
+// --roughness, --specular, --metalness
+void add_material_values(CLI::App* verb, MaterialEffects&);
+// ..., --color, --replace
 void add_effects(CLI::App* verb, MaterialEffects&);
 
 void add_edit_paint(Commands&, CLI::App* edit, ProjectName);
 void add_edit_material(Commands&, CLI::App* edit, ProjectName);
 void add_edit_light(Commands&, CLI::App* edit, ProjectName);
+void add_edit_part(Commands&, CLI::App* edit, ProjectName);
 void add_edit_shape(Commands&, CLI::App* edit, ProjectName);  // deform, remove
 
 }  // namespace cei3d

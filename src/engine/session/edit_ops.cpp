@@ -6,7 +6,7 @@
 namespace cei3d {
 
 const EditOp& edit_op(const std::string& name) {
-  for (const EditOp* op : {&kPaintOp, &kMaterialOp, &kLightOp, &kDeformOp, &kRemoveOp})
+  for (const EditOp* op : {&kPaintOp, &kMaterialOp, &kLightOp, &kDeformOp, &kRemoveOp, &kPartOp})
     if (name == op->name) return *op;
   fail("'{}' is an edit that this program does not know; update cei3d.", name);
 }

@@ -47,6 +47,6 @@ struct EditOp {
 const EditOp& edit_op(const std::string& name);
 
 // The operations; each is in the file edit_*.cpp of its kind.
-extern const EditOp kPaintOp, kMaterialOp, kLightOp, kDeformOp, kRemoveOp;
+extern const EditOp kPaintOp, kMaterialOp, kLightOp, kDeformOp, kRemoveOp, kPartOp;
 
 }  // namespace cei3d

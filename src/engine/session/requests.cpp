@@ -139,6 +139,10 @@ Json RenderReport::json() const {
           {"folders", list}};
 }
 
+Json PartInfo::json() const { return {{"name", name}, {"edit", edit}, {"points", points}, {"share", share}}; }
+
+Json PartMasksReport::json() const { return {{"views", views}, {"shown", shown}, {"seconds", seconds}}; }
+
 Json ExportReport::json() const {
   return {{"file", out.string()}, {"vertices", vertices}, {"triangles", triangles}, {"lobes", lobes}};
 }

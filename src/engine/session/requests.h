@@ -111,6 +111,16 @@ struct DeformCommand {
   std::optional<double> radius;  // along the surface, capture units
   std::string part;              // empty: the whole object
 };
+// A part by clicks or a mask in one view, with or without effects on it.
+struct PartCommand {
+  std::string view;
+  std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centres at +0.5
+  std::filesystem::path mask;                    // PNG in place of clicks; empty: none
+  std::string segmenter = "grow";                // or "sam"
+  std::string name;                      // empty: that of the part combined with, else "part1", "part2", ...
+  std::string add, subtract, intersect;  // name of a part to combine with; at most one
+  MaterialEffects effects;
+};
 struct RemoveCommand {
   std::string part;
 };
@@ -138,6 +148,13 @@ struct ChangeSummary {
 
 struct ReplayReport {
   std::vector<std::pair<std::string, std::string>> edits;  // id in the project replayed, id in the other one
+  Json json() const;
+};
+
+struct PartInfo {
+  std::string name, edit;  // the edit that says where it is
+  size_t points = 0;       // vertices of the present surface
+  double share = 0;        // of all of them
   Json json() const;
 };
 
@@ -183,6 +200,19 @@ struct RenderReport {
   size_t views = 0;
   double seconds = 0, trace_seconds = 0, shade_seconds = 0;
   std::vector<std::filesystem::path> folders;  // one a channel
+  Json json() const;
+};
+
+// A part's mask in each view: OUT/<view>.png, grey, how much of a pixel shows the part.
+struct PartMasksRequest {
+  std::filesystem::path out;
+  CameraChoice cameras;
+  std::string part;
+  int samples = 2;  // a pixel and axis
+};
+struct PartMasksReport {
+  size_t views = 0, shown = 0;  // shown: views with some of the part
+  double seconds = 0;
   Json json() const;
 };
 

@@ -53,6 +53,7 @@ class Session {
   EditSummary change_light(const LightChoice&, Progress&);
   EditSummary deform(const DeformCommand&, Progress&);
   EditSummary remove(const RemoveCommand&, Progress&);
+  EditSummary select_part(const PartCommand&, Progress&);
   ChangeSummary show_change(const ChangeRequest&) const;  // of an edit that is on
   // Edits that depend on what comes or goes are made anew. Errors: one of them can't be; nothing has changed
   // then.
@@ -62,6 +63,8 @@ class Session {
   // Makes the edits of this project, those that are done, on top of another one's; those that are off are
   // switched off there, too. Error: one can't be made there; those before it stand.
   ReplayReport replay(const std::filesystem::path& on, Progress&);
+  std::vector<PartInfo> parts() const;  // by name
+  PartMasksReport part_masks(const PartMasksRequest&, Progress&) const;
   RenderReport render(const RenderRequest&, Progress&);
   ExportReport export_to(const ExportRequest&, Progress&);
   EvalReport evaluate(const EvalRequest&, Progress&);

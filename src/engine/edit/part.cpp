@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/edit/part.h"
+
+#include <chrono>
+
+#include "core/base/error.h"
+#include "engine/edit/material.h"
+#include "engine/edit/part_seeds.h"
+#include "engine/segment/grow.h"
+#include "model/scene/appearance.h"
+#include "model/scene/parts.h"
+
+namespace cei3d {
+namespace {
+
+constexpr float kInside = 0.5f;        // score from which on a point belongs to a part
+constexpr double kEverything = 0.995;  // share of the points from which on a part is the whole object
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+void require_running(const Progress& progress) {
+  if (progress.cancelled())
+    throw Error(ErrorCode::interrupted, "Selecting the part was interrupted; nothing was changed.");
+}
+
+// The handler points as hits of the surface's mesh just below them, so that they are known in every pose.
+std::vector<Hit> handler_hits(const Scene& scene) {
+  const HandlerPoints& points = *scene.handlers;
+  const size_t n = points.positions.size();
+  std::vector<Vec3f> origins(n), directions(n);
+  for (size_t i = 0; i < n; ++i) {
+    origins[i] = points.positions[i] + points.normals[i] * (0.5f * points.spacing);
+    directions[i] = -points.normals[i];
+  }
+  std::vector<Surface::RayHit> below(n);
+  scene.surface->intersect(origins, directions, 0, below);
+  std::vector<Hit> hits(n);
+  for (size_t i = 0; i < n; ++i) {
+    hits[i] = {points.positions[i], points.normals[i], points.normals[i], 0, 0, 0};
+    if (below[i].t >= 0)
+      hits[i].triangle = below[i].triangle, hits[i].b1 = below[i].b1, hits[i].b2 = below[i].b2;
+  }
+  return hits;
+}
+
+std::vector<float> selected(const Device& device, const Scene& scene, const PartRequest& r,
+                            std::span<const Hit> hits, std::span<const Seed> seeds, Progress& progress) {
+  if (r.network) return r.network(scene, r, progress);
+  return grow(*scene.handlers, appearance_at(device, scene, hits).albedo, seeds);
+}
+
+// Of each handler point, how much it belongs to the part that there is.
+std::vector<float> existing_scores(const Scene& scene, const std::string& part, std::span<const Hit> hits) {
+  const EditLayer& layer = part_layer(scene, part);
+  const std::vector<uint8_t> inside = inside_layer(scene, layer, hits);
+  std::vector<float> scores(inside.begin(), inside.end());
+  if (layer.region.scored().empty()) return scores;
+  for (size_t i = 0; i < scores.size(); ++i) {
+    if (!scene.poses.empty() && scene.poses.back()->born_in(hits[i].triangle) > layer.pose) continue;
+    const SurfacePoint p = in_pose(scene.poses, hits[i], layer.pose);
+    scores[i] = layer.region.scored().score(p.position, p.normal);
+  }
+  return scores;
+}
+
+void combine(PartCombination::How how, std::span<const float> old, std::vector<float>& scores) {
+  using How = PartCombination::How;
+  for (size_t i = 0; i < scores.size(); ++i) {
+    float& s = scores[i];
+    s = how == How::add ? max(old[i], s) : how == How::subtract ? min(old[i], 1 - s) : min(old[i], s);
+  }
+}
+
+size_t count_inside(std::span<const float> scores) {
+  size_t n = 0;
+  for (const float s : scores) n += s >= kInside;
+  return n;
+}
+
+void check_size(size_t points, size_t all, const PartRequest& r) {
+  if (points == 0)
+    fail("Nothing is left in part '{}'; {}.", r.name,
+         r.combination ? "what was clicked and the part do not go together that way" : "click on its middle");
+  if (double(points) >= kEverything * double(all))
+    fail(
+        "Part '{}' would be the whole object; add --negative clicks beside it, or change the whole object by "
+        "`edit "
+        "material`.",
+        r.name);
+}
+
+void set_effects(const Device& device, const Scene& scene, const PartRequest& r, EditLayer& layer) {
+  layer.material = r.change;
+  if (!r.color) return;
+  Tint tint{*r.color, r.keep_texture, {1, 1, 1}};
+  if (r.keep_texture) tint.mean = mean_color_inside(device, scene, layer);
+  layer.tint = tint;
+}
+
+double vertex_share(const Scene& scene, const EditLayer& layer) {
+  const std::vector<Hit> hits = vertex_hits(scene.surface->mesh());
+  size_t inside = 0;
+  for (const uint8_t i : inside_layer(scene, layer, hits)) inside += i;
+  return double(inside) / double(std::max<size_t>(hits.size(), 1));
+}
+
+}  // namespace
+
+PartResult select_part(const Device& device, const Scene& scene, const PartRequest& r, Progress& progress) {
+  if (!scene.handlers || scene.handlers->positions.empty())
+    fail("The object has no handler points to select a part of; reconstruct it again.");
+  const double start = now();
+  if (r.combination) part_layer(scene, r.combination->part);  // an error before the work
+  const std::vector<Seed> seeds = part_seeds(device, scene, r);
+  progress.report({"part", 0.1, -1, ""});
+  const double seeded = now();
+  const std::vector<Hit> hits = handler_hits(scene);
+  std::vector<float> scores = selected(device, scene, r, hits, seeds, progress);
+  require_running(progress);
+  if (r.combination) combine(r.combination->how, existing_scores(scene, r.combination->part, hits), scores);
+  PartResult result;
+  result.report.points = count_inside(scores);
+  check_size(result.report.points, scores.size(), r);
+
+  const double found = now();
+  const HandlerPoints& points = *scene.handlers;
+  EditLayer& layer = result.layer;
+  layer.id = r.id;
+  layer.part = r.name;
+  layer.pose = scene.poses.empty() ? 0 : int(scene.poses.size()) - 1;
+  layer.region = Region(ScoredPoints({points.positions, points.normals, std::move(scores), points.spacing}));
+  result.report.share = vertex_share(scene, layer);
+  set_effects(device, scene, r, layer);
+  result.report.seed_seconds = seeded - start;
+  result.report.select_seconds = found - seeded;
+  result.report.color_seconds = now() - found;
+  return result;
+}
+
+}  // namespace cei3d

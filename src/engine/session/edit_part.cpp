@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/base/error.h"
+#include "core/math/color.h"
+#include "engine/edit/part.h"
+#include "engine/io/capture.h"
+#include "engine/io/image_file.h"
+#include "engine/io/png_file.h"
+#include "engine/session/edit_ops.h"
+#include "engine/session/edit_params.h"
+
+namespace cei3d {
+namespace {
+
+std::vector<Vec2f> pixels_from(const Json& params, const char* key) {
+  std::vector<Vec2f> pixels;
+  for (const Json& p : params.value(key, Json::array()))
+    pixels.push_back({p.at(0).get<float>(), p.at(1).get<float>()});
+  return pixels;
+}
+
+// Inside where it is opaque, when it is not so everywhere; else where it is bright.
+Image decode_mask(const std::string& bytes, const std::string& name) {
+  if (image_format(bytes, name) != ImageFormat::png) fail("{} is not a PNG; save the mask as one.", name);
+  const Image picture = decode_png(bytes, name);
+  const int channels = picture.channels;
+  bool transparent = false;
+  for (size_t i = 3; channels == 4 && i < picture.data.size(); i += 4) transparent |= picture.data[i] < 0.5f;
+  Image mask(picture.width, picture.height, 1);
+  for (size_t i = 0; i < mask.data.size(); ++i) {
+    const float* p = &picture.data[i * channels];
+    const float bright = channels < 3 ? p[0] : (p[0] + p[1] + p[2]) / 3;
+    mask.data[i] = transparent ? p[3] : bright;
+  }
+  return mask;
+}
+
+std::optional<PartCombination> combination_from(const Json& params) {
+  using How = PartCombination::How;
+  for (const auto& [key, how] :
+       {std::pair{"add", How::add}, {"subtract", How::subtract}, {"intersect", How::intersect}})
+    if (params.contains(key)) return PartCombination{how, params.at(key).get<std::string>()};
+  return std::nullopt;
+}
+
+PartRequest request_of(const EditContext& context, const EditJob& job) {
+  const View& view = find_view(context.capture, job.params.at("view").get<std::string>());
+  const Effects effects = effects_from_params(job.params);
+  PartRequest r;
+  r.id = job.id;
+  r.name = job.params.at("name").get<std::string>();
+  r.view = view.name;
+  r.camera = context.scene.normalization.unit_from_input(view.camera);
+  r.clicks = {pixels_from(job.params, "positive"), pixels_from(job.params, "negative")};
+  if (job.params.contains("mask"))
+    r.mask = decode_mask(job.input("mask.png"), job.params.at("mask").get<std::string>());
+  r.combination = combination_from(job.params);
+  r.change = effects.change;
+  r.color = effects.color;
+  r.keep_texture = !effects.replace;
+  return r;
+}
+
+EditOutcome make(const EditContext& context, const EditJob& job) {
+  PartResult result = select_part(context.device, context.scene, request_of(context, job), context.progress);
+  const PartReport& r = result.report;
+  return {std::move(result.layer),
+          {{"part", job.params.at("name")},
+           {"points", r.points},
+           {"share", r.share},
+           {"seconds",
+            {{"clicks", r.seed_seconds}, {"select", r.select_seconds}, {"effects", r.color_seconds}}}}};
+}
+
+// Colour decides where a part ends.
+Aspects depends(const Json& params) {
+  return {.shape = true, .look = true, .parts = combination_from(params).has_value()};
+}
+
+}  // namespace
+
+const EditOp kPartOp{"part", 1, make, depends};
+
+}  // namespace cei3d

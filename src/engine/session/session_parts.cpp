@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parts: making them, listing them, their masks in views.
+#include <algorithm>
+#include <chrono>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "core/compute/device.h"
+#include "engine/io/image_file.h"
+#include "engine/project/project.h"
+#include "engine/render/render.h"
+#include "engine/session/cameras.h"
+#include "engine/session/edit_params.h"
+#include "engine/session/session.h"
+#include "engine/session/stopwatch.h"
+#include "model/scene/appearance.h"
+#include "model/scene/parts.h"
+
+namespace cei3d {
+namespace {
+
+Json pixels_json(const std::vector<Vec2<double>>& pixels) {
+  Json list = Json::array();
+  for (const auto& p : pixels) list.push_back({p.x, p.y});
+  return list;
+}
+
+std::string unused_name(const Scene& scene) {
+  const std::vector<std::string> names = part_names(scene);
+  for (int i = 1;; ++i) {
+    const std::string name = fmt::format("part{}", i);
+    if (std::find(names.begin(), names.end(), name) == names.end()) return name;
+  }
+}
+
+void put_combination(const PartCommand& c, Json& params) {
+  const std::pair<const char*, const std::string*> all[] = {
+      {"add", &c.add}, {"subtract", &c.subtract}, {"intersect", &c.intersect}};
+  for (const auto& [key, part] : all)
+    if (!part->empty()) params[key] = *part;
+}
+
+// Share of each pixel's samples that meet the part.
+Image part_mask(const Scene& scene, const EditLayer& part, const GBuffer& g) {
+  const std::vector<uint8_t> inside = inside_layer(scene, part, g.hits);
+  Image mask(g.width, g.height, 1);
+  const float all = float(g.samples * g.samples);
+  for (size_t p = 0; p < mask.data.size(); ++p) {
+    int hits = 0;
+    for (uint32_t i = g.pixel_start[p]; i < g.pixel_start[p + 1]; ++i) hits += inside[i];
+    mask.data[p] = float(hits) / all;
+  }
+  return mask;
+}
+
+}  // namespace
+
+EditSummary Session::select_part(const PartCommand& command, Progress& progress) {
+  const bool clicks = !command.positive.empty() || !command.negative.empty();
+  if (clicks == !command.mask.empty())
+    fail_usage("Say where the part is: --positive X,Y (and --negative X,Y), or --mask FILE.png.");
+  Json params = {{"view", find_view(project().capture(), command.view).name},
+                 {"segmenter", command.segmenter}};
+  put_combination(command, params);
+  std::string name = command.name;
+  for (const std::string& other : {command.add, command.subtract, command.intersect})
+    if (name.empty()) name = other;
+  params["name"] = name.empty() ? unused_name(project().scene()) : name;
+  if (!command.positive.empty()) params["positive"] = pixels_json(command.positive);
+  if (!command.negative.empty()) params["negative"] = pixels_json(command.negative);
+  EditInputs inputs;
+  if (!command.mask.empty()) {
+    params["mask"] = command.mask.string();
+    inputs.emplace_back("mask.png", read_file(command.mask));
+  }
+  put_effects(command.effects, params);
+  return add_edit("part", std::move(params), std::move(inputs), progress);
+}
+
+std::vector<PartInfo> Session::parts() const {
+  const Scene scene = project().scene();
+  const std::vector<Hit> hits = vertex_hits(scene.surface->mesh());
+  std::vector<PartInfo> list;
+  for (const std::string& name : part_names(scene)) {
+    const EditLayer& layer = part_layer(scene, name);
+    PartInfo info{name, layer.id, 0, 0};
+    for (const uint8_t i : inside_layer(scene, layer, hits)) info.points += i;
+    info.share = double(info.points) / double(std::max<size_t>(hits.size(), 1));
+    list.push_back(info);
+  }
+  return list;
+}
+
+PartMasksReport Session::part_masks(const PartMasksRequest& request, Progress& progress) const {
+  Stopwatch watch;
+  const Scene scene = project().scene();
+  const EditLayer& part = part_layer(scene, request.part);
+  const std::vector<NamedCamera> cameras = choose_cameras(project(), request.cameras, 0, 0);
+  PartMasksReport report;
+  for (const NamedCamera& c : cameras) {
+    if (progress.cancelled())
+      throw Error(ErrorCode::interrupted, "Writing masks was interrupted; those written so far are whole.");
+    progress.report({"masks", double(report.views) / double(cameras.size()), -1, c.name});
+    const GBuffer g =
+        trace_view(*device_, scene, scene.normalization.unit_from_input(c.camera), request.samples);
+    const Image mask = part_mask(scene, part, g);
+    write_png(request.out / (c.file + ".png"), mask);
+    ++report.views;
+    report.shown += std::any_of(mask.data.begin(), mask.data.end(), [](float m) { return m > 0; });
+  }
+  progress.report({"masks", 1, 0, ""});
+  report.seconds = watch.lap();
+  return report;
+}
+
+}  // namespace cei3d
