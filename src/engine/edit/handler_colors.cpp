@@ -5,19 +5,27 @@
 
 namespace cei3d {
 
+std::vector<Hit> handler_hits(const Scene& scene) {
+  const HandlerPoints& points = *scene.handlers;
+  const size_t n = points.positions.size();
+  std::vector<Vec3f> origins(n), directions(n);
+  for (size_t i = 0; i < n; ++i) {
+    origins[i] = points.positions[i] + points.normals[i] * (0.5f * points.spacing);
+    directions[i] = -points.normals[i];
+  }
+  std::vector<Surface::RayHit> below(n);
+  scene.surface->intersect(origins, directions, 0, below);
+  std::vector<Hit> hits(n);
+  for (size_t i = 0; i < n; ++i) {
+    hits[i] = {points.positions[i], points.normals[i], points.normals[i], 0, 0, 0};
+    if (below[i].t >= 0)
+      hits[i].triangle = below[i].triangle, hits[i].b1 = below[i].b1, hits[i].b2 = below[i].b2;
+  }
+  return hits;
+}
+
 std::vector<Vec3f> handler_colors(const Device& device, const Scene& scene) {
-  const HandlerPoints& handlers = *scene.handlers;
-  // Straight down onto the surface, which says what triangle the point is of.
-  std::vector<Ray> rays;
-  for (size_t i = 0; i < handlers.positions.size(); ++i)
-    rays.push_back(
-        {handlers.positions[i] + handlers.normals[i] * (2 * handlers.spacing), -handlers.normals[i]});
-  std::vector<uint32_t> ray_of_hit;
-  const std::vector<Hit> hits = trace_rays(device, scene, rays, ray_of_hit);
-  const std::vector<Vec3f> albedo = appearance_at(device, scene, hits).albedo;
-  std::vector<Vec3f> colors(rays.size(), Vec3f{0, 0, 0});
-  for (size_t h = 0; h < hits.size(); ++h) colors[ray_of_hit[h]] = albedo[h];
-  return colors;
+  return appearance_at(device, scene, handler_hits(scene)).albedo;
 }
 
 Image base_color_picture(const Device& device, const Scene& scene, const Camera& camera) {

@@ -10,7 +10,11 @@
 
 namespace cei3d {
 
-// #handlers of the scene, linear; black for one that lies off the present surface.
+// The handler points of the scene as hits, on the triangle of the present surface that each lies on; so they
+// are known in every pose.
+std::vector<Hit> handler_hits(const Scene&);
+
+// #handlers of the scene, linear.
 std::vector<Vec3f> handler_colors(const Device&, const Scene&);
 
 // RGBA, linear, straight alpha, of the camera's size. camera: unit-sphere frame.

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "core/base/error.h"
+#include "engine/edit/handler_colors.h"
 #include "engine/edit/material.h"
 #include "engine/edit/part_seeds.h"
 #include "engine/segment/grow.h"
@@ -25,34 +26,15 @@ void require_running(const Progress& progress) {
     throw Error(ErrorCode::interrupted, "Selecting the part was interrupted; nothing was changed.");
 }
 
-// The handler points as hits of the surface's mesh just below them, so that they are known in every pose.
-std::vector<Hit> handler_hits(const Scene& scene) {
-  const HandlerPoints& points = *scene.handlers;
-  const size_t n = points.positions.size();
-  std::vector<Vec3f> origins(n), directions(n);
-  for (size_t i = 0; i < n; ++i) {
-    origins[i] = points.positions[i] + points.normals[i] * (0.5f * points.spacing);
-    directions[i] = -points.normals[i];
-  }
-  std::vector<Surface::RayHit> below(n);
-  scene.surface->intersect(origins, directions, 0, below);
-  std::vector<Hit> hits(n);
-  for (size_t i = 0; i < n; ++i) {
-    hits[i] = {points.positions[i], points.normals[i], points.normals[i], 0, 0, 0};
-    if (below[i].t >= 0)
-      hits[i].triangle = below[i].triangle, hits[i].b1 = below[i].b1, hits[i].b2 = below[i].b2;
-  }
-  return hits;
-}
-
 std::vector<float> selected(const Device& device, const Scene& scene, const PartRequest& r,
-                            std::span<const Hit> hits, std::span<const Seed> seeds, Progress& progress) {
+                            std::span<const Seed> seeds, Progress& progress) {
   if (r.network) return r.network(scene, r, progress);
-  return grow(*scene.handlers, appearance_at(device, scene, hits).albedo, seeds);
+  return grow(*scene.handlers, handler_colors(device, scene), seeds);
 }
 
 // Of each handler point, how much it belongs to the part that there is.
-std::vector<float> existing_scores(const Scene& scene, const std::string& part, std::span<const Hit> hits) {
+std::vector<float> existing_scores(const Scene& scene, const std::string& part) {
+  const std::vector<Hit> hits = handler_hits(scene);
   const EditLayer& layer = part_layer(scene, part);
   const std::vector<uint8_t> inside = inside_layer(scene, layer, hits);
   std::vector<float> scores(inside.begin(), inside.end());
@@ -116,10 +98,9 @@ PartResult select_part(const Device& device, const Scene& scene, const PartReque
   const std::vector<Seed> seeds = part_seeds(device, scene, r);
   progress.report({"part", 0.1, -1, ""});
   const double seeded = now();
-  const std::vector<Hit> hits = handler_hits(scene);
-  std::vector<float> scores = selected(device, scene, r, hits, seeds, progress);
+  std::vector<float> scores = selected(device, scene, r, seeds, progress);
   require_running(progress);
-  if (r.combination) combine(r.combination->how, existing_scores(scene, r.combination->part, hits), scores);
+  if (r.combination) combine(r.combination->how, existing_scores(scene, r.combination->part), scores);
   PartResult result;
   result.report.points = count_inside(scores);
   check_size(result.report.points, scores.size(), r);

@@ -96,7 +96,7 @@ class PartTest : public ::testing::Test {
     return "no error";
   }
 
-  const Device& device_ = make_device("cpu");
+  const Device device_ = make_device();
   Scene scene_;
   Progress quiet_;
 };

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
-#include "core/math/color.h"
 #include "engine/edit/part.h"
+#include "engine/edit/sam_part.h"
 #include "engine/io/capture.h"
 #include "engine/io/image_file.h"
 #include "engine/io/png_file.h"
+#include "engine/segment/sam.h"
 #include "engine/session/edit_ops.h"
 #include "engine/session/edit_params.h"
 
@@ -42,6 +43,20 @@ std::optional<PartCombination> combination_from(const Json& params) {
   return std::nullopt;
 }
 
+// The network looks at the training views, the clicked one first; their cameras only: it is shown the object
+// as it is.
+std::vector<float> scores_by_network(const EditContext& context, const std::string& view, const Scene& scene,
+                                     const PartRequest& r, Progress& progress) {
+  SamPartRequest request;
+  request.networks = installed_sam();
+  request.views.clicks = r.clicks;
+  request.views.cameras = {r.camera};
+  for (const View& v : context.capture.views)
+    if (v.split == Split::train && v.name != view)
+      request.views.cameras.push_back(scene.normalization.unit_from_input(v.camera));
+  return sam_part(context.device, scene, request, progress).scores;
+}
+
 PartRequest request_of(const EditContext& context, const EditJob& job) {
   const View& view = find_view(context.capture, job.params.at("view").get<std::string>());
   const Effects effects = effects_from_params(job.params);
@@ -53,6 +68,11 @@ PartRequest request_of(const EditContext& context, const EditJob& job) {
   r.clicks = {pixels_from(job.params, "positive"), pixels_from(job.params, "negative")};
   if (job.params.contains("mask"))
     r.mask = decode_mask(job.input("mask.png"), job.params.at("mask").get<std::string>());
+  if (job.params.value("segmenter", "grow") == "sam")
+    r.network = [&context, name = view.name](const Scene& scene, const PartRequest& request,
+                                             Progress& progress) {
+      return scores_by_network(context, name, scene, request, progress);
+    };
   r.combination = combination_from(job.params);
   r.change = effects.change;
   r.color = effects.color;

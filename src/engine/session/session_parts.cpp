@@ -59,6 +59,8 @@ EditSummary Session::select_part(const PartCommand& command, Progress& progress)
   const bool clicks = !command.positive.empty() || !command.negative.empty();
   if (clicks == !command.mask.empty())
     fail_usage("Say where the part is: --positive X,Y (and --negative X,Y), or --mask FILE.png.");
+  if (command.segmenter == "sam" && !clicks)
+    fail_usage("The network wants clicks; a --mask goes with --segmenter grow.");
   Json params = {{"view", find_view(project().capture(), command.view).name},
                  {"segmenter", command.segmenter}};
   put_combination(command, params);
