@@ -2,6 +2,7 @@
 #include "engine/io/gltf.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 
@@ -79,7 +80,34 @@ void require_sound(const Mesh& mesh) {
 
 }  // namespace
 
-std::string encode_glb(const Mesh& mesh, const Material& material, Vec3d up) {
+namespace {
+
+using Triangles = std::vector<std::array<uint32_t, 3>>;
+
+// The triangles of each material.
+std::vector<Triangles> by_material(const Mesh& mesh, const MeshMaterials& materials) {
+  std::vector<Triangles> groups(materials.list.size());
+  for (size_t t = 0; t < mesh.triangles.size(); ++t)
+    groups.at(materials.of_triangle.empty() ? 0 : materials.of_triangle[t]).push_back(mesh.triangles[t]);
+  return groups;
+}
+
+Json primitives_json(const Mesh& mesh, const MeshMaterials& materials, const Json& attributes,
+                     Buffer& buffer) {
+  Json primitives = Json::array();
+  const std::vector<Triangles> groups = by_material(mesh, materials);
+  for (size_t m = 0; m < groups.size(); ++m) {
+    if (groups[m].empty()) continue;
+    const int indices = buffer.add(groups[m].data(), groups[m].size() * 12, groups[m].size() * 3, "SCALAR",
+                                   kUint32, kIndexTarget);
+    primitives.push_back({{"attributes", attributes}, {"indices", indices}, {"material", m}});
+  }
+  return primitives;
+}
+
+}  // namespace
+
+std::string encode_glb(const Mesh& mesh, const MeshMaterials& materials, Vec3d up) {
   require_sound(mesh);
   Buffer buffer;
   Json attributes;
@@ -92,19 +120,20 @@ std::string encode_glb(const Mesh& mesh, const Material& material, Vec3d up) {
       for (int k = 0; k < 3; ++k) c[k] = std::clamp(c[k], 0.0f, 1.0f);
     attributes["COLOR_0"] = buffer.add(colors);
   }
-  const int indices = buffer.add(mesh.triangles.data(), mesh.triangles.size() * 12, mesh.triangles.size() * 3,
-                                 "SCALAR", kUint32, kIndexTarget);
+  const Json primitives = primitives_json(mesh, materials, attributes, buffer);
   if (buffer.bytes_.size() > 0xf0000000u)
     fail("The mesh is too large for a GLB file (4 GB); export fewer faces.");
 
   Json j{{"asset", {{"version", "2.0"}, {"generator", "CEI-3D"}}}};
-  if (material.specular != 0.5f) j["extensionsUsed"] = {"KHR_materials_specular"};
+  if (std::any_of(materials.list.begin(), materials.list.end(),
+                  [](const Material& m) { return m.specular != 0.5f; }))
+    j["extensionsUsed"] = {"KHR_materials_specular"};
   j["scene"] = 0;
   j["scenes"] = Json::array({{{"nodes", {0}}}});
   j["nodes"] = Json::array({{{"mesh", 0}, {"name", "object"}, {"rotation", rotation_to_y(up)}}});
-  j["meshes"] = Json::array(
-      {{{"primitives", Json::array({{{"attributes", attributes}, {"indices", indices}, {"material", 0}}})}}});
-  j["materials"] = Json::array({material_json(material)});
+  j["meshes"] = Json::array({{{"primitives", primitives}}});
+  j["materials"] = Json::array();
+  for (const Material& m : materials.list) j["materials"].push_back(material_json(m));
   j["accessors"] = buffer.accessors_;
   j["bufferViews"] = buffer.views_;
   j["buffers"] = Json::array({{{"byteLength", buffer.bytes_.size()}}});
@@ -116,8 +145,9 @@ std::string encode_glb(const Mesh& mesh, const Material& material, Vec3d up) {
   return std::string(reinterpret_cast<const char*>(head), 12) + chunks;
 }
 
-void write_glb(const std::filesystem::path& path, const Mesh& mesh, const Material& material, Vec3d up) {
-  write_file_atomic(path, encode_glb(mesh, material, up));
+void write_glb(const std::filesystem::path& path, const Mesh& mesh, const MeshMaterials& materials,
+               Vec3d up) {
+  write_file_atomic(path, encode_glb(mesh, materials, up));
 }
 
 }  // namespace cei3d

@@ -248,6 +248,36 @@ TEST_F(ProjectTest, SurvivesKillAtAnyMoment) {
   EXPECT_TRUE(Project::open(folder(), Project::Mode::read).latest_checkpoint());
 }
 
+// What is written when a kill comes is lost; what stood before stands, whole.
+TEST_F(ProjectTest, EditsSurviveKillAtAnyMoment) {
+  make_with_base();
+  size_t most = 0;
+  for (int round = 0; round < 12; ++round) {
+    const pid_t child = ::fork();
+    ASSERT_GE(child, 0);
+    if (child == 0) {
+      Project p = Project::open(folder(), Project::Mode::write);
+      for (uint64_t i = 0;; ++i) {
+        add_paint(p, i);
+        p.toggle(p.stack().entries().front().id);
+        if (i % 3 == 2) p.undo();
+      }
+    }
+    ::usleep(3000 + 2300 * round);
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    Project p = Project::open(folder(), Project::Mode::write);
+    const size_t edits = p.stack().active().size();
+    EXPECT_EQ(p.scene().layers.size(), edits);
+    for (const StackEntry& e : p.stack().entries()) EXPECT_EQ(p.edit_inputs(e.id).size(), 1u);
+    most = std::max(most, p.stack().entries().size());
+    add_paint(p, 99);  // and the project goes on
+    EXPECT_EQ(p.scene().layers.size(), edits + 1);
+    p.undo();
+  }
+  EXPECT_GT(most, 1u);
+}
+
 TEST_F(ProjectTest, RefusesTheSecondWriterButNotReaders) {
   const Project first = make_with_base();
   EXPECT_THAT(message_of([&] { Project::open(folder(), Project::Mode::write); }),

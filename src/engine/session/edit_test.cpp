@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/parallel.h"
 #include "core/base/temp_folder.h"
 #include "core/math/rng.h"
 #include "engine/io/image_file.h"
@@ -352,6 +353,24 @@ TEST_F(RandomEdits, ReplayedOnAnotherProjectGiveTheSameObject) {
   EXPECT_EQ(b.stack().entries().size(), 4u);
   EXPECT_FALSE(b.stack().entries()[1].enabled);
   EXPECT_EQ(error_of([&] { session_.replay(folder("a"), quiet_); }).code(), ErrorCode::usage);
+}
+
+TEST_F(RandomEdits, AreTheSameBitsOnAnyNumberOfThreads) {
+  for (const int kind : {0, 6, 1, 3}) make_edit(kind);
+  const std::string all_threads = bytes_of(scene("a"));
+  set_threads(1);
+  make("b");
+  for (const int kind : {0, 6, 1, 3}) make_edit(kind);
+  set_threads(0);
+  EXPECT_EQ(bytes_of(scene("b")), all_threads);
+}
+
+TEST_F(RandomEdits, AWholeMaterialIsExported) {
+  make_edit(2);  // roughness 0.7
+  const fs::path file = temp_.path() / "object.glb";
+  session_.export_to({file}, quiet_);
+  const std::string glb = read_file(file);
+  EXPECT_THAT(glb.substr(0, glb.find("BIN")), HasSubstr("\"roughnessFactor\":0.69999"));
 }
 
 TEST_F(RandomEdits, WhatCannotBeMadeAnewKeepsTheHistoryAsItIs) {

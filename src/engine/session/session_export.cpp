@@ -38,14 +38,46 @@ Mesh compact(const Mesh& mesh) {
   return out;
 }
 
+struct ColouredMesh {
+  Mesh mesh;
+  MeshMaterials materials;
+};
+
+// That of two corners of a triangle counts, else that of the first.
+std::vector<uint32_t> by_triangle(const Mesh& mesh, const std::vector<uint32_t>& of_vertex) {
+  std::vector<uint32_t> out;
+  for (const auto& t : mesh.triangles) {
+    const uint32_t a = of_vertex[t[0]], b = of_vertex[t[1]], c = of_vertex[t[2]];
+    out.push_back(b == c ? b : a);
+  }
+  return out;
+}
+
+// Without materials that no triangle has.
+MeshMaterials used(const MeshMaterials& all) {
+  constexpr uint32_t kUnused = ~0u;
+  std::vector<uint32_t> id(all.list.size(), kUnused);
+  MeshMaterials out;
+  for (const uint32_t m : all.of_triangle) {
+    if (id[m] == kUnused) {
+      id[m] = uint32_t(out.list.size());
+      out.list.push_back(all.list[m]);
+    }
+    out.of_triangle.push_back(id[m]);
+  }
+  return out;
+}
+
 // The surface in the capture's frame and scale, coloured by the base colour, edits included.
-Mesh coloured_mesh(const Device& device, const Scene& scene) {
+ColouredMesh coloured_mesh(const Device& device, const Scene& scene) {
   if (!scene.surface || !scene.albedo) fail("The object has no surface to export; reconstruct it again.");
   Mesh mesh = scene.surface->mesh();
-  mesh.colors = appearance_at(device, scene, vertex_hits(mesh)).albedo;
+  Appearance look = appearance_at(device, scene, vertex_hits(mesh));
+  mesh.colors = std::move(look.albedo);
+  const MeshMaterials materials = used({std::move(look.materials), by_triangle(mesh, look.material)});
   if (!scene.poses.empty()) mesh = compact(mesh);
   mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);
-  return mesh;
+  return {std::move(mesh), materials};
 }
 
 Mesh handler_mesh(const Scene& scene) {
@@ -72,11 +104,12 @@ ExportReport Session::export_to(const ExportRequest& request, Progress& progress
     write_npy(request.out, to_array(scene.light), int64_t(report.lobes), 7);
     return report;
   }
-  const Mesh mesh = request.points ? handler_mesh(scene) : coloured_mesh(*device_, scene);
+  const auto [mesh, materials] =
+      request.points ? ColouredMesh{handler_mesh(scene), {}} : coloured_mesh(*device_, scene);
   if (kind == ".ply")
     write_ply(request.out, mesh);
   else
-    write_glb(request.out, mesh, scene.material, scene.up);
+    write_glb(request.out, mesh, materials, scene.up);
   progress.report({"export", 1, 0, ""});
   report.vertices = mesh.positions.size();
   report.triangles = mesh.triangles.size();
