@@ -70,7 +70,7 @@ absent "$out/spot.doc"
 refused 2 'verb|expected|argument|subcommand|smell' smell
 
 # A project of a newer format, a damaged one.
-sed -i 's/"version": *1/"version": 99/; s/"format": *1/"format": 99/' "$project/project.json"
+sed -i 's/"version": *[0-9]*/"version": 99/; s/"format": *1/"format": 99/' "$project/project.json"
 grep -q 99 "$project/project.json" || fail "the format version is not where this test looks for it"
 refused 1 'newer' render "$project" -o "$out/pictures"
 refused 1 'newer' edit "$project" paint --view r_055 --scribble "$sample/edits/paint/scribble.png"
