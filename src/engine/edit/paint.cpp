@@ -71,15 +71,17 @@ float solve_for_base_color(const Device& device, const Scene& scene, const Scene
   const Shading black = light.shade(paint.hits, look);
   std::fill(look.albedo.begin(), look.albedo.end(), Vec3f{1, 1, 1});
   const Shading white = light.shade(paint.hits, look);
+  constexpr float kVisible = 0.02f;  // linear radiance
   size_t outside = 0;
   for (size_t i = 0; i < paint.hits.size(); ++i) {
     const Vec3f floor = black.diffuse[i] + black.specular[i],
                 gain = white.diffuse[i] + white.specular[i] - floor;
     bool reached = true;
     for (int c = 0; c < 3; ++c) {
-      const float wanted = (paint.targets[i][c] - floor[c]) / max(gain[c], 1e-4f);
-      paint.targets[i][c] = clamp(wanted, 0.0f, 1.0f);
-      reached = reached && wanted > -0.01f && wanted < 1.01f;
+      const float wanted = paint.targets[i][c];
+      const float base = clamp((wanted - floor[c]) / max(gain[c], 1e-4f), 0.0f, 1.0f);
+      reached = reached && abs(floor[c] + gain[c] * base - wanted) < kVisible;
+      paint.targets[i][c] = base;
     }
     outside += !reached;
   }

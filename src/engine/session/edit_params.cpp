@@ -10,7 +10,7 @@
 namespace cei3d {
 namespace {
 
-void put_share(const std::optional<float>& value, const char* name, Json& params) {
+void put_share(const std::optional<double>& value, const char* name, Json& params) {
   if (!value) return;
   if (!(*value >= 0 && *value <= 1)) fail_usage("--{} {} is not in the range from 0 to 1.", name, *value);
   params[name] = *value;

@@ -86,7 +86,7 @@ struct PaintCommand {
 };
 // Another material or colour.
 struct MaterialEffects {
-  std::optional<float> roughness, specular, metalness;  // [0, 1]
+  std::optional<double> roughness, specular, metalness;  // [0, 1]
   std::string color;                                    // "#RRGGBB", sRGB; empty: stays
   bool replace = false;  // the colour replaces the texture instead of scaling it
   bool empty() const { return !roughness && !specular && !metalness && color.empty(); }
