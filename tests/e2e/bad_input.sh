@@ -24,6 +24,8 @@ refused_by_check() {
   cat "$out/stdout" "$out/stderr" | grep -Eqi -- "$1" || fail "check does not say /$1/: $(cat "$out/stdout" "$out/stderr")"
 }
 
+refused 2 '50 training views' reconstruct "$sample" -o "$out/project" --views 51
+absent "$out/project"
 fresh; rm "$out/capture/train/r_011.png"
 spoiled 1 'missing.*r_011'
 fresh; head -c 900 "$sample/train/r_013.png" >"$out/capture/train/r_013.png"

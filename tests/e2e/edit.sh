@@ -13,6 +13,10 @@ views "$out/painted"
 ! diff -rq -x render.json "$out/before" "$out/painted" >/dev/null || fail "painting changed nothing"
 cei3d eval "$project" "$sample:test" --samples 1 --edit 0001-paint --truth "$sample/edits/paint/gt" \
   --mask "$sample/edits/paint/mask" --json "$out/eval.json"
+cei3d eval "$project" --samples 1 --edit 0001-paint | grep -q 'non-edited area' || fail "no score of the area not edited"
+refused 2 'belong together' eval "$project" --truth "$sample/edits/paint/gt" --mask "$sample/edits/paint/mask"
+refused 2 'fid-model' eval "$project" --fid-model "$out/missing.onnx"
+refused 1 'scribble.png|ONNX Runtime' eval "$project" --lpips-model "$sample/edits/paint/scribble.png"
 
 cei3d undo "$project"
 views "$out/undone"

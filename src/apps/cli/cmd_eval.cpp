@@ -14,9 +14,10 @@ struct Options {
 
 void evaluate(const Options& o, Session& session, Console& console) {
   EvalRequest request = o.request;
-  if (request.edit.empty() != request.truth.empty() || request.edit.empty() != request.masks.empty())
+  if (request.truth.empty() != request.masks.empty() || (request.edit.empty() && !request.truth.empty()))
     fail_usage(
-        "--edit, --truth and --mask belong together: which edit, how it should look, and where it should "
+        "--truth and --mask belong together and to --edit: which edit, how it should look, and where it "
+        "should "
         "be.");
   if (!o.capture.empty()) {
     const CaptureSpec spec = parse_capture_spec(o.capture);
@@ -32,10 +33,23 @@ void evaluate(const Options& o, Session& session, Console& console) {
 
 }  // namespace
 
+void add_networks(CLI::App* verb, NetworkFiles& files) {
+  verb->add_option(
+          "--lpips-model", files.lpips,
+          "ONNX network for LPIPS: two pictures [1,3,H,W] in [-1,1] to one distance; docs/evaluation.md says "
+          "how to get one (default: no LPIPS)")
+      ->check(CLI::ExistingFile);
+  verb->add_option("--fid-model", files.fid,
+                   "ONNX network for FID: a picture [1,3,299,299] in [0,1] to its features (default: no FID)")
+      ->check(CLI::ExistingFile);
+}
+
 void add_eval(Commands& commands) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add(
-      "eval", "Compare rendered with real views: PSNR and SSIM, on white and inside the object mask");
+  CLI::App* verb = commands.add("eval",
+                                "Compare rendered with real views: PSNR and SSIM, on white and inside the "
+                                "object mask; LPIPS and FID with "
+                                "networks of yours");
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("capture", o->capture,
                    "CAPTURE or CAPTURE:split (default: the project's own held-out views)");
@@ -51,14 +65,18 @@ void add_eval(Commands& commands) {
   verb->add_option("--samples", o->request.samples, "Sub-pixel samples per axis")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
-  verb->add_option("--edit", o->request.edit,
-                   "Also score this edit (an id of `log`): fidelity inside its mask, leakage outside");
-  verb->add_option("--truth", o->request.truth,
-                   "With --edit: folder of pictures of the edited object, named like the views")
+  verb->add_option(
+      "--edit", o->request.edit,
+      "Also score this edit (an id of `log`): the area that it does not touch against the photographs");
+  verb->add_option(
+          "--truth", o->request.truth,
+          "With --edit: folder of pictures of the edited object, named like the views: fidelity inside its "
+          "mask, leakage outside")
       ->check(CLI::ExistingDirectory);
   verb->add_option("--mask", o->request.masks,
                    "With --edit: folder of masks, bright where the edit should be")
       ->check(CLI::ExistingDirectory);
+  add_networks(verb, o->request.networks);
   commands.on(verb, o, evaluate);
 }
 

@@ -55,6 +55,12 @@ void add_reconstruct(Commands& commands) {
   verb->add_option("--test-every", options.test_every,
                    "Hold out every Nth view when the capture has no test split; 0: none")
       ->capture_default_str();
+  verb->add_option(
+          "--views", options.views,
+          "Train on N views only, spread evenly, to see how many are needed; the others are validation "
+          "views; 0: all")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
   verb->add_option("--format", o->request.format, "nerf-synthetic or physg (default: told by the files)");
   CLI::Option* resume =
       verb->add_flag("--resume", o->request.resume,

@@ -47,6 +47,8 @@ class Commands {
   std::function<void(Session&, Console&)> run_;
 };
 
+void add_networks(CLI::App* verb, NetworkFiles&);  // --lpips-model, --fid-model
+
 void add_check(Commands&);
 void add_reconstruct(Commands&);
 void add_render(Commands&);

@@ -70,8 +70,8 @@ const void* const* open_api(const fs::path& folder, std::string& version) {
   void* library = open_library(folder);
   if (!library)
     fail(
-        "ONNX Runtime, which runs the segmentation network, is not installed (looked for {} and the system's "
-        "own). `./run sam` installs it.",
+        "ONNX Runtime, which runs networks of others, is not installed (looked for {} and the system's own). "
+        "`./run sam` installs it.",
         (folder / "libonnxruntime.so.1").string());
   using GetBase = const ort::ApiBase* (*)();
   const auto get_base = reinterpret_cast<GetBase>(dlsym(library, "OrtGetApiBase"));

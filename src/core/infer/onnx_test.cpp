@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/temp_folder.h"
+#include "core/infer/test_networks.h"
 
 namespace cei3d {
 namespace {
@@ -13,23 +14,11 @@ namespace {
 const std::filesystem::path kFolder =
     "build/sam";  // tests run in the repository's root; `./run sam` fills it
 
-// Protocol buffers by hand, as far as an ONNX file of one node needs them. Fields: onnx.proto.
-std::string number(int field, uint8_t value) { return {char(field << 3), char(value)}; }  // value < 128
-std::string bytes(int field, const std::string& s) {
-  return std::string{char(field << 3 | 2), char(s.size())} + s;  // size < 128
-}
-
-std::string float_vector(const std::string& name) {  // ValueInfoProto of shape [N]
-  const std::string shape = bytes(1, bytes(2, "N"));
-  return bytes(1, name) + bytes(2, bytes(1, number(1, 1) + bytes(2, shape)));
-}
-
 // c = a - b
 std::string subtraction() {
-  const std::string node = bytes(1, "a") + bytes(1, "b") + bytes(2, "c") + bytes(4, "Sub");
-  const std::string graph = bytes(1, node) + bytes(2, "g") + bytes(11, float_vector("a")) +
-                            bytes(11, float_vector("b")) + bytes(12, float_vector("c"));
-  return number(1, 7) + bytes(7, graph) + bytes(8, bytes(1, "") + number(2, 13));
+  using namespace test_networks;
+  return network(node("Sub", {"a", "b"}, "c"), {float_tensor("a", 1), float_tensor("b", 1)},
+                 {float_tensor("c", 1)});
 }
 
 // First: a library that is open already would be found under its name.

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "engine/io/capture_format.h"
 #include "engine/io/image_file.h"
+#include "engine/io/spread.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -137,6 +138,7 @@ Capture load_capture(const fs::path& path, const CaptureOptions& options) {
   Capture capture = format_of(path, options.format).load(path);
   if (capture.views.empty()) fail("{} lists no views.", path.string());
   hold_out(capture, options.test_every);
+  keep_training_views(capture, options.views);
   std::stable_sort(capture.views.begin(), capture.views.end(),
                    [](const View& a, const View& b) { return a.split < b.split; });
   make_names_unique(capture);

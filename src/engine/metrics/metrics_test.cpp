@@ -70,6 +70,34 @@ TEST(Ssim, NegativeOfACheckerboard) {
   EXPECT_NEAR(ssim(a, b), truth, 1e-9);
 }
 
+// A picture of 12 x 11 has two windows; an area that holds the middle of one of them picks that one.
+TEST(Ssim, InAnArea) {
+  const Image a = noise(12, 11, 3), b = noise(12, 11, 4);
+  const auto left = [](const Image& in) {
+    Image out(11, 11, 3);
+    for (int y = 0; y < 11; ++y) std::copy(in.at(0, y), in.at(0, y) + 33, out.at(0, y));
+    return out;
+  };
+  Area area(12 * 11, 0);
+  EXPECT_FALSE(ssim_in_area(a, b, area));
+  area[5 * 12 + 5] = 1;
+  EXPECT_NEAR(*ssim_in_area(a, b, area), ssim(left(a), left(b)), 1e-12);
+  area.assign(12 * 11, 1);
+  EXPECT_NEAR(*ssim_in_area(a, b, area), ssim(a, b), 1e-12);
+}
+
+TEST(Area, GrowsByASquareAndStopsAtTheBorder) {
+  Area area(5 * 4, 0);
+  area[1 * 5 + 0] = 1;
+  const Area grown = dilated(area, 5, 4, 1);
+  for (int y = 0; y < 4; ++y)
+    for (int x = 0; x < 5; ++x) EXPECT_EQ(grown[size_t(y) * 5 + x], x <= 1 && y <= 2) << x << " " << y;
+  EXPECT_EQ(pixels_in(grown), 6u);
+  const Image shown = shown_in(Image(5, 4, 3, 0.25f), grown, 1);
+  EXPECT_EQ(shown.at(1, 2)[2], 0.25f);
+  EXPECT_EQ(shown.at(2, 2)[0], 1.0f);
+}
+
 TEST(Metrics, UnequalSizesAreErrors) {
   EXPECT_THROW(psnr(Image(3, 3, 3), Image(3, 4, 3)), Error);
   EXPECT_THROW(psnr(Image(3, 3, 4), Image(3, 3, 4)), Error);

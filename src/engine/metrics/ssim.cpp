@@ -51,28 +51,51 @@ Plane blur(const Plane& in) {
   return out;
 }
 
-double ssim_channel(const Image& a, const Image& b, int c) {
+// Of each window; see blur().
+Plane ssim_map(const Image& a, const Image& b, int c) {
   const Plane ma = blur(plane(a, c, nullptr, 0)), mb = blur(plane(b, c, nullptr, 0));
-  const Plane aa = blur(plane(a, c, &a, c)), bb = blur(plane(b, c, &b, c)), ab = blur(plane(a, c, &b, c));
-  double sum = 0;
-  for (size_t i = 0; i < ma.v.size(); ++i) {
+  const Plane aa = blur(plane(a, c, &a, c)), bb = blur(plane(b, c, &b, c));
+  Plane map = blur(plane(a, c, &b, c));
+  for (size_t i = 0; i < map.v.size(); ++i) {
     const double mx = ma.v[i], my = mb.v[i];
-    const double sx = aa.v[i] - mx * mx, sy = bb.v[i] - my * my, sxy = ab.v[i] - mx * my;
-    sum += (2 * mx * my + kC1) * (2 * sxy + kC2) / ((mx * mx + my * my + kC1) * (sx + sy + kC2));
+    const double sx = aa.v[i] - mx * mx, sy = bb.v[i] - my * my, sxy = map.v[i] - mx * my;
+    map.v[i] = (2 * mx * my + kC1) * (2 * sxy + kC2) / ((mx * mx + my * my + kC1) * (sx + sy + kC2));
   }
-  return sum / double(ma.v.size());
+  return map;
 }
 
-}  // namespace
-
-double ssim(const Image& a, const Image& b) {
+void require_pair(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height || a.channels != 3 || b.channels != 3 || a.width < kWindow ||
       a.height < kWindow)
     fail(
         "SSIM needs two RGB pictures of one size, at least {} x {} pixels; got {} x {} x {} and {} x {} x "
         "{}.",
         kWindow, kWindow, a.width, a.height, a.channels, b.width, b.height, b.channels);
-  return (ssim_channel(a, b, 0) + ssim_channel(a, b, 1) + ssim_channel(a, b, 2)) / 3;
+}
+
+}  // namespace
+
+double ssim(const Image& a, const Image& b) {
+  return *ssim_in_area(a, b, Area(size_t(a.width) * a.height, 1));
+}
+
+std::optional<double> ssim_in_area(const Image& a, const Image& b, const Area& area) {
+  require_pair(a, b);
+  if (area.size() != size_t(a.width) * a.height)
+    fail("An area of {} pixels does not fit a picture of {} x {}.", area.size(), a.width, a.height);
+  double sum = 0;
+  size_t windows = 0;
+  for (int c = 0; c < 3; ++c) {
+    const Plane map = ssim_map(a, b, c);
+    for (int y = 0; y < map.height; ++y)
+      for (int x = 0; x < map.width; ++x) {
+        if (!area[size_t(y + kWindow / 2) * a.width + x + kWindow / 2]) continue;
+        sum += map.v[size_t(y) * map.width + x];
+        ++windows;
+      }
+  }
+  if (windows == 0) return std::nullopt;
+  return sum / double(windows);
 }
 
 }  // namespace cei3d

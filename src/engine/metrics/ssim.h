@@ -2,7 +2,10 @@
 // Structural similarity. [Wang et al. 2004]
 #pragma once
 
+#include <optional>
+
 #include "core/image/image.h"
+#include "engine/metrics/area.h"
 
 namespace cei3d {
 
@@ -10,5 +13,9 @@ namespace cei3d {
 // picture, biased variances, K1 = 0.01, K2 = 0.03, range 1. a, b: RGB of one size >= 11 x 11,
 // display-encoded. Error: other sizes.
 double ssim(const Image& a, const Image& b);
+
+// ... over the windows whose middle lies in the area only; nothing when there is none. Windows at its border
+// see what lies beside it.
+std::optional<double> ssim_in_area(const Image& a, const Image& b, const Area& area);
 
 }  // namespace cei3d

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/session/requests.h"
 
-#include <cmath>
 #include <iterator>
 
 #include "core/base/error.h"
@@ -30,11 +29,6 @@ Json normalization_json(const Normalization& n) {
 Json material_json(const Material& m) {
   return {{"roughness", m.roughness}, {"specular", m.specular}, {"metalness", m.metalness}};
 }
-
-// JSON knows no infinity: identical pictures have none, and say so.
-Json decibels(double v) { return std::isfinite(v) ? Json(v) : Json("infinite"); }
-
-std::string decibels_text(double v) { return std::isfinite(v) ? fmt::format("{:.2f}", v) : "identical"; }
 
 }  // namespace
 
@@ -145,43 +139,6 @@ Json PartMasksReport::json() const { return {{"views", views}, {"shown", shown},
 
 Json ExportReport::json() const {
   return {{"file", out.string()}, {"vertices", vertices}, {"triangles", triangles}, {"lobes", lobes}};
-}
-
-Json EvalReport::json() const {
-  Json j = {{"psnr", decibels(psnr)},
-            {"ssim", ssim},
-            {"psnr_masked", decibels(psnr_masked)},
-            {"psnr_worst", decibels(psnr_worst)},
-            {"worst_view", worst_view},
-            {"background", "white"}};
-  if (edit)
-    j["edit"] = {{"psnr_inside", decibels(edit->psnr_inside)},
-                 {"pixels_inside", edit->pixels_inside},
-                 {"changed_outside", edit->changed_outside},
-                 {"pixels_outside", edit->pixels_outside},
-                 {"views", edit->views}};
-  j["views"] = Json::array();
-  for (const ViewScore& v : views)
-    j["views"].push_back({{"view", v.view},
-                          {"psnr", decibels(v.psnr)},
-                          {"ssim", v.ssim},
-                          {"psnr_masked", v.psnr_masked ? decibels(*v.psnr_masked) : Json()}});
-  return j;
-}
-
-std::string EvalReport::markdown() const {
-  std::string text =
-      "| views | PSNR on white | worst view | SSIM | PSNR in the mask |\n|---|---|---|---|---|\n";
-  text += fmt::format("| {} | {} dB | {} dB ({}) | {:.4f} | {} dB |\n", views.size(), decibels_text(psnr),
-                      decibels_text(psnr_worst), worst_view, ssim, decibels_text(psnr_masked));
-  if (edit)
-    text += fmt::format(
-        "\n| edit: views | PSNR inside | pixels inside | changed outside | pixels outside "
-        "|\n|---|---|---|---|---|\n"
-        "| {} | {} dB | {} | {} | {} |\n",
-        edit->views, decibels_text(edit->psnr_inside), edit->pixels_inside, edit->changed_outside,
-        edit->pixels_outside);
-  return text;
 }
 
 }  // namespace cei3d

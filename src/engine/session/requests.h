@@ -87,7 +87,7 @@ struct PaintCommand {
 // Another material or colour.
 struct MaterialEffects {
   std::optional<double> roughness, specular, metalness;  // [0, 1]
-  std::string color;                                    // "#RRGGBB", sRGB; empty: stays
+  std::string color;                                     // "#RRGGBB", sRGB; empty: stays
   bool replace = false;  // the colour replaces the texture instead of scaling it
   bool empty() const { return !roughness && !specular && !metalness && color.empty(); }
 };
@@ -226,27 +226,47 @@ struct ExportReport {
   Json json() const;
 };
 
+// Networks that the user supplies, see docs/evaluation.md; empty: none, and its figures are left out.
+struct NetworkFiles {
+  std::filesystem::path lpips, fid;
+};
+
 struct EvalRequest {
   std::filesystem::path capture;  // empty: the project's own
   std::optional<Split> split;     // none: test when there is one, else all
   int samples = 2;
-  std::string edit;                    // with it: fidelity inside, leakage outside the masks, against `truth`
-  std::filesystem::path truth, masks;  // folders of pictures named like the views
+  NetworkFiles networks;
+  std::string edit;                    // also score this edit, an id of the log; empty: none
+  std::filesystem::path truth, masks;  // with it: folders of pictures named like the views; both or none
 };
 struct ViewScore {
   std::string view;
   double psnr = 0, ssim = 0;
   std::optional<double> psnr_masked;  // nothing without object pixels
+  std::optional<double> lpips;
 };
-struct EditScore {
+// An edit against pictures of how it should look, where the masks say.
+struct EditFidelity {
   double psnr_inside = 0;
   size_t pixels_inside = 0, changed_outside = 0, pixels_outside = 0, views = 0;
+};
+// Pixels of the object that are not the edit's: edited renders against photographs. Means over views.
+struct RestScore {
+  double psnr = 0, ssim = 0;
+  std::optional<double> lpips;
+  size_t pixels = 0, views = 0;
+};
+struct EditScore {
+  std::optional<EditFidelity> truth;
+  std::optional<RestScore> rest;  // nothing when the edit is everywhere
+  std::optional<double> fid;      // between the pictures without and with the edit, as the paper has it
 };
 struct EvalReport {
   std::vector<ViewScore> views;
   double psnr = 0, ssim = 0, psnr_masked = 0;  // means over views
   double psnr_worst = 0;
   std::string worst_view;
+  std::optional<double> lpips, fid;  // fid: between renders and photographs
   std::optional<EditScore> edit;
   Json json() const;
   std::string markdown() const;

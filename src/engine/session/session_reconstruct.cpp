@@ -32,7 +32,7 @@ Json options_json(const ReconstructRequest& r) {
   const ReconstructOptions& o = r.options;
   return {{"preset", o.preset}, {"seconds", o.seconds},     {"iterations", o.iterations},
           {"seed", o.seed},     {"downscale", o.downscale}, {"test_every", o.test_every},
-          {"format", r.format}};
+          {"views", o.views},   {"format", r.format}};
 }
 
 ReconstructOptions options_from_json(const Json& j) {
@@ -43,6 +43,7 @@ ReconstructOptions options_from_json(const Json& j) {
   o.seed = j.at("seed").get<uint64_t>();
   o.downscale = j.at("downscale").get<int>();
   o.test_every = j.at("test_every").get<int>();
+  o.views = j.value("views", 0);  // projects of the first days have none
   return o;
 }
 
@@ -58,7 +59,7 @@ void require_same_capture(const Project& project, const fs::path& given) {
   Capture now = project.capture();
   if (!given.empty()) {
     const Json& o = project.head().options;
-    now = load_capture(given, {o.value("format", ""), o.value("test_every", 0)});
+    now = load_capture(given, {o.value("format", ""), o.value("test_every", 0), o.value("views", 0)});
   }
   if (capture_fingerprint(now) != project.fingerprint())
     fail(
@@ -88,7 +89,8 @@ ReconstructReport Session::reconstruct(const ReconstructRequest& request, Progre
     if (project().has_base()) return report_of(project(), project().base(), 0);
   } else {
     Project::check_place(request.project, request.replace);
-    const CheckReport checked = check({request.capture, {request.format, request.options.test_every}, {}});
+    const ReconstructOptions& o = request.options;
+    const CheckReport checked = check({request.capture, {request.format, o.test_every, o.views}, {}});
     project_.reset();
     project_ = std::make_unique<Project>(create_project(request, checked));
   }

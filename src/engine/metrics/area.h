@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// Areas of a picture: [height][width], 1 inside.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/image/image.h"
+
+namespace cei3d {
+
+using Area = std::vector<uint8_t>;
+
+// Grown by `radius` pixels along both axes (a square).
+Area dilated(const Area& area, int width, int height, int radius);
+
+// The picture with `background` in all channels outside the area.
+Image shown_in(const Image& image, const Area& area, float background);
+
+size_t pixels_in(const Area& area);
+
+}  // namespace cei3d

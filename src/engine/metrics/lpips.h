@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Learned perceptual distance of two pictures, by a network that the user supplies. [Zhang et al. 2018]
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "core/image/image.h"
+#include "core/infer/onnx.h"
+
+namespace cei3d {
+
+class Lpips {
+ public:
+  // file: an ONNX network with two inputs, both [1, 3, H, W] of display-encoded RGB in [-1, 1], and an output
+  // of one number, the distance; docs/evaluation.md says how to get one. threads: 0: every core. Error: no
+  // such network.
+  Lpips(std::shared_ptr<const OnnxRuntime>, const std::filesystem::path& file, int threads = 0);
+
+  // 0 for equal pictures. a, b: RGB of one size, values in [0, 1], display-encoded. Errors: sizes differ, the
+  // network does not take them or answers with something else.
+  double distance(const Image& a, const Image& b) const;
+
+ private:
+  OnnxModel network_;
+  std::filesystem::path file_;
+};
+
+// [1, 3, H, W] of a picture with 3 channels: value * scale + shift.
+OnnxTensor picture_tensor(const Image& rgb, float scale, float shift);
+
+}  // namespace cei3d
