@@ -31,7 +31,7 @@ function(cei3d_tests target sources)
 endfunction()
 
 set(CEI3D_THIRD_PARTY nlohmann_json::nlohmann_json fmt::fmt TBB::tbb Eigen3::Eigen embree PNG::PNG OpenEXR::OpenEXR
-    ZLIB::ZLIB PkgConfig::turbojpeg PkgConfig::xxhash)
+    ZLIB::ZLIB PkgConfig::libzip PkgConfig::turbojpeg PkgConfig::xxhash)
 
 function(cei3d_module path)
   cmake_parse_arguments(ARG "HEADER_ONLY" "" "" ${ARGN})

@@ -55,9 +55,9 @@ void add_check(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add(
       "check", "Load a capture as `reconstruct` would and say what is understood and what is wrong");
-  verb->add_option("capture", o->capture, "Folder of posed photographs, or its .json")->required();
+  verb->add_option("capture", o->capture, "Folder of posed photographs, or its .json or .npz")->required();
   verb->add_option("--format", o->request.options.format,
-                   "nerf-synthetic or physg (default: told by the files)");
+                   "nerf-synthetic, physg or idr (default: told by the files)");
   verb->add_option("--test-every", o->request.options.test_every,
                    "Hold out every Nth view when the capture has no test split; 0: none")
       ->capture_default_str();

@@ -34,7 +34,7 @@ void add_reconstruct(Commands& commands) {
   ReconstructOptions& options = o->request.options;
   CLI::App* verb = commands.add("reconstruct", "Make an editable object (a project) from posed photographs");
   verb->add_option("capture", o->capture,
-                   "Folder of posed photographs, or its .json; not needed with --resume");
+                   "Folder of posed photographs, or its .json or .npz; not needed with --resume");
   verb->add_option("-o,--output", o->project, "Folder of the project to make")->required();
   verb->add_option("--preset", options.preset, "Size of the networks and length of the schedule")
       ->check(CLI::IsMember({"fast", "balanced", "paper"}))
@@ -61,7 +61,8 @@ void add_reconstruct(Commands& commands) {
           "views; 0: all")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  verb->add_option("--format", o->request.format, "nerf-synthetic or physg (default: told by the files)");
+  verb->add_option("--format", o->request.format,
+                   "nerf-synthetic, physg or idr (default: told by the files)");
   CLI::Option* resume =
       verb->add_flag("--resume", o->request.resume,
                      "Go on where the project's training was interrupted, with its own options");

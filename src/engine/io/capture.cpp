@@ -31,40 +31,70 @@ const CaptureFormat& format_of(const fs::path& path, const std::string& wanted) 
     }
   if (!wanted.empty()) fail_usage("There is no capture format '{}'. Known: {}.", wanted, known_formats());
   fail(
-      "{} is not a capture: it has neither transforms_train.json (NeRF-synthetic) nor cam_dict_norm.json "
-      "(PhySG).",
+      "{} is not a capture: it has neither transforms_train.json (NeRF-synthetic), transforms.json "
+      "(nerfstudio), "
+      "cam_dict_norm.json (PhySG) nor cameras_sphere.npz (IDR, NeuS).",
       path.string());
 }
 
-// Most photographers hold the camera upright: the mean of the cameras' own "up" points to the sky. Snapped to
-// the nearest axis; the format's convention where the cameras don't say.
-Vec3d up_axis(const Capture& capture) {
-  const Vec3d convention = capture.format == "physg" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
-  Vec3d sum{0, 0, 0};
-  int n = 0;
-  for (const View& v : capture.views) {
-    const Vec3d up = -Vec3d{v.camera.world_from_cam.row[0].y, v.camera.world_from_cam.row[1].y,
-                            v.camera.world_from_cam.row[2].y};
-    if (!std::isfinite(dot(up, up))) continue;
-    sum += up;
-    ++n;
-  }
-  if (n < 5 || length(sum) < 0.3 * n) return convention;
-  const Vec3d mean = normalize(sum);
+Vec3d camera_right(const Camera& c) {
+  return {c.world_from_cam.row[0].x, c.world_from_cam.row[1].x, c.world_from_cam.row[2].x};
+}
+Vec3d camera_up(const Camera& c) {
+  return -Vec3d{c.world_from_cam.row[0].y, c.world_from_cam.row[1].y, c.world_from_cam.row[2].y};
+}
+
+// The axis that is nearest to a direction, where it is near.
+std::optional<Vec3d> near_axis(Vec3d direction, double cosine) {
   for (int axis = 0; axis < 3; ++axis)
-    if (std::abs(mean[axis]) > 0.9) {
+    if (std::abs(direction[axis]) > cosine) {
       Vec3d up{0, 0, 0};
-      up[axis] = mean[axis] > 0 ? 1 : -1;
+      up[axis] = direction[axis] > 0 ? 1 : -1;
       return up;
     }
-  return convention;
+  return std::nullopt;
+}
+
+// The direction that the cameras' horizontal axes are most at right angles to: cameras are seldom rolled, but
+// often tilted, all of them the same way where the object was seen from one side. The least eigenvector of
+// A = sum of x x^T is the greatest of (trace A) I - A: power iteration. near: where it starts, and its sign.
+Vec3d across_horizontals(const std::vector<Vec3d>& horizontals, Vec3d near) {
+  Vec3d up = near;
+  for (int k = 0; k < 500; ++k) {
+    Vec3d sum{0, 0, 0};
+    for (const Vec3d x : horizontals) sum += up - x * dot(x, up);
+    up = normalize(sum);
+  }
+  return dot(up, near) < 0 ? -up : up;
+}
+
+// Most photographers hold the camera upright: the mean of the cameras' own "up" points to the sky. Snapped to
+// the nearest axis; the format's convention where the cameras don't say. Formats whose worlds stand anyhow
+// (IDR: that of the first camera, often) have no convention: there it stays as the cameras say.
+Vec3d up_axis(const Capture& capture) {
+  const bool any_world = capture.format == "idr";
+  const Vec3d convention = capture.format == "physg" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  Vec3d sum{0, 0, 0};
+  std::vector<Vec3d> horizontals;
+  for (const View& v : capture.views) {
+    const Vec3d up = camera_up(v.camera), right = camera_right(v.camera);
+    if (!std::isfinite(dot(up, up) + dot(right, right))) continue;
+    sum += up;
+    horizontals.push_back(right);
+  }
+  const size_t n = horizontals.size();
+  if (n < 5 || length(sum) < 0.3 * double(n)) return convention;
+  const Vec3d mean = normalize(sum);
+  if (!any_world) return near_axis(mean, 0.9).value_or(convention);
+  const Vec3d up = across_horizontals(horizontals, mean);
+  return near_axis(up, 0.995).value_or(up);
 }
 
 void hold_out(Capture& capture, int every) {
   if (every < 0 || every == 1) fail_usage("--test-every should be 2 or more (or 0 for none), not {}.", every);
-  const bool has_test = std::any_of(capture.views.begin(), capture.views.end(),
-                                    [](const View& v) { return v.split == Split::test; });
-  if (every == 0 || has_test) return;
+  const bool has_split = std::any_of(capture.views.begin(), capture.views.end(),
+                                     [](const View& v) { return v.split != Split::train; });
+  if (every == 0 || has_split) return;
   int i = 0;
   for (View& view : capture.views)
     if (view.split == Split::train && i++ % every == 0) view.split = Split::test;

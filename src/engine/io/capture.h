@@ -13,14 +13,14 @@
 namespace cei3d {
 
 struct CaptureOptions {
-  std::string format;  // "nerf-synthetic" or "physg"; empty: told by the files
+  std::string format;  // "nerf-synthetic", "physg" or "idr"; empty: told by the files
   int test_every = 0;  // every Nth training view becomes a test view when the capture has none; 0: never
   int views = 0;       // train on so many only, those of keep_training_views(); 0: on all
 };
 
 // Cameras and file names; pictures are not read (but for the size of one a split). path: a folder, or its
-// .json. Missing pictures are no error here: check() lists them all. Errors: nothing recognised, malformed
-// cameras, no views.
+// .json or .npz. Missing pictures are no error here: check() lists them all. Errors: nothing recognised,
+// malformed cameras, no views.
 Capture load_capture(const std::filesystem::path& path, const CaptureOptions& options = {});
 
 const char* split_name(Split split);

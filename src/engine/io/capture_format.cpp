@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/io/capture_format.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "core/base/error.h"
@@ -39,7 +40,8 @@ std::string without_nan(const std::string& text) {
 
 const std::vector<CaptureFormat>& capture_formats() {
   static const std::vector<CaptureFormat> formats{{"nerf-synthetic", detect_nerf, load_nerf},
-                                                  {"physg", detect_physg, load_physg}};
+                                                  {"physg", detect_physg, load_physg},
+                                                  {"idr", detect_idr, load_idr}};
   return formats;
 }
 
@@ -72,6 +74,15 @@ Matrix34 matrix_of(const Json& j, const std::string& where) {
     for (size_t c = 0; c < 4; ++c) m.m[r][c] = number_of(nested ? j[r][c] : j[4 * r + c], where);
   }
   return m;
+}
+
+std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (has_image_suffix(entry.path())) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
 }
 
 ImageSize size_of_picture(const std::filesystem::path& path) {

@@ -20,8 +20,8 @@ struct CaptureFormat {
 const std::vector<CaptureFormat>& capture_formats();
 
 // NeRF-synthetic and its kin: transforms_{train,val,test}.json or one transforms.json (all training views),
-// OpenGL camera-to-world. A frame's own fl_x, fl_y, cx, cy, w, h win over the file's; mask_path is honoured.
-// [reference-facts 1.5]
+// OpenGL camera-to-world. A frame's own fl_x, fl_y, cx, cy, w, h win over the file's; mask_path is honoured,
+// and nerfstudio's lists train_filenames, val_filenames, test_filenames. [reference-facts 1.5]
 bool detect_nerf(const std::filesystem::path& path);
 Capture load_nerf(const std::filesystem::path& path);
 
@@ -29,6 +29,13 @@ Capture load_nerf(const std::filesystem::path& path);
 // world-to-camera, integer pixel centres. [reference-facts 1.1]
 bool detect_physg(const std::filesystem::path& path);
 Capture load_physg(const std::filesystem::path& path);
+
+// IDR, NeuS and their kin: cameras_sphere.npz or cameras.npz with world_mat_i = K [R | t], image/, mask/, all
+// training views. OpenCV axes, integer pixel centres. The world of world_mat is the capture's frame;
+// scale_mat_i (where their programs put the unit sphere) is not needed: our own normalisation comes from the
+// masks. [reference-facts 1.3]
+bool detect_idr(const std::filesystem::path& path);
+Capture load_idr(const std::filesystem::path& path);
 
 // JSON as it comes out of programs: NaN and Infinity are taken for null. Errors name the file.
 Json read_json_file(const std::filesystem::path& path);
@@ -40,6 +47,12 @@ struct Matrix34 {
 };
 Matrix34 matrix_of(const Json& j, const std::string& where);
 
+// K [R | t] taken apart; up to a factor, so that also a negative one is understood. The picture size stays 0.
+// Errors: not finite, not a projection. `where` is for the sentence.
+Camera camera_from_projection(const Matrix34& p, const std::string& where);
+
+// Files with a picture's suffix, sorted; none where there is no such folder.
+std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder);
 // {0, 0} where there is no picture, or a broken one.
 ImageSize size_of_picture(const std::filesystem::path& path);
 

@@ -116,6 +116,30 @@ TEST(Capture, FrameIntrinsicsWinAndMaskPathsAreRead) {
   EXPECT_EQ(image.at(32, 24)[3], 0);  // the mask file wins over alpha
 }
 
+TEST(Capture, NerfstudioListsOfFilesAreSplits) {
+  const TempFolder temp;
+  const TestBall ball;
+  write_nerf_split(temp.path(), "train", ball, test_views(ball, 6));
+  Json j = Json::parse(read_file(temp.path() / "transforms_train.json"));
+  fs::remove(temp.path() / "transforms_train.json");
+  const auto path = [&](size_t i) { return j["frames"][i]["file_path"]; };
+  j["train_filenames"] = {path(0), path(3)};
+  j["test_filenames"] = {path(4), path(1)};
+  j["camera_model"] = "OPENCV";
+  write_file_atomic(temp.path() / "transforms.json", j.dump());
+  const Capture capture = load_capture(temp.path(), {"", 2});
+  EXPECT_EQ(views_of(capture, Split::train).size(), 4u);
+  ASSERT_EQ(views_of(capture, Split::test).size(), 2u);
+  EXPECT_EQ(views_of(capture, Split::test)[1].name, "train/r_004");
+  j["camera_model"] = "OPENCV_FISHEYE";
+  write_file_atomic(temp.path() / "transforms.json", j.dump());
+  EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr("OPENCV_FISHEYE"));
+  j["camera_model"] = "OPENCV";
+  j["test_filenames"] = 3;
+  write_file_atomic(temp.path() / "transforms.json", j.dump());
+  EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr("list of file names"));
+}
+
 TEST(Capture, TestEveryHoldsViewsOut) {
   const TempFolder temp;
   const TestBall ball;
@@ -242,7 +266,7 @@ TEST(Capture, BadCameraFilesAreErrors) {
   EXPECT_THAT(message([&] {
                 load_capture(temp.path(), {"colmap", 0});
               }),
-              HasSubstr("Known: nerf-synthetic, physg"));
+              HasSubstr("Known: nerf-synthetic, physg, idr"));
 }
 
 TEST(Capture, NamesNeverLeadOutOfAFolder) {

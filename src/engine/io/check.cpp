@@ -195,7 +195,7 @@ void report_counts(const Capture& capture, CaptureReport& report) {
   else if (train < 20)
     report.findings.push_back({Severity::warning, fmt::format("There are only {} training views.", train),
                                "Expect gaps in shape and light; 50 to 100 views are good."});
-  if (views_of(capture, Split::test).empty())
+  if (views_of(capture, Split::test).empty() && views_of(capture, Split::val).empty())
     report.findings.push_back({Severity::note, "There is no test split, so quality cannot be measured.",
                                "Hold views out with --test-every 8."});
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "core/base/error.h"
@@ -66,6 +67,36 @@ double focal_from_angle(double angle, int pixels, const std::string& where) {
   return 0.5 * pixels / std::tan(0.5 * angle);
 }
 
+// Lists of file_path in nerfstudio's transforms.json; a frame that is on none of them is a training view.
+std::map<std::string, Split> listed_splits(const Json& file, const std::string& name) {
+  std::map<std::string, Split> splits;
+  for (const Split split : {Split::train, Split::val, Split::test}) {
+    const std::string key = fmt::format("{}_filenames", split_name(split));
+    if (!file.contains(key)) continue;
+    if (!file[key].is_array()) fail("'{}' of {} should be a list of file names.", key, name);
+    for (const Json& path : file[key]) {
+      if (!path.is_string()) fail("'{}' of {} should be a list of file names.", key, name);
+      splits[path.get<std::string>()] = split;
+    }
+  }
+  return splits;
+}
+
+void require_pinhole(const Json& frame, const Json& file, const std::string& where) {
+  for (const Json* j : {&frame, &file}) {
+    if (!j->contains("camera_model")) continue;
+    const Json& model = (*j)["camera_model"];
+    for (const char* pinhole :
+         {"OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "perspective"})
+      if (model == pinhole) return;
+    fail(
+        "{} has the camera model {}, of which only the pinhole kinds are supported. Undistort the "
+        "photographs "
+        "first, for example with colmap image_undistorter.",
+        where, model.dump());
+  }
+}
+
 void require_no_distortion(const Json& frame, const Json& file, const std::string& where) {
   for (const char* key : {"k1", "k2", "k3", "k4", "p1", "p2"}) {
     const auto value = lookup(frame, file, {key}, where);
@@ -130,16 +161,21 @@ std::vector<View> read_split(const CameraFile& file) {
   const Json j = read_json_file(file.path);
   if (!j.is_object() || !j.contains("frames") || !j["frames"].is_array())
     fail("{} has no list of frames.", file.path.string());
+  const std::map<std::string, Split> listed = listed_splits(j, file.path.string());
   std::vector<View> views;
-  for (const Json& frame : j["frames"])
+  for (const Json& frame : j["frames"]) {
     views.push_back(read_frame(frame, file.split, file.path.parent_path(),
                                fmt::format("frame {} of {}", views.size(), file.path.string())));
+    const auto it = listed.find(frame["file_path"].get<std::string>());
+    if (it != listed.end()) views.back().split = it->second;
+  }
   ImageSize known;
   if (!j.contains("w") || !j.contains("h"))
     for (size_t i = 0; i < views.size() && known.width == 0; ++i)
       known = size_of_picture(views[i].image_path);
   for (size_t i = 0; i < views.size(); ++i) {
     const std::string where = fmt::format("frame {} of {}", i, file.path.string());
+    require_pinhole(j["frames"][i], j, where);
     require_no_distortion(j["frames"][i], j, where);
     set_intrinsics(views[i].camera, j["frames"][i], j, known, where);
   }

@@ -41,6 +41,14 @@ std::vector<int64_t> parse_shape(const std::string& text, const std::string& nam
   return shape;
 }
 
+// values: [rows][columns]
+std::vector<double> transposed(const std::vector<double>& values, int64_t rows, int64_t columns) {
+  std::vector<double> out(values.size());
+  for (int64_t r = 0; r < rows; ++r)
+    for (int64_t c = 0; c < columns; ++c) out[size_t(c * rows + r)] = values[size_t(r * columns + c)];
+  return out;
+}
+
 }  // namespace
 
 std::string encode_npy(std::span<const float> values, int64_t rows, int64_t columns) {
@@ -73,8 +81,7 @@ NpyArray decode_npy(const std::string& bytes, const std::string& name) {
   const std::string header = bytes.substr(start, length);
   const std::string type = value_of_key(header, "descr", name).substr(0, 5);
   if (type != "'<f4'" && type != "'<f8'") broken(name, "its values are neither float32 nor float64");
-  if (value_of_key(header, "fortran_order", name).rfind("False", 0) != 0)
-    broken(name, "it is in Fortran order");
+  const bool fortran = value_of_key(header, "fortran_order", name).rfind("False", 0) != 0;
 
   NpyArray array;
   array.shape = parse_shape(value_of_key(header, "shape", name), name);
@@ -86,12 +93,14 @@ NpyArray decode_npy(const std::string& bytes, const std::string& name) {
   const char* data = bytes.data() + start + length;
   array.data.resize(size_t(count));
   for (size_t i = 0; i < array.data.size(); ++i) {
-    double wide_value = 0;
+    float narrow = 0;
     if (item == 4)
-      std::memcpy(&array.data[i], data + 4 * i, 4);
+      std::memcpy(&narrow, data + 4 * i, 4), array.data[i] = double(narrow);
     else
-      std::memcpy(&wide_value, data + 8 * i, 8), array.data[i] = float(wide_value);
+      std::memcpy(&array.data[i], data + 8 * i, 8);
   }
+  if (fortran && array.shape.size() > 2) broken(name, "it has more than two dimensions in Fortran order");
+  if (fortran && array.shape.size() == 2) array.data = transposed(array.data, array.shape[1], array.shape[0]);
   return array;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays as NumPy's .npy, format 1.0, float32, C order. [NEP 1]
+// Arrays as NumPy's .npy: float32 in C order is written, more is read. [NEP 1]
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@ namespace cei3d {
 
 struct NpyArray {
   std::vector<int64_t> shape;
-  std::vector<float> data;
+  std::vector<double> data;  // C order
+  std::vector<float> floats() const { return {data.begin(), data.end()}; }
 };
 
 // values: [rows][columns]
@@ -20,7 +21,7 @@ std::string encode_npy(std::span<const float> values, int64_t rows, int64_t colu
 void write_npy(const std::filesystem::path& path, std::span<const float> values, int64_t rows,
                int64_t columns);  // atomically
 
-// float32 or float64 (little endian), C order, any shape. Errors name the file.
+// float32 or float64 (little endian), any shape; Fortran order up to two dimensions. Errors name the file.
 NpyArray decode_npy(const std::string& bytes, const std::string& name);
 NpyArray read_npy(const std::filesystem::path& path);
 

@@ -6,7 +6,6 @@
 #include "core/base/error.h"
 #include "engine/io/capture.h"
 #include "engine/io/capture_format.h"
-#include "engine/io/image_file.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -26,15 +25,6 @@ std::vector<Part> parts_of(const fs::path& path) {
   for (const Split split : {Split::train, Split::val, Split::test})
     if (fs::exists(path / split_name(split) / kCameras)) parts.push_back({path / split_name(split), split});
   return parts;
-}
-
-std::vector<fs::path> pictures_in(const fs::path& folder) {
-  std::vector<fs::path> files;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error))
-    if (has_image_suffix(entry.path())) files.push_back(entry.path());
-  std::sort(files.begin(), files.end());
-  return files;
 }
 
 Camera read_camera(const Json& j, const std::string& where) {

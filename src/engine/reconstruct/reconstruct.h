@@ -16,7 +16,7 @@ struct ReconstructOptions {
   int iterations = 0;  // of the geometry stage, instead of seconds: makes a run a function of the seed alone
   uint64_t seed = 1;
   int downscale = 1;   // use images at 1/N of their size
-  int test_every = 0;  // hold out every Nth view when the capture has no split; 0: none
+  int test_every = 8;  // hold out every Nth view when the capture has no split; 0: none
   int views = 0;       // train on so many, spread evenly (engine/io/spread.h); 0: on all
 };
 

@@ -9,7 +9,7 @@ namespace {
 EditOutcome make(const EditContext& context, const EditJob& job) {
   SgMixture light = context.scene.light;
   if (job.params.contains("env"))
-    light = light_from_array(decode_npy(job.input("light.npy"), "light.npy").data);
+    light = light_from_array(decode_npy(job.input("light.npy"), "light.npy").floats());
   EditOutcome out;
   out.layer.id = job.id;
   out.layer.everywhere = true;

@@ -76,7 +76,7 @@ SgMixture read_lobes(const std::filesystem::path& path) {
   const NpyArray array = read_npy(path);
   if (array.shape.size() != 2 || array.shape[1] != 7)
     fail("{} does not hold lobes, which are rows of 7: axis, sharpness, colour.", path.string());
-  return light_from_array(array.data);
+  return light_from_array(array.floats());
 }
 
 constexpr int kFit = 1;  // of fit_lobes as it is now: raise it when the same picture gives other lobes

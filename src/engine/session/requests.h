@@ -26,7 +26,7 @@ struct MachineInfo {
 
 struct CheckRequest {
   std::filesystem::path capture;
-  CaptureOptions options;
+  CaptureOptions options{"", ReconstructOptions().test_every};  // as `reconstruct` would load it
   std::filesystem::path picture;  // PNG of cameras and bounding sphere to write; empty: none
 };
 struct CheckReport {

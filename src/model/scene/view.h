@@ -23,7 +23,7 @@ struct View {
 
 struct Capture {
   std::filesystem::path root;
-  std::string format;                 // "nerf-synthetic", "physg"
+  std::string format;                 // "nerf-synthetic", "physg", "idr"
   std::vector<View> views;            // train first, then val, test; each sorted as the capture lists them
   Vec3d up{0, 0, 1};                  // world axis that points to the sky, input frame
   std::vector<std::string> warnings;  // what the loader had to guess, one sentence each
