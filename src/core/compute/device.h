@@ -22,7 +22,8 @@ struct LaunchTable {
   void (*linear_weight_grad)(const LinearWeightGradArgs&);
   double (*fma_peak)();  // spins on multiply-adds in registers; FLOPs done, for the caller to time
   double (*gather_peak)(const float* pairs,
-                        uint32_t mask);  // random 8-byte gathers from mask + 1 pairs; how many
+                        uint32_t mask);                 // random 8-byte gathers from mask + 1 pairs; how many
+  double (*scatter_peak)(float* pairs, uint32_t mask);  // adds to random ones of mask + 1 pairs; how many
 };
 
 class Device {
@@ -40,6 +41,7 @@ class Device {
   void linear_weight_grad(const LinearWeightGradArgs& a) const { table_.linear_weight_grad(a); }
   double fma_peak() const { return table_.fma_peak(); }
   double gather_peak(const float* pairs, uint32_t mask) const { return table_.gather_peak(pairs, mask); }
+  double scatter_peak(float* pairs, uint32_t mask) const { return table_.scatter_peak(pairs, mask); }
 
  private:
   const LaunchTable& table_;

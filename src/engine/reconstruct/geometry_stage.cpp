@@ -324,7 +324,9 @@ void add(GeometryStats& a, const GeometryStats& b) {
 GeometryStats GeometryStage::step(int64_t step, double u) {
   const Schedule s = schedule_at(u);
   if (step % kRefreshEvery == 0)
-    grid_.refresh(device_, sdf_, step % kFullRefreshEvery == 0 ? 1e9f : kRefreshMargin);
+    StepTimes::process(times_, StepPart::occupancy, [&] {
+      grid_.refresh(device_, sdf_, step % kFullRefreshEvery == 0 ? 1e9f : kRefreshMargin);
+    });
   sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
   radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
   const int chunks = options_.rays / kRays;
@@ -333,22 +335,25 @@ GeometryStats GeometryStage::step(int64_t step, double u) {
     RayBatch batch;
     sample_rays(pixels_, step, c * kRays, batch);
     work_.with([&](Work& w) {
-      gather_samples(s, batch, w, uint64_t(step) * 4096 + uint64_t(c), true);
-      forward(s, batch, w);
-      backward(s, batch, w, sdf_gradients_[c], radiance_gradients_[c], stats[c]);
+      StepTimes::thread(times_, StepPart::march,
+                        [&] { gather_samples(s, batch, w, uint64_t(step) * 4096 + uint64_t(c), true); });
+      StepTimes::thread(times_, StepPart::forward, [&] { forward(s, batch, w); });
+      StepTimes::thread(times_, StepPart::backward,
+                        [&] { backward(s, batch, w, sdf_gradients_[c], radiance_gradients_[c], stats[c]); });
     });
   });
   std::vector<const std::vector<float>*> radiance;
   for (const auto& g : radiance_gradients_) radiance.push_back(&g);
   accumulate_layers(radiance_, radiance, optimizer_);
-  accumulate_gradients(device_, sdf_, sdf_gradients_, s.levels, optimizer_);
+  StepTimes::process(times_, StepPart::scatter,
+                     [&] { accumulate_gradients(device_, sdf_, sdf_gradients_, s.levels, optimizer_); });
 
   const double warm_up = std::min(1.0, u / 0.02 + 0.01);
   const double decay =
       u < options_.decay_from
           ? 1.0
           : std::pow(double(options_.decay_to), (u - options_.decay_from) / (1 - options_.decay_from));
-  optimizer_.step(device_, float(warm_up * decay));
+  StepTimes::process(times_, StepPart::adam, [&] { optimizer_.step(device_, float(warm_up * decay)); });
   GeometryStats total;
   for (const GeometryStats& st : stats) add(total, st);
   return total;

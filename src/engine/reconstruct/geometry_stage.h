@@ -10,6 +10,7 @@
 #include "engine/reconstruct/occupancy.h"
 #include "engine/reconstruct/pixels.h"
 #include "engine/reconstruct/prefit.h"
+#include "engine/reconstruct/step_times.h"
 #include "model/field/field.h"
 #include "model/field/field_pass.h"
 #include "model/field/gradients.h"
@@ -64,6 +65,7 @@ class GeometryStage {
   Image render_radiance(const Camera& unit_camera, int samples);
 
   const Field& sdf() const { return sdf_; }
+  void time_into(StepTimes* times) { times_ = times; }  // null: no clock is read
   int levels_at(double u) const;
   void save(Tensors& out) const;
   void load(const Tensors& in);
@@ -97,6 +99,7 @@ class GeometryStage {
   DistanceGrid anchor_;  // of a carved start; else empty
   std::unique_ptr<MlpWeights> sdf_weights_, radiance_weights_;  // of the current step
   Pool<Work> work_;
+  StepTimes* times_ = nullptr;
   std::vector<ChunkGradients> sdf_gradients_;
   std::vector<std::vector<float>> radiance_gradients_;
 };

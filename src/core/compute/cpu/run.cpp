@@ -57,37 +57,49 @@ double fma_peak() {
   return 2.0 * kChains * kRounds * CEI3D_WIDTH;
 }
 
+// Pseudo-random places of a table of mask + 1 entries, different ones in every lane.
+struct RandomPlaces {
+  Index<Number> at = Index<Number>(12345u);
+  uint32_t mask;
+  explicit RandomPlaces(uint32_t mask_in) : mask(mask_in) {
+#if CEI3D_WIDTH > 1
+    for (int k = 0; k < CEI3D_WIDTH; ++k) at.v[k] = uint32_t(k) * 2654435761u;
+#endif
+  }
+  Index<Number> next() {
+    at = at * Index<Number>(1664525u) + Index<Number>(1013904223u);
+    return (at ^ (at * Index<Number>(805459861u))) & Index<Number>(mask);
+  }
+};
+
+constexpr int kPlaces = 1 << 21;  // registers of places that the two peaks visit
+
 // Pairs of floats from pseudo-random places of a table. Returns gathers done.
 double gather_peak(const float* pairs, uint32_t mask) {
-  constexpr int kRounds = 1 << 18;
-  Index<Number> at(12345u);
-  Number lane[1];
-#if CEI3D_WIDTH > 1
-  for (int k = 0; k < CEI3D_WIDTH; ++k) at.v[k] = uint32_t(k) * 2654435761u;
-#endif
-  lane[0] = Number(0.0f);
-  for (int i = 0; i < kRounds; ++i) {
-    for (int k = 0; k < 8; ++k) {
-      at = at * Index<Number>(1664525u) + Index<Number>(1013904223u);
-      Number a, b;
-      gather2(pairs, (at ^ (at * Index<Number>(805459861u))) & Index<Number>(mask), a, b);
-      lane[0] = lane[0] + a + b;
-    }
+  RandomPlaces places(mask);
+  Number sum(0.0f);
+  for (int i = 0; i < kPlaces; ++i) {
+    Number a, b;
+    gather2(pairs, places.next(), a, b);
+    sum = sum + a + b;
   }
-  volatile float sink = sum_lanes(lane[0]);
+  volatile float sink = sum_lanes(sum);
   (void)sink;
-  return 8.0 * kRounds * CEI3D_WIDTH;
+  return double(kPlaces) * CEI3D_WIDTH;
+}
+
+// The same places, read, added to and written. Returns pairs done.
+double scatter_peak(float* pairs, uint32_t mask) {
+  RandomPlaces places(mask);
+  for (int i = 0; i < kPlaces; ++i) scatter_add2(pairs, places.next(), Number(1e-6f), Number(-1e-6f));
+  return double(kPlaces) * CEI3D_WIDTH;
 }
 
 }  // namespace
 
 extern const LaunchTable table;
-const LaunchTable table{CEI3D_TEXT(CEI3D_ISA),
-                        CEI3D_WIDTH,
-                        Table<AllKernels>::entries,
-                        linear,
-                        linear_weight_grad,
-                        fma_peak,
-                        gather_peak};
+const LaunchTable table{
+    CEI3D_TEXT(CEI3D_ISA), CEI3D_WIDTH, Table<AllKernels>::entries, linear, linear_weight_grad, fma_peak,
+    gather_peak,           scatter_peak};
 
 }  // namespace cei3d::CEI3D_ISA
