@@ -5,7 +5,7 @@ namespace cei3d {
 namespace {
 
 struct Options {
-  std::string target = "albedo";
+  std::string target = "albedo", routing = "both";
   std::vector<std::string> views, scribbles;
   PaintCommand command;
   EditOutput output;
@@ -16,7 +16,8 @@ PaintCommand command_of(const Options& o) {
     fail_usage("There are {} --view and {} --scribble: each scribble needs the view it was painted on.",
                o.views.size(), o.scribbles.size());
   PaintCommand c = o.command;
-  c.appearance = o.target == "appearance";
+  c.target = *paint_target_from_name(o.target);
+  c.routing = *routing_from_name(o.routing);
   for (size_t i = 0; i < o.views.size(); ++i) c.strokes.push_back({o.views[i], o.scribbles[i]});
   return c;
 }
@@ -56,15 +57,24 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
       ->required()
       ->expected(1)
       ->take_all();
-  CLI::Option* target = verb->add_option("--target", o->target,
-                                         "What the painted colour means: albedo, the base colour without "
-                                         "light; appearance, what the view "
-                                         "shows in the light there is now")
-                            ->check(CLI::IsMember({"albedo", "appearance"}))
-                            ->capture_default_str();
+  CLI::Option* target =
+      verb->add_option("--target", o->target,
+                       "What the painted colour means: albedo, the base colour without light; "
+                       "appearance, what the view shows in the light there is now; radiance, what "
+                       "shows in every light, as if it shone")
+          ->check(CLI::IsMember({"albedo", "appearance", "radiance"}))
+          ->capture_default_str();
   verb->add_flag("--erase", o->command.erase,
                  "Show the reconstructed colours again where the scribble is opaque")
       ->excludes(target);
+  verb->add_option(
+          "--routing", o->routing,
+          "What tells painted surface from the rest: both, handler points and the scribble's outline; points "
+          "or "
+          "outline, one of them; none, the object's one colour field learns the scribble, for comparison: it "
+          "spills")
+      ->check(CLI::IsMember({"both", "points", "outline", "none"}))
+      ->capture_default_str();
   verb->add_option("--seed", o->command.seed, "Of everything random in the edit")->capture_default_str();
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {

@@ -59,6 +59,8 @@ void add_where(CLI::App* verb, Options& o) {
 }
 
 void add_name(CLI::App* verb, PartCommand& c) {
+  verb->add_flag("--in-view", c.in_view,
+                 "Only what this view shows of the part, not carried on to what other views show of it");
   verb->add_option("--name", c.name,
                    "Name of the part (default: part1, part2, ... or that of the part combined with)");
   CLI::Option* add = verb->add_option("--add", c.add, "What was clicked is added to the part of this name");

@@ -8,7 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/math/rng.h"
-#include "engine/edit/stroke.h"
+#include "engine/edit/relearn.h"
 #include "engine/render/scene_light.h"
 #include "model/scene/appearance.h"
 
@@ -177,6 +177,22 @@ std::vector<Stroke> trace_strokes(const Device& device, const Scene& scene, cons
   return strokes;
 }
 
+// Routing::none.
+std::shared_ptr<const Field> relearn_all(const Device& device, const Scene& scene,
+                                         const PaintRequest& request, const Paint& paint,
+                                         const std::vector<Region>& regions, Progress& progress) {
+  ColorSamples painted;
+  for (size_t i = 0; i < paint.hits.size(); ++i) {
+    if (!paint.inside[i]) continue;
+    painted.positions.push_back(paint.hits[i].position);
+    painted.colors.push_back(paint.targets[i]);
+  }
+  std::vector<Camera> views;
+  for (const Scribble& s : request.scribbles) views.push_back(s.camera);
+  return relearn(device, scene, painted, beside_strokes(device, scene, views, regions), request.seed,
+                 progress);
+}
+
 void count(const std::vector<Stroke>& strokes, const std::vector<Region>& regions, PaintReport& report) {
   for (const Stroke& s : strokes) {
     report.painted_pixels += s.painted_pixels;
@@ -193,7 +209,7 @@ PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& 
   const double start = now();
   const std::vector<Stroke> strokes = trace_strokes(device, scene, request);
   std::vector<Region> regions;
-  for (const Stroke& s : strokes) regions.push_back(stroke_region(s));
+  for (const Stroke& s : strokes) regions.push_back(stroke_region(s, request.routing));
   count(strokes, regions, report);
   Paint paint;
   for (size_t i = 0; i < strokes.size(); ++i)
@@ -203,13 +219,17 @@ PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& 
   progress.report({"paint", 0.2, -1, ""});
   result.layer.id = request.id;
   result.layer.erase = request.erase;
-  if (!request.erase) {
-    result.layer.albedo = fit_branch(device, paint, request.seed, progress);
-    measure_branch(device, *result.layer.albedo, paint, report);
+  result.layer.unlit = request.unlit;
+  if (request.routing == Routing::none) {
+    result.layer.everywhere = true;
+    result.layer.albedo = relearn_all(device, scene, request, paint, regions, progress);
+  } else {
+    if (!request.erase) result.layer.albedo = fit_branch(device, paint, request.seed, progress);
+    result.layer.region = std::move(regions.front());
+    result.layer.also.assign(std::make_move_iterator(regions.begin() + 1),
+                             std::make_move_iterator(regions.end()));
   }
-  result.layer.region = std::move(regions.front());
-  result.layer.also.assign(std::make_move_iterator(regions.begin() + 1),
-                           std::make_move_iterator(regions.end()));
+  if (result.layer.albedo) measure_branch(device, *result.layer.albedo, paint, report);
   report.trace_seconds = traced - start;
   report.train_seconds = now() - traced;
   return result;

@@ -7,6 +7,7 @@
 
 #include "core/base/progress.h"
 #include "core/image/image.h"
+#include "engine/edit/routing.h"
 #include "engine/render/render.h"
 
 namespace cei3d {
@@ -26,6 +27,9 @@ struct PaintRequest {
   std::string id;                   // of the new layer
   uint64_t seed = 1;                // of the branch's weights and batches
   bool erase = false;               // the base's own colour shows again; the scribbles' colours mean nothing
+  Routing routing = Routing::both;
+  bool unlit =
+      false;  // the painted surface shows the colour itself, whatever the light: as if radiance were painted
   const SceneLight* seen_in = nullptr;  // null: colours are display colours of the base colour wanted; else
                                         // of what the painted view shows in this light
 };

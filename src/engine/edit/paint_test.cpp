@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/math/color.h"
 #include "core/math/rng.h"
+#include "engine/edit/relearn.h"
 #include "engine/edit/stroke.h"
 #include "engine/render/scene_light.h"
 #include "engine/render/sphere_scene.h"
@@ -294,6 +295,104 @@ TEST_F(PaintTest, TheViewShowsThePaintedColourWhereLightAllowsIt) {
       paint(device, *before_, {.scribbles = {{front(), square({1, 1, 1}, 1)}}, .id = "x", .seen_in = &light},
             quiet);
   EXPECT_GT(bright.report.out_of_reach, 0.9f);
+}
+
+// Distance of a point of the sphere from the rectangle of two_colors(), in pixels of the view; negative:
+// inside.
+double from_rectangle(Vec3f p) {
+  const Vec3d s = front().project(to_double(p));
+  return std::max(std::abs(s.x - 48) - 12, std::abs(s.y - 48) - 8);
+}
+
+PaintRequest routed(Routing routing) {
+  PaintRequest r;
+  r.scribbles = {{front(), two_colors()}};
+  r.id = "x";
+  r.routing = routing;
+  return r;
+}
+
+TEST_F(PaintTest, PointsAloneReachALittleTooFarAndTheOutlineAloneDoesNot) {
+  const Scene points = painted(*before_, routed(Routing::points)),
+              outline = painted(*before_, routed(Routing::outline));
+  int spilled = 0;
+  for (int i = 0; i < 40000; ++i) {
+    Rng rng(3, 0, i);
+    const Vec3f n = normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()}), p = n * kRadius;
+    const bool front_side = dot(n, normalize(to_float(front().center) - p)) > 0.1f;
+    const double away = front_side ? from_rectangle(p) : 1e9;
+    const bool by_points = points.layers[0].contains(p, n);
+    EXPECT_TRUE(by_points || away > 0);
+    EXPECT_FALSE(by_points && away > 3) << away;
+    EXPECT_TRUE(std::abs(away) < 0.3 || outline.layers[0].contains(p, n) == (away < 0)) << away;
+    spilled += away > 0.3 && by_points;
+  }
+  EXPECT_GT(spilled, 10);
+}
+
+TEST_F(PaintTest, WithoutRoutingTheScribbleIsLearntAndTheUnseenSideChanges) {
+  const Scene spilled = painted(*before_, routed(Routing::none));
+  EXPECT_TRUE(spilled.layers[0].everywhere);
+  std::vector<Hit> hits;
+  for (int i = 0; i < 4000; ++i) {
+    Rng rng(8, 0, i);
+    const Vec3f n = normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()});
+    hits.push_back({n * kRadius, n, n, 0, 0, 0});
+  }
+  const Device device = make_device();
+  const Appearance was = appearance_at(device, *before_, hits), is = appearance_at(device, spilled, hits);
+  double inside = 0, beside = 0, unseen = 0;
+  int n_inside = 0, n_beside = 0, n_unseen = 0;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const Vec3f p = hits[i].position;
+    const bool seen = dot(hits[i].normal, normalize(to_float(front().center) - p)) > 0.2f;
+    const double away = from_rectangle(p), x = front().project(to_double(p)).x;
+    const Vec3f wanted = linear_from_srgb(x < 48 ? kRed : kBlue);
+    if (seen && away < -2 && std::abs(x - 48) > 3) inside += length(is.albedo[i] - wanted), ++n_inside;
+    if (seen && away > 6) beside += length(is.albedo[i] - was.albedo[i]), ++n_beside;
+    if (!seen) unseen += length(is.albedo[i] - was.albedo[i]), ++n_unseen;
+  }
+  EXPECT_LT(inside / n_inside, 0.1);
+  EXPECT_LT(beside / n_beside, 0.1);
+  EXPECT_GT(unseen / n_unseen, 2 * beside / n_beside);
+  Progress quiet;
+  Scene reshaped = *before_;
+  reshaped.poses.resize(1);
+  EXPECT_THROW(relearn(device, reshaped, {}, {}, 1, quiet), Error);
+}
+
+TEST_F(PaintTest, PaintedRadianceIsTheSameInEveryLight) {
+  const Device device = make_device();
+  PaintRequest request = routed(Routing::both);
+  request.unlit = true;
+  Scene scene = painted(*before_, request), dark = scene;
+  dark.light.lobes = {{{0, 1, 0}, 5, {0.1f, 0.1f, 0.1f}}};
+  const GBuffer g = trace_view(device, scene, front(), 2);
+  const Frame before = shade_view(device, *before_, g), a = shade_view(device, scene, g),
+              b = shade_view(device, dark, g);
+  const Region& region = scene.layers[0].region;
+  int inside = 0;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const size_t p = size_t(y) * kSize + x;
+      if (!touches(g, p, region)) {
+        EXPECT_TRUE(same_bytes(before.rgb, a.rgb, p));
+        continue;
+      }
+      if (x < 38 || x >= 58 || std::abs(x - 48) < 3 || y < 42 || y >= 54) continue;
+      ++inside;
+      const Vec3f wanted = linear_from_srgb(x < 48 ? kRed : kBlue);
+      for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(a.rgb.at(x, y)[c], wanted[c], 0.05f);
+        EXPECT_EQ(a.rgb.at(x, y)[c], b.rgb.at(x, y)[c]);
+        EXPECT_EQ(a.specular.at(x, y)[c], 0);
+      }
+    }
+  EXPECT_GT(inside, 100);
+  // Ordinary paint on top of it is lit again.
+  const Scene covered = painted(scene, {{{front(), two_colors()}}, "y"}),
+              plain = painted(*before_, {{{front(), two_colors()}}, "y"});
+  EXPECT_EQ(shade_view(device, covered, g).rgb.data, shade_view(device, plain, g).rgb.data);
 }
 
 TEST_F(PaintTest, BadScribblesAreRefusedWithASentence) {

@@ -8,6 +8,7 @@
 #include "engine/edit/material.h"
 #include "engine/edit/part_seeds.h"
 #include "engine/segment/grow.h"
+#include "engine/segment/seen_points.h"
 #include "model/scene/appearance.h"
 #include "model/scene/parts.h"
 
@@ -55,6 +56,17 @@ void combine(PartCombination::How how, std::span<const float> old, std::vector<f
   }
 }
 
+// Without propagation: what the view does not show is not of the part.
+void keep_seen(const Scene& scene, const Camera& camera, std::vector<float>& scores) {
+  constexpr float kMinFacing = 0.1f;
+  const HandlerPoints& points = *scene.handlers;
+  std::vector<float> seen(scores.size(), 0.0f);
+  for (const SeenPoint& p :
+       seen_points(*scene.surface, camera, points.positions, points.normals, kMinFacing, points.spacing))
+    seen[p.point] = scores[p.point];
+  scores = std::move(seen);
+}
+
 size_t count_inside(std::span<const float> scores) {
   size_t n = 0;
   for (const float s : scores) n += s >= kInside;
@@ -100,6 +112,7 @@ PartResult select_part(const Device& device, const Scene& scene, const PartReque
   const double seeded = now();
   std::vector<float> scores = selected(device, scene, r, seeds, progress);
   require_running(progress);
+  if (r.in_view) keep_seen(scene, r.camera, scores);
   if (r.combination) combine(r.combination->how, existing_scores(scene, r.combination->part), scores);
   PartResult result;
   result.report.points = count_inside(scores);

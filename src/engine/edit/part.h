@@ -32,6 +32,7 @@ struct PartRequest {
   Image mask;        // in place of clicks: 1 channel, of the view's size; inside where >= 0.5
   // Finds the part from the clicks in place of growing it on the handler points: #handlers scores in [0, 1].
   std::function<std::vector<float>(const Scene&, const PartRequest&, Progress&)> network;
+  bool in_view = false;  // only what the view shows of it, for comparison
   std::optional<PartCombination> combination;
   MaterialChange change;
   std::optional<Vec3f> color;  // linear

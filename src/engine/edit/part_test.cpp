@@ -108,6 +108,18 @@ TEST_F(PartTest, ClicksInOneViewSelectThePartAllAround) {
   EXPECT_GT(result.report.points, 0u);
 }
 
+TEST_F(PartTest, InOneViewOnlyEndsWhereTheViewDoes) {
+  PartRequest r = clicked();
+  r.in_view = true;
+  const Vec3f eye = to_float(r.camera.center);
+  const auto seen_cap = [&](Vec3f p) {  // in lengths: how far from the cap's border and from the limb
+    return min(cap(p), kSphereRadius * (dot(normalize(p), normalize(eye - p)) - 0.1f));
+  };
+  const PartResult all = select(clicked()), seen = select(r);
+  EXPECT_GT(right_share(seen.layer, seen_cap), 0.98);
+  EXPECT_LT(seen.report.share, 0.7 * all.report.share);
+}
+
 TEST_F(PartTest, AMaskSelectsTheSame) {
   PartRequest r = request();
   r.mask = Image(kSize, kSize, 1);

@@ -166,7 +166,10 @@ Stroke trace_stroke(const Device& device, const Scene& scene, const Camera& came
   return s;
 }
 
-Region stroke_region(const Stroke& s) {
+namespace {
+
+// The edited handler points with their reach.
+Region::Points stroke_points(const Stroke& s) {
   std::vector<Hit> painted;
   std::vector<float> footprints;
   for (size_t i = 0; i < s.hits.size(); ++i) {
@@ -185,13 +188,26 @@ Region stroke_region(const Stroke& s) {
   // Every painted ray has a point within the spacing; a surface point between rays is less than 1.5
   // footprints away from one of them.
   for (float& r : points.reach) r = spacing + 1.5f * r;
+  return points;
+}
+
+Projector stroke_projector(const Stroke& s) {
   Projector projector;
   projector.camera = s.camera;
   projector.alpha = s.alpha;
   projector.depth = s.depth;
   projector.min_facing = kMinFacing;
   projector.least_alpha = s.least_alpha;
-  return Region(std::move(points), std::move(projector));
+  return projector;
+}
+
+}  // namespace
+
+Region stroke_region(const Stroke& s, Routing routing) {
+  if (routing == Routing::outline) return Region({}, stroke_projector(s));
+  Region::Points points = stroke_points(s);
+  if (points.positions.empty()) return {};
+  return Region(std::move(points), routing == Routing::points ? Projector{} : stroke_projector(s));
 }
 
 }  // namespace cei3d

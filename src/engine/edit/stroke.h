@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "engine/edit/routing.h"
 #include "engine/render/render.h"
 #include "model/geometry/region.h"
 
@@ -42,7 +43,7 @@ struct Stroke {
 // camera: unit-sphere frame; rgba: sRGB, straight alpha, of the camera's size.
 Stroke trace_stroke(const Device&, const Scene&, const Camera& camera, const Image& rgba);
 
-// The part of the surface that the stroke paints.
-Region stroke_region(const Stroke&);
+// The part of the surface that the stroke paints. Routing::none has no region; it gets that of `both`.
+Region stroke_region(const Stroke&, Routing routing = Routing::both);
 
 }  // namespace cei3d

@@ -35,6 +35,17 @@ std::vector<std::vector<uint32_t>> triangle_ids(const Poses& poses) {
   return ids;
 }
 
+// What shows its own colour in every light.
+Shading with_unlit(Shading lit, const Appearance& look) {
+  for (size_t i = 0; i < look.unlit.size(); ++i) {
+    const float share = look.unlit[i];
+    if (share <= 0) continue;
+    lit.diffuse[i] = lit.diffuse[i] * (1 - share) + look.albedo[i] * share;
+    lit.specular[i] = lit.specular[i] * (1 - share);
+  }
+  return lit;
+}
+
 // The hits that one pose lights, with its own triangles, and what they look like.
 struct Group {
   std::vector<uint32_t> index;
@@ -70,7 +81,7 @@ SceneLight::SceneLight(const Device& device, const Scene& scene,
 }
 
 Shading SceneLight::shade(std::span<const Hit> hits, const Appearance& look) const {
-  if (poses_.empty()) return lights_[0]->shade(hits, look);
+  if (poses_.empty()) return with_unlit(lights_[0]->shade(hits, look), look);
   std::vector<Group> groups(poses_.size());
   for (uint32_t i = 0; i < hits.size(); ++i) {
     const int pose = poses_.back()->shaped_in(hits[i].triangle);
@@ -90,7 +101,7 @@ Shading SceneLight::shade(std::span<const Hit> hits, const Appearance& look) con
       out.specular[groups[k].index[j]] = part.specular[j];
     }
   }
-  return out;
+  return with_unlit(std::move(out), look);
 }
 
 }  // namespace cei3d

@@ -9,6 +9,7 @@
 #include "engine/io/png_file.h"
 #include "engine/render/scene_light.h"
 #include "engine/session/edit_ops.h"
+#include "engine/session/requests.h"
 
 namespace cei3d {
 namespace {
@@ -61,7 +62,17 @@ Json report_json(const PaintReport& r) {
           {"seconds", {{"trace", r.trace_seconds}, {"fit", r.train_seconds}}}};
 }
 
-bool wants_appearance(const Json& params) { return params.value("target", "albedo") == "appearance"; }
+PaintTarget target_of(const Json& params) {
+  const std::string name = params.value("target", "albedo");
+  if (const auto target = paint_target_from_name(name)) return *target;
+  fail("Paint has no target '{}' in this program; update cei3d.", name);
+}
+
+Routing routing_of(const Json& params) {
+  const std::string name = params.value("routing", "both");
+  if (const auto routing = routing_from_name(name)) return *routing;
+  fail("Paint has no routing '{}' in this program; update cei3d.", name);
+}
 
 // The first version of the parameters was one stroke.
 EditOutcome make(const EditContext& context, const EditJob& job) {
@@ -69,13 +80,16 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
   request.id = job.id;
   request.seed = job.params.at("seed").get<uint64_t>();
   request.erase = job.params.value("erase", false);
+  request.routing = routing_of(job.params);
+  const PaintTarget target = target_of(job.params);
+  request.unlit = target == PaintTarget::radiance;
   if (job.params.contains("strokes"))
     for (const Json& stroke : job.params.at("strokes"))
       request.scribbles.push_back(scribble_of(context, job, stroke));
   else
     request.scribbles.push_back(scribble_of(context, job, job.params));
   std::optional<SceneLight> light;
-  if (wants_appearance(job.params)) {
+  if (target == PaintTarget::appearance) {
     light.emplace(context.device, context.scene, scene_transports(context.scene));
     request.seen_in = &*light;
   }
@@ -84,8 +98,9 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
 }
 
 Aspects depends(const Json& params) {
-  const bool seen = wants_appearance(params);
-  return {.shape = true, .look = seen, .light = seen};
+  const bool seen = target_of(params) == PaintTarget::appearance;
+  const bool everything = routing_of(params) == Routing::none;
+  return {.shape = true, .look = seen || everything, .light = seen};
 }
 
 }  // namespace

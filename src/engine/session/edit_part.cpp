@@ -73,6 +73,7 @@ PartRequest request_of(const EditContext& context, const EditJob& job) {
                                              Progress& progress) {
       return scores_by_network(context, name, scene, request, progress);
     };
+  r.in_view = job.params.value("in_view", false);
   r.combination = combination_from(job.params);
   r.change = effects.change;
   r.color = effects.color;

@@ -285,6 +285,12 @@ class RandomEdits : public EditTest {
     switch (kind) {
       case 0:
         return session_.paint(scribble(0, {0.8f, 0.1f, 0.1f}, 6), quiet_).id;
+      case 8: {
+        PaintCommand c = scribble(1, {0.1f, 0.7f, 0.2f}, 6);
+        c.target = PaintTarget::radiance;
+        c.routing = Routing::points;
+        return session_.paint(c, quiet_).id;
+      }
       case 1:
         m.effects.color = "#4060c0";
         return session_.change_material(m, quiet_).id;
@@ -317,10 +323,10 @@ TEST_F(RandomEdits, EndInTheSameBytesAsDoingWhatIsLeft) {
       Rng rng(seed, 7, step);
       const uint32_t what = rng.below(10);
       if (what < 5 || history.empty()) {
-        int kind = int(rng.below(8));
+        int kind = int(rng.below(9));
         history.resize(cursor);
         if (std::any_of(history.begin(), history.end(), [&](const Made& m) { return m.kind == kind; }))
-          kind %= 6;
+          kind = kind == 8 ? 8 : kind % 6;
         history.push_back({kind, make_edit(kind)});
         ++cursor;
       } else if (what < 7 && cursor > 0) {

@@ -11,6 +11,8 @@ namespace {
 constexpr const char* kChannels[] = {"rgb",    "albedo", "diffuse",   "specular",
                                      "normal", "depth",  "roughness", "mask"};
 constexpr const char* kSeverities[] = {"note", "warning", "error"};
+constexpr const char* kTargets[] = {"albedo", "appearance", "radiance"};
+constexpr const char* kRoutings[] = {"both", "points", "outline", "none"};
 constexpr const char* kConventions[] = {"", "zup", "yup", "mitsuba", "blender"};
 
 template <class Enum, size_t N>
@@ -35,6 +37,14 @@ Json material_json(const Material& m) {
 const char* channel_name(Channel c) { return kChannels[size_t(c)]; }
 std::optional<Channel> channel_from_name(const std::string& name) {
   return from_name<Channel>(kChannels, name);
+}
+const char* paint_target_name(PaintTarget t) { return kTargets[size_t(t)]; }
+const char* routing_name(Routing r) { return kRoutings[size_t(r)]; }
+std::optional<PaintTarget> paint_target_from_name(const std::string& name) {
+  return from_name<PaintTarget>(kTargets, name);
+}
+std::optional<Routing> routing_from_name(const std::string& name) {
+  return from_name<Routing>(kRoutings, name);
 }
 std::optional<EnvConvention> env_convention_from_name(const std::string& name) {
   return from_name<EnvConvention>(kConventions, name);

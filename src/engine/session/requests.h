@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/json.h"
+#include "engine/edit/routing.h"
 #include "engine/io/capture.h"
 #include "engine/io/check.h"
 #include "engine/reconstruct/reconstruct.h"
@@ -78,11 +79,17 @@ struct PaintStroke {
   std::string view;                // a view's name
   std::filesystem::path scribble;  // RGBA PNG of the view's size
 };
+enum class PaintTarget {
+  albedo,      // the base colour
+  appearance,  // what the view is to show in the present light: the base colour that does it
+  radiance     // what every view is to show in every light; light and material mean nothing there
+};
 struct PaintCommand {
   std::vector<PaintStroke> strokes;  // where two overlap, the later one counts
   uint64_t seed = 1;
-  bool appearance = false;  // colours are what the view is to show in the present light, not base colours
-  bool erase = false;       // the base's own colours again where there is paint
+  PaintTarget target = PaintTarget::albedo;  // what the colours of the scribble mean
+  Routing routing = Routing::both;
+  bool erase = false;  // the base's own colours again where there is paint
 };
 // Another material or colour.
 struct MaterialEffects {
@@ -117,6 +124,7 @@ struct PartCommand {
   std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centres at +0.5
   std::filesystem::path mask;                    // PNG in place of clicks; empty: none
   std::string segmenter = "grow";                // or "sam"
+  bool in_view = false;                          // only what this view shows of the part
   std::string name;                      // empty: that of the part combined with, else "part1", "part2", ...
   std::string add, subtract, intersect;  // name of a part to combine with; at most one
   MaterialEffects effects;
@@ -172,6 +180,12 @@ struct Turntable {
 struct ProjectViews {};  // the project's held-out views, or all when it has none
 using CameraChoice = std::variant<ProjectViews, CaptureViews, CameraFile, Turntable>;
 bool is_camera_file(const std::filesystem::path&);  // JSON with a list "cameras"
+
+// By their names on the command line; nothing: there is no such.
+std::optional<PaintTarget> paint_target_from_name(const std::string&);
+std::optional<Routing> routing_from_name(const std::string&);
+const char* paint_target_name(PaintTarget);
+const char* routing_name(Routing);
 
 enum class Channel { rgb, albedo, diffuse, specular, normal, depth, roughness, mask };
 const char* channel_name(Channel);

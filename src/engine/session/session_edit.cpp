@@ -66,8 +66,10 @@ EditSummary Session::add_edit(const char* op, Json params, EditInputs inputs, Pr
 }
 
 EditSummary Session::paint(const PaintCommand& command, Progress& progress) {
-  if (command.erase && command.appearance)
+  if (command.erase && command.target != PaintTarget::albedo)
     fail_usage("--erase paints no colour that --target could be about.");
+  if (command.erase && command.routing == Routing::none)
+    fail_usage("--erase needs to know where; use another --routing.");
   Json strokes = Json::array();
   EditInputs inputs;
   std::string views;
@@ -83,7 +85,8 @@ EditSummary Session::paint(const PaintCommand& command, Progress& progress) {
   if (command.erase)
     params["erase"] = true;
   else
-    params["target"] = command.appearance ? "appearance" : "albedo";
+    params["target"] = paint_target_name(command.target);
+  if (command.routing != Routing::both) params["routing"] = routing_name(command.routing);
   return add_edit("paint", std::move(params), std::move(inputs), progress);
 }
 

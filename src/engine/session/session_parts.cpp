@@ -63,6 +63,7 @@ EditSummary Session::select_part(const PartCommand& command, Progress& progress)
     fail_usage("The network wants clicks; a --mask goes with --segmenter grow.");
   Json params = {{"view", find_view(project().capture(), command.view).name},
                  {"segmenter", command.segmenter}};
+  if (command.in_view) params["in_view"] = true;
   put_combination(command, params);
   std::string name = command.name;
   for (const std::string& other : {command.add, command.subtract, command.intersect})

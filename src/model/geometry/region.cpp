@@ -44,6 +44,7 @@ Region::Region(ScoredPoints part) : scored_(std::move(part)) {}
 bool Region::contains(Vec3f position, Vec3f normal) const {
   if (!scored_.empty()) return scored_.score(position, normal) >= 0.5f;
   if (!projector_.empty() && !projector_.covers(position, normal)) return false;
+  if (!projector_.empty() && points_.positions.empty()) return true;
   return index_.any_within(position, max_reach_, [&](size_t i) {
     const Vec3f d = points_.positions[i] - position;
     return dot(d, d) < square(points_.reach[i]) && dot(points_.normals[i], normal) > 0;

@@ -28,7 +28,8 @@ class Region {
     std::vector<Vec3f> normals;    // #N, unit
     std::vector<float> reach;      // #N, unit-sphere units
   };
-  explicit Region(Points points, Projector projector = {});  // an empty projector: by the points alone
+  // An empty projector: by the points alone; no points: by the mask alone.
+  explicit Region(Points points, Projector projector = {});
   explicit Region(ScoredPoints part);
 
   // normal: unit, outward.

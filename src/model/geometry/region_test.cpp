@@ -104,6 +104,23 @@ TEST(Region, OfPaintLeavesHiddenAndAvertedSurfacesAlone) {
   EXPECT_FALSE(region.contains(front, {1, 0, -0.05f}));          // seen at a grazing angle
 }
 
+TEST(Region, WithoutPointsIsWhatTheProjectorCovers) {
+  const Projector p = painted_disc(true).projector();
+  const Region outline({}, p);
+  Tensors tensors;
+  Json head = Json::object();
+  outline.save(tensors, head);
+  const Region back = Region::load(tensors, head);
+  int inside = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Vec3f x = random_on_sphere(i), n = normalize(x);
+    EXPECT_EQ(outline.contains(x, n), p.covers(x, n));
+    EXPECT_EQ(back.contains(x, n), p.covers(x, n));
+    inside += outline.contains(x, n);
+  }
+  EXPECT_GT(inside, 20);
+}
+
 TEST(Region, OfPointsFollowsBruteForce) {
   const Region region = painted_disc(false);
   const Region::Points& h = region.points();

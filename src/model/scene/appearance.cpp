@@ -166,17 +166,23 @@ std::vector<Vec3f> base_colors(const Device& device, const Scene& scene, std::sp
   return albedo;
 }
 
-std::vector<Vec3f> colors_at(const Device& device, const Scene& scene, std::span<const Hit> hits,
-                             Routes& routes) {
+// Into albedo and unlit.
+void put_colors(const Device& device, const Scene& scene, std::span<const Hit> hits, Routes& routes,
+                Appearance& out) {
   eval_fields(device, scene, routes);
-  std::vector<Vec3f> albedo = base_colors(device, scene, hits, routes);
+  out.albedo = base_colors(device, scene, hits, routes);
+  const auto& layers = scene.layers;
+  if (std::any_of(layers.begin(), layers.end(), [](const EditLayer& l) { return l.unlit; }))
+    out.unlit.assign(hits.size(), 0.0f);
   for (const Chunk& chunk : routes.chunks)
     for (auto op = chunk.ops.rbegin(); op != chunk.ops.rend(); ++op) {  // a hit's last step stands first
-      Vec3f& a = albedo[op->hit];
+      Vec3f& a = out.albedo[op->hit];
       const Vec3f c = op->kind == Op::Kind::tint ? tinted(*scene.layers[op->layer].tint, a) : op->color;
       a = op->weight < 1 ? a * (1 - op->weight) + c * op->weight : c;
+      if (out.unlit.empty() || op->kind == Op::Kind::tint) continue;
+      const bool unlit = op->kind == Op::Kind::branch && layers[op->layer].unlit;
+      out.unlit[op->hit] = out.unlit[op->hit] * (1 - op->weight) + float(unlit) * op->weight;
     }
-  return albedo;
 }
 
 // The list of distinct materials, in the order of their first hit.
@@ -200,7 +206,7 @@ class Materials {
 Appearance appearance_at(const Device& device, const Scene& scene, std::span<const Hit> hits) {
   Routes routes(scene, hits);
   Appearance out;
-  out.albedo = colors_at(device, scene, hits, routes);
+  put_colors(device, scene, hits, routes, out);
   out.material.assign(hits.size(), 0);
   out.layer.resize(hits.size());
   Materials materials(scene.material);

@@ -15,8 +15,9 @@ struct Appearance {
   std::vector<Vec3f> albedo;       // #hits, linear base colour
   std::vector<uint32_t> material;  // #hits, index of the hit's material
   std::vector<Material>
-      materials;           // those that occur; the first is the object's own, whether it occurs or not
-  std::vector<int> layer;  // #hits, the last layer that is local and has to do with the hit; -1: none
+      materials;               // those that occur; the first is the object's own, whether it occurs or not
+  std::vector<int> layer;      // #hits, the last layer that is local and has to do with the hit; -1: none
+  std::vector<float> unlit{};  // #hits, share of the base colour that shows whatever the light; empty: none
 };
 
 // Layers are applied in their order, each in the pose of the object that it was made in: a branch covers what

@@ -83,6 +83,7 @@ void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
   if (layer.pose != kLatestPose) head["pose"] = layer.pose;
   if (!layer.part.empty()) head["part"] = layer.part;
   save_field(layer.albedo, "albedo", tensors, head);
+  if (layer.unlit) head["unlit"] = true;
   if (layer.erase) head["erase"] = true;
   if (layer.tint) head["tint"] = tint_json(*layer.tint);
   if (!layer.material.empty()) head["material"] = change_json(layer.material);
@@ -100,6 +101,7 @@ EditLayer load_layer(const Tensors& tensors, const Json& head) {
     layer.pose = head.value("pose", kLatestPose);
     layer.part = head.value("part", "");
     layer.albedo = load_field("albedo", tensors, head);
+    layer.unlit = head.value("unlit", false);
     layer.erase = head.value("erase", false);
     if (head.contains("tint")) layer.tint = tint_from(head.at("tint"));
     if (head.contains("material")) layer.material = change_from(head.at("material"));

@@ -30,6 +30,7 @@ struct EditLayer {
   int pose = kLatestPose;
   std::string part;                     // name of the part that the region is; empty: none
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: base colour of the layers below
+  bool unlit = false;                   // its colours are what shows, in every light: no light falls on them
   bool erase = false;                   // the base's own colour instead, whatever lies below
   std::optional<Tint> tint;             // on top of that
   MaterialChange material;

@@ -45,6 +45,7 @@ std::vector<EditLayer> one_of_each_kind() {
   layers[5].material.specular = 0;
   layers[6].everywhere = true;
   layers[6].albedo = some_field();
+  layers[6].unlit = true;
   layers[7] = layers[0];
   layers[7].also = {some_region(), Region({{{0.5f, 0, 0}}, {{1, 0, 0}}, {0.2f}})};
   layers[7].albedo = nullptr;
@@ -69,6 +70,7 @@ TEST(EditLayer, LoadGivesWhatWasSaved) {
     EXPECT_EQ(bytes_of(again), bytes_of(layer));
     EXPECT_EQ(again.part, layer.part);
     EXPECT_EQ(again.everywhere, layer.everywhere);
+    EXPECT_EQ(again.unlit, layer.unlit);
     EXPECT_EQ(again.material.roughness, layer.material.roughness);
     EXPECT_EQ(again.tint.has_value(), layer.tint.has_value());
     EXPECT_EQ(bool(again.reshape), bool(layer.reshape));
