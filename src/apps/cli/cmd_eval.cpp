@@ -76,6 +76,9 @@ void add_eval(Commands& commands) {
   verb->add_option("--mask", o->request.masks,
                    "With --edit: folder of masks, bright where the edit should be")
       ->check(CLI::ExistingDirectory);
+  verb->add_option(
+      "--pictures", o->request.pictures,
+      "Folder of PNGs to write: photograph, render and, with --edit, edited render, side by side");
   add_networks(verb, o->request.networks);
   commands.on(verb, o, evaluate);
 }

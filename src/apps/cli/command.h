@@ -57,6 +57,7 @@ void add_parts(Commands&);
 void add_history(Commands&);  // log, undo, redo, toggle, replay
 void add_export(Commands&);
 void add_eval(Commands&);
+void add_evaluate(Commands&);
 void add_info(Commands&);  // info, doctor
 void add_bench(Commands&);
 

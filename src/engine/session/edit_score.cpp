@@ -41,33 +41,39 @@ fs::path picture_like(const fs::path& folder, const View& view) {
   return folder / (fs::path(view.name).filename().string() + ".png");
 }
 
-Area edited_area(const Scene& scene, const EditLayer& layer, const GBuffer& g, const EditPictures& p) {
-  Area area(g.pixel_start.size() - 1, layer.everywhere || layer.light);
+EditedArea edited_area(const Scene& scene, const EditLayer& layer, const GBuffer& g, const EditPictures& p) {
   const std::vector<uint8_t> inside = inside_layer(scene, layer, g.hits);
-  for (size_t i = 0; i < area.size(); ++i) {
-    for (uint32_t h = g.pixel_start[i]; h < g.pixel_start[i + 1]; ++h) area[i] |= inside[h];
-    if (layer.reshape) area[i] |= !same_pixel(p.before, p.after, i);
+  const uint32_t samples = uint32_t(g.samples * g.samples);
+  EditedArea area;
+  for (size_t i = 0; i + 1 < g.pixel_start.size(); ++i) {
+    uint32_t hits = layer.everywhere || layer.light ? samples : 0;
+    for (uint32_t h = g.pixel_start[i]; h < g.pixel_start[i + 1]; ++h) hits += inside[h];
+    if (layer.reshape && !same_pixel(p.before, p.after, i)) hits = samples;
+    area.any.push_back(hits > 0);
+    area.most.push_back(2 * hits >= samples);
   }
   return area;
 }
 
-void EditScorer::add(const View& view, const EditPictures& p, const Area& own) {
+void EditScorer::add(const View& view, const EditPictures& p, const EditedArea& own) {
   const fs::path mask_file = picture_like(masks_, view);
   const bool has_truth = !truth_.empty() && fs::exists(picture_like(truth_, view)) && fs::exists(mask_file);
-  const Area mask = has_truth ? read_area(mask_file, view.camera) : own;
-  if (has_truth) add_truth(view, p, mask);
+  const Area mask = has_truth ? read_area(mask_file, view.camera) : own.any;
+  if (has_truth) add_truth(view, p, mask, own.most);
   if (has_truth || truth_.empty()) add_rest(p, dilated(mask, p.after.width, p.after.height, kGrow));
   perceptual_.add(before_, over_background(p.before, 1));
   perceptual_.add(after_, over_background(p.after, 1));
 }
 
-void EditScorer::add_truth(const View& view, const EditPictures& p, const Area& mask) {
+void EditScorer::add_truth(const View& view, const EditPictures& p, const Area& mask, const Area& own) {
   const Image truth = over_background(read_of_view(picture_like(truth_, view), view.camera), 1);
   const Image after = over_background(p.after, 1);
   const Area grown = dilated(mask, p.after.width, p.after.height, kGrow);
   for (size_t i = 0; i < mask.size(); ++i) {
     for (size_t c = 0; mask[i] && c < 3; ++c)
       squared_error_ += square(double(after.data[3 * i + c]) - truth.data[3 * i + c]);
+    in_both_ += mask[i] && own[i];
+    in_either_ += mask[i] || own[i];
     fidelity_.pixels_inside += mask[i];
     fidelity_.pixels_outside += !grown[i];
     fidelity_.changed_outside += !grown[i] && !same_pixel(p.after, p.before, i);
@@ -96,6 +102,7 @@ EditScore EditScorer::result() const {
       fail("{} and {} hold no pictures named like the views (r_004.png for test/r_004).", truth_.string(),
            masks_.string());
     score.truth = fidelity_;
+    score.truth->iou = double(in_both_) / double(std::max<size_t>(in_either_, 1));
     score.truth->psnr_inside =
         -10 * std::log10(squared_error_ / double(3 * std::max<size_t>(fidelity_.pixels_inside, 1)));
   }

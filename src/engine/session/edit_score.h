@@ -19,9 +19,11 @@ struct EditPictures {
   Image photo;
 };
 
-// The pixels whose samples meet what the layer changed; all of them for a layer that is everywhere.
-// g: the scene with the layer in it, traced.
-Area edited_area(const Scene&, const EditLayer&, const GBuffer& g, const EditPictures&);
+struct EditedArea {
+  Area any, most;  // pixels of whose samples one, at least half meet what the layer changed
+};
+// All pixels for a layer that is everywhere. g: the scene with the layer in it, traced.
+EditedArea edited_area(const Scene&, const EditLayer&, const GBuffer& g, const EditPictures&);
 
 class EditScorer {
  public:
@@ -30,17 +32,18 @@ class EditScorer {
       : truth_(std::move(truth)), masks_(std::move(masks)), perceptual_(perceptual) {}
 
   // own: edited_area(). Errors: pictures of another size than the view.
-  void add(const View&, const EditPictures&, const Area& own);
+  void add(const View&, const EditPictures&, const EditedArea& own);
   // Error: truth was asked for, and no view has any.
   EditScore result() const;
 
  private:
-  void add_truth(const View&, const EditPictures&, const Area& mask);
+  void add_truth(const View&, const EditPictures&, const Area& mask, const Area& own);
   void add_rest(const EditPictures&, const Area& grown);
 
   std::filesystem::path truth_, masks_;
   const Perceptual& perceptual_;
   double squared_error_ = 0;
+  size_t in_both_ = 0, in_either_ = 0;
   EditFidelity fidelity_;
   RestScore rest_;  // sums
   FeatureSet before_, after_;

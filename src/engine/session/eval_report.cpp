@@ -10,11 +10,9 @@ namespace {
 Json edit_json(const EditScore& e) {
   Json j = Json::object();
   if (e.truth)
-    j = {{"psnr_inside", decibels(e.truth->psnr_inside)},
-         {"pixels_inside", e.truth->pixels_inside},
-         {"changed_outside", e.truth->changed_outside},
-         {"pixels_outside", e.truth->pixels_outside},
-         {"views", e.truth->views}};
+    j = {{"psnr_inside", decibels(e.truth->psnr_inside)}, {"iou", e.truth->iou},
+         {"pixels_inside", e.truth->pixels_inside},       {"changed_outside", e.truth->changed_outside},
+         {"pixels_outside", e.truth->pixels_outside},     {"views", e.truth->views}};
   if (e.rest) {
     Json& rest = j["non_edited"] = {{"psnr", decibels(e.rest->psnr)}, {"ssim", e.rest->ssim}};
     if (e.rest->lpips) rest["lpips"] = *e.rest->lpips;
@@ -29,10 +27,10 @@ std::string edit_markdown(const EditScore& e) {
   std::string text;
   if (e.truth)
     text += fmt::format(
-        "\n| edit: views | PSNR inside | pixels inside | changed outside | pixels outside |\n"
-        "|---|---|---|---|---|\n| {} | {} dB | {} | {} | {} |\n",
-        e.truth->views, decibels_text(e.truth->psnr_inside), e.truth->pixels_inside, e.truth->changed_outside,
-        e.truth->pixels_outside);
+        "\n| edit: views | PSNR inside | IoU | pixels inside | changed outside | pixels outside |\n"
+        "|---|---|---|---|---|---|\n| {} | {} dB | {:.3f} | {} | {} | {} |\n",
+        e.truth->views, decibels_text(e.truth->psnr_inside), e.truth->iou, e.truth->pixels_inside,
+        e.truth->changed_outside, e.truth->pixels_outside);
   if (e.rest)
     text += fmt::format(
         "\n| non-edited area: views | PSNR | SSIM |{} pixels |\n|---|---|---|{}---|\n| {} | {} dB | {:.4f} "
@@ -44,7 +42,50 @@ std::string edit_markdown(const EditScore& e) {
   return text;
 }
 
+double decibels_from(const Json& j) { return j.is_number() ? j.get<double>() : INFINITY; }
+
+std::optional<double> number_from(const Json& j, const char* key) {
+  return j.contains(key) ? std::optional(j.at(key).get<double>()) : std::nullopt;
+}
+
+EditScore edit_from(const Json& j) {
+  EditScore e;
+  if (j.contains("psnr_inside"))
+    e.truth = EditFidelity{decibels_from(j.at("psnr_inside")),   j.at("iou").get<double>(),
+                           j.at("pixels_inside").get<size_t>(),  j.at("changed_outside").get<size_t>(),
+                           j.at("pixels_outside").get<size_t>(), j.at("views").get<size_t>()};
+  if (j.contains("non_edited")) {
+    const Json& r = j.at("non_edited");
+    e.rest = RestScore{decibels_from(r.at("psnr")), r.at("ssim").get<double>(), number_from(r, "lpips"),
+                       r.at("pixels").get<size_t>(), r.at("views").get<size_t>()};
+  }
+  e.fid = number_from(j, "fid_before_after");
+  return e;
+}
+
+ViewScore view_from(const Json& j) {
+  ViewScore v{
+      j.at("view").get<std::string>(), decibels_from(j.at("psnr")), j.at("ssim").get<double>(), {}, {}};
+  if (!j.at("psnr_masked").is_null()) v.psnr_masked = decibels_from(j.at("psnr_masked"));
+  v.lpips = number_from(j, "lpips");
+  return v;
+}
+
 }  // namespace
+
+EvalReport eval_report_from_json(const Json& j) {
+  EvalReport r;
+  r.psnr = decibels_from(j.at("psnr"));
+  r.ssim = j.at("ssim").get<double>();
+  r.psnr_masked = decibels_from(j.at("psnr_masked"));
+  r.psnr_worst = decibels_from(j.at("psnr_worst"));
+  r.worst_view = j.at("worst_view").get<std::string>();
+  r.lpips = number_from(j, "lpips");
+  r.fid = number_from(j, "fid");
+  if (j.contains("edit")) r.edit = edit_from(j.at("edit"));
+  for (const Json& v : j.at("views")) r.views.push_back(view_from(v));
+  return r;
+}
 
 Json EvalReport::json() const {
   Json j = {{"psnr", decibels(psnr)},

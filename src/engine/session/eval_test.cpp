@@ -119,6 +119,8 @@ TEST_F(EvalTest, EditAgainstTruth) {
   ASSERT_TRUE(score.truth);
   EXPECT_TRUE(std::isinf(score.truth->psnr_inside));
   EXPECT_EQ(score.truth->pixels_inside, 3u * 16 * 16);
+  EXPECT_GT(score.truth->iou, 0.2);  // two views show most of 12 x 12, the third nothing
+  EXPECT_LT(score.truth->iou, 2.0 * 13 * 13 / (3 * 16 * 16));
   EXPECT_EQ(score.truth->pixels_outside, 3u * (kSize * kSize - 20 * 20));
   EXPECT_EQ(score.truth->views, 3u);
 
@@ -132,8 +134,27 @@ TEST_F(EvalTest, EditAgainstTruth) {
       changed += !std::equal(&before.data[3 * i], &before.data[3 * i] + 3, &after.data[3 * i]);
   }
   EXPECT_EQ(score.truth->changed_outside, changed);
+  EXPECT_EQ(score.truth->iou, 0);
   EXPECT_GT(changed, 100u);
   EXPECT_LT(score.rest->ssim, 0.99);
+}
+
+TEST_F(EvalTest, AReportIsReadAsItWasWrittenAndShowsItsPictures) {
+  EvalRequest request;
+  request.edit = paint();
+  request.pictures = temp_.path() / "pictures";
+  const EvalReport r = session_.evaluate(request, quiet_);
+  EXPECT_EQ(eval_report_from_json(Json::parse(r.json().dump())).json(), r.json());
+  render("after");
+  const Image three = read_image(temp_.path() / "pictures/r_1.png");
+  ASSERT_EQ(three.width, 3 * kSize);
+  const Image photo = picture("photos", 1), after = picture("after", 1);
+  constexpr float kRounding = 0.51f / 255;
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      EXPECT_NEAR(three.rgb(x, y).y, photo.rgb(x, y).y, kRounding);
+      EXPECT_NEAR(three.rgb(2 * kSize + x, y).y, after.rgb(x, y).y, kRounding);
+    }
 }
 
 TEST_F(EvalTest, LightIsEverywhereAndLeavesNoRest) {

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/session/frame_files.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/math/color.h"
 #include "engine/io/image_file.h"
+#include "engine/metrics/psnr.h"
 
 namespace cei3d {
 namespace {
@@ -60,6 +62,19 @@ int channel_bits(Channel c) { return c == Channel::normal || c == Channel::depth
 Image rounded_srgb(const Image& linear_rgba) {
   Image out = color_picture(linear_rgba);
   for (float& v : out.data) v = std::round(clamp(v, 0.0f, 1.0f) * 255) / 255;
+  return out;
+}
+
+Image side_by_side(const std::vector<Image>& pictures) {
+  int width = 0;
+  for (const Image& p : pictures) width += p.width;
+  Image out(width, pictures.empty() ? 0 : pictures[0].height, 3);
+  int left = 0;
+  for (const Image& p : pictures) {
+    const Image on_white = over_background(p, 1);
+    for (int y = 0; y < out.height; ++y) std::copy_n(on_white.at(0, y), 3 * on_white.width, out.at(left, y));
+    left += p.width;
+  }
   return out;
 }
 

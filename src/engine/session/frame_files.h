@@ -14,4 +14,7 @@ int channel_bits(Channel);  // 8 or 16
 // As the file will hold it: RGBA, sRGB, rounded to 8 bits.
 Image rounded_srgb(const Image& linear_rgba);
 
+// RGBA pictures of one height, sRGB, on white from left to right.
+Image side_by_side(const std::vector<Image>& pictures);
+
 }  // namespace cei3d

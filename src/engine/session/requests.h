@@ -252,6 +252,8 @@ struct EvalRequest {
   NetworkFiles networks;
   std::string edit;                    // also score this edit, an id of the log; empty: none
   std::filesystem::path truth, masks;  // with it: folders of pictures named like the views; both or none
+  // Folder of PNGs to write: photograph, render and, with an edit, edited render, side by side. Empty: none.
+  std::filesystem::path pictures;
 };
 struct ViewScore {
   std::string view;
@@ -262,6 +264,7 @@ struct ViewScore {
 // An edit against pictures of how it should look, where the masks say.
 struct EditFidelity {
   double psnr_inside = 0;
+  double iou = 0;  // of the pixels that the edit has for the greater part and those of the masks
   size_t pixels_inside = 0, changed_outside = 0, pixels_outside = 0, views = 0;
 };
 // Pixels of the object that are not the edit's: edited renders against photographs. Means over views.
@@ -285,5 +288,6 @@ struct EvalReport {
   Json json() const;
   std::string markdown() const;
 };
+EvalReport eval_report_from_json(const Json&);  // what json() wrote; throws Json::exception on anything else
 
 }  // namespace cei3d

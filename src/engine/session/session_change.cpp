@@ -6,7 +6,6 @@
 #include "engine/edit/change_report.h"
 #include "engine/io/capture.h"
 #include "engine/io/image_file.h"
-#include "engine/metrics/psnr.h"
 #include "engine/project/project.h"
 #include "engine/session/frame_files.h"
 #include "engine/session/session.h"
@@ -27,16 +26,6 @@ const View& view_to_show(const Project& project, const ChangeRequest& request) {
   return held_out == views.end() ? views.front() : *held_out;
 }
 
-Image side_by_side(const Image& left, const Image& right) {
-  const Image l = over_background(rounded_srgb(left), 1), r = over_background(rounded_srgb(right), 1);
-  Image out(l.width + r.width, l.height, 3);
-  for (int y = 0; y < l.height; ++y) {
-    std::copy(l.at(0, y), l.at(0, y) + 3 * l.width, out.at(0, y));
-    std::copy(r.at(0, y), r.at(0, y) + 3 * r.width, out.at(l.width, y));
-  }
-  return out;
-}
-
 }  // namespace
 
 ChangeSummary Session::show_change(const ChangeRequest& request) const {
@@ -49,7 +38,8 @@ ChangeSummary Session::show_change(const ChangeRequest& request) const {
     fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", request.id);
   const Camera camera = before.normalization.unit_from_input(view.camera);
   const ChangeReport r = compare_views(*device_, before, with_layer(before, *layer), camera, request.samples);
-  if (!request.picture.empty()) write_png(request.picture, side_by_side(r.before.rgb, r.after.rgb));
+  if (!request.picture.empty())
+    write_png(request.picture, side_by_side({rounded_srgb(r.before.rgb), rounded_srgb(r.after.rgb)}));
   return {view.name, r.pixels_inside, r.pixels_changed, r.changed_outside};
 }
 

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/compute/device.h"
 #include "engine/io/capture_images.h"
+#include "engine/io/image_file.h"
 #include "engine/metrics/psnr.h"
 #include "engine/metrics/ssim.h"
 #include "engine/project/project.h"
@@ -82,6 +83,12 @@ const EditLayer* layer_of(const Scene& scene, const std::string& edit) {
   fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", edit);
 }
 
+Image side_by_side(const EditPictures& p, bool edited) {
+  std::vector<Image> pictures{p.photo, p.before};
+  if (edited) pictures.push_back(p.after);
+  return side_by_side(pictures);
+}
+
 }  // namespace
 
 EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
@@ -112,6 +119,7 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
     p.photo = rounded_srgb(load_linear_rgba(views[i]));
     report.views.push_back(score_view(views[i], p.before, p.photo, perceptual, sets));
     if (edit) scorer.add(views[i], p, edited_area(scene, *edit, buffer, p));
+    if (!request.pictures.empty()) write_png(picture_like(request.pictures, views[i]), side_by_side(p, edit));
   }
   summarise(report);
   report.fid = perceptual.frechet(sets.rendered, sets.photos);

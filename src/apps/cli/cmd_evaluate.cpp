@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "apps/cli/command.h"
+#include "apps/cli/parse.h"
+#include "core/base/error.h"
+#include "engine/session/evaluation.h"
+
+namespace cei3d {
+namespace {
+
+struct Options {
+  std::string capture, out, time, trial_time, sections;
+  std::string view, part_view;
+  PaintStroke paint;
+  EditTruth part_truth;
+  std::vector<std::string> positive, negative;
+  std::string color = "#c04020";
+  std::string views = "100,50,25,12", downscales = "1,2,4,8";
+  EvaluationRequest request;
+};
+
+constexpr const char* kSections[] = {"paint", "part", "views", "sizes"};
+
+std::vector<int> counts(const std::string& text, const std::string& option) {
+  std::vector<int> out;
+  const size_t n = size_t(std::count(text.begin(), text.end(), ',')) + 1;
+  for (const double v : parse_numbers(text, n, option)) {
+    if (!(v >= 1 && v <= 100000) || v != double(int(v)))
+      fail_usage("{} '{}' should be whole numbers from 1 on.", option, text);
+    out.push_back(int(v));
+  }
+  return out;
+}
+
+std::vector<Vec2<double>> pixels(const std::vector<std::string>& texts, const std::string& option) {
+  std::vector<Vec2<double>> out;
+  for (const std::string& text : texts) {
+    const std::vector<double> v = parse_numbers(text, 2, option);
+    out.push_back({v[0], v[1]});
+  }
+  return out;
+}
+
+bool wanted(const Options& o, const std::string& section) {
+  return o.sections.empty() || ("," + o.sections + ",").find("," + section + ",") != std::string::npos;
+}
+
+void check_sections(const std::string& text) {
+  for (size_t begin = 0; begin < text.size();) {
+    const size_t end = std::min(text.find(',', begin), text.size());
+    const std::string word = text.substr(begin, end - begin);
+    if (std::find(std::begin(kSections), std::end(kSections), word) == std::end(kSections))
+      fail_usage("--only '{}': there is no section '{}'; there are paint, part, views, sizes.", text, word);
+    begin = end + 1;
+  }
+}
+
+void check_truth(const EditTruth& t, const char* which) {
+  if (t.pictures.empty() != t.masks.empty())
+    fail_usage("--{0}truth and --{0}mask belong together: how the edit should look, and where it should be.",
+               which);
+}
+
+std::optional<PaintStroke> paint_of(const Options& o) {
+  if (o.paint.view.empty() != o.paint.scribble.empty())
+    fail_usage("--view and --scribble belong together: what is painted, and on which view.");
+  if (!o.request.paint_truth.pictures.empty() && o.paint.view.empty())
+    fail_usage("--truth and --mask are of a scribble; give --view and --scribble.");
+  if (o.paint.view.empty()) return std::nullopt;
+  return o.paint;
+}
+
+std::optional<PartTrial> part_of(const Options& o) {
+  if (o.part_view.empty() != o.positive.empty())
+    fail_usage("--part-view and --positive belong together: where the part is clicked, and in which view.");
+  if (o.part_view.empty()) return std::nullopt;
+  PartTrial t;
+  t.command.view = o.part_view;
+  t.command.positive = pixels(o.positive, "--positive");
+  t.command.negative = pixels(o.negative, "--negative");
+  t.command.effects.color = o.color;
+  t.command.effects.replace = true;
+  t.truth = o.part_truth;
+  return t;
+}
+
+EvaluationRequest request_of(const Options& o) {
+  EvaluationRequest r = o.request;
+  check_sections(o.sections);
+  check_truth(r.paint_truth, "");
+  check_truth(o.part_truth, "part-");
+  r.capture = parse_capture_spec(o.capture).path;
+  r.out = o.out;
+  if (!o.time.empty()) r.options.seconds = parse_duration(o.time);
+  if (!o.trial_time.empty()) r.trial_seconds = parse_duration(o.trial_time);
+  r.paint = paint_of(o);
+  r.part = part_of(o);
+  if (!wanted(o, "part")) r.part.reset();
+  if (wanted(o, "views")) r.views = counts(o.views, "--views");
+  if (wanted(o, "sizes")) r.downscales = counts(o.downscales, "--downscales");
+  r.ablations = wanted(o, "paint");
+  return r;
+}
+
+void evaluate(const Options& o, Session& session, Console& console) {
+  const EvaluationReport report = evaluate_capture(session, request_of(o), console);
+  for (const auto* rows : {&report.views, &report.sizes})
+    for (const EvaluationRow& r : *rows)
+      if (!r.skipped.empty()) console.warn(fmt::format("Skipped {}: {}.", r.what, r.skipped));
+  console.answer(report.json(),
+                 report.markdown() + fmt::format("\nWritten to {}.\n",
+                                                 (std::filesystem::path(o.out) / "report.md").string()));
+}
+
+void add_object(CLI::App* verb, Options& o) {
+  ReconstructOptions& options = o.request.options;
+  options.test_every = 8;
+  verb->add_option("--project", o.request.project,
+                   "A finished project of this capture to evaluate (default: make one)")
+      ->check(CLI::ExistingDirectory);
+  verb->add_option("--preset", options.preset, "Of every reconstruction")
+      ->check(CLI::IsMember({"fast", "balanced", "paper"}))
+      ->capture_default_str();
+  CLI::Option* time = verb->add_option(
+      "--time", o.time, "Of making the object: seconds, or 90s, 10m, 1h30m (default: the preset's own)");
+  verb->add_option("--trial-time", o.trial_time,
+                   "Of making each object from fewer or smaller photographs (default: --time)");
+  verb->add_option("--iterations", options.iterations,
+                   "Length of every geometry stage in steps, in place of --time; 0: unset")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str()
+      ->excludes(time);
+  verb->add_option("--seed", options.seed, "Of everything random")->capture_default_str();
+  verb->add_option("--test-every", options.test_every,
+                   "Hold out every Nth view when the capture has no test split")
+      ->capture_default_str();
+  verb->add_option("--format", o.request.format, "Of the capture (default: told by the files)");
+  verb->add_option("--views", o.views,
+                   "Numbers of photographs to try; those that the capture does not have are skipped")
+      ->capture_default_str();
+  verb->add_option("--downscales", o.downscales, "Sizes of photographs to try: 1/N")->capture_default_str();
+}
+
+void add_edits(CLI::App* verb, Options& o) {
+  verb->add_option("--view", o.paint.view, "View of the scribble; without one no edit is scored");
+  verb->add_option("--scribble", o.paint.scribble, "RGBA PNG to paint, as in `edit paint`")
+      ->check(CLI::ExistingFile);
+  verb->add_option("--truth", o.request.paint_truth.pictures,
+                   "Folder of pictures of the painted object, named like the views")
+      ->check(CLI::ExistingDirectory);
+  verb->add_option("--mask", o.request.paint_truth.masks, "Folder of masks, bright where the paint should be")
+      ->check(CLI::ExistingDirectory);
+  verb->add_option("--part-view", o.part_view, "View of the clicks on a part");
+  verb->add_option("--positive", o.positive, "Clicks on the part, X,Y ...");
+  verb->add_option("--negative", o.negative, "Clicks beside it, X,Y ...");
+  verb->add_option("--part-color", o.color, "'#RRGGBB' that the part gets")->capture_default_str();
+  verb->add_option("--part-truth", o.part_truth.pictures, "Folder of pictures of the recoloured object")
+      ->check(CLI::ExistingDirectory);
+  verb->add_option("--part-mask", o.part_truth.masks, "Folder of masks of the part")
+      ->check(CLI::ExistingDirectory);
+}
+
+}  // namespace
+
+void add_evaluate(Commands& commands) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = commands.add("evaluate",
+                                "The paper's evaluation of a capture: novel views, a painted edit, the "
+                                "method without its parts, fewer and smaller "
+                                "photographs; a report with pictures. Can be interrupted and called again");
+  verb->add_option("capture", o->capture, "Folder of posed photographs, or its .json")->required();
+  verb->add_option("-o,--output", o->out, "Folder for the report and what it is made from")->required();
+  add_object(verb, *o);
+  add_edits(verb, *o);
+  verb->add_option("--only", o->sections, "Beside novel views only these sections: paint,part,views,sizes");
+  verb->add_option("--samples", o->request.samples, "Sub-pixel samples per axis")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+  add_networks(verb, o->request.networks);
+  commands.on(verb, o, evaluate);
+}
+
+}  // namespace cei3d
