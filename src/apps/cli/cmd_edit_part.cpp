@@ -12,19 +12,10 @@ struct Options {
   EditOutput output;
 };
 
-std::vector<Vec2<double>> pixels_of(const std::vector<std::string>& texts, const std::string& option) {
-  std::vector<Vec2<double>> pixels;
-  for (const std::string& text : texts) {
-    const std::vector<double> v = parse_numbers(text, 2, option);
-    pixels.push_back({v[0], v[1]});
-  }
-  return pixels;
-}
-
 PartCommand command_of(const Options& o) {
   PartCommand c = o.command;
-  c.positive = pixels_of(o.positive, "--positive");
-  c.negative = pixels_of(o.negative, "--negative");
+  c.positive = parse_pixels(o.positive, "--positive");
+  c.negative = parse_pixels(o.negative, "--negative");
   c.effects.replace = !c.effects.color.empty() && o.replace;
   return c;
 }

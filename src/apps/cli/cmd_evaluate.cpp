@@ -11,7 +11,7 @@ namespace {
 
 struct Options {
   std::string capture, out, time, trial_time, sections;
-  std::string view, part_view;
+  std::string part_view;
   PaintStroke paint;
   EditTruth part_truth;
   std::vector<std::string> positive, negative;
@@ -29,15 +29,6 @@ std::vector<int> counts(const std::string& text, const std::string& option) {
     if (!(v >= 1 && v <= 100000) || v != double(int(v)))
       fail_usage("{} '{}' should be whole numbers from 1 on.", option, text);
     out.push_back(int(v));
-  }
-  return out;
-}
-
-std::vector<Vec2<double>> pixels(const std::vector<std::string>& texts, const std::string& option) {
-  std::vector<Vec2<double>> out;
-  for (const std::string& text : texts) {
-    const std::vector<double> v = parse_numbers(text, 2, option);
-    out.push_back({v[0], v[1]});
   }
   return out;
 }
@@ -77,8 +68,8 @@ std::optional<PartTrial> part_of(const Options& o) {
   if (o.part_view.empty()) return std::nullopt;
   PartTrial t;
   t.command.view = o.part_view;
-  t.command.positive = pixels(o.positive, "--positive");
-  t.command.negative = pixels(o.negative, "--negative");
+  t.command.positive = parse_pixels(o.positive, "--positive");
+  t.command.negative = parse_pixels(o.negative, "--negative");
   t.command.effects.color = o.color;
   t.command.effects.replace = true;
   t.truth = o.part_truth;

@@ -98,6 +98,15 @@ std::vector<double> parse_numbers(const std::string& text, size_t count, const s
   return numbers;
 }
 
+std::vector<Vec2<double>> parse_pixels(const std::vector<std::string>& texts, const std::string& option) {
+  std::vector<Vec2<double>> pixels;
+  for (const std::string& text : texts) {
+    const std::vector<double> v = parse_numbers(text, 2, option);
+    pixels.push_back({v[0], v[1]});
+  }
+  return pixels;
+}
+
 CameraChoice parse_cameras(const std::string& text) {
   if (text.ends_with(".json") && is_camera_file(text)) return CameraFile{text};
   const CaptureSpec spec = parse_capture_spec(text);

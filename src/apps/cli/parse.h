@@ -19,6 +19,8 @@ std::vector<Channel> parse_channels(const std::string& text);  // "rgb,normal"
 EnvConvention parse_env_convention(const std::string& text);
 // "1.5,-2,0": finite numbers, as many as asked for. option: for the error.
 std::vector<double> parse_numbers(const std::string& text, size_t count, const std::string& option);
+// "120.5,88" each: (column, row).
+std::vector<Vec2<double>> parse_pixels(const std::vector<std::string>& texts, const std::string& option);
 // "FILE.json" that lists cameras of ours, else a capture with or without ":split".
 CameraChoice parse_cameras(const std::string& text);
 

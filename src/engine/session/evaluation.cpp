@@ -7,6 +7,7 @@
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "engine/session/evaluation_objects.h"
+#include "engine/session/stopwatch.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -15,14 +16,17 @@ namespace {
 constexpr const char* kInterrupted =
     "The evaluation was interrupted; what is finished is kept, and the same command goes on.";
 
-// What happens within a row, under the row's name.
+// What happens within a row, under the row's name and by the row's clock.
 class RowProgress : public Progress {
  public:
   RowProgress(Progress& whole, std::string name) : whole_(whole), name_(std::move(name)) {
     whole_.report({name_, 0, -1, ""});
   }
   void report(const ProgressReport& r) override {
-    whole_.report({name_, r.fraction, r.seconds_left, r.stage + (r.message.empty() ? "" : ", " + r.message)});
+    elapsed_ += watch_.lap();
+    double left = r.seconds_left;
+    if (left < 0 && r.fraction > 0) left = elapsed_ * (1 - r.fraction) / r.fraction;
+    whole_.report({name_, r.fraction, left, r.stage + (r.message.empty() ? "" : ", " + r.message)});
   }
   void log(const std::string& line) override { whole_.log(line); }
   bool cancelled() const override { return whole_.cancelled(); }
@@ -30,6 +34,8 @@ class RowProgress : public Progress {
  private:
   Progress& whole_;
   std::string name_;
+  Stopwatch watch_;
+  double elapsed_ = 0;  // seconds
 };
 
 double total_seconds(const EditSummary& s) {
