@@ -246,6 +246,28 @@ HD float sum_lanes(Lanes<16> a) {
 }
 #endif
 
+// p[k] += sum_lanes(a[k]), the same bits, for four at once.
+HD void add_sums4(float* p, __m128 a, __m128 b, __m128 c, __m128 d) {
+  const __m128 ab = _mm_add_ps(_mm_unpacklo_ps(a, b), _mm_unpackhi_ps(a, b)),
+               cd = _mm_add_ps(_mm_unpacklo_ps(c, d), _mm_unpackhi_ps(c, d));
+  _mm_storeu_ps(p, _mm_add_ps(_mm_loadu_ps(p), _mm_add_ps(_mm_movelh_ps(ab, cd), _mm_movehl_ps(cd, ab))));
+}
+HD __m128 sum_halves(Lanes<8> a) {
+  const __m256 v = __m256(a.v);
+  return _mm_add_ps(_mm256_castps256_ps128(v), _mm256_extractf128_ps(v, 1));
+}
+#ifdef __AVX512F__
+HD __m128 sum_halves(Lanes<16> a) {
+  const __m512 v = __m512(a.v);
+  return sum_halves(
+      Lanes<8>(Reg<8>::f(_mm256_add_ps(_mm512_castps512_ps256(v), _mm512_extractf32x8_ps(v, 1)))));
+}
+#endif
+template <int W>
+HD void add_sums4(float* p, const Lanes<W> a[4]) {
+  add_sums4(p, sum_halves(a[0]), sum_halves(a[1]), sum_halves(a[2]), sum_halves(a[3]));
+}
+
 template <class L>
 struct LanesMemory {
   using F = typename L::F;

@@ -10,6 +10,9 @@
 namespace cei3d {
 #if CEI3D_WIDTH == 1
 HD float sum_lanes(float a) { return a; }
+HD void add_sums4(float* p, const float a[4]) {
+  for (int k = 0; k < 4; ++k) p[k] += a[k];
+}
 #endif
 }  // namespace cei3d
 #include "core/compute/cpu/linear.h"
