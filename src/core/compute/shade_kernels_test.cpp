@@ -60,6 +60,13 @@ struct LobeScene {
     d.launch<SgShadeGrad>(a, kLobes);
     return out;
   }
+  std::vector<float> mirror_gradient(const Device& d) const {
+    std::vector<float> out(3 * kPoints);
+    SgReflectionSlope::Args a{planes(), {}, {}, kPoints, mirrors.data(), y2.data(), out.data()};
+    set_reflection_lobe(0.4f, a);
+    d.launch<SgReflectionSlope>(a, kPoints);
+    return out;
+  }
   double loss(const Device& d) const {
     const auto e = irradiance(d), p = reflection(d);
     double sum = 0;
@@ -84,6 +91,7 @@ TEST(ShadeKernels, EveryDeviceAgreesWithTheScalarOne) {
       {"irradiance", [](const Device& d) { return LobeScene().irradiance(d); }},
       {"reflection", [](const Device& d) { return LobeScene().reflection(d); }},
       {"gradient", [](const Device& d) { return LobeScene().gradient(d); }},
+      {"gradient of mirrors", [](const Device& d) { return LobeScene().mirror_gradient(d); }},
       {"fit residual", [](const Device& d) { return fit_case(d, false); }},
       {"fit gather", [](const Device& d) { return fit_case(d, true); }},
   };
@@ -144,6 +152,26 @@ TEST(ShadeKernels, AdjointOfAnAxisEqualsDifferencesAlongTheSphere) {
     };
     const double slope = (loss_at(0.005f) - loss_at(-0.005f)) / 0.01;
     EXPECT_NEAR(dot(axis(g, k), t), slope, 0.02 * std::abs(slope) + 0.02) << k;
+  }
+}
+
+TEST(ShadeKernels, AdjointOfAMirrorDirectionEqualsDifferencesAlongTheSphere) {
+  const Device device = make_device("cpu/scalar");
+  const LobeScene s;
+  const std::vector<float> g = s.mirror_gradient(device);
+  const auto at = [](const std::vector<float>& p, int i) {
+    return Vec3f{p[i], p[kPoints + i], p[2 * kPoints + i]};
+  };
+  for (const int i : {0, 5, 40, 63}) {
+    const Vec3f r = at(s.mirrors, i), t = normalize(cross(r, Vec3f{0.3f, 0.5f, 0.8f}));
+    const auto loss_at = [&](float h) {
+      LobeScene moved = s;
+      const Vec3f b = normalize(r + t * h);
+      for (int c = 0; c < 3; ++c) moved.mirrors[size_t(c) * kPoints + i] = b[c];
+      return moved.loss(device);
+    };
+    const double slope = (loss_at(0.005f) - loss_at(-0.005f)) / 0.01;
+    EXPECT_NEAR(dot(at(g, i), t), slope, 0.02 * std::abs(slope) + 0.005) << i;
   }
 }
 

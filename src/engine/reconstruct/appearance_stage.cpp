@@ -7,9 +7,8 @@
 
 #include "core/base/error.h"
 #include "core/math/brdf.h"
-#include "core/math/color.h"
-#include "core/math/loss.h"
 #include "core/math/rng.h"
+#include "engine/reconstruct/display_loss.h"
 #include "engine/reconstruct/light_descent.h"
 #include "engine/render/lighting.h"
 #include "model/light/fit.h"
@@ -42,9 +41,6 @@ LinearSplitOptions split_options(const AppearanceOptions& o) {
 int joint_steps_for(const Material& m, bool brief) {
   return m.metalness > 0 ? (brief ? 120 : 400) : (brief ? 30 : 100);
 }
-
-// Slope of the sRGB curve at a linear value, bounded where it is steep.
-float srgb_slope(float linear) { return 1.055f / 2.4f * std::pow(std::max(linear, 0.004f), 1 / 2.4f - 1); }
 
 std::vector<Vec3f> colors_at(const Device& device, const Field& field, std::span<const Vec3f> x) {
   std::vector<float> values(3 * x.size());
@@ -127,8 +123,7 @@ class Descent {
     Vec3f g{0, 0, 0};
     for (int c = 0; c < 3; ++c) {
       const float gain = t.diffuse_gain[c] + t.specular_gain[c], got = t.specular_floor[c] + a[c] * gain;
-      const float e = srgb_from_linear(std::max(got, 0.0f)) - srgb_from_linear(s.colors[sample][c]);
-      if (!clipped) g[c] = huber(e, 0.05f).gradient * srgb_slope(got) / float(kBatch);
+      if (!clipped) g[c] = display_loss_slope(got, s.colors[sample][c]) / float(kBatch);
       d_a[c] = g[c] * gain;
     }
     return g;

@@ -24,6 +24,7 @@ constexpr int kRefreshEvery = 25, kFullRefreshEvery = 400;  // steps between loo
 constexpr float kRefreshMargin = 0.15f;
 constexpr int kStartCells = 128;       // an axis, of the start shape
 constexpr float kAnchorWidth = 0.02f;  // of its loss
+const Vec3f kWhite{1, 1, 1};
 
 }  // namespace
 
@@ -35,6 +36,7 @@ struct GeometryStage::RayBatch {
   int count = 0;
   std::vector<Ray> rays;
   std::vector<Target> targets;
+  std::vector<Vec3f> backgrounds;  // display-encoded; what a ray shows where it meets nothing
 };
 
 struct GeometryStage::Work {
@@ -121,10 +123,12 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   return s;
 }
 
-void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first, RayBatch& batch) const {
+void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first, bool training,
+                                RayBatch& batch) const {
   batch.count = kRays;
   batch.rays.resize(kRays);
   batch.targets.resize(kRays);
+  batch.backgrounds.assign(kRays, kWhite);
   for (int r = 0; r < kRays; ++r) {
     Rng rng(seed_, uint64_t(step), uint64_t(first + r));
     const Pixel& p = store.pixels()[rng.below(uint32_t(store.pixels().size()))];
@@ -132,6 +136,12 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
     const float u = rng.uniform() + rng.uniform() - 0.5f, v = rng.uniform() + rng.uniform() - 0.5f;
     batch.rays[r] = store.cameras()[p.view].ray(p.x + u, p.y + v);
     batch.targets[r] = target_of(p);
+    if (!training) continue;
+    // Each ray before a colour of its own: only matter that covers it looks right before all of them. A loss on
+    // the coverage itself would never rest (it is always a little below one) and blows hollows up.
+    const Vec3f background{rng.uniform(), rng.uniform(), rng.uniform()};
+    batch.backgrounds[r] = background;
+    batch.targets[r].srgb += (background - kWhite) * (1 - batch.targets[r].alpha);
   }
 }
 
@@ -220,7 +230,7 @@ void GeometryStage::composite(const Schedule& s, const RayBatch& batch, Work& w)
   w.alpha.resize(kept);
   w.weight.resize(kept);
   w.transmittance.resize(kept);
-  w.pixel.assign(batch.count, {1, 1, 1});
+  w.pixel = batch.backgrounds;
   w.coverage.assign(batch.count, 0);
   for (int r = 0; r < batch.count; ++r) {
     float transmittance = 1;
@@ -232,7 +242,7 @@ void GeometryStage::composite(const Schedule& s, const RayBatch& batch, Work& w)
       w.weight[i] = transmittance * w.alpha[i].alpha;
       transmittance *= 1 - w.alpha[i].alpha;
       for (int c = 0; c < 3; ++c)
-        w.pixel[r][c] += w.weight[i] * (w.color.output()[panel_at(i, 1, 0, 3, c)] - 1);
+        w.pixel[r][c] += w.weight[i] * (w.color.output()[panel_at(i, 1, 0, 3, c)] - batch.backgrounds[r][c]);
       w.coverage[r] += w.weight[i];
     }
   }
@@ -265,16 +275,14 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
       stats.color += l.value;
       stats.squared_error += e * e / 3;
     }
-    const float miss = w.coverage[r] - batch.targets[r].alpha;
-    const float d_coverage = options_.mask_weight * per_ray * (miss > 0 ? 1.0f : -1.0f);
-    stats.mask += std::abs(miss);
+    stats.mask += std::abs(w.coverage[r] - batch.targets[r].alpha);
     const float push = batch.targets[r].alpha == 0 ? options_.empty_weight * s.sharpness * per_ray : 0;
     float behind = 0;  // sum of weight x d_weight over the samples behind
     for (int i = w.first_kept[r + 1] - 1; i >= w.first_kept[r]; --i) {
-      float d_weight = d_coverage;
+      float d_weight = 0;
       for (int c = 0; c < 3; ++c) {
         const float color = w.color.output()[panel_at(i, 1, 0, 3, c)];
-        d_weight += d_pixel[c] * (color - 1);
+        d_weight += d_pixel[c] * (color - batch.backgrounds[r][c]);
         d_color[panel_at(i, 1, 0, 3, c)] = d_pixel[c] * w.weight[i];
       }
       const float d_alpha = w.transmittance[i] * d_weight - behind / std::max(1 - w.alpha[i].alpha, 1e-4f);
@@ -321,7 +329,20 @@ void add(GeometryStats& a, const GeometryStats& b) {
 }
 }  // namespace
 
-GeometryStats GeometryStage::step(int64_t step, double u) {
+void GeometryStage::add_slopes(const Schedule& s, const ValueSlopes& more, int first, Work& w,
+                               ChunkGradients& g) const {
+  const int n = std::min(kBlock, int(more.points.size()) - first), padded = (n + kPanel - 1) / kPanel * kPanel;
+  const int rows = options_.sdf.outputs;
+  g.reset(options_.sdf, sdf_weights_->gradient_size(), padded, 1);
+  points_to_panels(&more.points[first], n, g.points.data());
+  w.value.forward(device_, sdf_, *sdf_weights_, g.points.data(), padded, s.levels, rows);
+  float* d_value = w.value.d_output();
+  std::fill(d_value, d_value + size_t(padded) * rows, 0.0f);
+  for (int i = 0; i < n; ++i) d_value[panel_at(i, 1, 0, rows, 0)] = more.slopes[first + i];
+  w.value.backward(device_, *sdf_weights_, padded, s.levels, g.network.data(), g.d_encoding.data());
+}
+
+GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& more) {
   const Schedule s = schedule_at(u);
   if (step % kRefreshEvery == 0)
     StepTimes::process(times_, StepPart::occupancy, [&] {
@@ -330,10 +351,16 @@ GeometryStats GeometryStage::step(int64_t step, double u) {
   sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
   radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
   const int chunks = options_.rays / kRays;
+  const int more_chunks = (int(more.points.size()) + kBlock - 1) / kBlock;
+  sdf_gradients_.resize(chunks + more_chunks);
   std::vector<GeometryStats> stats(chunks);
-  parallel_for(chunks, [&](int c) {
+  parallel_for(chunks + more_chunks, [&](int c) {
+    if (c >= chunks) {
+      work_.with([&](Work& w) { add_slopes(s, more, (c - chunks) * kBlock, w, sdf_gradients_[c]); });
+      return;
+    }
     RayBatch batch;
-    sample_rays(pixels_, step, c * kRays, batch);
+    sample_rays(pixels_, step, c * kRays, true, batch);
     work_.with([&](Work& w) {
       StepTimes::thread(times_, StepPart::march,
                         [&] { gather_samples(s, batch, w, uint64_t(step) * 4096 + uint64_t(c), true); });
@@ -367,7 +394,7 @@ GeometryStats GeometryStage::evaluate(const PixelStore& held_out, int rays, doub
   std::vector<GeometryStats> stats(chunks);
   parallel_for(chunks, [&](int c) {
     RayBatch batch;
-    sample_rays(held_out, -1, c * kRays, batch);
+    sample_rays(held_out, -1, c * kRays, false, batch);
     work_.with([&](Work& w) {
       gather_samples(s, batch, w, 0, false);
       forward(s, batch, w);
@@ -397,6 +424,7 @@ Image GeometryStage::render_radiance(const Camera& camera, int samples) {
         batch.rays.push_back(camera.ray(i % camera.width + (k % samples + 0.5) / samples,
                                         i / camera.width + (k / samples + 0.5) / samples));
     batch.count = int(batch.rays.size());
+    batch.backgrounds.assign(batch.count, kWhite);
     work_.with([&](Work& w) {
       gather_samples(s, batch, w, 0, false);
       forward(s, batch, w);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "core/base/pool.h"
 #include "engine/reconstruct/occupancy.h"
@@ -29,7 +30,7 @@ struct GeometryOptions {
   int first_levels = 5;
   float step_min = 0.004f, step_max = 0.02f;  // along rays, unit-sphere units; in between: 1 / sharpness
   float keep_weight = 0.003f;                 // samples below it get no jet and no radiance
-  float huber_width = 0.05f, mask_weight = 0.5f, eikonal_weight = 0.3f;
+  float huber_width = 0.05f, eikonal_weight = 0.3f;
   float empty_weight = 0.1f;  // of empty_push(), times the sharpness
   float view_from = 0.25f;    // until here colours do not depend on the view: what moves with it must be the surface
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
@@ -40,10 +41,16 @@ struct GeometryOptions {
 };
 
 struct GeometryStats {
-  double color = 0, mask = 0, eikonal = 0;  // losses, a ray
+  double color = 0, mask = 0, eikonal = 0;  // losses, a ray; the mask's is only looked at
   double squared_error = 0;                 // a ray and channel, display space
   int64_t kept = 0, candidates = 0, rays = 0;
   double psnr() const;
+};
+
+// A loss that somebody else has for the field's values at points of his own: they, and its slopes there.
+struct ValueSlopes {
+  std::span<const Vec3f> points;
+  std::span<const float> slopes;  // #points
 };
 
 class GeometryStage {
@@ -58,7 +65,7 @@ class GeometryStage {
   enum class Start { hull, carved };
   void prefit(Start);
   // One training step at schedule position u in [0, 1).
-  GeometryStats step(int64_t step, double u);
+  GeometryStats step(int64_t step, double u, const ValueSlopes& more = {});
   // Loss statistics of random pixels of another store (held-out views), no training.
   GeometryStats evaluate(const PixelStore& held_out, int rays, double u);
   // The whole view by the radiance field, over white, display-encoded RGB. samples: a pixel and axis.
@@ -80,11 +87,12 @@ class GeometryStage {
     float anchor;  // weight of the start shape
   };
   Schedule schedule_at(double u) const;
-  void sample_rays(const PixelStore&, int64_t step, int first, RayBatch&) const;
+  void sample_rays(const PixelStore&, int64_t step, int first, bool training, RayBatch&) const;
   void gather_samples(const Schedule&, const RayBatch&, Work&, uint64_t jitter_key, bool training) const;
   void forward(const Schedule&, const RayBatch&, Work&) const;
   void backward(const Schedule&, const RayBatch&, Work&, ChunkGradients& sdf, std::vector<float>& radiance,
                 GeometryStats&) const;
+  void add_slopes(const Schedule&, const ValueSlopes&, int first, Work&, ChunkGradients&) const;
   void composite(const Schedule&, const RayBatch&, Work&) const;
 
   const Device& device_;

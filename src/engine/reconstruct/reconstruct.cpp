@@ -11,6 +11,7 @@
 #include "engine/reconstruct/appearance_stage.h"
 #include "engine/reconstruct/geometry_stage.h"
 #include "engine/reconstruct/presets.h"
+#include "engine/reconstruct/surface_polish.h"
 #include "engine/render/render.h"
 #include "model/geometry/surface_nets.h"
 
@@ -22,8 +23,9 @@ constexpr int kRim = 6;  // pixels around the object that are trained on
 constexpr double kCheckpointSeconds = 30;
 constexpr double kLongRun = 120;  // seconds of training from which two starts are tried,
 constexpr int kLongRunSteps = 4000;  // or steps
-constexpr double kGeometryShare = 0.72;  // of the time that is asked for
-constexpr double kMostAppearance = 90;   // seconds: more brings nothing
+constexpr double kMostAppearance = 20;   // seconds: more brings nothing
+constexpr double kMostPolish = 60;       // seconds a round: likewise
+constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;  // a round, at most
 constexpr size_t kMostHits = 600000;     // training pixels of the appearance stage
 
 double now() {
@@ -217,6 +219,71 @@ ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& su
   return out;
 }
 
+// How the time that is asked for is spent. Seconds; 0: no limit, the steps count.
+struct Plan {
+  double geometry = 0, polish = 0, appearance = 0;  // polish: a round
+  int iterations = 0;                               // of the geometry stage
+  int rounds = 0, polish_steps = 0;
+};
+
+Plan plan_of(const ReconstructOptions& options, const Preset& preset) {
+  Plan p;
+  p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
+  const double t = options.seconds;
+  if (t <= 0 || options.iterations > 0) {
+    p.appearance = t > 0 ? std::min(kMostAppearance, 0.2 * t) : 0;
+    p.rounds = p.iterations >= 1000 ? 2 : 0;
+    p.polish_steps = kPolishStepsUntimed;
+    return p;
+  }
+  constexpr double kBetweenRounds = 7;  // seconds for a mesh, its hits and a brief look at light and material
+  p.rounds = t >= 180 ? 2 : t >= 45 ? 1 : 0;
+  p.polish_steps = kPolishSteps;
+  p.polish = std::min(kMostPolish, 0.1 * t);
+  p.appearance = std::min(kMostAppearance, 0.2 * t);
+  const double rest = t - p.appearance - p.rounds * (p.polish + kBetweenRounds) - std::max(8.0, 0.06 * t);
+  p.geometry = std::max(0.45 * t, rest);
+  return p;
+}
+
+// The surface of a field and where the training pictures show it.
+struct Standing {
+  std::shared_ptr<const Surface> surface;
+  ObjectHits hits;
+  AppearanceInput input() const { return {*surface, {hits.hits, hits.colors, hits.saturated}}; }
+};
+
+Standing stand(const Device& device, const Field& sdf, const Preset& preset, const PixelStore& pixels) {
+  Standing s;
+  s.surface = std::make_shared<const Surface>(extract_mesh(device, sdf, preset.meshing));
+  s.hits = object_hits(device, sdf, *s.surface, pixels);
+  if (s.hits.hits.empty()) fail("the reconstructed surface is not where the pictures show the object");
+  return s;
+}
+
+// Light and material for the surface as it stands, the surface for them, and again.
+void polish(const Device& device, GeometryStage& stage, const Preset& preset, const Plan& plan,
+            const PixelStore& pixels, uint64_t seed, Progress& progress) {
+  constexpr double kBrief = 5;  // seconds of the appearance stage: half its effort
+  for (int round = 0; round < plan.rounds; ++round) {
+    progress.report({"surface by its reflections", 0.72, -1, ""});
+    const Standing now = stand(device, stage.sdf(), preset, pixels);
+    AppearanceOptions brief;
+    brief.seconds = kBrief;
+    brief.seed = seed;
+    brief.albedo = preset.albedo;
+    const AppearanceResult look = fit_appearance(device, now.input(), brief, progress);
+    PolishOptions options;
+    options.steps = plan.polish_steps;
+    options.seconds = plan.polish;
+    options.seed = seed + uint64_t(round);
+    options.first_step = (int64_t(round) + 1) << 24;
+    polish_surface(device, stage, now.input(), look, options, progress);
+    if (progress.cancelled())
+      throw Error(ErrorCode::interrupted, "interrupted; the state is saved", "go on with --resume");
+  }
+}
+
 }  // namespace
 
 Scene reconstruct(const Device& device, const Capture& capture, const ImageSource& images,
@@ -227,44 +294,35 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   if (views.train.pixels().empty()) fail("no training picture shows the object: every mask is empty");
   fit_to_footprint(preset, views.footprint);
 
-  const double appearance_seconds =
-      options.seconds > 0 ? std::min(kMostAppearance, 0.2 * options.seconds) : 0;
-  const double geometry_seconds =
-      options.seconds > 0 && options.iterations == 0
-          ? std::max(kGeometryShare * options.seconds,
-                     options.seconds - appearance_seconds - std::max(8.0, 0.06 * options.seconds))
-          : 0;
-  const int iterations = options.iterations > 0 ? options.iterations : preset.iterations;
-
+  const Plan plan = plan_of(options, preset);
   Scene scene;
   scene.normalization = normalization;
   scene.up = capture.up;
   {
     const double begin = now();
-    const bool long_run = geometry_seconds > 0 ? geometry_seconds >= kLongRun : iterations >= kLongRunSteps;
+    const bool long_run = plan.geometry > 0 ? plan.geometry >= kLongRun : plan.iterations >= kLongRunSteps;
     const auto start = long_run && !checkpoints.latest()
                            ? choose_start(device, views.train, preset.geometry, options.seed, progress)
                            : GeometryStage::Start::hull;
-    const double seconds = geometry_seconds > 0 ? std::max(geometry_seconds - (now() - begin), 1.0) : 0;
+    const double seconds = plan.geometry > 0 ? std::max(plan.geometry - (now() - begin), 1.0) : 0;
     GeometryStage stage(device, views.train, preset.geometry, options.seed);
-    train_geometry(stage, start, views, Schedule(seconds, iterations), checkpoints, progress);
+    train_geometry(stage, start, views, Schedule(seconds, plan.iterations), checkpoints, progress);
     report_radiance(stage, capture, images, normalization, progress);
+    polish(device, stage, preset, plan, views.train, options.seed, progress);
     scene.sdf = std::make_shared<const Field>(stage.sdf());
   }
   progress.report({"surface", 0.74, -1, ""});
-  scene.surface = std::make_shared<const Surface>(extract_mesh(device, *scene.sdf, preset.meshing));
-  const ObjectHits hits = object_hits(device, *scene.sdf, *scene.surface, views.train);
-  if (hits.hits.empty()) fail("the reconstructed surface is not where the pictures show the object");
+  const Standing standing = stand(device, *scene.sdf, preset, views.train);
+  scene.surface = standing.surface;
   progress.report({"handler points", 0.78, -1, ""});
   scene.handlers = std::make_shared<const HandlerPoints>(
-      thin_hits(hits.hits, hits.footprints, 1.5f * float(views.footprint)));
+      thin_hits(standing.hits.hits, standing.hits.footprints, 1.5f * float(views.footprint)));
 
   AppearanceOptions appearance;
-  appearance.seconds = appearance_seconds;
+  appearance.seconds = plan.appearance;
   appearance.seed = options.seed;
   appearance.albedo = preset.albedo;
-  AppearanceResult result = fit_appearance(device, {*scene.surface, {hits.hits, hits.colors, hits.saturated}},
-                                           appearance, progress);
+  AppearanceResult result = fit_appearance(device, standing.input(), appearance, progress);
   scene.light = std::move(result.light);
   scene.material = result.material;
   scene.albedo = std::move(result.albedo);

@@ -34,6 +34,10 @@ std::vector<Vec3f> lobe_directions(float roughness) {
   return d;
 }
 
+Vec3f mirror_direction(const Hit& h) {
+  return normalize(h.normal * (2 * dot(h.normal, h.to_camera)) - h.to_camera);
+}
+
 Vec3f turned(Vec3f z, Vec3f d) {  // d in a frame whose third axis is z
   const float s = z.z < 0 ? -1.0f : 1.0f, a = -1 / (s + z.z), b = z.x * z.y * a;  // [Duff et al. 2017]
   const Vec3f x{1 + s * z.x * z.x * a, s * b, -s * z.x}, y{b, s + z.y * z.y * a, -z.y};
@@ -120,7 +124,7 @@ HitLight Lighting::light_at(std::span<const Hit> hits, float any_roughness) cons
     Block b;
     for (int i = begin; i < end; ++i) {
       const Hit& h = hits[i];
-      const Vec3f r = normalize(h.normal * (2 * dot(h.normal, h.to_camera)) - h.to_camera);
+      const Vec3f r = mirror_direction(h);
       const Vec3f soft = normalize(at_corners(mesh.normals, mesh.triangles[h.triangle], h.b1, h.b2));
       for (int c = 0; c < 3; ++c) {
         b.normals[size_t(c) * kBlock + i - begin] = soft[c];
@@ -162,6 +166,54 @@ HitLight Lighting::light_at(std::span<const Hit> hits, float any_roughness) cons
       out.env[i] = env_brdf_at(env_table, dot(h.normal, h.to_camera));
     }
   });
+  return out;
+}
+
+// Adjoint of the free sky's reflection: dL/d(mirror direction) from dL/d(radiance along it).
+std::vector<Vec3f> Lighting::mirror_slopes(std::span<const Hit> hits, std::span<const Vec3f> d_reflected) const {
+  std::vector<Vec3f> out(hits.size());
+  parallel_ranges(int(hits.size()), kBlock, [&](int begin, int end) {
+    std::vector<float> mirrors(size_t(3) * kBlock), up(mirrors.size()), down(mirrors.size());
+    for (int i = begin; i < end; ++i) {
+      const Vec3f r = mirror_direction(hits[i]);
+      for (int c = 0; c < 3; ++c) {
+        mirrors[size_t(c) * kBlock + i - begin] = r[c];
+        up[size_t(c) * kBlock + i - begin] = d_reflected[i][c];
+      }
+    }
+    SgReflectionSlope::Args a{{lobe_planes_.data(), n_lobes_, padded_}, {},        {},
+                              kBlock, mirrors.data(), up.data(), down.data()};
+    set_reflection_lobe(max(material_.roughness, kLeastRoughness), a);
+    device_.launch<SgReflectionSlope>(a, (end - begin + kPanel - 1) / kPanel * kPanel);
+    for (int i = begin; i < end; ++i)
+      out[i] = {down[i - begin], down[kBlock + i - begin], down[2 * kBlock + i - begin]};
+  });
+  return out;
+}
+
+std::vector<Vec3f> Lighting::normal_slopes(std::span<const Hit> hits, const HitLight& light,
+                                           std::span<const Vec3f> albedo,
+                                           std::span<const Vec3f> d_radiance) const {
+  constexpr float kStep = 0.01f;  // of the tabulated reflectance
+  const float dielectric = (1 - material_.metalness) * kDielectricF0 * material_.specular;
+  std::vector<Vec3f> d_reflected(hits.size()), out(hits.size());
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const float nv = dot(hits[i].normal, hits[i].to_camera);
+    const Vec2f above = env_brdf_at(env_table_, nv + kStep), below = env_brdf_at(env_table_, nv - kStep);
+    float d_nv = 0;
+    for (int c = 0; c < 3; ++c) {
+      const float f0 = material_.metalness * albedo[i][c] + dielectric;
+      d_reflected[i][c] = d_radiance[i][c] * (f0 * light.env[i].x + light.env[i].y) * light.open_mirror[i];
+      d_nv += d_radiance[i][c] * light.reflected[i][c] * (f0 * (above.x - below.x) + above.y - below.y) / (2 * kStep);
+    }
+    out[i] = hits[i].to_camera * d_nv;
+  }
+  const std::vector<Vec3f> d_mirror = mirror_slopes(hits, d_reflected);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const Vec3f &n = hits[i].normal, &v = hits[i].to_camera, &d = d_mirror[i];
+    out[i] += (v * dot(d, n) + d * dot(n, v)) * 2.0f;
+    out[i] = out[i] - n * dot(out[i], n);
+  }
   return out;
 }
 

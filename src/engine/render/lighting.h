@@ -49,6 +49,11 @@ class Lighting {
   Shading shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const;
   HitLight light_at(std::span<const Hit> hits, float roughness) const;
   HitLight light_at(std::span<const Hit> hits) const { return light_at(hits, material_.roughness); }
+  // dL/d(normal) of each hit, tangent to the sphere, from dL/d(radiance that it sends out), for the object's own
+  // material: through the mirror direction and the reflectance. Irradiance is taken at the mesh's normals and
+  // does not enter; nor does what blocks the reflection. light: light_at(hits); albedo: #hits base colour.
+  std::vector<Vec3f> normal_slopes(std::span<const Hit> hits, const HitLight& light, std::span<const Vec3f> albedo,
+                                   std::span<const Vec3f> d_radiance) const;
   // Another light close to the first: bounce and openness stay. For descent on the light.
   void set_lobes(const SgMixture&);
 
@@ -57,6 +62,7 @@ class Lighting {
   struct Group;
   void shade_group(const Group&, std::span<const Vec3f> albedo, const Material&, Shading& out) const;
   Vec3f leaving(const Surface::RayHit&) const;
+  std::vector<Vec3f> mirror_slopes(std::span<const Hit> hits, std::span<const Vec3f> d_reflected) const;
 
   const Device& device_;
   const Surface& surface_;

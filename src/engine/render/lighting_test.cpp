@@ -190,5 +190,40 @@ TEST(Transport, AWhiteCavityGlows) {
   }
 }
 
+// A convex body, so that nothing blocks a reflection.
+TEST(Lighting, NormalSlopesEqualDifferencesOfTheShading) {
+  Mesh mesh;
+  add_sphere(mesh, {0, 0, 0}, 0.7f);
+  const Surface surface(mesh);
+  const Device device = make_device();
+  const size_t n = 40;
+  const std::vector<Hit> hits = some_hits(surface.mesh(), n);
+  std::vector<Vec3f> albedo(n), weight(n);
+  for (size_t i = 0; i < n; ++i)
+    for (int c = 0; c < 3; ++c) {
+      albedo[i][c] = Rng(1, i, uint64_t(c)).uniform();
+      weight[i][c] = 2 * Rng(2, i, uint64_t(c)).uniform() - 1;
+    }
+  for (const float metalness : {0.0f, 1.0f}) {
+    const Material material{0.35f, 0.5f, metalness};
+    const Lighting lighting(device, surface, some_sky(), std::vector<Vec3f>(mesh.positions.size(), {0.5f, 0.5f, 0.5f}),
+                            material);
+    const std::vector<Vec3f> slopes = lighting.normal_slopes(hits, lighting.light_at(hits), albedo, weight);
+    const auto sent = [&](size_t i, Vec3f normal) {
+      Hit h = hits[i];
+      h.normal = normalize(normal);
+      const Shading s = lighting.shade(std::span(&h, 1), std::span(&albedo[i], 1));
+      return double(dot(weight[i], s.diffuse[0] + s.specular[0]));
+    };
+    for (size_t i = 0; i < n; ++i) {
+      const Vec3f t = normalize(cross(hits[i].normal, Vec3f{0.3f, 0.5f, 0.8f}));
+      const float h = 0.004f;
+      const double slope =
+          (sent(i, hits[i].normal + t * h) - sent(i, hits[i].normal - t * h)) / (2 * double(h));
+      EXPECT_NEAR(dot(slopes[i], t), slope, 0.03 * std::abs(slope) + 0.003) << i << ' ' << metalness;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace cei3d

@@ -17,6 +17,6 @@ using AllKernels =
                Activate<Relu>, ActivateGrad<Relu>, Activate<Elu>, ActivateGrad<Elu>, Activate<Softplus>,
                ActivateGrad<Softplus>, Activate<Sigmoid>, ActivateGrad<Sigmoid>, Adam, RadianceInput,
                RadianceInputGrad, SgFitResidual, SgFitGather,  //
-               SgIrradiance, SgReflection, SgShadeGrad>;
+               SgIrradiance, SgReflection, SgReflectionSlope, SgShadeGrad>;
 
 }  // namespace cei3d

@@ -54,6 +54,32 @@ struct SgReflection {
   }
 };
 
+// Adjoint of SgReflection, for the mirror directions: as if their length were free.
+struct SgReflectionSlope {
+  struct Args {
+    LobePlanes lobes;
+    float sharpness[kReflectionLobes], weight[kReflectionLobes];
+    int stride;
+    const float *mirrors, *d_reflected;  // [3][stride]
+    float* d_mirrors;                    // [3][stride], written
+  };
+  template <class T>
+  static HD void run(const Args& a, int i) {
+    const Vec3<T> r = load_planes<T>(a.mirrors, a.stride, i), g = load_planes<T>(a.d_reflected, a.stride, i);
+    Vec3<T> sum{T(0.0f), T(0.0f), T(0.0f)};
+    for (int k = 0; k < a.lobes.count; ++k) {
+      const T lambda = a.lobes.lambda<T>(k);
+      const Vec3<T> d = r - a.lobes.axis<T>(k);
+      const T q = dot(d, d);
+      T slope(0.0f);
+      for (int j = 0; j < kReflectionLobes; ++j)
+        slope += T(a.weight[j]) * sg_inner_slopes(lambda, T(a.sharpness[j]), q).d_q;
+      sum += d * (T(2.0f) * slope * dot(g, a.lobes.mu<T>(k)));
+    }
+    store_planes(a.d_mirrors, a.stride, i, sum);
+  }
+};
+
 // Adjoint of both, for the lobes. Item: a lobe; adds up what the points [begin, end) say about it.
 struct SgShadeGrad {
   struct Args {
