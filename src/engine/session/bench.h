@@ -41,7 +41,7 @@ struct BenchRequest {
   std::filesystem::path capture;  // empty: samples/spot below the working folder, else a ball that is made up
   std::filesystem::path project;  // empty: no frame and no edit
   double seconds = 6;             // of training steps
-  int repeats = 15;               // of kernels; frames and edits take a third of them
+  int repeats = 21;               // of kernels; frames and edits take a third of them
 };
 struct BenchReport {
   MachineInfo machine;

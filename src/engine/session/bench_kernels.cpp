@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <time.h>
 
+#include <algorithm>
+#include <bit>
 #include <cstring>
 #include <functional>
+#include <map>
 
+#include "core/base/error.h"
 #include "core/math/rng.h"
 #include "engine/session/bench.h"
 #include "model/field/field_pass.h"
@@ -19,18 +23,6 @@ double processor_seconds() {
   timespec t{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
   return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
-
-// Work a second of this thread's processor time: others may use the cores as well. The first run, which warms
-// caches and clocks, does not count.
-Spread rate(int repeats, const std::function<double()>& run) {
-  run();
-  std::vector<double> rates;
-  for (int k = 0; k < repeats; ++k) {
-    const double begin = processor_seconds(), work = run();
-    rates.push_back(work / (processor_seconds() - begin));
-  }
-  return spread_of(std::move(rates), true);
 }
 
 struct LinearData {
@@ -89,67 +81,92 @@ double copy_bytes(std::vector<char>& a, std::vector<char>& b) {
   return 2.0 * double(a.size());
 }
 
-class Table {
- public:
-  explicit Table(int repeats) : repeats_(repeats) {}
-  // per: what the unit is in, 1e9 for GFLOP/s. Returns the rate itself.
-  Spread add(const char* group, const std::string& name, const char* unit, double per,
-             std::vector<std::pair<std::string, Spread>> peaks, const std::function<double()>& run) {
-    const Spread s = rate(repeats_, run);
-    BenchFigure f{group, "", name, unit, true, {s.median / per, s.deviation / per, s.best / per, s.repeats},
-                  {}};
-    for (const auto& [peak, spread] : peaks) f.of.emplace_back(peak, s.best / spread.best);
-    figures_.push_back(std::move(f));
-    return s;
-  }
-  std::vector<BenchFigure> take() { return std::move(figures_); }
-
- private:
-  int repeats_;
-  std::vector<BenchFigure> figures_;
+struct Kernel {
+  const char* group;
+  std::string name;
+  const char* unit;
+  double per;                      // of the unit: 1e9 for GFLOP/s
+  std::vector<const char*> peaks;  // names of kernels that it is compared with
+  std::function<double()> run;     // returns the work done
 };
 
-void add_grids(Table& table, const Device& device, int log2_table, const Spread& gather,
-               const Spread& scatter) {
-  GridData grid(log2_table);
-  const std::string size = ", table 2^" + std::to_string(log2_table);
+// Work a second of this thread's processor time, kernel by kernel, round after round: what disturbs the
+// machine for a while disturbs all of them, and shows as their spread. The first round, which warms up, does
+// not count.
+std::vector<Spread> measure(const std::vector<Kernel>& kernels, int repeats) {
+  std::vector<std::vector<double>> rates(kernels.size());
+  for (int k = 0; k <= repeats; ++k)
+    for (size_t i = 0; i < kernels.size(); ++i) {
+      const double begin = processor_seconds(), work = kernels[i].run();
+      if (k > 0) rates[i].push_back(work / (processor_seconds() - begin) / kernels[i].per);
+    }
+  std::vector<Spread> spreads;
+  for (std::vector<double>& r : rates) spreads.push_back(spread_of(std::move(r), true));
+  return spreads;
+}
+
+std::vector<BenchFigure> figures_of(const std::vector<Kernel>& kernels, const std::vector<Spread>& spreads) {
+  std::map<std::string, double> best;  // in the same unit as what is compared with it
+  for (size_t i = 0; i < kernels.size(); ++i) best[kernels[i].name] = spreads[i].best;
+  std::vector<BenchFigure> figures;
+  for (size_t i = 0; i < kernels.size(); ++i) {
+    BenchFigure f{kernels[i].group, "", kernels[i].name, kernels[i].unit, true, spreads[i], {}};
+    for (const char* peak : kernels[i].peaks) f.of.emplace_back(peak, spreads[i].best / best.at(peak));
+    figures.push_back(std::move(f));
+  }
+  std::stable_sort(figures.begin(), figures.end(), [](const BenchFigure& a, const BenchFigure& b) {
+    return (a.group == "machine") > (b.group == "machine");
+  });
+  return figures;
+}
+
+void add_grids(const Device& device, GridData& grid, std::vector<Kernel>& kernels) {
+  const std::string size = fmt::format(", table 2^{}", std::bit_width(grid.level.hash_mask));
   const char* unit = "M pairs/s";
-  table.add("machine", "gather, random places" + size, unit, 1e6, {{kGather, gather}},
-            [&] { return device.gather_peak(grid.table.data(), grid.level.hash_mask); });
-  table.add("machine", "read-modify-write, random places" + size, unit, 1e6, {{kScatter, scatter}},
-            [&] { return device.scatter_peak(grid.d_table.data(), grid.level.hash_mask); });
-  table.add("kernels", "hash encoding, values" + size, unit, 1e6, {{kGather, gather}},
-            [&] { return grid_forward(device, grid, 1); });
-  table.add("kernels", "hash encoding, jets" + size, unit, 1e6, {{kGather, gather}},
-            [&] { return grid_forward(device, grid, 4); });
-  table.add("kernels", "hash encoding, jet backward" + size, unit, 1e6,
-            {{kScatter, scatter}, {kGather, gather}}, [&] { return grid_backward(device, grid); });
+  kernels.push_back({"machine", "gather, random places" + size, unit, 1e6, {kGather}, [&device, &grid] {
+                       return device.gather_peak(grid.table.data(), grid.level.hash_mask);
+                     }});
+  kernels.push_back(
+      {"machine", "read-modify-write, random places" + size, unit, 1e6, {kScatter}, [&device, &grid] {
+         return device.scatter_peak(grid.d_table.data(), grid.level.hash_mask);
+       }});
+  kernels.push_back({"kernels", "hash encoding, values" + size, unit, 1e6, {kGather}, [&device, &grid] {
+                       return grid_forward(device, grid, 1);
+                     }});
+  kernels.push_back({"kernels", "hash encoding, jets" + size, unit, 1e6, {kGather}, [&device, &grid] {
+                       return grid_forward(device, grid, 4);
+                     }});
+  kernels.push_back(
+      {"kernels", "hash encoding, jet backward" + size, unit, 1e6, {kScatter, kGather}, [&device, &grid] {
+         return grid_backward(device, grid);
+       }});
 }
 
 }  // namespace
 
 std::vector<BenchFigure> bench_kernels(const Device& device, int repeats) {
-  Table table(repeats);
-  const Spread fma = table.add("machine", kFma, "GFLOP/s", 1e9, {}, [&] { return device.fma_peak(); });
-  // In tables that stay in the first-level cache: no encoding can be faster, however its corners lie.
+  // A table that stays in the first-level cache: no encoding can be faster, however its corners lie.
   std::vector<float> small(2 * 1024, 1.0f);
-  const Spread gather = table.add("machine", kGather, "M pairs/s", 1e6, {},
-                                  [&] { return device.gather_peak(small.data(), 1023); });
-  const Spread scatter = table.add("machine", kScatter, "M pairs/s", 1e6, {},
-                                   [&] { return device.scatter_peak(small.data(), 1023); });
   std::vector<char> from(size_t(96) << 20, 1), to(from.size(), 2);
-  table.add("machine", "memory copy", "GB/s", 1e9, {}, [&] { return copy_bytes(from, to); });
   LinearData linear;
-  table.add("kernels", "linear 64x64, forward", "GFLOP/s", 1e9, {{kFma, fma}},
-            [&] { return linear_forward(device, linear); });
-  table.add("kernels", "linear 64x64, weight gradient", "GFLOP/s", 1e9, {{kFma, fma}},
-            [&] { return linear_weights(device, linear); });
-  for (const int log2_table : {15, 17}) add_grids(table, device, log2_table, gather, scatter);
-  std::vector<BenchFigure> figures = table.take();
-  std::stable_sort(figures.begin(), figures.end(), [](const BenchFigure& a, const BenchFigure& b) {
-    return (a.group == "machine") > (b.group == "machine");
-  });
-  return figures;
+  GridData grid15(15), grid17(17);
+  std::vector<Kernel> kernels{
+      {"machine", kFma, "GFLOP/s", 1e9, {}, [&] { return device.fma_peak(); }},
+      {"machine", kGather, "M pairs/s", 1e6, {}, [&] { return device.gather_peak(small.data(), 1023); }},
+      {"machine", kScatter, "M pairs/s", 1e6, {}, [&] { return device.scatter_peak(small.data(), 1023); }},
+      {"machine", "memory copy", "GB/s", 1e9, {}, [&] { return copy_bytes(from, to); }},
+      {"kernels",
+       "linear 64x64, forward",
+       "GFLOP/s",
+       1e9,
+       {kFma},
+       [&] { return linear_forward(device, linear); }},
+      {"kernels", "linear 64x64, weight gradient", "GFLOP/s", 1e9, {kFma}, [&] {
+         return linear_weights(device, linear);
+       }}};
+  add_grids(device, grid15, kernels);
+  add_grids(device, grid17, kernels);
+  return figures_of(kernels, measure(kernels, repeats));
 }
 
 }  // namespace cei3d
