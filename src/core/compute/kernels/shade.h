@@ -133,10 +133,13 @@ struct SgShadeGrad {
 template <class Args>
 void set_reflection_lobe(float roughness, Args& a) {
   const float scale = reflection_scale(roughness);
+  float above = 0;  // the horizon, seen along the normal: that much is what the reflectance counts as all
   for (int j = 0; j < kReflectionLobes; ++j) {
     a.sharpness[j] = kReflectionNodes[j] * scale;
     a.weight[j] = kReflectionShare[j] / sg_integral(a.sharpness[j]);
+    above += kReflectionShare[j] / (1 + exp(-a.sharpness[j]));
   }
+  for (float& w : a.weight) w /= above;
 }
 
 }  // namespace cei3d
