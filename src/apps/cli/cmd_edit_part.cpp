@@ -8,7 +8,7 @@ namespace {
 struct Options {
   PartCommand command;
   std::vector<std::string> positive, negative;
-  bool replace = true;
+  bool replace = true, remove = false;
   EditOutput output;
 };
 
@@ -68,6 +68,9 @@ void add_part_effects(CLI::App* verb, Options& o) {
                  "[--replace]")
       ->needs(color);
   add_material_values(verb, e);
+  verb->add_flag("--remove", o.remove,
+                 "The part is taken off and the surface behind it closed: a second edit, as `edit remove` makes it")
+      ->excludes(color);
 }
 
 }  // namespace
@@ -84,7 +87,9 @@ void add_edit_part(Commands& commands, CLI::App* edit, ProjectName project) {
     const PartCommand command = command_of(options);
     open_for_edit(session, *project, "part --view NAME --positive X,Y");
     const EditSummary s = session.select_part(command, console);
-    finish_edit(session, console, s, text_of(s), options.output);
+    if (!options.remove) return finish_edit(session, console, s, text_of(s), options.output);
+    const EditSummary removed = session.remove({s.report.at("part").get<std::string>()}, console);
+    finish_edit(session, console, removed, text_of(s) + "\n" + remove_text(removed), options.output);
   });
 }
 

@@ -51,15 +51,6 @@ std::string deform_text(const EditSummary& s) {
                      s.report.at("farthest").get<double>(), stages_text(s));
 }
 
-std::string remove_text(const EditSummary& s) {
-  const auto count = [&](const char* key) { return s.report.at(key).get<size_t>(); };
-  std::string text =
-      fmt::format("{}: {} triangles removed, {} holes closed by {} new ones; {}.", s.id,
-                  count("removed_triangles"), count("holes"), count("added_triangles"), stages_text(s));
-  if (count("pieces") > 1) text += fmt::format(" The object is in {} pieces now.", count("pieces"));
-  return text;
-}
-
 void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<DeformOptions>();
   CLI::App* verb = commands.add("deform", "Drag a point of the surface; what is around it follows", edit);
@@ -96,6 +87,15 @@ void add_remove(Commands& commands, CLI::App* edit, ProjectName project) {
 }
 
 }  // namespace
+
+std::string remove_text(const EditSummary& s) {
+  const auto count = [&](const char* key) { return s.report.at(key).get<size_t>(); };
+  std::string text =
+      fmt::format("{}: {} triangles removed, {} holes closed by {} new ones; {}.", s.id,
+                  count("removed_triangles"), count("holes"), count("added_triangles"), stages_text(s));
+  if (count("pieces") > 1) text += fmt::format(" The object is in {} pieces now.", count("pieces"));
+  return text;
+}
 
 void add_edit_shape(Commands& commands, CLI::App* edit, ProjectName project) {
   add_deform(commands, edit, project);

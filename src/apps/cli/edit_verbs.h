@@ -15,6 +15,8 @@ void open_for_edit(Session&, const std::string& project, const char* example);
 // "trace 0.10 s, fit 0.42 s, load and store 0.08 s"
 std::string stages_text(const EditSummary&);
 
+std::string remove_text(const EditSummary&);
+
 // --picture: what every edit can show of itself.
 struct EditOutput {
   std::string picture;
