@@ -137,8 +137,7 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
     batch.rays[r] = store.cameras()[p.view].ray(p.x + u, p.y + v);
     batch.targets[r] = target_of(p);
     if (!training) continue;
-    // Each ray before a colour of its own: only matter that covers it looks right before all of them. A loss on
-    // the coverage itself would never rest (it is always a little below one) and blows hollows up.
+    // Each ray before a colour of its own: only matter that covers it looks right before all of them.
     const Vec3f background{rng.uniform(), rng.uniform(), rng.uniform()};
     batch.backgrounds[r] = background;
     batch.targets[r].srgb += (background - kWhite) * (1 - batch.targets[r].alpha);
@@ -275,11 +274,15 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
       stats.color += l.value;
       stats.squared_error += e * e / 3;
     }
-    stats.mask += std::abs(w.coverage[r] - batch.targets[r].alpha);
+    const float miss = w.coverage[r] - batch.targets[r].alpha;
+    // Never rests, since coverage is always a little below one: it blows hollows up that colours have carved, and
+    // keeps up a hull that mirror images would eat.
+    const float d_coverage = anchor_.n ? 0 : options_.mask_weight * per_ray * (miss > 0 ? 1.0f : -1.0f);
+    stats.mask += std::abs(miss);
     const float push = batch.targets[r].alpha == 0 ? options_.empty_weight * s.sharpness * per_ray : 0;
     float behind = 0;  // sum of weight x d_weight over the samples behind
     for (int i = w.first_kept[r + 1] - 1; i >= w.first_kept[r]; --i) {
-      float d_weight = 0;
+      float d_weight = d_coverage;
       for (int c = 0; c < 3; ++c) {
         const float color = w.color.output()[panel_at(i, 1, 0, 3, c)];
         d_weight += d_pixel[c] * (color - batch.backgrounds[r][c]);

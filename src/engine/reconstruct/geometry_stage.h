@@ -30,7 +30,7 @@ struct GeometryOptions {
   int first_levels = 5;
   float step_min = 0.004f, step_max = 0.02f;  // along rays, unit-sphere units; in between: 1 / sharpness
   float keep_weight = 0.003f;                 // samples below it get no jet and no radiance
-  float huber_width = 0.05f, eikonal_weight = 0.3f;
+  float huber_width = 0.05f, mask_weight = 0.5f, eikonal_weight = 0.3f;
   float empty_weight = 0.1f;  // of empty_push(), times the sharpness
   float view_from = 0.25f;    // until here colours do not depend on the view: what moves with it must be the surface
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
@@ -41,7 +41,7 @@ struct GeometryOptions {
 };
 
 struct GeometryStats {
-  double color = 0, mask = 0, eikonal = 0;  // losses, a ray; the mask's is only looked at
+  double color = 0, mask = 0, eikonal = 0;  // losses, a ray
   double squared_error = 0;                 // a ray and channel, display space
   int64_t kept = 0, candidates = 0, rays = 0;
   double psnr() const;
