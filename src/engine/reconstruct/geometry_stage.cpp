@@ -118,7 +118,7 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   s.step = std::clamp(1 / s.sharpness, options_.step_min, options_.step_max);
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
   s.levels = levels_at(u);
-  s.views = u >= options_.view_from;
+  s.views = !anchor_.n || u >= options_.view_from;
   s.anchor = anchor_.n ? options_.anchor_weight * s.sharpness * float(std::max(0.0, 1 - u / options_.anchor_until)) : 0;
   return s;
 }
@@ -136,7 +136,7 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
     const float u = rng.uniform() + rng.uniform() - 0.5f, v = rng.uniform() + rng.uniform() - 0.5f;
     batch.rays[r] = store.cameras()[p.view].ray(p.x + u, p.y + v);
     batch.targets[r] = target_of(p);
-    if (!training) continue;
+    if (!training || !anchor_.n) continue;
     // Each ray before a colour of its own: only matter that covers it looks right before all of them.
     const Vec3f background{rng.uniform(), rng.uniform(), rng.uniform()};
     batch.backgrounds[r] = background;

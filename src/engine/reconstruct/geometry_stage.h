@@ -32,7 +32,8 @@ struct GeometryOptions {
   float keep_weight = 0.003f;                 // samples below it get no jet and no radiance
   float huber_width = 0.05f, mask_weight = 0.5f, eikonal_weight = 0.3f;
   float empty_weight = 0.1f;  // of empty_push(), times the sharpness
-  float view_from = 0.25f;    // until here colours do not depend on the view: what moves with it must be the surface
+  float view_from = 0.25f;    // from a carved start: until here colours do not depend on the view, so that what moves
+                              // with it must be the surface; mirror images would eat a hull
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
   float decay_from = 0.3f, decay_to = 0.05f;  // exponential decay of the rate over the rest of the schedule
   int prefit_steps = 300;
