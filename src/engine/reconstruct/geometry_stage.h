@@ -73,6 +73,7 @@ class GeometryStage {
   Image render_radiance(const Camera& unit_camera, int samples);
 
   const Field& sdf() const { return sdf_; }
+  bool carved() const { return anchor_.n > 0; }  // where it started
   void time_into(StepTimes* times) { times_ = times; }  // null: no clock is read
   int levels_at(double u) const;
   void save(Tensors& out) const;
