@@ -9,6 +9,10 @@ namespace cei3d {
 inline float srgb_from_linear(float c) {
   return c <= 0.0031308f ? 12.92f * c : 1.055f * ::powf(c, 1 / 2.4f) - 0.055f;
 }
+// d srgb / d linear.
+inline float srgb_slope(float linear) {
+  return linear <= 0.0031308f ? 12.92f : 1.055f / 2.4f * ::powf(linear, 1 / 2.4f - 1);
+}
 inline float linear_from_srgb(float c) {
   return c <= 0.04045f ? c / 12.92f : ::powf((c + 0.055f) / 1.055f, 2.4f);
 }

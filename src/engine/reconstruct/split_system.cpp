@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/math/brdf.h"
+#include "core/math/color.h"
 #include "core/math/rng.h"
 
 namespace cei3d {
@@ -20,11 +21,6 @@ constexpr float kDarkest = 0.003f;  // radiance below which the display curve's 
 Vec3f interpolate(const std::vector<Vec3f>& values, const std::array<uint32_t, 3>& v,
                   const std::array<float, 3>& b) {
   return values[v[0]] * b[0] + values[v[1]] * b[1] + values[v[2]] * b[2];
-}
-
-float display_slope(float c) {
-  const float x = max(c, kDarkest);
-  return x < 0.0031308f ? 12.92f : 1.055f / 2.4f * std::pow(x, 1 / 2.4f - 1);
 }
 
 Vec3f mirror(Vec3f n, Vec3f v) { return normalize(n * (2 * dot(n, v)) - v); }
@@ -64,7 +60,7 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     row.barycentric = {1 - h.b1 - h.b2, h.b1, h.b2};
     row.nv = dot(h.normal, h.to_camera);
     row.color = samples.colors[kept[k]];
-    for (int c = 0; c < 3; ++c) row.weight[c] = clipped ? 0 : square(display_slope(row.color[c]));
+    for (int c = 0; c < 3; ++c) row.weight[c] = clipped ? 0 : square(srgb_slope(max(row.color[c], kDarkest)));
     origins[k] = h.position + h.normal * 2e-3f;
     directions[k] = mirror(h.normal, h.to_camera);
   }
