@@ -16,9 +16,8 @@ namespace cei3d {
 namespace {
 
 constexpr int kRays = 64;        // a chunk
-constexpr int kKeptPerRay = 24;  // most samples of a ray that get jets
-constexpr int kKept = kRays * kKeptPerRay;
-constexpr int kCandidates = 96;                             // most of a ray
+constexpr int kKept = kRays * 32;  // most samples of a chunk that get jets; about ten a ray are usual
+constexpr int kKeptPerRay = 64, kCandidates = 320;  // most of a ray: one that grazes the object needs them
 constexpr int kBlock = 512;                                 // candidates evaluated at a time
 constexpr int kRefreshEvery = 25, kFullRefreshEvery = 400;  // steps between looks at the occupancy grid
 constexpr float kRefreshMargin = 0.15f;
@@ -151,7 +150,7 @@ namespace {
 void select_samples(const float* depth, const float* value, int n, float step, float sharpness,
                     float keep_weight, bool empty, std::vector<float>& kept) {
   float transmittance = 1;
-  const size_t end = kept.size() + kKeptPerRay;
+  const size_t end = std::min(kept.size() + kKeptPerRay, size_t(kKept));
   for (int i = 0; i < n && kept.size() < end && (empty || transmittance > 1e-3f); ++i) {
     const bool joined_before = i > 0 && depth[i] - depth[i - 1] < 1.5f * step;
     const bool joined_after = i + 1 < n && depth[i + 1] - depth[i] < 1.5f * step;

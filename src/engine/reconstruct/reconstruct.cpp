@@ -23,8 +23,6 @@ constexpr int kRim = 6;  // pixels around the object that are trained on
 constexpr double kCheckpointSeconds = 30;
 constexpr double kLongRun = 120;  // seconds of training from which two starts are tried,
 constexpr int kLongRunSteps = 4000;  // or steps
-// From the hull: in slower schedules the highlights of metals eat holes (docs/benchmarks.md, "Long runs eat metals").
-constexpr int kMostStepsFromHull = 2000;
 constexpr double kMostAppearance = 20;   // seconds: more brings nothing
 constexpr double kMostPolish = 60;       // seconds a round: likewise
 constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;  // a round, at most
@@ -65,12 +63,11 @@ TrainingViews load_views(const Capture& capture, const ImageSource& images,
 class Schedule {
  public:
   Schedule(double seconds, int iterations) : seconds_(seconds), iterations_(iterations), start_(now()) {}
-  void end_by(int most_steps) { most_steps_ = most_steps; }  // a schedule by the clock, too
   void resume_at(double elapsed) { start_ = now() - elapsed; }
   double elapsed() const { return now() - start_; }
   double position(int64_t step) const {
     if (seconds_ <= 0) return double(step) / iterations_;
-    return std::max(elapsed() / seconds_, most_steps_ ? double(step) / most_steps_ : 0.0);
+    return elapsed() / seconds_;
   }
   double seconds_left(double u) const {
     return seconds_ > 0 ? seconds_ - elapsed() : u > 0.01 ? elapsed() * (1 - u) / u : -1;
@@ -78,7 +75,7 @@ class Schedule {
 
  private:
   double seconds_;
-  int iterations_, most_steps_ = 0;
+  int iterations_;
   double start_;
 };
 
@@ -123,7 +120,6 @@ int64_t train_geometry(GeometryStage& stage, GeometryStage::Start start, const T
     stage.prefit(start);
     schedule.resume_at(0);
   }
-  if (!stage.carved()) schedule.end_by(kMostStepsFromHull);
   const PixelStore& judged = views.held_out.pixels().empty() ? views.train : views.held_out;
   const char* label = views.held_out.pixels().empty() ? "train" : "held-out";
   double last_report = 0, last_save = schedule.elapsed();

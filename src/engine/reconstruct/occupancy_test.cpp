@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// A ball whose field is too steep away from it, as trained fields are: nothing holds their slope there.
+#include "engine/reconstruct/occupancy.h"
+
+#include <gtest/gtest.h>
+
+#include "core/math/rng.h"
+
+namespace cei3d {
+namespace {
+
+constexpr float kRadius = 0.5f;
+
+float steep_ball(Vec3f p) {
+  const float d = length(p) - kRadius;
+  return d < 0.05f ? d : 0.05f + 1.5f * (d - 0.05f);
+}
+
+OccupancyGrid grid_of_ball() {
+  OccupancyGrid grid;
+  const int n = grid.resolution();
+  std::vector<float> values(size_t(n) * n * n);
+  for (size_t i = 0; i < values.size(); ++i) values[i] = steep_ball(grid.center(int(i)));
+  grid.set(values);
+  return grid;
+}
+
+TEST(OccupancyGrid, EveryRayThatMeetsTheSurfaceIsSampledOnBothSidesOfIt) {
+  constexpr float kStep = 0.004f, kBand = 0.006f;
+  const OccupancyGrid grid = grid_of_ball();
+  for (int i = 0; i < 2000; ++i) {
+    Rng rng(5, 0, uint64_t(i));
+    const auto uniform = [&] { return 2 * rng.uniform() - 1; };
+    const Vec3f origin = normalize(Vec3f{uniform(), uniform(), uniform()}) * 3.0f;
+    const Vec3f target = Vec3f{uniform(), uniform(), uniform()} * 0.25f;
+    const Ray ray{origin, normalize(target - origin)};
+    std::vector<float> depths;
+    grid.march(ray, kStep, kBand, rng.uniform(), 320, depths);
+    ASSERT_FALSE(depths.empty()) << "ray " << i;
+    size_t behind = 0;
+    while (behind < depths.size() && steep_ball(ray.origin + ray.direction * depths[behind]) > 0) ++behind;
+    ASSERT_GT(behind, 0u) << "ray " << i << " starts inside";
+    ASSERT_LT(behind, depths.size()) << "ray " << i << " ends outside";
+    EXPECT_LT(depths[behind] - depths[behind - 1], 1.01f * kStep) << "ray " << i;
+  }
+}
+
+TEST(OccupancyGrid, RaysThatPassFarFromTheSurfaceAreNotSampled) {
+  std::vector<float> depths;
+  grid_of_ball().march({{0.8f, 0, -3}, {0, 0, 1}}, 0.004f, 0.006f, 0.5f, 320, depths);
+  EXPECT_TRUE(depths.empty());
+}
+
+}  // namespace
+}  // namespace cei3d
