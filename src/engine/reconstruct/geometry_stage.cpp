@@ -36,6 +36,7 @@ struct GeometryStage::RayBatch {
   std::vector<Ray> rays;
   std::vector<Target> targets;
   std::vector<Vec3f> backgrounds;  // display-encoded; what a ray shows where it meets nothing
+  std::vector<uint8_t> empty;      // the picture shows that it meets nothing
 };
 
 struct GeometryStage::Work {
@@ -128,6 +129,7 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
   batch.rays.resize(kRays);
   batch.targets.resize(kRays);
   batch.backgrounds.assign(kRays, kWhite);
+  batch.empty.assign(kRays, 0);
   for (int r = 0; r < kRays; ++r) {
     Rng rng(seed_, uint64_t(step), uint64_t(first + r));
     const Pixel& p = store.pixels()[rng.below(uint32_t(store.pixels().size()))];
@@ -135,7 +137,9 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
     const float u = rng.uniform() + rng.uniform() - 0.5f, v = rng.uniform() + rng.uniform() - 0.5f;
     batch.rays[r] = store.cameras()[p.view].ray(p.x + u, p.y + v);
     batch.targets[r] = target_of(p);
-    if (!training || !anchor_.n) continue;
+    if (!training) continue;
+    // Within the pixel's own square: its rim belongs as much to a neighbour that may show the object.
+    batch.empty[r] = batch.targets[r].alpha == 0 && std::abs(u - 0.5f) <= 0.5f && std::abs(v - 0.5f) <= 0.5f;
     // Each ray before a colour of its own: only matter that covers it looks right before all of them.
     const Vec3f background{rng.uniform(), rng.uniform(), rng.uniform()};
     batch.backgrounds[r] = background;
@@ -197,7 +201,7 @@ void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Wor
   for (int r = 0; r < batch.count; ++r) {
     const int first = w.first_candidate[r], count = w.first_candidate[r + 1] - first;
     select_samples(w.depths.data() + first, w.values.data() + first, count, s.step, s.sharpness,
-                   options_.keep_weight, training && batch.targets[r].alpha == 0, w.kept_depth);
+                   options_.keep_weight, training && batch.empty[r], w.kept_depth);
     w.first_kept.push_back(int(w.kept_depth.size()));
   }
 }
@@ -248,7 +252,7 @@ void GeometryStage::composite(const Schedule& s, const RayBatch& batch, Work& w)
 
 namespace {
 
-// Slope of the penalty on being inside, softplus(-f), at a point on a ray that shows background. The mask loss
+// Slope of the penalty on being inside, softplus(-f), at a point on a ray that shows background. The colour loss
 // cannot open a gap that has closed: where a ray is opaque its opacity does not change with the distance any
 // more, but this still does.
 float empty_push(float sdf, float sharpness) { return -Softplus::eval(-sdf, sharpness).first; }
@@ -273,15 +277,12 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
       stats.color += l.value;
       stats.squared_error += e * e / 3;
     }
-    const float miss = w.coverage[r] - batch.targets[r].alpha;
-    // Never rests, since coverage is always a little below one: it blows hollows up that colours have carved, and
-    // keeps up a hull that mirror images would eat.
-    const float d_coverage = anchor_.n ? 0 : options_.mask_weight * per_ray * (miss > 0 ? 1.0f : -1.0f);
-    stats.mask += std::abs(miss);
-    const float push = batch.targets[r].alpha == 0 ? options_.empty_weight * s.sharpness * per_ray : 0;
+    // Watched, but no loss: it would never rest, since coverage is always a little below one (decisions/0004).
+    stats.mask += std::abs(w.coverage[r] - batch.targets[r].alpha);
+    const float push = batch.empty[r] ? options_.empty_weight * s.sharpness * per_ray : 0;
     float behind = 0;  // sum of weight x d_weight over the samples behind
     for (int i = w.first_kept[r + 1] - 1; i >= w.first_kept[r]; --i) {
-      float d_weight = d_coverage;
+      float d_weight = 0;
       for (int c = 0; c < 3; ++c) {
         const float color = w.color.output()[panel_at(i, 1, 0, 3, c)];
         d_weight += d_pixel[c] * (color - batch.backgrounds[r][c]);

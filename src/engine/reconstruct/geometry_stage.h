@@ -30,7 +30,7 @@ struct GeometryOptions {
   int first_levels = 5;
   float step_min = 0.004f, step_max = 0.02f;  // along rays, unit-sphere units; in between: 1 / sharpness
   float keep_weight = 0.003f;                 // samples below it get no jet and no radiance
-  float huber_width = 0.05f, mask_weight = 0.5f, eikonal_weight = 0.3f;
+  float huber_width = 0.05f, eikonal_weight = 0.3f;
   float empty_weight = 0.1f;  // of empty_push(), times the sharpness
   float view_from = 0.25f;    // from a carved start: until here colours do not depend on the view, so that what moves
                               // with it must be the surface; mirror images would eat a hull

@@ -15,7 +15,9 @@ namespace {
 constexpr int kBlock = 2048;  // hits a chunk: what it needs stays in the second-level cache
 constexpr int kEnvCells = 64;
 constexpr float kLift = 2e-3f;     // rays start this far above the surface
-constexpr int kOcclusionRays = 6;  // of the reflection lobe
+// Rays of the reflection lobe: a few to see whether anything is in its way, and where it is, enough to see what.
+constexpr int kProbes = 6, kRays = 24;
+constexpr float kGrazing = 0.02f;  // least cosine of a reflection that another reflection sees
 
 Vec3f at_corners(const std::vector<Vec3f>& v, const std::array<uint32_t, 3>& t, float b1, float b2) {
   return v[t[0]] * (1 - b1 - b2) + v[t[1]] * b1 + v[t[2]] * b2;
@@ -23,11 +25,11 @@ Vec3f at_corners(const std::vector<Vec3f>& v, const std::array<uint32_t, 3>& t, 
 
 // Directions of equal weight that stand for the reflection lobe of a roughness around +Z: one ring at the
 // radius that splits each equal share of its energy. 1 / (1 + x)^2 has the cumulative share x / (1 + x).
-std::vector<Vec3f> lobe_directions(float roughness) {
+std::vector<Vec3f> lobe_directions(float roughness, int count) {
   std::vector<Vec3f> d;
   const float width = 2 / std::sqrt(reflection_scale(roughness));
-  for (int k = 0; k < kOcclusionRays; ++k) {
-    const float u = (float(k) + 0.5f) / kOcclusionRays;
+  for (int k = 0; k < count; ++k) {
+    const float u = (float(k) + 0.5f) / float(count);
     const float t = std::min(width * std::sqrt(u / (1 - u)), 1.4f), a = 2.399963f * float(k);
     d.push_back({std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)});
   }
@@ -91,34 +93,136 @@ void Lighting::set_lobes(const SgMixture& light) {
   }
 }
 
+struct Lighting::Look {
+  Material material;
+  float roughness;  // that shading can take
+  std::vector<Vec2f> env_table;
+  std::vector<Vec3f> probes, lobe;  // directions around +Z
+
+  Look(const Material& m, std::vector<Vec2f> table)
+      : material(m),
+        roughness(max(m.roughness, kLeastRoughness)),
+        env_table(std::move(table)),
+        probes(lobe_directions(roughness, kProbes)),
+        lobe(lobe_directions(roughness, kRays)) {}
+};
+
+struct Lighting::Blocked {
+  float open = 1;          // share of the lobe that sees the sky
+  Vec3f seen{0, 0, 0};     // radiance from the rest, times its share
+};
+
 // Planes of one chunk of hits.
 struct Lighting::Block {
   std::vector<float> normals, mirrors, irradiance, reflected;
-  std::vector<Vec3f> origins, directions;
-  std::vector<Surface::RayHit> far;
   Block() {
     for (auto* v : {&normals, &mirrors, &irradiance, &reflected}) v->assign(size_t(3) * kBlock, 0);
   }
 };
 
-Vec3f Lighting::leaving(const Surface::RayHit& h) const {
-  return at_corners(vertices_.leaving, surface_.mesh().triangles[h.triangle], h.b1, h.b2);
+namespace {
+
+struct LobeRays {
+  std::vector<Vec3f> origins, directions;
+  std::vector<Surface::RayHit> far;
+};
+
+LobeRays cast(const Surface& surface, std::span<const Hit> hits, std::span<const Vec3f> lobe) {
+  LobeRays rays;
+  rays.origins.reserve(hits.size() * lobe.size());
+  rays.directions.reserve(hits.size() * lobe.size());
+  for (const Hit& h : hits) {
+    const Vec3f r = mirror_direction(h);
+    for (const Vec3f& d : lobe) {
+      const Vec3f ray = turned(r, d);  // below the horizon: folded up, since masking is in the reflectance already
+      rays.origins.push_back(h.position + h.normal * kLift);
+      rays.directions.push_back(ray - h.normal * (2 * min(dot(ray, h.normal), 0.0f)));
+    }
+  }
+  rays.far.resize(rays.origins.size());
+  surface.intersect(rays.origins, rays.directions, 0, rays.far);
+  return rays;
 }
 
-HitLight Lighting::light_at(std::span<const Hit> hits, float any_roughness) const {
-  const float roughness = max(any_roughness, kLeastRoughness);
+}  // namespace
+
+// Radiance that comes back along rays that met the surface. What its reflection in turn meets is taken as diffuse.
+std::vector<Vec3f> Lighting::shown(std::span<const Vec3f> origins, std::span<const Vec3f> directions,
+                                   std::span<const Surface::RayHit> far, const Look& look) const {
   const Mesh& mesh = surface_.mesh();
-  const std::vector<Vec2f> other_table = roughness == max(material_.roughness, kLeastRoughness)
-                                             ? std::vector<Vec2f>()
-                                             : env_brdf_table(roughness);
-  const std::vector<Vec2f>& env_table = other_table.empty() ? env_table_ : other_table;
+  const size_t n = far.size(), stride = (n + kPanel - 1) / kPanel * kPanel;
+  std::vector<Vec3f> from(n), mirrors(n), out(n);
+  std::vector<float> cosines(n), mirror_planes(3 * stride, 0.0f), sky(3 * stride);
+  for (size_t k = 0; k < n; ++k) {
+    const Vec3f normal = normalize(at_corners(mesh.normals, mesh.triangles[far[k].triangle], far[k].b1, far[k].b2));
+    const float cosine = -dot(normal, directions[k]);
+    cosines[k] = max(cosine, kGrazing);
+    mirrors[k] = normalize(normal * (2 * cosine) + directions[k]);
+    from[k] = origins[k] + directions[k] * far[k].t + normal * kLift;
+    for (int c = 0; c < 3; ++c) mirror_planes[size_t(c) * stride + k] = mirrors[k][c];
+  }
+  SgReflection::Args args{{lobe_planes_.data(), n_lobes_, padded_}, {}, {}, int(stride), mirror_planes.data(), sky.data()};
+  set_reflection_lobe(look.roughness, args);
+  device_.launch<SgReflection>(args, int(stride));
+  std::vector<Surface::RayHit> next(n);
+  surface_.intersect(from, mirrors, 0, next);
+  const auto at = [&](const std::vector<Vec3f>& v, const Surface::RayHit& h) {
+    return at_corners(v, mesh.triangles[h.triangle], h.b1, h.b2);
+  };
+  const float m = look.material.metalness, dielectric = (1 - m) * kDielectricF0 * look.material.specular;
+  for (size_t k = 0; k < n; ++k) {
+    const Vec3f color = at(vertices_.base_color, far[k]), diffuse = at(vertices_.leaving, far[k]);
+    const Vec3f reflected =
+        next[k].t < 0 ? Vec3f{sky[k], sky[stride + k], sky[2 * stride + k]} : at(vertices_.leaving, next[k]);
+    const Vec2f env = env_brdf_at(look.env_table, cosines[k]);
+    for (int c = 0; c < 3; ++c)
+      out[k][c] = (1 - m) * diffuse[c] + ((m * color[c] + dielectric) * env.x + env.y) * reflected[c];
+  }
+  return out;
+}
+
+std::vector<Lighting::Blocked> Lighting::blocked(std::span<const Hit> hits, const Look& look) const {
+  std::vector<Blocked> out(hits.size());
+  const LobeRays probes = cast(surface_, hits, look.probes);
+  std::vector<Hit> near;
+  std::vector<uint32_t> index;
+  for (size_t i = 0; i < hits.size(); ++i)
+    for (int k = 0; k < kProbes; ++k)
+      if (probes.far[i * kProbes + k].t >= 0) {
+        near.push_back(hits[i]);
+        index.push_back(uint32_t(i));
+        break;
+      }
+  const LobeRays rays = cast(surface_, near, look.lobe);
+  std::vector<Vec3f> origins, directions;
+  std::vector<Surface::RayHit> met;
+  std::vector<uint32_t> owner;
+  for (size_t k = 0; k < rays.far.size(); ++k) {
+    if (rays.far[k].t < 0) continue;
+    origins.push_back(rays.origins[k]);
+    directions.push_back(rays.directions[k]);
+    met.push_back(rays.far[k]);
+    owner.push_back(index[k / kRays]);
+  }
+  const std::vector<Vec3f> radiance = shown(origins, directions, met, look);
+  for (size_t k = 0; k < met.size(); ++k) {
+    out[owner[k]].open -= 1.0f / kRays;
+    out[owner[k]].seen += radiance[k] * (1.0f / kRays);
+  }
+  return out;
+}
+
+HitLight Lighting::light_at(std::span<const Hit> hits, const Material& material) const {
+  const Mesh& mesh = surface_.mesh();
+  const float roughness = max(material.roughness, kLeastRoughness);
+  const bool own = roughness == max(material_.roughness, kLeastRoughness);
+  const Look look(material, own ? env_table_ : env_brdf_table(roughness));
   HitLight out;
   out.irradiance.resize(hits.size());
   out.reflected.resize(hits.size());
   out.openness.resize(hits.size());
   out.open_mirror.resize(hits.size());
   out.env.resize(hits.size());
-  const std::vector<Vec3f> lobe = lobe_directions(roughness);
   const LobePlanes lobes{lobe_planes_.data(), n_lobes_, padded_};
   parallel_ranges(int(hits.size()), kBlock, [&](int begin, int end) {
     Block b;
@@ -130,20 +234,13 @@ HitLight Lighting::light_at(std::span<const Hit> hits, float any_roughness) cons
         b.normals[size_t(c) * kBlock + i - begin] = soft[c];
         b.mirrors[size_t(c) * kBlock + i - begin] = r[c];
       }
-      for (const Vec3f& d : lobe) {
-        b.origins.push_back(h.position + h.normal * kLift);
-        const Vec3f ray =
-            turned(r, d);  // below the horizon: folded up, since masking is in the reflectance already
-        b.directions.push_back(ray - h.normal * (2 * min(dot(ray, h.normal), 0.0f)));
-      }
     }
     const int n = (end - begin + kPanel - 1) / kPanel * kPanel;
     device_.launch<SgIrradiance>({lobes, kBlock, b.normals.data(), b.irradiance.data()}, n);
     SgReflection::Args reflection{lobes, {}, {}, kBlock, b.mirrors.data(), b.reflected.data()};
     set_reflection_lobe(roughness, reflection);
     device_.launch<SgReflection>(reflection, n);
-    b.far.resize(b.origins.size());
-    surface_.intersect(b.origins, b.directions, 0, b.far);
+    const std::vector<Blocked> way = blocked(hits.subspan(begin, end - begin), look);
     for (int i = begin; i < end; ++i) {
       const Hit& h = hits[i];
       const auto& t = mesh.triangles[h.triangle];
@@ -152,18 +249,9 @@ HitLight Lighting::light_at(std::span<const Hit> hits, float any_roughness) cons
       };
       out.openness[i] = at_corners(vertices_.openness, t, h.b1, h.b2);
       out.irradiance[i] = plane(b.irradiance) * out.openness[i] + at_corners(vertices_.bounce, t, h.b1, h.b2);
-      Vec3f seen{0, 0, 0};
-      int free = 0;
-      for (int k = 0; k < kOcclusionRays; ++k) {
-        const Surface::RayHit& f = b.far[size_t(i - begin) * kOcclusionRays + k];
-        if (f.t < 0)
-          ++free;
-        else
-          seen += leaving(f);
-      }
-      out.open_mirror[i] = float(free) / float(kOcclusionRays);
-      out.reflected[i] = (plane(b.reflected) * float(free) + seen) / float(kOcclusionRays);
-      out.env[i] = env_brdf_at(env_table, dot(h.normal, h.to_camera));
+      out.open_mirror[i] = max(way[i - begin].open, 0.0f);
+      out.reflected[i] = plane(b.reflected) * out.open_mirror[i] + way[i - begin].seen;
+      out.env[i] = env_brdf_at(look.env_table, dot(h.normal, h.to_camera));
     }
   });
   return out;
@@ -231,7 +319,7 @@ struct Lighting::Group {
 
 void Lighting::shade_group(const Group& group, std::span<const Vec3f> albedo, const Material& material,
                            Shading& out) const {
-  const HitLight light = light_at(group.hits, material.roughness);
+  const HitLight light = light_at(group.hits, material);
   for (size_t k = 0; k < group.index.size(); ++k) {
     const uint32_t i = group.index[k];
     const HitLight::Terms t = light.at(k, material);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shading model: what a surface point sends to the camera under a light of lobes. Direct light in closed
 // form, dimmed by what the vertices around the point see of the sky, plus one diffuse bounce; reflections in
-// closed form, replaced by the surface's own radiance where rays of the reflection lobe meet it.
+// closed form, replaced by what the surface itself shows where rays of the reflection lobe meet it: its diffuse
+// radiance and one more reflection.
 #pragma once
 
 #include <memory>
@@ -47,8 +48,9 @@ class Lighting {
   Shading shade(std::span<const Hit> hits, const Appearance&) const;
   // ... all of the object's own material. albedo: #hits base colour.
   Shading shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const;
-  HitLight light_at(std::span<const Hit> hits, float roughness) const;
-  HitLight light_at(std::span<const Hit> hits) const { return light_at(hits, material_.roughness); }
+  // As if the object were of that material.
+  HitLight light_at(std::span<const Hit> hits, const Material&) const;
+  HitLight light_at(std::span<const Hit> hits) const { return light_at(hits, material_); }
   // dL/d(normal) of each hit, tangent to the sphere, from dL/d(radiance that it sends out), for the object's own
   // material: through the mirror direction and the reflectance. Irradiance is taken at the mesh's normals and
   // does not enter; nor does what blocks the reflection. light: light_at(hits); albedo: #hits base colour.
@@ -60,8 +62,12 @@ class Lighting {
  private:
   struct Block;
   struct Group;
+  struct Look;     // of one material
+  struct Blocked;  // what is in the way of a reflection
   void shade_group(const Group&, std::span<const Vec3f> albedo, const Material&, Shading& out) const;
-  Vec3f leaving(const Surface::RayHit&) const;
+  std::vector<Blocked> blocked(std::span<const Hit>, const Look&) const;
+  std::vector<Vec3f> shown(std::span<const Vec3f> origins, std::span<const Vec3f> directions,
+                           std::span<const Surface::RayHit>, const Look&) const;
   std::vector<Vec3f> mirror_slopes(std::span<const Hit> hits, std::span<const Vec3f> d_reflected) const;
 
   const Device& device_;

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/math/brdf.h"
 #include "core/math/rng.h"
 
 namespace cei3d {
@@ -188,6 +189,68 @@ TEST(Transport, AWhiteCavityGlows) {
     // rays).
     EXPECT_NEAR(seen[v].x + bounce[v].x, open[v].x, 0.12f);
   }
+}
+
+// Brute force: GGX facets sampled, paths of up to four reflections.
+Vec3f traced_reflection(const Surface& surface, const SgMixture& sky, const Hit& first, Vec3f f0, float roughness,
+                        uint64_t key) {
+  const float alpha = roughness * roughness;
+  constexpr int kPaths = 3000;
+  Vec3f sum{0, 0, 0};
+  for (int s = 0; s < kPaths; ++s) {
+    Rng rng(17, key, uint64_t(s));
+    Vec3f p = first.position, n = first.normal, v = first.to_camera, weight{1, 1, 1};
+    for (int bounce = 0; bounce < 4; ++bounce) {
+      const float u = rng.uniform(), a = 2 * kPi * rng.uniform();
+      const float c = std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)), r = std::sqrt(1 - c * c);
+      const Vec3f x = normalize(cross(n, std::abs(n.x) > 0.9f ? Vec3f{0, 1, 0} : Vec3f{1, 0, 0})), y = cross(n, x);
+      const Vec3f h = x * (r * std::cos(a)) + y * (r * std::sin(a)) + n * c;
+      const float vh = dot(v, h), nv = dot(n, v);
+      const Vec3f l = h * (2 * vh) - v;
+      const float nl = dot(n, l);
+      if (vh <= 0 || nl <= 0 || nv <= 0) break;
+      for (int k = 0; k < 3; ++k)
+        weight[k] *= schlick(f0[k], vh) * smith_g1(nv, alpha) * smith_g1(nl, alpha) * vh / (c * nv);
+      const Vec3f from = p + n * 2e-3f;
+      Surface::RayHit far;
+      surface.intersect(std::span(&from, 1), std::span(&l, 1), 0, std::span(&far, 1));
+      if (far.t < 0) {
+        sum += weight * radiance(sky, l);
+        break;
+      }
+      const auto& t = surface.mesh().triangles[far.triangle];
+      const auto& normals = surface.mesh().normals;
+      n = normalize(normals[t[0]] * (1 - far.b1 - far.b2) + normals[t[1]] * far.b1 + normals[t[2]] * far.b2);
+      p = from + l * far.t;
+      v = -l;
+    }
+  }
+  return sum / float(kPaths);
+}
+
+TEST(Lighting, AMetalMirrorsItself) {
+  Mesh mesh;
+  add_sphere(mesh, {0, 0, -0.35f}, 0.5f);
+  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Surface surface(mesh);
+  const Device device = make_device();
+  const Vec3f copper{0.9f, 0.6f, 0.4f};
+  const Material metal{0.3f, 0.5f, 1};
+  const Lighting lighting(device, surface, some_sky(), std::vector<Vec3f>(mesh.positions.size(), copper), metal);
+  const auto hits = some_hits(surface.mesh(), 400);
+  const HitLight light = lighting.light_at(hits);
+  const Shading shading = lighting.shade(hits, std::vector<Vec3f>(hits.size(), copper));
+  double error = 0, total = 0;
+  int judged = 0;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    if (light.open_mirror[i] > 0.7f || dot(hits[i].normal, hits[i].to_camera) < 0.4f) continue;
+    const Vec3f truth = traced_reflection(surface, some_sky(), hits[i], copper, metal.roughness, i);
+    error += std::abs(shading.specular[i].y - truth.y);
+    total += truth.y;
+    ++judged;
+  }
+  ASSERT_GT(judged, 15);
+  EXPECT_LT(error / total, 0.2);  // taken as diffuse, what it mirrors is off by 0.35
 }
 
 // A convex body, so that nothing blocks a reflection.

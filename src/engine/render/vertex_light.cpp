@@ -23,6 +23,7 @@ void relight(const Transport& transport, const SgMixture& light, std::span<const
   const size_t n = seen.size();
   for (size_t i = 0; i < n; ++i) {
     if (!transport.covers(i)) continue;
+    v.base_color[i] = base_color[i];
     v.openness[i] = share(seen[i], open[i]);
     v.bounce[i] = {0, 0, 0};
   }
@@ -36,7 +37,7 @@ void relight(const Transport& transport, const SgMixture& light, std::span<const
 }
 
 void resize(VertexLight& v, size_t n) {
-  for (auto* a : {&v.openness, &v.bounce, &v.leaving}) a->resize(n, {0, 0, 0});
+  for (auto* a : {&v.base_color, &v.openness, &v.bounce, &v.leaving}) a->resize(n, {0, 0, 0});
 }
 
 }  // namespace

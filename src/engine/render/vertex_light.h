@@ -12,6 +12,7 @@
 namespace cei3d {
 
 struct VertexLight {
+  std::vector<Vec3f> base_color;  // #V linear
   std::vector<Vec3f> openness;  // #V share of the open sky's irradiance that arrives, per channel
   std::vector<Vec3f> bounce;    // #V irradiance from the surface itself
   std::vector<Vec3f> leaving;   // #V radiance that the surface sends out, taken as diffuse
