@@ -98,13 +98,15 @@ struct Lighting::Look {
   float roughness;  // that shading can take
   std::vector<Vec2f> env_table;
   std::vector<Vec3f> probes, lobe;  // directions around +Z
+  const SeenColors& seen;
 
-  Look(const Material& m, std::vector<Vec2f> table)
+  Look(const Material& m, std::vector<Vec2f> table, const SeenColors& colors)
       : material(m),
         roughness(max(m.roughness, kLeastRoughness)),
         env_table(std::move(table)),
         probes(lobe_directions(roughness, kProbes)),
-        lobe(lobe_directions(roughness, kRays)) {}
+        lobe(lobe_directions(roughness, kRays)),
+        seen(colors) {}
 };
 
 struct Lighting::Blocked {
@@ -146,35 +148,42 @@ LobeRays cast(const Surface& surface, std::span<const Hit> hits, std::span<const
 
 }  // namespace
 
-// Radiance that comes back along rays that met the surface. What its reflection in turn meets is taken as diffuse.
-std::vector<Vec3f> Lighting::shown(std::span<const Vec3f> origins, std::span<const Vec3f> directions,
-                                   std::span<const Surface::RayHit> far, const Look& look) const {
+// A point that a ray met, looked at from where the ray began.
+Hit Lighting::met_by(Vec3f origin, Vec3f direction, const Surface::RayHit& r) const {
   const Mesh& mesh = surface_.mesh();
-  const size_t n = far.size(), stride = (n + kPanel - 1) / kPanel * kPanel;
+  const Vec3f normal = normalize(at_corners(mesh.normals, mesh.triangles[r.triangle], r.b1, r.b2));
+  return {origin + direction * r.t, normal, -direction, r.triangle, r.b1, r.b2};
+}
+
+// Radiance that leaves these points for where they are looked at from. What their reflection meets is taken as
+// diffuse.
+std::vector<Vec3f> Lighting::shown(std::span<const Hit> met, const Look& look) const {
+  const Mesh& mesh = surface_.mesh();
+  const size_t n = met.size(), stride = (n + kPanel - 1) / kPanel * kPanel;
   std::vector<Vec3f> from(n), mirrors(n), out(n);
-  std::vector<float> cosines(n), mirror_planes(3 * stride, 0.0f), sky(3 * stride);
+  std::vector<float> mirror_planes(3 * stride, 0.0f), sky(3 * stride);
   for (size_t k = 0; k < n; ++k) {
-    const Vec3f normal = normalize(at_corners(mesh.normals, mesh.triangles[far[k].triangle], far[k].b1, far[k].b2));
-    const float cosine = -dot(normal, directions[k]);
-    cosines[k] = max(cosine, kGrazing);
-    mirrors[k] = normalize(normal * (2 * cosine) + directions[k]);
-    from[k] = origins[k] + directions[k] * far[k].t + normal * kLift;
+    mirrors[k] = mirror_direction(met[k]);
+    from[k] = met[k].position + met[k].normal * kLift;
     for (int c = 0; c < 3; ++c) mirror_planes[size_t(c) * stride + k] = mirrors[k][c];
   }
-  SgReflection::Args args{{lobe_planes_.data(), n_lobes_, padded_}, {}, {}, int(stride), mirror_planes.data(), sky.data()};
+  SgReflection::Args args{
+      {lobe_planes_.data(), n_lobes_, padded_}, {}, {}, int(stride), mirror_planes.data(), sky.data()};
   set_reflection_lobe(look.roughness, args);
   device_.launch<SgReflection>(args, int(stride));
   std::vector<Surface::RayHit> next(n);
   surface_.intersect(from, mirrors, 0, next);
-  const auto at = [&](const std::vector<Vec3f>& v, const Surface::RayHit& h) {
+  const auto at = [&](const std::vector<Vec3f>& v, const auto& h) {
     return at_corners(v, mesh.triangles[h.triangle], h.b1, h.b2);
   };
+  const std::vector<Vec3f> seen = look.seen ? look.seen(met) : std::vector<Vec3f>();
   const float m = look.material.metalness, dielectric = (1 - m) * kDielectricF0 * look.material.specular;
   for (size_t k = 0; k < n; ++k) {
-    const Vec3f color = at(vertices_.base_color, far[k]), diffuse = at(vertices_.leaving, far[k]);
-    const Vec3f reflected =
-        next[k].t < 0 ? Vec3f{sky[k], sky[stride + k], sky[2 * stride + k]} : at(vertices_.leaving, next[k]);
-    const Vec2f env = env_brdf_at(look.env_table, cosines[k]);
+    const Vec3f color = seen.empty() ? at(vertices_.base_color, met[k]) : seen[k];
+    const Vec3f diffuse = color * at(vertices_.arriving, met[k]);
+    const Vec3f reflected = next[k].t < 0 ? Vec3f{sky[k], sky[stride + k], sky[2 * stride + k]}
+                                          : at(vertices_.base_color, next[k]) * at(vertices_.arriving, next[k]);
+    const Vec2f env = env_brdf_at(look.env_table, max(dot(met[k].normal, met[k].to_camera), kGrazing));
     for (int c = 0; c < 3; ++c)
       out[k][c] = (1 - m) * diffuse[c] + ((m * color[c] + dielectric) * env.x + env.y) * reflected[c];
   }
@@ -194,17 +203,14 @@ std::vector<Lighting::Blocked> Lighting::blocked(std::span<const Hit> hits, cons
         break;
       }
   const LobeRays rays = cast(surface_, near, look.lobe);
-  std::vector<Vec3f> origins, directions;
-  std::vector<Surface::RayHit> met;
+  std::vector<Hit> met;
   std::vector<uint32_t> owner;
   for (size_t k = 0; k < rays.far.size(); ++k) {
     if (rays.far[k].t < 0) continue;
-    origins.push_back(rays.origins[k]);
-    directions.push_back(rays.directions[k]);
-    met.push_back(rays.far[k]);
+    met.push_back(met_by(rays.origins[k], rays.directions[k], rays.far[k]));
     owner.push_back(index[k / kRays]);
   }
-  const std::vector<Vec3f> radiance = shown(origins, directions, met, look);
+  const std::vector<Vec3f> radiance = shown(met, look);
   for (size_t k = 0; k < met.size(); ++k) {
     out[owner[k]].open -= 1.0f / kRays;
     out[owner[k]].seen += radiance[k] * (1.0f / kRays);
@@ -212,11 +218,11 @@ std::vector<Lighting::Blocked> Lighting::blocked(std::span<const Hit> hits, cons
   return out;
 }
 
-HitLight Lighting::light_at(std::span<const Hit> hits, const Material& material) const {
+HitLight Lighting::light_at(std::span<const Hit> hits, const Material& material, const SeenColors& seen) const {
   const Mesh& mesh = surface_.mesh();
   const float roughness = max(material.roughness, kLeastRoughness);
   const bool own = roughness == max(material_.roughness, kLeastRoughness);
-  const Look look(material, own ? env_table_ : env_brdf_table(roughness));
+  const Look look(material, own ? env_table_ : env_brdf_table(roughness), seen);
   HitLight out;
   out.irradiance.resize(hits.size());
   out.reflected.resize(hits.size());
@@ -318,8 +324,8 @@ struct Lighting::Group {
 };
 
 void Lighting::shade_group(const Group& group, std::span<const Vec3f> albedo, const Material& material,
-                           Shading& out) const {
-  const HitLight light = light_at(group.hits, material);
+                           const SeenColors& seen, Shading& out) const {
+  const HitLight light = light_at(group.hits, material, seen);
   for (size_t k = 0; k < group.index.size(); ++k) {
     const uint32_t i = group.index[k];
     const HitLight::Terms t = light.at(k, material);
@@ -328,7 +334,7 @@ void Lighting::shade_group(const Group& group, std::span<const Vec3f> albedo, co
   }
 }
 
-Shading Lighting::shade(std::span<const Hit> hits, const Appearance& appearance) const {
+Shading Lighting::shade(std::span<const Hit> hits, const Appearance& appearance, const SeenColors& seen) const {
   std::vector<Group> groups(appearance.materials.size());
   for (Group& group : groups) {
     group.index.reserve(hits.size() / groups.size());
@@ -341,7 +347,7 @@ Shading Lighting::shade(std::span<const Hit> hits, const Appearance& appearance)
   }
   Shading out{std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())};
   for (size_t m = 0; m < groups.size(); ++m)
-    if (!groups[m].hits.empty()) shade_group(groups[m], appearance.albedo, appearance.materials[m], out);
+    if (!groups[m].hits.empty()) shade_group(groups[m], appearance.albedo, appearance.materials[m], seen, out);
   return out;
 }
 

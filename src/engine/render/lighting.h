@@ -5,6 +5,7 @@
 // radiance and one more reflection.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -16,6 +17,9 @@
 #include "model/scene/appearance.h"
 
 namespace cei3d {
+
+// Base colours (#points) of points of the surface that reflections meet. Asked from several threads at once.
+using SeenColors = std::function<std::vector<Vec3f>(std::span<const Hit>)>;
 
 struct Shading {
   std::vector<Vec3f> diffuse, specular;  // #hits, linear radiance
@@ -44,12 +48,13 @@ class Lighting {
   Lighting(const Device&, const Surface&, const SgMixture&, const Material&, VertexLight);
   ~Lighting();
 
-  // A hit's result depends on nothing but that hit, its base colour and its material.
-  Shading shade(std::span<const Hit> hits, const Appearance&) const;
+  // A hit's result depends on nothing but that hit, its base colour and its material. seen: what reflections see
+  // in place of the base colours above.
+  Shading shade(std::span<const Hit> hits, const Appearance&, const SeenColors& seen = {}) const;
   // ... all of the object's own material. albedo: #hits base colour.
   Shading shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const;
   // As if the object were of that material.
-  HitLight light_at(std::span<const Hit> hits, const Material&) const;
+  HitLight light_at(std::span<const Hit> hits, const Material&, const SeenColors& seen = {}) const;
   HitLight light_at(std::span<const Hit> hits) const { return light_at(hits, material_); }
   // dL/d(normal) of each hit, tangent to the sphere, from dL/d(radiance that it sends out), for the object's own
   // material: through the mirror direction and the reflectance. Irradiance is taken at the mesh's normals and
@@ -64,10 +69,11 @@ class Lighting {
   struct Group;
   struct Look;     // of one material
   struct Blocked;  // what is in the way of a reflection
-  void shade_group(const Group&, std::span<const Vec3f> albedo, const Material&, Shading& out) const;
+  void shade_group(const Group&, std::span<const Vec3f> albedo, const Material&, const SeenColors&,
+                   Shading& out) const;
   std::vector<Blocked> blocked(std::span<const Hit>, const Look&) const;
-  std::vector<Vec3f> shown(std::span<const Vec3f> origins, std::span<const Vec3f> directions,
-                           std::span<const Surface::RayHit>, const Look&) const;
+  std::vector<Vec3f> shown(std::span<const Hit> met, const Look&) const;
+  Hit met_by(Vec3f origin, Vec3f direction, const Surface::RayHit&) const;
   std::vector<Vec3f> mirror_slopes(std::span<const Hit> hits, std::span<const Vec3f> d_reflected) const;
 
   const Device& device_;

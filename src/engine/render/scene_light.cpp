@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/render/scene_light.h"
 
+#include <map>
+#include <utility>
+
 namespace cei3d {
 namespace {
 
@@ -46,7 +49,15 @@ Shading with_unlit(Shading lit, const Appearance& look) {
   return lit;
 }
 
-// The hits that one pose lights, with its own triangles, and what they look like.
+// The scene as it was when that layer had been put on, as far as it has to do with that pose.
+Scene as_of(Scene scene, int layer, int pose) {
+  scene.layers.resize(size_t(layer) + 1);
+  std::erase_if(scene.layers, [&](const EditLayer& l) { return l.pose > pose || (l.reshape && max(l.pose, 0) + 1 > pose); });
+  if (!scene.poses.empty()) scene.poses.resize(size_t(pose) + 1);
+  return scene;
+}
+
+// Hits that one pose lights, with its own triangles, and what they look like.
 struct Group {
   std::vector<uint32_t> index;
   std::vector<Hit> hits;
@@ -65,40 +76,50 @@ std::vector<std::shared_ptr<const Transport>> scene_transports(const Scene& scen
 
 SceneLight::SceneLight(const Device& device, const Scene& scene,
                        const std::vector<std::shared_ptr<const Transport>>& transports)
-    : poses_(scene.poses), surface_(scene.surface) {
-  const Surface& rest = poses_.empty() ? *surface_ : *poses_.front()->surface;
+    : device_(device), scene_(scene) {
+  const Poses& poses = scene_.poses;
+  const Surface& rest = poses.empty() ? *scene_.surface : *poses.front()->surface;
   std::vector<Vec3f> colors = base_colors(device, scene, rest);
   VertexLight light = vertex_light(*transports.at(0), scene.light, colors);
   lights_.push_back(std::make_shared<const Lighting>(device, rest, scene.light, scene.material, light));
-  for (size_t k = 1; k < poses_.size(); ++k) {
-    const Pose& pose = *poses_[k];
+  for (size_t k = 1; k < poses.size(); ++k) {
+    const Pose& pose = *poses[k];
     colors.insert(colors.end(), pose.colors.begin() + colors.size(), pose.colors.end());
     light = vertex_light_after(std::move(light), *transports.at(k), scene.light, colors);
     lights_.push_back(
         std::make_shared<const Lighting>(device, *pose.surface, scene.light, scene.material, light));
   }
-  if (!poses_.empty()) triangles_ = triangle_ids(poses_);
+  if (!poses.empty()) triangles_ = triangle_ids(poses);
+  for (size_t l = 0; l < scene.layers.size(); ++l)
+    if (scene.layers[l].everywhere) everywhere_ = int(l);
+}
+
+SeenColors SceneLight::seen_from(int layer, int pose) const {
+  if (layer < 0) return {};
+  return [this, then = as_of(scene_, layer, pose)](std::span<const Hit> met) {
+    return appearance_at(device_, then, met).albedo;
+  };
 }
 
 Shading SceneLight::shade(std::span<const Hit> hits, const Appearance& look) const {
-  if (poses_.empty()) return with_unlit(lights_[0]->shade(hits, look), look);
-  std::vector<Group> groups(poses_.size());
+  std::map<std::pair<int, int>, Group> groups;  // by pose and by the last layer that has to do with them
   for (uint32_t i = 0; i < hits.size(); ++i) {
-    const int pose = poses_.back()->shaped_in(hits[i].triangle);
-    Group& g = groups[pose];
+    const int pose = scene_.poses.empty() ? 0 : scene_.poses.back()->shaped_in(hits[i].triangle);
+    Group& g = groups[{pose, max(look.layer[i], everywhere_)}];
     g.index.push_back(i);
     g.hits.push_back(hits[i]);
-    g.hits.back().triangle = triangles_[pose][hits[i].triangle];
+    if (!triangles_.empty()) g.hits.back().triangle = triangles_[pose][hits[i].triangle];
     g.look.albedo.push_back(look.albedo[i]);
     g.look.material.push_back(look.material[i]);
   }
   Shading out{std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())};
-  for (size_t k = 0; k < groups.size(); ++k) {
-    groups[k].look.materials = look.materials;
-    const Shading part = lights_[k]->shade(groups[k].hits, groups[k].look);
-    for (size_t j = 0; j < groups[k].index.size(); ++j) {
-      out.diffuse[groups[k].index[j]] = part.diffuse[j];
-      out.specular[groups[k].index[j]] = part.specular[j];
+  for (auto& [key, group] : groups) {
+    const auto [pose, layer] = key;
+    group.look.materials = look.materials;
+    const Shading part = lights_[pose]->shade(group.hits, group.look, seen_from(layer, pose));
+    for (size_t j = 0; j < group.index.size(); ++j) {
+      out.diffuse[group.index[j]] = part.diffuse[j];
+      out.specular[group.index[j]] = part.specular[j];
     }
   }
   return with_unlit(std::move(out), look);

@@ -2,7 +2,7 @@
 // How the scene's light reaches its surface; made once and used for every view. Each pose of the object is
 // lit as it was when it was made, and a hit is lit in the pose that gave its triangle its present shape: an
 // edit changes no pixel outside its region. For the same reason the bounce is that of the unedited base
-// colour.
+// colour, and what an edited point mirrors has the colours that it had when that point was edited last.
 #pragma once
 
 #include <memory>
@@ -21,8 +21,11 @@ class SceneLight {
   Shading shade(std::span<const Hit> hits, const Appearance&) const;
 
  private:
-  Poses poses_;
-  std::shared_ptr<const Surface> surface_;
+  SeenColors seen_from(int layer, int pose) const;
+
+  const Device& device_;
+  Scene scene_;
+  int everywhere_ = -1;  // the last layer that has no region
   std::vector<std::shared_ptr<const Lighting>> lights_;  // by pose
   std::vector<std::vector<uint32_t>> triangles_;         // [pose][present triangle]: its id in that pose
 };

@@ -27,17 +27,20 @@ void relight(const Transport& transport, const SgMixture& light, std::span<const
     v.openness[i] = share(seen[i], open[i]);
     v.bounce[i] = {0, 0, 0};
   }
+  std::vector<Vec3f> leaving(n);
   for (int round = 0; round < 2; ++round) {
-    for (size_t i = 0; i < n; ++i)
-      if (transport.covers(i)) v.leaving[i] = base_color[i] * (seen[i] + v.bounce[i]) / kPi;
-    const std::vector<Vec3f> bounce = transport.bounce(v.leaving);
+    for (size_t i = 0; i < n; ++i) {
+      if (transport.covers(i)) v.arriving[i] = (seen[i] + v.bounce[i]) / kPi;
+      leaving[i] = v.base_color[i] * v.arriving[i];
+    }
+    const std::vector<Vec3f> bounce = transport.bounce(leaving);
     for (size_t i = 0; i < n; ++i)
       if (transport.covers(i)) v.bounce[i] = bounce[i];
   }
 }
 
 void resize(VertexLight& v, size_t n) {
-  for (auto* a : {&v.base_color, &v.openness, &v.bounce, &v.leaving}) a->resize(n, {0, 0, 0});
+  for (auto* a : {&v.base_color, &v.openness, &v.bounce, &v.arriving}) a->resize(n, {0, 0, 0});
 }
 
 }  // namespace
