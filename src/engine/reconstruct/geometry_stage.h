@@ -35,7 +35,7 @@ struct GeometryOptions {
   float view_from = 0.25f;    // from a carved start: until here colours do not depend on the view, so that what moves
                               // with it must be the surface; mirror images would eat a hull
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
-  float decay_from = 0.3f, decay_to = 0.05f;  // exponential decay of the rate over the rest of the schedule
+  float decay_from = 0.3f, decay_to = 0.01f;  // exponential decay of the rate over the rest of the schedule
   int prefit_steps = 300;
   float anchor_until = 0.2f;    // a carved start holds the surface, less and less, until here: colours that know
   float anchor_weight = 0.15f;  // nothing yet would blow it up again. Times the sharpness

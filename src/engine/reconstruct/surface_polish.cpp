@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/surface_polish.h"
 
+#include <algorithm>
 #include <chrono>
 
 #include "core/math/rng.h"
@@ -29,7 +30,8 @@ class Polish {
         trainer_(albedo_, {}),
         lighting_(device, input.surface, appearance.light, vertex_colors(input.surface), appearance.material) {}
 
-  GeometryStats step(int step) {
+  // share: of the polishing that is done, [0, 1).
+  GeometryStats step(int step, double share) {
     choose_batch(step);
     refine_hits(device_, stage_.sdf(), directions_, hits_);
     const HitLight light = lighting_.light_at(hits_);
@@ -38,7 +40,7 @@ class Polish {
     std::vector<Vec3f> points;
     std::vector<float> d_values;
     spread(d_normals, points, d_values);
-    return stage_.step(options_.first_step + step, options_.position, {points, d_values});
+    return stage_.step(options_.first_step + step, options_.from + (1 - options_.from) * share, {points, d_values});
   }
 
  private:
@@ -123,8 +125,9 @@ void polish_surface(const Device& device, GeometryStage& stage, const Appearance
   const double start = now();
   Polish polish(device, stage, input, appearance, options);
   for (int step = 0; step < options.steps && !progress.cancelled(); ++step) {
-    if (options.seconds > 0 && now() - start > options.seconds) break;
-    polish.step(step);
+    const double time = options.seconds > 0 ? (now() - start) / options.seconds : 0;
+    if (time >= 1) break;
+    polish.step(step, std::max(time, double(step) / options.steps));
     if (step % 20 == 0) progress.report({"surface by its reflections", 0.8 + 0.05 * step / options.steps, -1, ""});
   }
 }

@@ -15,7 +15,7 @@ struct PolishOptions {
   double seconds = 0;       // > 0: at most so long
   int batch = 8192;         // hits a step
   float weight = 1;         // of the shading loss against the geometry stage's
-  double position = 0.85;   // in the geometry stage's schedule: its rates
+  double from = 0.66;       // where in the geometry stage's schedule, whose rates it takes, it begins; it ends with it
   uint64_t seed = 1;
   int64_t first_step = int64_t(1) << 24;  // number of the first of the geometry stage's steps: its random rays
 };
