@@ -67,7 +67,7 @@ void LightDescent::step(const Device& device, std::span<const Hit> hits, std::sp
   std::vector<Vec3f> normals(n), mirrors(n);
   for (int i = 0; i < n; ++i) {
     normals[i] = hits[i].normal;
-    mirrors[i] = normalize(hits[i].normal * (2 * dot(hits[i].normal, hits[i].to_camera)) - hits[i].to_camera);
+    mirrors[i] = mirror_direction(hits[i]);
   }
   const std::vector<float> np = planes_of(normals, n), mp = planes_of(mirrors, n),
                            ep = planes_of(d_irradiance, n), rp = planes_of(d_reflected, n);

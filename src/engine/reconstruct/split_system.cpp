@@ -23,8 +23,6 @@ Vec3f interpolate(const std::vector<Vec3f>& values, const std::array<uint32_t, 3
   return values[v[0]] * b[0] + values[v[1]] * b[1] + values[v[2]] * b[2];
 }
 
-Vec3f mirror(Vec3f n, Vec3f v) { return normalize(n * (2 * dot(n, v)) - v); }
-
 void set_far_hit(const Mesh& mesh, const Surface::RayHit& h, SplitRow& row) {
   const auto& t = mesh.triangles[h.triangle];
   row.blocked = true;
@@ -62,7 +60,7 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     row.color = samples.colors[kept[k]];
     for (int c = 0; c < 3; ++c) row.weight[c] = clipped ? 0 : square(srgb_slope(max(row.color[c], kDarkest)));
     origins[k] = h.position + h.normal * 2e-3f;
-    directions[k] = mirror(h.normal, h.to_camera);
+    directions[k] = mirror_direction(h);
   }
   std::vector<Surface::RayHit> hits(n);
   surface.intersect(origins, directions, 0, hits);

@@ -5,21 +5,18 @@
 // radiance and one more reflection.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "core/compute/device.h"
+#include "engine/render/self_reflection.h"
 #include "engine/render/vertex_light.h"
 #include "model/light/sg_mixture.h"
 #include "model/material/material.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {
-
-// Base colours (#points) of points of the surface that reflections meet. Asked from several threads at once.
-using SeenColors = std::function<std::vector<Vec3f>(std::span<const Hit>)>;
 
 struct Shading {
   std::vector<Vec3f> diffuse, specular;  // #hits, linear radiance
@@ -67,13 +64,8 @@ class Lighting {
  private:
   struct Block;
   struct Group;
-  struct Look;     // of one material
-  struct Blocked;  // what is in the way of a reflection
   void shade_group(const Group&, std::span<const Vec3f> albedo, const Material&, const SeenColors&,
                    Shading& out) const;
-  std::vector<Blocked> blocked(std::span<const Hit>, const Look&) const;
-  std::vector<Vec3f> shown(std::span<const Hit> met, const Look&) const;
-  Hit met_by(Vec3f origin, Vec3f direction, const Surface::RayHit&) const;
   std::vector<Vec3f> mirror_slopes(std::span<const Hit> hits, std::span<const Vec3f> d_reflected) const;
 
   const Device& device_;
@@ -84,9 +76,5 @@ class Lighting {
   VertexLight vertices_;
   std::vector<Vec2f> env_table_;  // scale and bias of the reflectance by the viewer's cosine
 };
-
-// The env_brdf of one roughness, tabulated over the viewer's cosine in cells of equal width.
-std::vector<Vec2f> env_brdf_table(float roughness);
-Vec2f env_brdf_at(const std::vector<Vec2f>& table, float nv);
 
 }  // namespace cei3d

@@ -7,6 +7,7 @@
 
 #include "core/math/brdf.h"
 #include "core/math/rng.h"
+#include "engine/render/env_table.h"
 
 namespace cei3d {
 namespace {

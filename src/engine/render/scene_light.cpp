@@ -52,7 +52,9 @@ Shading with_unlit(Shading lit, const Appearance& look) {
 // The scene as it was when that layer had been put on, as far as it has to do with that pose.
 Scene as_of(Scene scene, int layer, int pose) {
   scene.layers.resize(size_t(layer) + 1);
-  std::erase_if(scene.layers, [&](const EditLayer& l) { return l.pose > pose || (l.reshape && max(l.pose, 0) + 1 > pose); });
+  std::erase_if(scene.layers, [&](const EditLayer& l) {
+    return l.pose > pose || (l.reshape && max(l.pose, 0) + 1 > pose);
+  });
   if (!scene.poses.empty()) scene.poses.resize(size_t(pose) + 1);
   return scene;
 }

@@ -25,7 +25,7 @@ class SceneLight {
 
   const Device& device_;
   Scene scene_;
-  int everywhere_ = -1;  // the last layer that has no region
+  int everywhere_ = -1;                                  // the last layer that has no region
   std::vector<std::shared_ptr<const Lighting>> lights_;  // by pose
   std::vector<std::vector<uint32_t>> triangles_;         // [pose][present triangle]: its id in that pose
 };

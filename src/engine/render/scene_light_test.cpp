@@ -56,8 +56,7 @@ std::vector<Hit> mirroring_hits(const Scene& scene) {
     Hit hit = h;
     const Vec3f side = normalize(cross(h.normal, Vec3f{0.3f, 0.8f, 0.1f}));
     hit.to_camera = normalize(h.normal + side * 0.8f);
-    const Vec3f origin = h.position + h.normal * 2e-3f,
-                mirror = normalize(h.normal * (2 * dot(h.normal, hit.to_camera)) - hit.to_camera);
+    const Vec3f origin = h.position + h.normal * 2e-3f, mirror = mirror_direction(hit);
     Surface::RayHit far;
     scene.surface->intersect(std::span(&origin, 1), std::span(&mirror, 1), 0, std::span(&far, 1));
     if (far.t >= 0) out.push_back(hit);
@@ -78,7 +77,8 @@ TEST(SceneLight, EditedPointsMirrorEditedColours) {
   ASSERT_GT(hits.size(), 300u);
   const auto transports = scene_transports(before);
   const Appearance grey = appearance_at(device, after, hits);
-  const double tint = mean_tint(SceneLight(device, before, transports).shade(hits, grey));  // orange is mirrored
+  const double tint =
+      mean_tint(SceneLight(device, before, transports).shade(hits, grey));  // orange is mirrored
   EXPECT_GT(tint, 0.05);
   // What is left is the second bounce, which stays that of the unedited colours.
   EXPECT_LT(mean_tint(SceneLight(device, after, transports).shade(hits, grey)), 0.4 * tint);

@@ -16,4 +16,9 @@ struct Hit {
   float b1, b2;       // ... and its barycentrics: p = (1 - b1 - b2) v0 + b1 v1 + b2 v2
 };
 
+// Where the light comes from that the camera sees mirrored there. Unit.
+inline Vec3f mirror_direction(const Hit& h) {
+  return normalize(h.normal * (2 * dot(h.normal, h.to_camera)) - h.to_camera);
+}
+
 }  // namespace cei3d

@@ -16,4 +16,9 @@ struct Mesh {
   std::vector<std::array<uint32_t, 3>> triangles;  // #F, counter-clockwise seen from outside
 };
 
+// Values of vertices (#V) at a point of a triangle, by its barycentrics b1 and b2.
+inline Vec3f at_corners(const std::vector<Vec3f>& v, const std::array<uint32_t, 3>& t, float b1, float b2) {
+  return v[t[0]] * (1 - b1 - b2) + v[t[1]] * b1 + v[t[2]] * b2;
+}
+
 }  // namespace cei3d

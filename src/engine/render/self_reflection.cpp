@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/render/self_reflection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/compute/kernels/all.h"
+#include "core/math/brdf.h"
+#include "engine/render/env_table.h"
+
+namespace cei3d {
+namespace {
+
+constexpr float kLift = 2e-3f;  // rays start this far above the surface
+// Rays of the reflection lobe: a few to see whether anything is in its way, and where it is, enough to see
+// what.
+constexpr int kProbes = 6, kRays = 24;
+constexpr float kGrazing = 0.02f;  // least cosine of a reflection that another reflection sees
+
+// Directions of equal weight that stand for the reflection lobe of a roughness around +Z: one ring at the
+// radius that splits each equal share of its energy. 1 / (1 + x)^2 has the cumulative share x / (1 + x).
+std::vector<Vec3f> lobe_directions(float roughness, int count) {
+  std::vector<Vec3f> d;
+  const float width = 2 / std::sqrt(reflection_scale(roughness));
+  for (int k = 0; k < count; ++k) {
+    const float u = (float(k) + 0.5f) / float(count);
+    const float t = std::min(width * std::sqrt(u / (1 - u)), 1.4f), a = 2.399963f * float(k);
+    d.push_back({std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)});
+  }
+  return d;
+}
+
+Vec3f turned(Vec3f z, Vec3f d) {  // d in a frame whose third axis is z
+  const float s = z.z < 0 ? -1.0f : 1.0f, a = -1 / (s + z.z), b = z.x * z.y * a;  // [Duff et al. 2017]
+  const Vec3f x{1 + s * z.x * z.x * a, s * b, -s * z.x}, y{b, s + z.y * z.y * a, -z.y};
+  return x * d.x + y * d.y + z * d.z;
+}
+
+struct LobeRays {
+  std::vector<Vec3f> origins, directions;
+  std::vector<Surface::RayHit> far;
+};
+
+LobeRays cast(const Surface& surface, std::span<const Hit> hits, std::span<const Vec3f> lobe) {
+  LobeRays rays;
+  rays.origins.reserve(hits.size() * lobe.size());
+  rays.directions.reserve(hits.size() * lobe.size());
+  for (const Hit& h : hits) {
+    const Vec3f r = mirror_direction(h);
+    for (const Vec3f& d : lobe) {
+      const Vec3f ray =
+          turned(r, d);  // below the horizon: folded up, since masking is in the reflectance already
+      rays.origins.push_back(h.position + h.normal * kLift);
+      rays.directions.push_back(ray - h.normal * (2 * min(dot(ray, h.normal), 0.0f)));
+    }
+  }
+  rays.far.resize(rays.origins.size());
+  surface.intersect(rays.origins, rays.directions, 0, rays.far);
+  return rays;
+}
+
+}  // namespace
+
+SelfReflection::SelfReflection(const Device& device, const Surface& surface, const VertexLight& vertices,
+                               LobePlanes light, const Material& material,
+                               const std::vector<Vec2f>& env_table, const SeenColors& colors)
+    : device_(device),
+      surface_(surface),
+      vertices_(vertices),
+      light_(light),
+      material_(material),
+      roughness_(max(material.roughness, kLeastRoughness)),
+      env_table_(env_table),
+      colors_(colors),
+      probes_(lobe_directions(roughness_, kProbes)),
+      lobe_(lobe_directions(roughness_, kRays)) {}
+
+// A point that a ray met, looked at from where the ray began.
+Hit SelfReflection::met_by(Vec3f origin, Vec3f direction, const Surface::RayHit& r) const {
+  const Mesh& mesh = surface_.mesh();
+  const Vec3f normal = normalize(at_corners(mesh.normals, mesh.triangles[r.triangle], r.b1, r.b2));
+  return {origin + direction * r.t, normal, -direction, r.triangle, r.b1, r.b2};
+}
+
+// Radiance that leaves these points for where they are looked at from. What their reflection meets is taken
+// as diffuse.
+std::vector<Vec3f> SelfReflection::shown(std::span<const Hit> met) const {
+  const Mesh& mesh = surface_.mesh();
+  const size_t n = met.size(), stride = (n + kPanel - 1) / kPanel * kPanel;
+  std::vector<Vec3f> from(n), mirrors(n), out(n);
+  std::vector<float> mirror_planes(3 * stride, 0.0f), sky(3 * stride);
+  for (size_t k = 0; k < n; ++k) {
+    mirrors[k] = mirror_direction(met[k]);
+    from[k] = met[k].position + met[k].normal * kLift;
+    for (int c = 0; c < 3; ++c) mirror_planes[size_t(c) * stride + k] = mirrors[k][c];
+  }
+  SgReflection::Args args{light_, {}, {}, int(stride), mirror_planes.data(), sky.data()};
+  set_reflection_lobe(roughness_, args);
+  device_.launch<SgReflection>(args, int(stride));
+  std::vector<Surface::RayHit> next(n);
+  surface_.intersect(from, mirrors, 0, next);
+  const auto at = [&](const std::vector<Vec3f>& v, const auto& h) {
+    return at_corners(v, mesh.triangles[h.triangle], h.b1, h.b2);
+  };
+  const std::vector<Vec3f> seen = colors_ ? colors_(met) : std::vector<Vec3f>();
+  const float m = material_.metalness, dielectric = (1 - m) * kDielectricF0 * material_.specular;
+  for (size_t k = 0; k < n; ++k) {
+    const Vec3f color = seen.empty() ? at(vertices_.base_color, met[k]) : seen[k];
+    const Vec3f diffuse = color * at(vertices_.arriving, met[k]);
+    const Vec3f reflected = next[k].t < 0
+                                ? Vec3f{sky[k], sky[stride + k], sky[2 * stride + k]}
+                                : at(vertices_.base_color, next[k]) * at(vertices_.arriving, next[k]);
+    const Vec2f env = env_brdf_at(env_table_, max(dot(met[k].normal, met[k].to_camera), kGrazing));
+    for (int c = 0; c < 3; ++c)
+      out[k][c] = (1 - m) * diffuse[c] + ((m * color[c] + dielectric) * env.x + env.y) * reflected[c];
+  }
+  return out;
+}
+
+std::vector<SelfReflection::Seen> SelfReflection::seen_by(std::span<const Hit> hits) const {
+  std::vector<Seen> out(hits.size());
+  const LobeRays probes = cast(surface_, hits, probes_);
+  std::vector<Hit> near;
+  std::vector<uint32_t> index;
+  for (size_t i = 0; i < hits.size(); ++i)
+    for (int k = 0; k < kProbes; ++k)
+      if (probes.far[i * kProbes + k].t >= 0) {
+        near.push_back(hits[i]);
+        index.push_back(uint32_t(i));
+        break;
+      }
+  const LobeRays rays = cast(surface_, near, lobe_);
+  std::vector<Hit> met;
+  std::vector<uint32_t> owner;
+  for (size_t k = 0; k < rays.far.size(); ++k) {
+    if (rays.far[k].t < 0) continue;
+    met.push_back(met_by(rays.origins[k], rays.directions[k], rays.far[k]));
+    owner.push_back(index[k / kRays]);
+  }
+  const std::vector<Vec3f> radiance = shown(met);
+  for (size_t k = 0; k < met.size(); ++k) {
+    out[owner[k]].open -= 1.0f / kRays;
+    out[owner[k]].radiance += radiance[k] * (1.0f / kRays);
+  }
+  return out;
+}
+
+}  // namespace cei3d

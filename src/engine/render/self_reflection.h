@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What an object shows of itself in the reflections of its points: its diffuse radiance and one more
+// reflection.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/compute/device.h"
+#include "core/compute/kernels/light.h"
+#include "engine/render/vertex_light.h"
+#include "model/geometry/surface.h"
+#include "model/material/material.h"
+
+namespace cei3d {
+
+// Base colours (#points) of points of the surface that reflections meet. Asked from several threads at once.
+using SeenColors = std::function<std::vector<Vec3f>(std::span<const Hit>)>;
+
+// Keeps references to all that it is made of.
+class SelfReflection {
+ public:
+  // env_table: env_brdf_table() of the material's roughness. colors: empty: those of the vertices.
+  SelfReflection(const Device&, const Surface&, const VertexLight&, LobePlanes light, const Material&,
+                 const std::vector<Vec2f>& env_table, const SeenColors& colors);
+
+  struct Seen {
+    float open = 1;           // share of the reflection lobe that sees the sky
+    Vec3f radiance{0, 0, 0};  // from the rest, times its share
+  };
+  // #hits; each depends on its hit alone.
+  std::vector<Seen> seen_by(std::span<const Hit> hits) const;
+
+ private:
+  Hit met_by(Vec3f origin, Vec3f direction, const Surface::RayHit&) const;
+  std::vector<Vec3f> shown(std::span<const Hit> met) const;
+
+  const Device& device_;
+  const Surface& surface_;
+  const VertexLight& vertices_;
+  LobePlanes light_;
+  Material material_;
+  float roughness_;  // that shading can take
+  const std::vector<Vec2f>& env_table_;
+  const SeenColors& colors_;
+  std::vector<Vec3f> probes_, lobe_;  // directions around +Z
+};
+
+}  // namespace cei3d
