@@ -54,7 +54,7 @@ struct Lighting::Block {
 };
 
 HitLight Lighting::light_at(std::span<const Hit> hits, const Material& material,
-                            const SeenColors& seen) const {
+                            std::span<const Vec3f> seen) const {
   const Mesh& mesh = surface_.mesh();
   const float roughness = max(material.roughness, kLeastRoughness);
   const bool own = roughness == max(material_.roughness, kLeastRoughness);
@@ -67,7 +67,8 @@ HitLight Lighting::light_at(std::span<const Hit> hits, const Material& material,
   out.open_mirror.resize(hits.size());
   out.env.resize(hits.size());
   const LobePlanes lobes{lobe_planes_.data(), n_lobes_, padded_};
-  const SelfReflection own_image(device_, surface_, vertices_, lobes, material, env_table, seen);
+  const SelfReflection own_image(device_, surface_, vertices_, lobes, material, env_table,
+                                 seen.empty() ? std::span<const Vec3f>(vertices_.base_color) : seen);
   parallel_ranges(int(hits.size()), kBlock, [&](int begin, int end) {
     Block b;
     for (int i = begin; i < end; ++i) {
@@ -164,7 +165,7 @@ struct Lighting::Group {
 };
 
 void Lighting::shade_group(const Group& group, std::span<const Vec3f> albedo, const Material& material,
-                           const SeenColors& seen, Shading& out) const {
+                           std::span<const Vec3f> seen, Shading& out) const {
   const HitLight light = light_at(group.hits, material, seen);
   for (size_t k = 0; k < group.index.size(); ++k) {
     const uint32_t i = group.index[k];
@@ -175,7 +176,7 @@ void Lighting::shade_group(const Group& group, std::span<const Vec3f> albedo, co
 }
 
 Shading Lighting::shade(std::span<const Hit> hits, const Appearance& appearance,
-                        const SeenColors& seen) const {
+                        std::span<const Vec3f> seen) const {
   std::vector<Group> groups(appearance.materials.size());
   for (Group& group : groups) {
     group.index.reserve(hits.size() / groups.size());

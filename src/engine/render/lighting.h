@@ -45,13 +45,13 @@ class Lighting {
   Lighting(const Device&, const Surface&, const SgMixture&, const Material&, VertexLight);
   ~Lighting();
 
-  // A hit's result depends on nothing but that hit, its base colour and its material. seen: what reflections see
-  // in place of the base colours above.
-  Shading shade(std::span<const Hit> hits, const Appearance&, const SeenColors& seen = {}) const;
+  // A hit's result depends on nothing but that hit, its base colour and its material. seen: #V, what reflections see
+  // in place of the base colours above; empty: those.
+  Shading shade(std::span<const Hit> hits, const Appearance&, std::span<const Vec3f> seen = {}) const;
   // ... all of the object's own material. albedo: #hits base colour.
   Shading shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const;
   // As if the object were of that material.
-  HitLight light_at(std::span<const Hit> hits, const Material&, const SeenColors& seen = {}) const;
+  HitLight light_at(std::span<const Hit> hits, const Material&, std::span<const Vec3f> seen = {}) const;
   HitLight light_at(std::span<const Hit> hits) const { return light_at(hits, material_); }
   // dL/d(normal) of each hit, tangent to the sphere, from dL/d(radiance that it sends out), for the object's own
   // material: through the mirror direction and the reflectance. Irradiance is taken at the mesh's normals and
@@ -64,7 +64,7 @@ class Lighting {
  private:
   struct Block;
   struct Group;
-  void shade_group(const Group&, std::span<const Vec3f> albedo, const Material&, const SeenColors&,
+  void shade_group(const Group&, std::span<const Vec3f> albedo, const Material&, std::span<const Vec3f> seen,
                    Shading& out) const;
   std::vector<Vec3f> mirror_slopes(std::span<const Hit> hits, std::span<const Vec3f> d_reflected) const;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/render/scene_light.h"
 
+#include <algorithm>
 #include <map>
 #include <utility>
 
@@ -96,11 +97,15 @@ SceneLight::SceneLight(const Device& device, const Scene& scene,
     if (scene.layers[l].everywhere) everywhere_ = int(l);
 }
 
-SeenColors SceneLight::seen_from(int layer, int pose) const {
+// Of the pose's vertices; empty: as they were reconstructed.
+std::vector<Vec3f> SceneLight::colors_as_of(int layer, int pose) const {
   if (layer < 0) return {};
-  return [this, then = as_of(scene_, layer, pose)](std::span<const Hit> met) {
-    return appearance_at(device_, then, met).albedo;
-  };
+  const Scene then = as_of(scene_, layer, pose);
+  const bool colored = std::any_of(then.layers.begin(), then.layers.end(),
+                                   [](const EditLayer& l) { return l.albedo || l.erase || l.tint; });
+  if (!colored) return {};
+  const Surface& surface = scene_.poses.empty() ? *scene_.surface : *scene_.poses[size_t(pose)]->surface;
+  return appearance_at(device_, then, vertex_hits(surface.mesh())).albedo;
 }
 
 Shading SceneLight::shade(std::span<const Hit> hits, const Appearance& look) const {
@@ -118,7 +123,7 @@ Shading SceneLight::shade(std::span<const Hit> hits, const Appearance& look) con
   for (auto& [key, group] : groups) {
     const auto [pose, layer] = key;
     group.look.materials = look.materials;
-    const Shading part = lights_[pose]->shade(group.hits, group.look, seen_from(layer, pose));
+    const Shading part = lights_[pose]->shade(group.hits, group.look, colors_as_of(layer, pose));
     for (size_t j = 0; j < group.index.size(); ++j) {
       out.diffuse[group.index[j]] = part.diffuse[j];
       out.specular[group.index[j]] = part.specular[j];

@@ -21,7 +21,7 @@ class SceneLight {
   Shading shade(std::span<const Hit> hits, const Appearance&) const;
 
  private:
-  SeenColors seen_from(int layer, int pose) const;
+  std::vector<Vec3f> colors_as_of(int layer, int pose) const;
 
   const Device& device_;
   Scene scene_;

@@ -63,7 +63,7 @@ LobeRays cast(const Surface& surface, std::span<const Hit> hits, std::span<const
 
 SelfReflection::SelfReflection(const Device& device, const Surface& surface, const VertexLight& vertices,
                                LobePlanes light, const Material& material,
-                               const std::vector<Vec2f>& env_table, const SeenColors& colors)
+                               const std::vector<Vec2f>& env_table, std::span<const Vec3f> colors)
     : device_(device),
       surface_(surface),
       vertices_(vertices),
@@ -99,17 +99,16 @@ std::vector<Vec3f> SelfReflection::shown(std::span<const Hit> met) const {
   device_.launch<SgReflection>(args, int(stride));
   std::vector<Surface::RayHit> next(n);
   surface_.intersect(from, mirrors, 0, next);
-  const auto at = [&](const std::vector<Vec3f>& v, const auto& h) {
+  const auto at = [&](std::span<const Vec3f> v, const auto& h) {
     return at_corners(v, mesh.triangles[h.triangle], h.b1, h.b2);
   };
-  const std::vector<Vec3f> seen = colors_ ? colors_(met) : std::vector<Vec3f>();
   const float m = material_.metalness, dielectric = (1 - m) * kDielectricF0 * material_.specular;
   for (size_t k = 0; k < n; ++k) {
-    const Vec3f color = seen.empty() ? at(vertices_.base_color, met[k]) : seen[k];
+    const Vec3f color = at(colors_, met[k]);
     const Vec3f diffuse = color * at(vertices_.arriving, met[k]);
     const Vec3f reflected = next[k].t < 0
                                 ? Vec3f{sky[k], sky[stride + k], sky[2 * stride + k]}
-                                : at(vertices_.base_color, next[k]) * at(vertices_.arriving, next[k]);
+                                : at(colors_, next[k]) * at(vertices_.arriving, next[k]);
     const Vec2f env = env_brdf_at(env_table_, max(dot(met[k].normal, met[k].to_camera), kGrazing));
     for (int c = 0; c < 3; ++c)
       out[k][c] = (1 - m) * diffuse[c] + ((m * color[c] + dielectric) * env.x + env.y) * reflected[c];

@@ -3,7 +3,6 @@
 // reflection.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -15,15 +14,12 @@
 
 namespace cei3d {
 
-// Base colours (#points) of points of the surface that reflections meet. Asked from several threads at once.
-using SeenColors = std::function<std::vector<Vec3f>(std::span<const Hit>)>;
-
 // Keeps references to all that it is made of.
 class SelfReflection {
  public:
-  // env_table: env_brdf_table() of the material's roughness. colors: empty: those of the vertices.
+  // env_table: env_brdf_table() of the material's roughness. colors: #V base colours of what is mirrored.
   SelfReflection(const Device&, const Surface&, const VertexLight&, LobePlanes light, const Material&,
-                 const std::vector<Vec2f>& env_table, const SeenColors& colors);
+                 const std::vector<Vec2f>& env_table, std::span<const Vec3f> colors);
 
   struct Seen {
     float open = 1;           // share of the reflection lobe that sees the sky
@@ -43,7 +39,7 @@ class SelfReflection {
   Material material_;
   float roughness_;  // that shading can take
   const std::vector<Vec2f>& env_table_;
-  const SeenColors& colors_;
+  std::span<const Vec3f> colors_;
   std::vector<Vec3f> probes_, lobe_;  // directions around +Z
 };
 

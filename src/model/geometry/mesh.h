@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/math/vec.h"
@@ -17,7 +18,7 @@ struct Mesh {
 };
 
 // Values of vertices (#V) at a point of a triangle, by its barycentrics b1 and b2.
-inline Vec3f at_corners(const std::vector<Vec3f>& v, const std::array<uint32_t, 3>& t, float b1, float b2) {
+inline Vec3f at_corners(std::span<const Vec3f> v, const std::array<uint32_t, 3>& t, float b1, float b2) {
   return v[t[0]] * (1 - b1 - b2) + v[t[1]] * b1 + v[t[2]] * b2;
 }
 
