@@ -66,8 +66,7 @@ class Schedule {
   void resume_at(double elapsed) { start_ = now() - elapsed; }
   double elapsed() const { return now() - start_; }
   double position(int64_t step) const {
-    if (seconds_ <= 0) return double(step) / iterations_;
-    return elapsed() / seconds_;
+    return seconds_ > 0 ? elapsed() / seconds_ : double(step) / iterations_;
   }
   double seconds_left(double u) const {
     return seconds_ > 0 ? seconds_ - elapsed() : u > 0.01 ? elapsed() * (1 - u) / u : -1;

@@ -80,7 +80,7 @@ TEST(SceneLight, EditedPointsMirrorEditedColours) {
   const double tint =
       mean_tint(SceneLight(device, before, transports).shade(hits, grey));  // orange is mirrored
   EXPECT_GT(tint, 0.05);
-  // What is left is the second bounce, which stays that of the unedited colours.
+  // What is left is the light that arrives where a second reflection ends: it bounced off the unedited colours.
   EXPECT_LT(mean_tint(SceneLight(device, after, transports).shade(hits, grey)), 0.4 * tint);
 }
 
