@@ -240,13 +240,15 @@ bool Propagation::used(int view) const {
   return has(report_.views) || has(report_.refused);
 }
 
-// The view that would tell most, of those that show enough of what is known of the part to be prompted.
+// The view that would tell most and shows most of what is known of the part: without the latter, the first
+// step leads to a view from which hardly anything known is seen, whose mask then contradicts the little there
+// is.
 int Propagation::choose_view() const {
   std::vector<float> need;
   std::vector<uint8_t> in;
   const Places places = wanted(need, in);
   const auto part = float(std::count(in.begin(), in.end(), 1));
-  float best = kLeastGain * float(need.size());
+  float best = 0;
   int chosen = -1;
   for (int view = 0; view < int(request_.cameras.size()); ++view) {
     if (used(view)) continue;
@@ -255,8 +257,9 @@ int Propagation::choose_view() const {
       if (in[s.point]) known += s.facing;
       gain += s.facing * need[s.point];
     }
-    if (known < kMinSeen * part || gain <= best) continue;
-    best = gain;
+    if (known < kMinSeen * part || gain < kLeastGain * float(need.size())) continue;
+    if (gain * known <= best) continue;
+    best = gain * known;
     chosen = view;
   }
   return chosen;

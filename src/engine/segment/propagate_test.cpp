@@ -129,6 +129,18 @@ TEST(Propagate, RefusesAMaskThatContradictsWhatIsKnown) {
   EXPECT_GT(right(h, r.scores, band), 0.95);
 }
 
+TEST(Propagate, GoesWhereMuchIsKnownBeforeItGoesFar) {
+  // The farther of two views shows more that is new, but little that is known.
+  const HandlerPoints h = sphere_points(4000);
+  PropagateRequest request = band_request();
+  request.cameras = {camera_at({2.5, 0, 0}), camera_at({2.5 * std::cos(1.0), 2.5 * std::sin(1.0), 0}),
+                     camera_at({2.5 * std::cos(0.2), 2.5 * std::sin(0.2), 0})};
+  request.clicks.positive = {{kSize / 2.0f, kSize / 2.0f}};
+  Oracle oracle(request.cameras, band);
+  Progress silent;
+  EXPECT_EQ(propagate(h, sphere(), request, oracle, silent).report.views, (std::vector<int>{0, 2, 1}));
+}
+
 TEST(Propagate, HiddenPointsHaveNoVote) {
   // One view: what lies behind the sphere projects into the mask, too.
   const HandlerPoints h = sphere_points(4000);
