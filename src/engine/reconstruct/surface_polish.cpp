@@ -8,7 +8,7 @@
 #include "engine/reconstruct/display_loss.h"
 #include "engine/render/lighting.h"
 #include "engine/render/render.h"
-#include "model/geometry/surface_nets.h"
+#include "model/geometry/sdf_normals.h"
 
 namespace cei3d {
 namespace {
@@ -28,19 +28,23 @@ class Polish {
         options_(options),
         albedo_(*appearance.albedo),
         trainer_(albedo_, {}),
-        lighting_(device, input.surface, appearance.light, vertex_colors(input.surface), appearance.material) {}
+        lighting_(device, input.surface, appearance.light, vertex_colors(input.surface),
+                  appearance.material) {}
 
   // share: of the polishing that is done, [0, 1).
   GeometryStats step(int step, double share) {
     choose_batch(step);
-    refine_hits(device_, stage_.sdf(), directions_, hits_);
+    refine_hits(device_, stage_.sdf(), directions_, hits_, edges_);
     const HitLight light = lighting_.light_at(hits_);
     fit_albedo(light);
-    const std::vector<Vec3f> d_normals = lighting_.normal_slopes(hits_, light, colors_, d_radiance_);
-    std::vector<Vec3f> points;
+    std::vector<Vec3f> d_normals = lighting_.normal_slopes(hits_, light, colors_, d_radiance_), positions,
+                       points;
     std::vector<float> d_values;
-    spread(d_normals, points, d_values);
-    return stage_.step(options_.first_step + step, options_.from + (1 - options_.from) * share, {points, d_values});
+    for (Vec3f& d : d_normals) d = d * options_.weight;
+    for (const Hit& h : hits_) positions.push_back(h.position);
+    add_value_slopes(stage_.sdf().config(), positions, d_normals, edges_, points, d_values);
+    return stage_.step(options_.first_step + step, options_.from + (1 - options_.from) * share,
+                       {points, d_values});
   }
 
  private:
@@ -58,8 +62,10 @@ class Polish {
     batch_.resize(n);
     hits_.resize(n);
     directions_.resize(n);
+    edges_.resize(n);
     for (int i = 0; i < n; ++i) {
-      batch_[i] = Rng(options_.seed ^ 0x9011, uint64_t(step), uint64_t(i)).below(uint32_t(samples_.hits.size()));
+      batch_[i] =
+          Rng(options_.seed ^ 0x9011, uint64_t(step), uint64_t(i)).below(uint32_t(samples_.hits.size()));
       hits_[i] = samples_.hits[batch_[i]];
       directions_[i] = -hits_[i].to_camera;
     }
@@ -91,19 +97,6 @@ class Polish {
     trainer_.step(device_, positions, loss, 0.1f);
   }
 
-  // Normals are central differences of the field (sdf_normals), whose gradient has a length close to one.
-  void spread(const std::vector<Vec3f>& d_normals, std::vector<Vec3f>& points, std::vector<float>& d_values) const {
-    const float e = normal_epsilon(stage_.sdf().config());
-    for (size_t i = 0; i < hits_.size(); ++i)
-      for (int axis = 0; axis < 3; ++axis)
-        for (const float side : {1.0f, -1.0f}) {
-          Vec3f p = hits_[i].position;
-          p[axis] += side * e;
-          points.push_back(p);
-          d_values.push_back(side * options_.weight * d_normals[i][axis] / (2 * e));
-        }
-  }
-
   const Device& device_;
   GeometryStage& stage_;
   SurfaceSamples samples_;
@@ -116,6 +109,7 @@ class Polish {
   std::vector<Hit> hits_;
   std::vector<Vec3f> colors_, d_radiance_;  // base colour of the hits, dL/d(what they send out)
   std::vector<Vec3f> directions_;
+  std::vector<float> edges_;  // of the hits' normals (sdf_normals)
 };
 
 }  // namespace
@@ -128,7 +122,8 @@ void polish_surface(const Device& device, GeometryStage& stage, const Appearance
     const double time = options.seconds > 0 ? (now() - start) / options.seconds : 0;
     if (time >= 1) break;
     polish.step(step, std::max(time, double(step) / options.steps));
-    if (step % 20 == 0) progress.report({"surface by its reflections", 0.8 + 0.05 * step / options.steps, -1, ""});
+    if (step % 20 == 0)
+      progress.report({"surface by its reflections", 0.8 + 0.05 * step / options.steps, -1, ""});
   }
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/render/render.h"
-#include "model/geometry/surface_nets.h"
+#include "model/geometry/sdf_normals.h"
 
 namespace cei3d {
 
@@ -34,21 +34,19 @@ Samples camera_samples(const Camera& camera, int samples) {
 }  // namespace
 
 void refine_hits(const Device& device, const Field& sdf, std::span<const Vec3f> directions,
-                 std::span<Hit> hits) {
-  const size_t outputs = size_t(sdf.config().outputs);
+                 std::span<Hit> hits, std::span<float> edges) {
   std::vector<Vec3f> points(hits.size()), normals(hits.size());
-  std::vector<float> d(hits.size() * outputs);
   constexpr float kMost = 0.01f;  // a mesh cell or so
   for (int round = 0; round < 2; ++round) {
     for (size_t i = 0; i < hits.size(); ++i) points[i] = hits[i].position;
-    sdf.eval(device, points, d);
+    const std::vector<float> d = first_output(device, sdf, points);
     for (size_t i = 0; i < hits.size(); ++i) {
       const float cosine = std::max(0.2f, -dot(hits[i].normal, directions[i]));
-      hits[i].position += directions[i] * std::clamp(d[i * outputs] / cosine, -kMost, kMost);
+      hits[i].position += directions[i] * std::clamp(d[i] / cosine, -kMost, kMost);
     }
   }
   for (size_t i = 0; i < hits.size(); ++i) points[i] = hits[i].position;
-  sdf_normals(device, sdf, points, normals);
+  sdf_normals(device, sdf, points, normals, edges);
   for (size_t i = 0; i < hits.size(); ++i) hits[i].normal = normals[i];
 }
 

@@ -154,4 +154,18 @@ FieldConfig field_config_from_json(const Json& j) {
   return config;
 }
 
+std::vector<float> first_output(const Device& device, const Field& field, std::span<const Vec3f> x) {
+  const size_t outputs = size_t(field.config().outputs);
+  std::vector<float> first(x.size());
+  constexpr size_t kSlab = 1 << 18;  // bounds the memory of fields with many outputs
+  std::vector<float> all;
+  for (size_t begin = 0; begin < x.size(); begin += kSlab) {
+    const size_t n = std::min(kSlab, x.size() - begin);
+    all.resize(n * outputs);
+    field.eval(device, x.subspan(begin, n), all);
+    for (size_t i = 0; i < n; ++i) first[begin + i] = all[i * outputs];
+  }
+  return first;
+}
+
 }  // namespace cei3d

@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/base/json.h"
 #include "core/compute/device.h"
@@ -61,6 +62,9 @@ class Field {
   FieldConfig config_;
   ParamSet params_;
 };
+
+// Output 0 of the field at points x: the distance, of an SDF. #N.
+std::vector<float> first_output(const Device&, const Field&, std::span<const Vec3f> x);
 
 // Fits a field to a loss on its values, by Adam.
 class FieldTrainer {

@@ -6,25 +6,11 @@
 #include <numeric>
 
 #include "core/base/error.h"
+#include "model/geometry/sdf_normals.h"
 
 namespace cei3d {
 
 namespace {
-
-// Output 0 of the field at points.
-std::vector<float> distances(const Device& device, const Field& sdf, std::span<const Vec3f> x) {
-  const size_t outputs = size_t(sdf.config().outputs);
-  std::vector<float> d(x.size());
-  constexpr size_t kSlab = 1 << 18;  // bounds the memory of fields with many outputs
-  std::vector<float> all;
-  for (size_t begin = 0; begin < x.size(); begin += kSlab) {
-    const size_t n = std::min(kSlab, x.size() - begin);
-    all.resize(n * outputs);
-    sdf.eval(device, x.subspan(begin, n), all);
-    for (size_t i = 0; i < n; ++i) d[begin + i] = all[i * outputs];
-  }
-  return d;
-}
 
 // Signed distances at the corners of a grid, exact near the surface, of the right sign elsewhere.
 struct CornerGrid {
@@ -44,7 +30,7 @@ CornerGrid sample_corners(const Device& device, const Field& sdf, int resolution
   for (int z = 0; z < coarse.n; ++z)
     for (int y = 0; y < coarse.n; ++y)
       for (int x = 0; x < coarse.n; ++x) points.push_back(coarse.position(x, y, z));
-  coarse.value = distances(device, sdf, points);
+  coarse.value = first_output(device, sdf, points);
 
   const float reach =
       2.0f * 3.4641f / float(coarse.n - 1);  // two coarse half-diagonals: fields are not quite 1-Lipschitz
@@ -61,7 +47,7 @@ CornerGrid sample_corners(const Device& device, const Field& sdf, int resolution
         wanted.push_back(fine.index(x, y, z));
         points.push_back(fine.position(x, y, z));
       }
-  const std::vector<float> exact = distances(device, sdf, points);
+  const std::vector<float> exact = first_output(device, sdf, points);
   for (size_t i = 0; i < wanted.size(); ++i) fine.value[wanted[i]] = exact[i];
   // Outside the unit sphere there is nothing, whatever the untrained field says.
   for (int z = 0; z < fine.n; ++z)
@@ -167,27 +153,6 @@ void drop_small_parts(Mesh& mesh, float smallest_share) {
 
 }  // namespace
 
-float normal_epsilon(const FieldConfig& config) {
-  return config.encoding.levels > 0 ? 6.0f / float(config.encoding.finest_resolution) : 0.004f;
-}
-
-void sdf_normals(const Device& device, const Field& sdf, std::span<const Vec3f> x, std::span<Vec3f> out) {
-  const float e = normal_epsilon(sdf.config());
-  std::vector<Vec3f> points;
-  points.reserve(x.size() * 6);
-  for (const Vec3f& p : x)
-    for (int axis = 0; axis < 3; ++axis)
-      for (float s : {e, -e}) {
-        Vec3f q = p;
-        q[axis] += s;
-        points.push_back(q);
-      }
-  const std::vector<float> d = distances(device, sdf, points);
-  for (size_t i = 0; i < x.size(); ++i)
-    out[i] =
-        normalize(Vec3f{d[6 * i] - d[6 * i + 1], d[6 * i + 2] - d[6 * i + 3], d[6 * i + 4] - d[6 * i + 5]});
-}
-
 Mesh extract_mesh(const Device& device, const Field& sdf, const MeshingOptions& options) {
   Mesh mesh = net_of(sample_corners(device, sdf, options.resolution));
   if (mesh.triangles.empty())
@@ -197,7 +162,7 @@ Mesh extract_mesh(const Device& device, const Field& sdf, const MeshingOptions& 
   sdf_normals(device, sdf, mesh.positions, mesh.normals);
   const float cell = 2.0f / float(options.resolution);
   for (int round = 0; round < 2; ++round) {
-    const std::vector<float> d = distances(device, sdf, mesh.positions);
+    const std::vector<float> d = first_output(device, sdf, mesh.positions);
     for (size_t i = 0; i < d.size(); ++i)
       mesh.positions[i] = mesh.positions[i] - mesh.normals[i] * std::clamp(d[i], -0.5f * cell, 0.5f * cell);
   }

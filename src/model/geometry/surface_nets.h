@@ -13,15 +13,7 @@ struct MeshingOptions {
   float smallest_part = 0.002f;  // connected pieces with a smaller share of all triangles are dropped
 };
 
-// Vertices lie on the zero set to about 1e-4; normals come from differences of the field `normal_epsilon`
-// wide. Error when the field has no zero set in the unit sphere.
+// Vertices lie on the zero set to about 1e-4; normals are sdf_normals(). Error when the field has no zero set in the unit sphere.
 Mesh extract_mesh(const Device&, const Field& sdf, const MeshingOptions& options);
-
-// Step of the differences that normals are taken from: three cells of the finest hash level, since a
-// trilinear grid's own gradient jumps at every cell face (prototype-findings, trap 6).
-float normal_epsilon(const FieldConfig&);
-
-// Unit normals of the field at points, by central differences. x, out: #N.
-void sdf_normals(const Device&, const Field& sdf, std::span<const Vec3f> x, std::span<Vec3f> out);
 
 }  // namespace cei3d
