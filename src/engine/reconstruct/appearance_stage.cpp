@@ -10,6 +10,7 @@
 #include "core/math/rng.h"
 #include "engine/reconstruct/display_loss.h"
 #include "engine/reconstruct/light_descent.h"
+#include "engine/reconstruct/pixel_points.h"
 #include "engine/render/lighting.h"
 #include "model/light/fit.h"
 
@@ -17,7 +18,7 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kBatch = 8192;
+constexpr int kBatch = 8192;        // pixels
 constexpr double kFullEffort = 10;  // seconds on two cores that all of it needs; with less, half the work
 
 double now() {
@@ -73,9 +74,9 @@ class Descent {
     for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
       choose_batch();
       const auto loss = [&](int begin, int end, const float* out, float* d_out) {
-        for (int i = begin; i < end; ++i)
-          color_gradient(batch_[i], light.at(batch_[i], result_.material), out + 3 * (i - begin),
-                         d_out + 3 * (i - begin));
+        for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
+          color_gradient(batch_[i], light.at(batch_[i], result_.material), a, d_a);
+        });
       };
       trainer_.step(device_, positions_, loss, std::pow(0.1f, float(step) / float(steps)));
       if (step % 50 == 0) progress_.report({"albedo", 0.92 + 0.03 * step / steps, -1, ""});
@@ -107,17 +108,35 @@ class Descent {
 
   void choose_batch() {
     batch_.resize(kBatch);
-    positions_.resize(kBatch);
+    positions_.clear();
     for (int i = 0; i < kBatch; ++i) {
       batch_[i] =
           Rng(options_.seed, uint64_t(epoch_), uint64_t(i)).below(uint32_t(input_.samples.hits.size()));
-      positions_[i] = input_.samples.hits[batch_[i]].position;
+      const SurfaceSamples& s = input_.samples;
+      const float footprint = s.footprints.empty() ? 0 : s.footprints[batch_[i]];
+      for (const Vec3f p : pixel_points(s.hits[batch_[i]], footprint)) positions_.push_back(p);
     }
     ++epoch_;
   }
 
-  // dL/d(radiance) of one sample with base colour `a`, and dL/da; zero where the picture is clipped.
-  Vec3f color_gradient(uint32_t sample, const HitLight::Terms& t, const float* a, float* d_a) const {
+  // Calls use(pixel of the batch, its mean base colour, dL/d(that) to set) for the field's outputs [begin,
+  // end).
+  template <class Use>
+  static void for_each_pixel(int begin, int end, const float* out, float* d_out, const Use& use) {
+    for (int first = begin; first < end; first += kPixelPoints) {
+      Vec3f mean{0, 0, 0}, d_mean{0, 0, 0};
+      const float* points = out + 3 * (first - begin);
+      for (int k = 0; k < kPixelPoints; ++k)
+        for (int c = 0; c < 3; ++c) mean[c] += points[3 * k + c] / kPixelPoints;
+      use(first / kPixelPoints, mean, d_mean);
+      for (int k = 0; k < kPixelPoints; ++k)
+        for (int c = 0; c < 3; ++c) d_out[3 * (first - begin + k) + c] = d_mean[c] / kPixelPoints;
+    }
+  }
+
+  // dL/d(radiance) of one pixel with mean base colour `a`, and dL/da; zero where the picture is clipped. The
+  // radiance is linear in the base colour, whose light is taken as the same all over the pixel.
+  Vec3f color_gradient(uint32_t sample, const HitLight::Terms& t, Vec3f a, Vec3f& d_a) const {
     const SurfaceSamples& s = input_.samples;
     const bool clipped = !s.saturated.empty() && s.saturated[sample];
     Vec3f g{0, 0, 0};
@@ -137,15 +156,14 @@ class Descent {
     const Material& m = result_.material;
     std::vector<Vec3f> d_irradiance(kBatch), d_reflected(kBatch);
     const auto loss = [&](int begin, int end, const float* out, float* d_out) {
-      for (int i = begin; i < end; ++i) {
-        const float* a = out + 3 * (i - begin);
-        const Vec3f g = color_gradient(batch_[i], light.at(i, m), a, d_out + 3 * (i - begin));
+      for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
+        const Vec3f g = color_gradient(batch_[i], light.at(i, m), a, d_a);
         const float floor = (1 - m.metalness) * kDielectricF0 * m.specular * light.env[i].x + light.env[i].y;
         for (int c = 0; c < 3; ++c) {
           d_irradiance[i][c] = g[c] * a[c] * (1 - m.metalness) / kPi * light.openness[i][c];
           d_reflected[i][c] = g[c] * (m.metalness * a[c] * light.env[i].x + floor) * light.open_mirror[i];
         }
-      }
+      });
     };
     trainer_.step(device_, positions_, loss, 0.1f * rate);
     descent.step(device_, hits, d_irradiance, d_reflected, rate);
@@ -163,7 +181,7 @@ class Descent {
   std::unique_ptr<Lighting> lighting_;
   int epoch_ = 0;
   std::vector<uint32_t> batch_;
-  std::vector<Vec3f> positions_;
+  std::vector<Vec3f> positions_;  // kPixelPoints of each pixel
 };
 
 }  // namespace

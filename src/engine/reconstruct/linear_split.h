@@ -18,9 +18,10 @@ namespace cei3d {
 
 // What the cameras saw of the surface.
 struct SurfaceSamples {
-  std::span<const Hit> hits;           // #N, unit-sphere frame
-  std::span<const Vec3f> colors;       // #N linear radiance
-  std::span<const uint8_t> saturated;  // #N, 1: clipped in the picture, not to be believed; may be empty
+  std::span<const Hit> hits;               // #N, unit-sphere frame
+  std::span<const Vec3f> colors;           // #N linear radiance
+  std::span<const uint8_t> saturated;      // #N, 1: clipped in the picture, not to be believed; may be empty
+  std::span<const float> footprints = {};  // #N, of pixels (pixel_points()); empty: colours of points
 };
 
 struct LinearSplitOptions {

@@ -21,12 +21,12 @@ namespace {
 
 constexpr int kRim = 6;  // pixels around the object that are trained on
 constexpr double kCheckpointSeconds = 30;
-constexpr double kLongRun = 120;  // seconds of training from which two starts are tried,
-constexpr int kLongRunSteps = 4000;  // or steps
-constexpr double kMostAppearance = 20;   // seconds: more brings nothing
-constexpr double kMostPolish = 60;       // seconds a round: likewise
+constexpr double kLongRun = 120;        // seconds of training from which two starts are tried,
+constexpr int kLongRunSteps = 4000;     // or steps
+constexpr double kMostAppearance = 20;  // seconds: more brings nothing
+constexpr double kMostPolish = 60;      // seconds a round: likewise
 constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;  // a round, at most
-constexpr size_t kMostHits = 600000;     // training pixels of the appearance stage
+constexpr size_t kMostHits = 600000;                          // training pixels of the appearance stage
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -85,18 +85,19 @@ void save_geometry(Checkpoints& checkpoints, const GeometryStage& stage, int64_t
   checkpoints.save(state);
 }
 
-// Carving opens what the visual hull cannot (the inside of a shovel), but mirror images deceive it (a metal body
-// is hollowed out where the reflections seem to be). A short training from either start tells: that which explains
-// the pictures better goes on.
-GeometryStage::Start choose_start(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
-                                  uint64_t seed, Progress& progress) {
+// Carving opens what the visual hull cannot (the inside of a shovel), but mirror images deceive it (a metal
+// body is hollowed out where the reflections seem to be). A short training from either start tells: that
+// which explains the pictures better goes on.
+GeometryStage::Start choose_start(const Device& device, const PixelStore& pixels,
+                                  const GeometryOptions& options, uint64_t seed, Progress& progress) {
   constexpr int kSteps = 400, kRays = 32768;
   double psnr[2];
   for (const auto start : {GeometryStage::Start::hull, GeometryStage::Start::carved}) {
     GeometryStage trial(device, pixels, options, seed);
     trial.prefit(start);
     for (int step = 0; step < kSteps; ++step) {
-      if (progress.cancelled()) throw Error(ErrorCode::interrupted, "interrupted before there was a state to save");
+      if (progress.cancelled())
+        throw Error(ErrorCode::interrupted, "interrupted before there was a state to save");
       trial.step(step, double(step) / kSteps);
       if (step % 20 == 0) progress.report({"choosing a start", 0.01, -1, ""});
     }
@@ -250,7 +251,9 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset) {
 struct Standing {
   std::shared_ptr<const Surface> surface;
   ObjectHits hits;
-  AppearanceInput input() const { return {*surface, {hits.hits, hits.colors, hits.saturated}}; }
+  AppearanceInput input() const {
+    return {*surface, {hits.hits, hits.colors, hits.saturated, hits.footprints}};
+  }
 };
 
 Standing stand(const Device& device, const Field& sdf, const Preset& preset, const PixelStore& pixels) {

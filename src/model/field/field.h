@@ -77,7 +77,8 @@ class FieldTrainer {
   ~FieldTrainer();
 
   // loss(begin, end, out, d_out): reads the outputs of points [begin, end), row-major from out[0], and writes
-  // dL/d(output) to d_out; called from several threads, on ranges that don't depend on their number.
+  // dL/d(output) to d_out; called from several threads, on ranges that don't depend on their number and begin
+  // at multiples of 32.
   using Loss = std::function<void(int begin, int end, const float* out, float* d_out)>;
   // One Adam step. x: #N. `rate` scales both learning rates (schedules); `levels`: hash levels in use, -1:
   // all.
