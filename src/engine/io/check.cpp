@@ -153,7 +153,8 @@ void report_splits(const std::vector<Checked>& all, CaptureReport& report) {
   }
 }
 
-void report_normalization(const std::vector<Checked>& all, CaptureReport& report) {
+void report_normalization(const std::vector<Checked>& all, const std::optional<ObjectBall>& region,
+                          CaptureReport& report) {
   std::vector<HullMask> masks;
   for (const auto& [view, result] : all)
     if (view->split == Split::train && result.mask.stated && !result.mask.object.empty() &&
@@ -162,7 +163,7 @@ void report_normalization(const std::vector<Checked>& all, CaptureReport& report
   if (masks.size() < 2) return;  // said by the views' own findings
   std::vector<std::string> warnings;
   try {
-    report.normalization = normalization_from_masks(masks, &warnings);
+    report.normalization = normalization_from_masks(masks, &warnings, region);
   } catch (const Error& e) {
     report.findings.push_back({Severity::error, e.what(), ""});
   }
@@ -217,7 +218,7 @@ CaptureReport check(const Capture& capture, std::optional<Split> only) {
   report.format = capture.format;
   report.up = capture.up;
   report_splits(all, report);
-  report_normalization(all, report);
+  report_normalization(all, capture.region, report);
   if (report.normalization) {
     for (Checked& c : all)
       c.result.has[kAway] = !c.result.has[kBadPose] && looks_away(c.view->camera, *report.normalization);

@@ -52,6 +52,20 @@ Matrix34 read_matrix(const std::string& npy, const std::string& where) {
   return m;
 }
 
+// The ball that scale_mat takes to the unit ball's place. It is the same for all views.
+std::optional<ObjectBall> stated_region(const Entries& entries, int64_t camera, const std::string& where,
+                                        Capture& capture) {
+  const auto entry = entries.find(fmt::format("scale_mat_{}.npy", camera));
+  if (entry == entries.end()) return std::nullopt;
+  const Matrix34 m = read_matrix(entry->second, where);
+  const Vec3d center{m.m[0][3], m.m[1][3], m.m[2][3]};
+  const double radius = length(Vec3d{m.m[0][0], m.m[1][0], m.m[2][0]});
+  if (std::isfinite(dot(center, center)) && std::isfinite(radius) && radius > 0)
+    return ObjectBall{center, radius};
+  capture.warnings.push_back(fmt::format("{} is no scale and shift; it is not used.", where));
+  return std::nullopt;
+}
+
 // The files of the cameras: by the number that is their name where each camera finds a file, or each file a
 // camera; else by sorted order, as the format's own loaders do.
 Files match(std::span<const int64_t> cameras, const Files& files, const fs::path& folder, Capture& capture) {
@@ -167,6 +181,8 @@ Capture load_idr(const fs::path& path) {
     view.camera.height = size.height;
     capture.views.push_back(std::move(view));
   }
+  const std::string scale = fmt::format("scale_mat_{} of {}", cameras[0], file.string());
+  capture.region = stated_region(entries, cameras[0], scale, capture);
   warn_of_other_sizes(capture);
   return capture;
 }

@@ -196,6 +196,30 @@ TEST(Idr, OtherEntriesAndFortranOrderAreFine) {
   expect_same_projection(load_capture(temp.path()).views.at(0).camera, views[0].camera, ball.center);
 }
 
+TEST(Idr, ScaleMatStatesTheRegion) {
+  const TempFolder temp;
+  const TestBall ball;
+  const auto views = test_views(ball, 1);
+  write_idr(temp.path(), ball, views);
+  const auto load = [&](double scale) {
+    const std::vector<double> m{scale, 0, 0, 1, 0, scale, 0, 2, 0, 0, scale, 3, 0, 0, 0, 1};
+    write_file_atomic(temp.path() / "cameras_sphere.npz",
+                      test_zip({{"world_mat_0.npy", test_npy(world_mat(views[0].camera))},
+                                {"scale_mat_0.npy", test_npy(m)}}));
+    return load_capture(temp.path());
+  };
+  const Capture c = load(231);
+  ASSERT_TRUE(c.region);
+  EXPECT_EQ(c.region->radius, 231);
+  EXPECT_EQ(length(c.region->center - Vec3d{1, 2, 3}), 0);
+  for (const double bad : {0.0, double(NAN)}) {
+    const Capture without = load(bad);
+    EXPECT_FALSE(without.region);
+    ASSERT_EQ(without.warnings.size(), 1u);
+    EXPECT_THAT(without.warnings[0], HasSubstr("scale_mat_0"));
+  }
+}
+
 TEST(Zip, HoldsWhatWasPutIn) {
   const std::map<std::string, std::string> files{{"a", "alpha"}, {"b/c", std::string(1000, 'x')}, {"e", ""}};
   EXPECT_EQ(unzip(test_zip(files), "x", 1 << 20), files);

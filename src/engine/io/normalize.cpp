@@ -105,8 +105,9 @@ struct Vote {
   double half_diagonal = 0;  // of a cell
 };
 
-// Hull in the cube [-1, 1]^3 of `box`.
-Vote vote(std::span<const HullMask> masks, const Normalization& box, int n, int tolerated) {
+// Hull in the cube [-1, 1]^3 of `box`, as far as it lies in the region.
+Vote vote(std::span<const HullMask> masks, const Normalization& box, int n, int tolerated,
+          const std::optional<ObjectBall>& region = {}) {
   std::vector<HullMask> local(masks.begin(), masks.end());
   for (HullMask& m : local) m.camera = box.unit_from_input(m.camera);
   const int min_seen = std::max(2, int(masks.size()) / 3);
@@ -115,7 +116,8 @@ Vote vote(std::span<const HullMask> masks, const Normalization& box, int n, int 
   for (size_t i = 0; i < hull.inside.size(); ++i) {
     if (!hull.inside[i]) continue;
     const Vec3d cell{double(i % n), double(i / n % n), double(i / n / n)};
-    out.cells.push_back(box.input_from_unit((cell + Vec3d{0.5, 0.5, 0.5}) * (2.0 / n) - Vec3d{1, 1, 1}));
+    const Vec3d middle = box.input_from_unit((cell + Vec3d{0.5, 0.5, 0.5}) * (2.0 / n) - Vec3d{1, 1, 1});
+    if (!region || length(middle - region->center) <= region->radius) out.cells.push_back(middle);
   }
   out.half_diagonal = std::sqrt(3.0) / n / box.scale;
   return out;
@@ -172,12 +174,22 @@ Vec3d nearest_point_to_lines(std::span<const Vec3d> origins, std::span<const Vec
   return solve(a, b);
 }
 
-Normalization normalization_from_masks(std::span<const HullMask> masks, std::vector<std::string>* warnings) {
+Normalization normalization_from_masks(std::span<const HullMask> masks, std::vector<std::string>* warnings,
+                                       const std::optional<ObjectBall>& region) {
   const std::vector<Silhouette> silhouettes = find_silhouettes(masks);
   if (silhouettes.empty())
     fail("No mask has a pixel set: the object is nowhere. Check the alpha channel or the mask files.");
   if (silhouettes.size() < 2)
     fail("Only one view shows the object; its place and size need at least two, better fifty.");
+  if (region) {
+    const Normalization cube{region->center, 1 / region->radius};
+    const int tolerated = choose_tolerance(masks, cube, warnings);
+    if (const Vote held = vote(masks, cube, 96, tolerated, region); !held.cells.empty())
+      return sphere_around(held, region->center);
+    if (warnings)
+      warnings->push_back(
+          "The region that the capture states (scale_mat) does not hold the object; it is not used.");
+  }
   Normalization box = first_box(silhouettes);
   const int tolerated = choose_tolerance(masks, box, warnings);
   const Vote coarse = vote(masks, box, 64, tolerated);
@@ -204,7 +216,7 @@ Normalization find_normalization(const Capture& capture) {
         "PNGs with alpha, or "
         "mask files.",
         capture.root.string());
-  return normalization_from_masks(hull);
+  return normalization_from_masks(hull, nullptr, capture.region);
 }
 
 }  // namespace cei3d

@@ -2,6 +2,7 @@
 // The similarity that puts the object into the unit sphere, from the silhouettes of the training views.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,10 +21,13 @@ Normalization find_normalization(const Capture& capture);
 // masks: cameras in the input frame. A box from rays through the silhouettes' centres and their widths, a
 // coarse hull in it, a finer one in the coarse hull's box; the transform puts that one's bounding sphere to
 // radius kObjectRadius. Some wrong masks (one in twenty) are outvoted, and a sentence about it is added to
-// warnings. Errors: fewer than two views with a silhouette, all cameras on a line with the object, an empty
-// hull (masks and poses disagree).
+// warnings. region (input frame): what lies outside is no part of the object; pictures that cut it off leave
+// a hull far too large otherwise. One that holds none of the hull is not believed, with a warning. Errors:
+// fewer than two views with a silhouette, all cameras on a line with the object, an empty hull (masks and
+// poses disagree).
 Normalization normalization_from_masks(std::span<const HullMask> masks,
-                                       std::vector<std::string>* warnings = nullptr);
+                                       std::vector<std::string>* warnings = nullptr,
+                                       const std::optional<ObjectBall>& region = {});
 
 // The point nearest to all lines (least squares), NaN when the lines don't say. directions: unit.
 Vec3d nearest_point_to_lines(std::span<const Vec3d> origins, std::span<const Vec3d> directions);

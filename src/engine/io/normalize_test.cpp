@@ -64,6 +64,22 @@ TEST(Normalize, ViewsThatCutTheObjectAreNoEvidenceAgainstIt) {
   expect_ball(normalization_from_masks(ball_masks(ball, views).views), ball);
 }
 
+TEST(Normalize, AStatedRegionHoldsWhatThePicturesCut) {
+  const TestBall ball;
+  auto views = test_views(ball, 40, 120, 90);
+  for (auto& v : views) v.camera.fx = v.camera.fy = 420;  // the ball fills every frame
+  const MaskSet set = ball_masks(ball, views);
+  const Normalization alone = normalization_from_masks(set.views);
+  EXPECT_LT(alone.scale * ball.radius, 0.8);
+  std::vector<std::string> warnings;
+  expect_ball(normalization_from_masks(set.views, &warnings, ObjectBall{ball.center, ball.radius}), ball);
+  EXPECT_TRUE(warnings.empty());
+  const ObjectBall elsewhere{ball.center + Vec3d{50, 0, 0} * ball.radius, ball.radius};
+  const Normalization got = normalization_from_masks(set.views, &warnings, elsewhere);
+  EXPECT_EQ(got.scale, alone.scale);
+  EXPECT_EQ(warnings.size(), 1u);
+}
+
 TEST(Normalize, OneWrongMaskInTwentyIsOutvotedAndSaid) {
   const TestBall ball;
   MaskSet set = ball_masks(ball, test_views(ball, 40, 120, 90));

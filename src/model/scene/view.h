@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,17 @@ struct View {
   std::filesystem::path mask_path;   // empty: alpha of the image is the mask
 };
 
+// A ball that holds the object, as some formats state it.
+struct ObjectBall {
+  Vec3d center;
+  double radius;
+};
+
 struct Capture {
   std::filesystem::path root;
   std::string format;                 // "nerf-synthetic", "physg", "idr"
   std::vector<View> views;            // train first, then val, test; each sorted as the capture lists them
+  std::optional<ObjectBall> region;   // input frame
   Vec3d up{0, 0, 1};                  // world axis that points to the sky, input frame
   std::vector<std::string> warnings;  // what the loader had to guess, one sentence each
 };
