@@ -39,13 +39,33 @@ Scene metal_scene() {
   return s;
 }
 
-EditLayer grey_everywhere(const Scene& scene) {
-  auto grey = std::make_shared<Field>(scene.albedo->config(), 3);
-  for (Param& p : grey->params().all()) std::fill(p.value.begin(), p.value.end(), 0.0f);
+EditLayer grey(const Scene& scene, const std::string& id) {
+  auto field = std::make_shared<Field>(scene.albedo->config(), 3);
+  for (Param& p : field->params().all()) std::fill(p.value.begin(), p.value.end(), 0.0f);
   EditLayer layer;
-  layer.id = "0001-paint";
+  layer.id = id;
+  layer.albedo = field;
+  return layer;
+}
+
+EditLayer grey_everywhere(const Scene& scene) {
+  EditLayer layer = grey(scene, "0001-paint");
   layer.everywhere = true;
-  layer.albedo = grey;
+  return layer;
+}
+
+// side: 1 the upper one, -1 the lower.
+EditLayer grey_sphere(const Scene& scene, const std::string& id, float side) {
+  Region::Points points;
+  const Mesh& mesh = scene.surface->mesh();
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    if (mesh.positions[v].z * side < 0) continue;
+    points.positions.push_back(mesh.positions[v]);
+    points.normals.push_back(mesh.normals[v]);
+    points.reach.push_back(0.05f);
+  }
+  EditLayer layer = grey(scene, id);
+  layer.region = Region(points);
   return layer;
 }
 
@@ -80,8 +100,32 @@ TEST(SceneLight, EditedPointsMirrorEditedColours) {
   const double tint =
       mean_tint(SceneLight(device, before, transports).shade(hits, grey));  // orange is mirrored
   EXPECT_GT(tint, 0.05);
-  // What is left is the light that arrives where a second reflection ends: it bounced off the unedited colours.
+  // What is left is the light that arrives where a second reflection ends: it bounced off the unedited
+  // colours.
   EXPECT_LT(mean_tint(SceneLight(device, after, transports).shade(hits, grey)), 0.4 * tint);
+}
+
+TEST(SceneLight, ALaterEditElsewhereLeavesWhatEditedPointsMirrorAlone) {
+  const Device device = make_device();
+  const Scene before = metal_scene();
+  const auto upper = [&](const char* id) { return grey_sphere(before, id, 1); };
+  const auto lower = [&](const char* id) { return grey_sphere(before, id, -1); };
+  const Scene one = with_layer(before, upper("0001-paint")), two = with_layer(one, lower("0002-paint")),
+              reversed = with_layer(with_layer(before, lower("0001-paint")), upper("0002-paint"));
+  std::vector<Hit> hits = mirroring_hits(before);
+  std::erase_if(hits, [](const Hit& h) { return h.position.z < 0; });
+  ASSERT_GT(hits.size(), 100u);
+  const auto transports = scene_transports(before);
+  const auto specular = [&](const Scene& s) {
+    return SceneLight(device, s, transports).shade(hits, appearance_at(device, s, hits)).specular;
+  };
+  const std::vector<Vec3f> first = specular(one), later = specular(two), last = specular(reversed);
+  size_t others = 0;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(first[i][c], later[i][c]);
+    others += length(first[i] - last[i]) > 1e-3f;
+  }
+  EXPECT_GT(others, hits.size() / 2);  // made after it, they mirror it
 }
 
 }  // namespace
