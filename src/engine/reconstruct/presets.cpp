@@ -77,7 +77,7 @@ void fit_to_footprint(Preset& p, double footprint) {
   EncodingConfig &sdf = p.geometry.sdf.encoding, &albedo = p.albedo.encoding;
   sdf.finest_resolution = albedo.finest_resolution = finest;
   sdf.log2_table = finest > 330 ? 17 : 15;
-  albedo.log2_table = finest > 330 ? 18 : 16;
+  albedo.log2_table = finest > 330 ? 19 : 16;
   p.meshing.resolution = finest > 330 ? 256 : finest > 140 ? 192 : 96;
 }
 

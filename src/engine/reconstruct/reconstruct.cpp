@@ -11,6 +11,7 @@
 #include "engine/reconstruct/appearance_stage.h"
 #include "engine/reconstruct/geometry_stage.h"
 #include "engine/reconstruct/presets.h"
+#include "engine/reconstruct/silhouette_level.h"
 #include "engine/reconstruct/surface_polish.h"
 #include "engine/render/render.h"
 #include "model/geometry/surface_nets.h"
@@ -21,12 +22,14 @@ namespace {
 
 constexpr int kRim = 6;  // pixels around the object that are trained on
 constexpr double kCheckpointSeconds = 30;
-constexpr double kLongRun = 120;        // seconds of training from which two starts are tried,
-constexpr int kLongRunSteps = 4000;     // or steps
-constexpr double kMostAppearance = 20;  // seconds: more brings nothing
-constexpr double kMostPolish = 60;      // seconds a round: likewise
+constexpr double kLongRun = 120;           // seconds of training from which two starts are tried,
+constexpr int kLongRunSteps = 4000;        // or steps
+constexpr double kPixelsASecond = 100000;  // of training, that the appearance stage gets time for: from
+constexpr double kLeastAppearance = 20, kMostAppearance = 60;  // to so many seconds; more brings nothing
+constexpr double kMostPolish = 60;                             // seconds a round: likewise
+constexpr double kBetweenRounds = 7;  // seconds for a mesh, its hits and a brief look at light and material
 constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;  // a round, at most
-constexpr size_t kMostHits = 600000;                          // training pixels of the appearance stage
+constexpr size_t kMostHits = 1500000;                         // training pixels of the appearance stage
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -227,21 +230,22 @@ struct Plan {
   int rounds = 0, polish_steps = 0;
 };
 
-Plan plan_of(const ReconstructOptions& options, const Preset& preset) {
+// pixels: all of training.
+Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pixels) {
   Plan p;
   p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
   const double t = options.seconds;
+  const double appearance = std::clamp(double(pixels) / kPixelsASecond, kLeastAppearance, kMostAppearance);
   if (t <= 0 || options.iterations > 0) {
-    p.appearance = t > 0 ? std::min(kMostAppearance, 0.2 * t) : 0;
+    p.appearance = t > 0 ? std::min(appearance, 0.2 * t) : 0;
     p.rounds = p.iterations >= 1000 ? 2 : 0;
     p.polish_steps = kPolishStepsUntimed;
     return p;
   }
-  constexpr double kBetweenRounds = 7;  // seconds for a mesh, its hits and a brief look at light and material
   p.rounds = t >= 180 ? 2 : t >= 45 ? 1 : 0;
   p.polish_steps = kPolishSteps;
   p.polish = std::min(kMostPolish, 0.1 * t);
-  p.appearance = std::min(kMostAppearance, 0.2 * t);
+  p.appearance = std::min(appearance, 0.2 * t);
   const double rest = t - p.appearance - p.rounds * (p.polish + kBetweenRounds) - std::max(8.0, 0.06 * t);
   p.geometry = std::max(0.45 * t, rest);
   return p;
@@ -264,24 +268,38 @@ Standing stand(const Device& device, const Field& sdf, const Preset& preset, con
   return s;
 }
 
+// The field with the surface that the silhouettes show at its zero level.
+Field at_silhouettes(const Device& device, Field sdf, const PixelStore& pixels, uint64_t seed,
+                     Progress& progress) {
+  constexpr float kMostShift = 0.002f;  // the shell of the sharpest density is about as thick
+  const float level = silhouette_level(device, sdf, pixels, kMostShift, seed);
+  sdf.params().all().back().value[0] -= level;  // the last layer's bias
+  progress.log(Json{{"stage", "silhouettes"}, {"level", level}}.dump());
+  return sdf;
+}
+
 // Light and material for the surface as it stands, the surface for them, and again.
 void polish(const Device& device, GeometryStage& stage, const Preset& preset, const Plan& plan,
             const PixelStore& pixels, uint64_t seed, Progress& progress) {
   constexpr double kBrief = 5;  // seconds of the appearance stage: half its effort
+  const double deadline = now() + plan.rounds * (plan.polish + kBetweenRounds);
   for (int round = 0; round < plan.rounds; ++round) {
     progress.report({"surface by its reflections", 0.72, -1, ""});
-    const Standing now = stand(device, stage.sdf(), preset, pixels);
+    const Standing standing = stand(device, stage.sdf(), preset, pixels);
     AppearanceOptions brief;
     brief.seconds = kBrief;
     brief.seed = seed;
     brief.albedo = preset.albedo;
-    const AppearanceResult look = fit_appearance(device, now.input(), brief, progress);
+    const AppearanceResult look = fit_appearance(device, standing.input(), brief, progress);
     PolishOptions options;
     options.steps = plan.polish_steps;
-    options.seconds = plan.polish;
+    // Of what is left, other rounds' looks taken off: large captures need longer for them than planned.
+    const int rounds_left = plan.rounds - round;
+    const double left = (deadline - now() - (rounds_left - 1) * kBetweenRounds) / rounds_left;
+    options.seconds = plan.polish > 0 ? std::clamp(left, 1.0, plan.polish) : 0;
     options.seed = seed + uint64_t(round);
     options.first_step = (int64_t(round) + 1) << 24;
-    polish_surface(device, stage, now.input(), look, options, progress);
+    polish_surface(device, stage, standing.input(), look, options, progress);
     if (progress.cancelled())
       throw Error(ErrorCode::interrupted, "interrupted; the state is saved", "go on with --resume");
   }
@@ -297,7 +315,7 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   if (views.train.pixels().empty()) fail("no training picture shows the object: every mask is empty");
   fit_to_footprint(preset, views.footprint);
 
-  const Plan plan = plan_of(options, preset);
+  const Plan plan = plan_of(options, preset, views.train.pixels().size());
   Scene scene;
   scene.normalization = normalization;
   scene.up = capture.up;
@@ -312,7 +330,8 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
     train_geometry(stage, start, views, Schedule(seconds, plan.iterations), checkpoints, progress);
     report_radiance(stage, capture, images, normalization, progress);
     polish(device, stage, preset, plan, views.train, options.seed, progress);
-    scene.sdf = std::make_shared<const Field>(stage.sdf());
+    scene.sdf = std::make_shared<const Field>(
+        at_silhouettes(device, stage.sdf(), views.train, options.seed, progress));
   }
   progress.report({"surface", 0.74, -1, ""});
   const Standing standing = stand(device, *scene.sdf, preset, views.train);

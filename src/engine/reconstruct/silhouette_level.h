@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which level of the trained field is the surface. Volume rendering shows what is thinner than its soft shell
+// as half transparent; the zero level may miss it. The silhouettes say how much matter there is.
+#pragma once
+
+#include "core/compute/device.h"
+#include "engine/reconstruct/pixels.h"
+#include "model/field/field.h"
+
+namespace cei3d {
+
+// The level, unit-sphere units, at which as many rays through pixels half covered in the pictures meet the
+// surface as those say, on average. Positive: the object grows. Zero when too few pixels are half covered
+// (masks of black and white); never farther from zero than `most`.
+float silhouette_level(const Device&, const Field& sdf, const PixelStore&, float most, uint64_t seed);
+
+}  // namespace cei3d
