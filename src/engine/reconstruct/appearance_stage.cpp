@@ -18,7 +18,7 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kBatch = 8192;        // pixels
+constexpr int kBatch = 4096;        // pixels, of kPixelPoints each
 constexpr double kFullEffort = 10;  // seconds on two cores that all of it needs; with less, half the work
 
 double now() {
