@@ -133,13 +133,13 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
   for (int r = 0; r < kRays; ++r) {
     Rng rng(seed_, uint64_t(step), uint64_t(first + r));
     const Pixel& p = store.pixels()[rng.below(uint32_t(store.pixels().size()))];
-    // Spread like the pixel's own filter, a tent of radius one pixel (engine/render/render.h).
-    const float u = rng.uniform() + rng.uniform() - 0.5f, v = rng.uniform() + rng.uniform() - 0.5f;
-    batch.rays[r] = store.cameras()[p.view].ray(p.x + u, p.y + v);
+    const FilteredRay filtered = store.filtered_ray(p, rng);
+    batch.rays[r] = filtered.ray;
     batch.targets[r] = target_of(p);
     if (!training) continue;
     // Within the pixel's own square: its rim belongs as much to a neighbour that may show the object.
-    batch.empty[r] = batch.targets[r].alpha == 0 && std::abs(u - 0.5f) <= 0.5f && std::abs(v - 0.5f) <= 0.5f;
+    batch.empty[r] =
+        batch.targets[r].alpha == 0 && std::abs(filtered.dx) <= 0.5f && std::abs(filtered.dy) <= 0.5f;
     // Each ray before a colour of its own: only matter that covers it looks right before all of them.
     const Vec3f background{rng.uniform(), rng.uniform(), rng.uniform()};
     batch.backgrounds[r] = background;

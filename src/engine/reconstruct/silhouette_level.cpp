@@ -73,9 +73,7 @@ float silhouette_level(const Device& device, const Field& sdf, const PixelStore&
   for (size_t i = 0; i < kRays; ++i) {
     Rng rng(seed ^ 0x51f0, 0, i);
     const Pixel& p = pixels[rng.below(uint32_t(pixels.size()))];
-    // Spread like the pixel's own filter (engine/render/render.h).
-    const float u = rng.uniform() + rng.uniform() - 0.5f, v = rng.uniform() + rng.uniform() - 0.5f;
-    rays.push_back(store.cameras()[p.view].ray(p.x + u, p.y + v));
+    rays.push_back(store.filtered_ray(p, rng).ray);
     coverage += double(p.srgba[3]) / 255 / double(kRays);
   }
   std::vector<float> values;

@@ -25,7 +25,10 @@ PointGraph point_graph(const HandlerPoints& points, std::span<const Vec3f> base_
   const float reach = 2.5f * points.spacing;
   const PointIndex index(points.positions, reach);
   parallel_ranges(n, 1024, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) graph.colors[i] = oklab_from_linear(base_colors[i]);
+    for (int i = begin; i < end; ++i) {
+      graph.colors[i] = oklab_from_linear(base_colors[i]);
+      graph.colors[i].x *= kLightness;
+    }
   });
   parallel_ranges(n, 1024, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
