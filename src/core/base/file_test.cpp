@@ -8,7 +8,7 @@
 
 #include <csignal>
 
-#include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/hash.h"
 #include "core/base/temp_folder.h"
 
@@ -16,15 +16,6 @@ namespace cei3d {
 namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-std::string message(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
-}
 
 int files_in(const fs::path& folder) {
   return int(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));

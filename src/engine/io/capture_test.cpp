@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/temp_folder.h"
 #include "core/math/color.h"
 #include "engine/io/capture_images.h"
@@ -16,15 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
-
-std::string message(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
-}
 
 void expect_same_camera(const Camera& a, const Camera& b) {
   EXPECT_EQ(a.width, b.width);

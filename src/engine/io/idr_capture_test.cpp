@@ -4,7 +4,7 @@
 #include <functional>
 #include <random>
 
-#include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/temp_folder.h"
 #include "engine/io/capture.h"
 #include "engine/io/capture_format.h"
@@ -18,15 +18,6 @@ namespace cei3d {
 namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
-
-std::string message(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
-}
 
 void expect_same_projection(const Camera& a, const Camera& b, Vec3d about) {
   for (const Vec3d d : {Vec3d{0, 0, 0}, Vec3d{0.7, 0.3, -0.3}, Vec3d{-0.7, 0.7, 0.6}}) {

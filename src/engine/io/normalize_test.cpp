@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/temp_folder.h"
 #include "engine/io/capture.h"
 #include "engine/io/capture_images.h"
@@ -35,15 +35,6 @@ void expect_ball(const Normalization& n, const TestBall& ball) {
   EXPECT_NEAR(length(n.center - ball.center) / ball.radius, 0, 0.05);
   EXPECT_NEAR(n.scale * ball.radius, 0.9, 0.06);
   EXPECT_LT(n.scale * ball.radius, 0.91);
-}
-
-std::string message(const std::function<void()>& f) {
-  try {
-    f();
-  } catch (const Error& e) {
-    return e.what();
-  }
-  return "no error";
 }
 
 TEST(Normalize, FindsABallAtAnyPlaceAndScale) {

@@ -53,6 +53,18 @@ inline Scene sphere_scene() {
   return s;
 }
 
+// ... with a handler point at each of its vertices.
+inline Scene sphere_with_handlers() {
+  Scene s = sphere_scene();
+  auto points = std::make_shared<HandlerPoints>();
+  points->positions = s.surface->mesh().positions;
+  points->normals = s.surface->mesh().normals;
+  points->footprints.assign(points->positions.size(), 0.02f);
+  points->spacing = 0.02f;
+  s.handlers = points;
+  return s;
+}
+
 // Upright, of size x size pixels that the sphere fills for the greater part.
 inline Camera camera_towards_origin(Vec3d center, int size) {
   const Vec3d z = -center / length(center), x = cross(z, Vec3d{0, 0, 1}) / length(cross(z, Vec3d{0, 0, 1}));

@@ -90,13 +90,6 @@ TEST(Bench, ObjectIsNotChanged) {
   const TempFolder temp;
   const fs::path folder = temp.path() / "object";
   {
-    Scene scene = sphere_scene();
-    auto points = std::make_shared<HandlerPoints>();
-    points->positions = scene.surface->mesh().positions;
-    points->normals = scene.surface->mesh().normals;
-    points->footprints.assign(points->positions.size(), 0.02f);
-    points->spacing = 0.02f;
-    scene.handlers = points;
     View v;
     v.name = "train/r_0";
     v.camera = camera_towards_origin({0, -3, 0.3}, 64);
@@ -104,7 +97,7 @@ TEST(Bench, ObjectIsNotChanged) {
     c.root = "/nowhere";
     c.format = "nerf-synthetic";
     c.views = {v};
-    Project::create(folder, {}, c, false).save_base(scene);
+    Project::create(folder, {}, c, false).save_base(sphere_with_handlers());
   }
   Session session;
   Progress quiet;

@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-#include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/base/temp_folder.h"
@@ -24,16 +24,6 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
 constexpr int kSize = 48;
-
-template <class F>
-Error error_of(F run) {
-  try {
-    run();
-  } catch (const Error& e) {
-    return e;
-  }
-  return {ErrorCode::failed, "no error"};
-}
 
 Capture three_views() {
   Capture c;
@@ -93,14 +83,7 @@ class EditTest : public ::testing::Test {
   void SetUp() override { make("a"); }
   fs::path folder(const std::string& name) const { return temp_.path() / name; }
   void make(const std::string& name) {
-    Scene scene = sphere_scene();
-    auto points = std::make_shared<HandlerPoints>();
-    for (const Vec3f p : scene.surface->mesh().positions) points->positions.push_back(p);
-    points->normals = scene.surface->mesh().normals;
-    points->footprints.assign(points->positions.size(), 0.02f);
-    points->spacing = 0.02f;
-    scene.handlers = points;
-    Project::create(folder(name), {}, three_views(), false).save_base(scene);
+    Project::create(folder(name), {}, three_views(), false).save_base(sphere_with_handlers());
     session_.open(folder(name), Session::Access::write);
   }
   Scene scene(const std::string& name) { return Project::open(folder(name), Project::Mode::read).scene(); }

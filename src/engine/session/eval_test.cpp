@@ -27,13 +27,6 @@ constexpr int kSize = 48;
 class EvalTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    Scene scene = sphere_scene();
-    auto points = std::make_shared<HandlerPoints>();
-    points->positions = scene.surface->mesh().positions;
-    points->normals = scene.surface->mesh().normals;
-    points->footprints.assign(points->positions.size(), 0.02f);
-    points->spacing = 0.02f;
-    scene.handlers = points;
     Capture capture;
     capture.root = temp_.path();
     capture.format = "nerf-synthetic";
@@ -44,7 +37,7 @@ class EvalTest : public ::testing::Test {
       v.image_path = temp_.path() / "photos/rgb" / fmt::format("r_{}.png", capture.views.size());
       capture.views.push_back(v);
     }
-    Project::create(temp_.path() / "object", {}, capture, false).save_base(scene);
+    Project::create(temp_.path() / "object", {}, capture, false).save_base(sphere_with_handlers());
     session_.open(temp_.path() / "object", Session::Access::write);
     render("photos");
   }

@@ -43,14 +43,7 @@ class EvaluationTest : public ::testing::Test {
     write_nerf_split(folder("capture"), "test", ball, {views[4], views[5]});
     views.resize(4);
     write_nerf_split(folder("capture"), "train", ball, views);
-    Scene scene = sphere_scene();
-    auto points = std::make_shared<HandlerPoints>();
-    points->positions = scene.surface->mesh().positions;
-    points->normals = scene.surface->mesh().normals;
-    points->footprints.assign(points->positions.size(), 0.02f);
-    points->spacing = 0.02f;
-    scene.handlers = points;
-    Project::create(folder("object"), {}, load_capture(folder("capture")), false).save_base(scene);
+    Project::create(folder("object"), {}, load_capture(folder("capture")), false).save_base(sphere_with_handlers());
     write_scribble(0.9f);
   }
   fs::path folder(const std::string& name) const { return temp_.path() / name; }

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/temp_folder.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
@@ -23,13 +23,6 @@ constexpr int kSize = 64;
 class PartsTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    Scene scene = sphere_scene();
-    auto points = std::make_shared<HandlerPoints>();
-    points->positions = scene.surface->mesh().positions;
-    points->normals = scene.surface->mesh().normals;
-    points->footprints.assign(points->positions.size(), 0.02f);
-    points->spacing = 0.02f;
-    scene.handlers = points;
     View v;
     v.name = "train/r_0";
     v.camera = camera_towards_origin({0, -3, 0.3}, kSize);
@@ -37,7 +30,7 @@ class PartsTest : public ::testing::Test {
     c.root = "/nowhere";
     c.format = "nerf-synthetic";
     c.views = {v};
-    Project::create(folder(), {}, c, false).save_base(scene);
+    Project::create(folder(), {}, c, false).save_base(sphere_with_handlers());
     session_.open(folder(), Session::Access::write);
   }
   fs::path folder() const { return temp_.path() / "object"; }
@@ -57,15 +50,6 @@ class PartsTest : public ::testing::Test {
   Image mask_of(const std::string& part) {
     session_.part_masks({temp_.path() / "masks", ProjectViews{}, part, 1}, quiet_);
     return read_image(temp_.path() / "masks" / "r_0.png");
-  }
-  template <class F>
-  Error error_of(F run) {
-    try {
-      run();
-    } catch (const Error& e) {
-      return e;
-    }
-    return {ErrorCode::failed, "no error"};
   }
 
   TempFolder temp_;
