@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The microfacet model: GGX distribution with alpha = roughness^2, Smith masking, Schlick's Fresnel term; its
 // pre-integrated form (split sum); and its reflection lobe as a few spherical Gaussians.
-// [Walter et al. 2007; Schlick 1994; Karis 2013]
+// [Walter et al. 2007; Schlick 1994; Karis 2013]; and what a diffuse surface loses at flat angles [Burley 2012]
 #pragma once
 
 #include "core/math/vec.h"
@@ -36,6 +36,16 @@ HD T microfacet_brdf(Vec3<T> n, Vec3<T> v, Vec3<T> l, T f0, T roughness) {
   const T f = schlick(f0, max(dot(v, h), T(0.0f))) * ggx_density(max(dot(n, h), T(0.0f)), alpha) *
               smith_g1(nv, alpha) * smith_g1(nl, alpha) / (T(4.0f) * nv * nl);
   return select((dot(n, v) > T(0.0f)) & (dot(n, l) > T(0.0f)), f, T(0.0f));
+}
+
+// What a diffuse surface sends towards a viewer at cosine nv, over what a Lambertian one does: light is lost where it
+// passes a smooth surface at a flat angle, and thrown back by a rough one [Burley 2012, sec. 5.3]. Mean over light
+// that comes from everywhere, its cosine to the viewer by the mean: 2/3 nv of all light, 1/4 nv of that which comes in flat.
+template <class T>
+HD T diffuse_view(T nv, T roughness) {
+  const T out = roughness * (T(1.0f) + nv * T(2.0f / 3)) - T(0.5f), c = T(1.0f) - nv, c2 = c * c;
+  const T in = roughness * (T(1.0f) + nv * T(0.25f)) - T(0.5f);
+  return (T(1.0f) + out * c2 * c2 * c) * (T(1.0f) + in * T(1.0f / 21));
 }
 
 // What a surface reflects of a uniform sky towards a viewer at cosine nv: f0 * scale + bias. By quadrature

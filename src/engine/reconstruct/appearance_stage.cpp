@@ -160,7 +160,8 @@ class Descent {
         const Vec3f g = color_gradient(batch_[i], light.at(i, m), a, d_a);
         const float floor = (1 - m.metalness) * kDielectricF0 * m.specular * light.env[i].x + light.env[i].y;
         for (int c = 0; c < 3; ++c) {
-          d_irradiance[i][c] = g[c] * a[c] * (1 - m.metalness) / kPi * light.openness[i][c];
+          d_irradiance[i][c] =
+              g[c] * a[c] * (1 - m.metalness) / kPi * light.diffuse_view[i] * light.openness[i][c];
           d_reflected[i][c] = g[c] * (m.metalness * a[c] * light.env[i].x + floor) * light.open_mirror[i];
         }
       });

@@ -165,6 +165,10 @@ Vec3f SplitSystem::gain(const SplitRow& row) const {
   return env_gain(row.nv, metal_.empty() ? grey : interpolate(metal_, row.vertices, row.barycentric));
 }
 
+float SplitSystem::sent(const SplitRow& row) const {
+  return diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness_);
+}
+
 Vec3f SplitSystem::predict(const SplitRow& row, const SplitUnknowns& x,
                            const std::vector<Vec3f>& blurred) const {
   Vec3f seen{0, 0, 0};
@@ -172,7 +176,7 @@ Vec3f SplitSystem::predict(const SplitRow& row, const SplitUnknowns& x,
     seen = interpolate(x.diffuse, row.far_vertices, row.far_barycentric);
   else
     for (int k = 0; k < 4; ++k) seen += blurred[row.taps.pixel[k]] * row.taps.weight[k];
-  return interpolate(x.diffuse, row.vertices, row.barycentric) + gain(row) * seen;
+  return interpolate(x.diffuse, row.vertices, row.barycentric) * sent(row) + gain(row) * seen;
 }
 
 template <class F>
@@ -190,7 +194,7 @@ void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
       if (!dielectric && row.blocked) continue;
       const Vec3f y = row_value(row) * row.weight, g = y * gain(row);
       if (dielectric)
-        for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += y * row.barycentric[k];
+        for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += y * (row.barycentric[k] * sent(row));
       if (row.blocked)
         for (int k = 0; k < 3; ++k) sum.diffuse[row.far_vertices[k]] += g * row.far_barycentric[k];
       else
@@ -269,7 +273,7 @@ SplitUnknowns SplitSystem::diagonal() const {
   for (const SplitRow& row : rows_) {
     if (!metal_.empty() && row.blocked) continue;
     const Vec3f g = gain(row), gg = row.weight * g * g;
-    for (int k = 0; k < 3; ++k) d.diffuse[row.vertices[k]] += row.weight * square(row.barycentric[k]);
+    for (int k = 0; k < 3; ++k) d.diffuse[row.vertices[k]] += row.weight * square(row.barycentric[k] * sent(row));
     if (row.blocked)
       for (int k = 0; k < 3; ++k) d.diffuse[row.far_vertices[k]] += gg * square(row.far_barycentric[k]);
     else

@@ -68,6 +68,7 @@ class SplitSystem {
   Vec3f gain(const SplitRow&) const;  // of the light's taps
   Vec3f env_gain(float nv, Vec3f f0) const;
   Vec3f color_at(const std::array<uint32_t, 3>&, const std::array<float, 3>&) const;
+  float sent(const SplitRow&) const;  // of D towards the viewer, see diffuse_view()
   Vec3f predict(const SplitRow&, const SplitUnknowns&, const std::vector<Vec3f>& blurred) const;
   void smooth(const SplitUnknowns& x, SplitUnknowns& out) const;  // out += gradient of the priors
   template <class F>

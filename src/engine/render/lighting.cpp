@@ -66,6 +66,7 @@ HitLight Lighting::light_at(std::span<const Hit> hits, const Material& material,
   out.openness.resize(hits.size());
   out.open_mirror.resize(hits.size());
   out.env.resize(hits.size());
+  out.diffuse_view.resize(hits.size());
   const LobePlanes lobes{lobe_planes_.data(), n_lobes_, padded_};
   const SelfReflection own_image(device_, surface_, vertices_, lobes, material, env_table,
                                  seen.empty() ? std::span<const Vec3f>(vertices_.base_color) : seen);
@@ -96,7 +97,9 @@ HitLight Lighting::light_at(std::span<const Hit> hits, const Material& material,
       out.irradiance[i] = plane(b.irradiance) * out.openness[i] + at_corners(vertices_.bounce, t, h.b1, h.b2);
       out.open_mirror[i] = max(way[i - begin].open, 0.0f);
       out.reflected[i] = plane(b.reflected) * out.open_mirror[i] + way[i - begin].radiance;
-      out.env[i] = env_brdf_at(env_table, dot(h.normal, h.to_camera));
+      const float nv = dot(h.normal, h.to_camera);
+      out.env[i] = env_brdf_at(env_table, nv);
+      out.diffuse_view[i] = diffuse_view(clamp(nv, 0.0f, 1.0f), roughness);
     }
   });
   return out;
@@ -129,13 +132,17 @@ std::vector<Vec3f> Lighting::normal_slopes(std::span<const Hit> hits, const HitL
                                            std::span<const Vec3f> albedo,
                                            std::span<const Vec3f> d_radiance) const {
   constexpr float kStep = 0.01f;  // of the tabulated reflectance
+  const float roughness = max(material_.roughness, kLeastRoughness);
+  const auto seen_at = [&](float nv) { return diffuse_view(clamp(nv, 0.0f, 1.0f), roughness); };
   const float dielectric = (1 - material_.metalness) * kDielectricF0 * material_.specular;
   std::vector<Vec3f> d_reflected(hits.size()), out(hits.size());
   for (size_t i = 0; i < hits.size(); ++i) {
     const float nv = dot(hits[i].normal, hits[i].to_camera);
     const Vec2f above = env_brdf_at(env_table_, nv + kStep), below = env_brdf_at(env_table_, nv - kStep);
+    const float d_diffuse = (1 - material_.metalness) / kPi * (seen_at(nv + kStep) - seen_at(nv - kStep)) / (2 * kStep);
     float d_nv = 0;
     for (int c = 0; c < 3; ++c) {
+      d_nv += d_radiance[i][c] * albedo[i][c] * light.irradiance[i][c] * d_diffuse;
       const float f0 = material_.metalness * albedo[i][c] + dielectric;
       d_reflected[i][c] = d_radiance[i][c] * (f0 * light.env[i].x + light.env[i].y) * light.open_mirror[i];
       d_nv += d_radiance[i][c] * light.reflected[i][c] * (f0 * (above.x - below.x) + above.y - below.y) /
@@ -154,7 +161,7 @@ std::vector<Vec3f> Lighting::normal_slopes(std::span<const Hit> hits, const HitL
 
 HitLight::Terms HitLight::at(size_t hit, const Material& material) const {
   const float m = material.metalness, dielectric = (1 - m) * kDielectricF0 * material.specular;
-  return {irradiance[hit] * ((1 - m) / kPi), reflected[hit] * (m * env[hit].x),
+  return {irradiance[hit] * ((1 - m) / kPi * diffuse_view[hit]), reflected[hit] * (m * env[hit].x),
           reflected[hit] * (dielectric * env[hit].x + env[hit].y)};
 }
 

@@ -29,6 +29,7 @@ struct HitLight {
   std::vector<Vec3f> openness;               // #hits, per channel
   std::vector<float> open_mirror;            // #hits, share of the reflection lobe that sees the sky
   std::vector<Vec2f> env;                    // #hits, scale and bias of the reflectance
+  std::vector<float> diffuse_view;           // #hits, of the diffuse light, see core/math/brdf.h
 
   struct Terms {
     Vec3f diffuse_gain, specular_gain, specular_floor;  // times base colour, times base colour, plain
