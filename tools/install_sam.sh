@@ -41,7 +41,7 @@ put() { # FILE NAME: whole or not at all
 
 install_runtime() {
   [[ ! -e $folder/libonnxruntime.so.1 ]] || return 0
-  if /sbin/ldconfig -p | grep -q 'libonnxruntime\.so'; then
+  if /sbin/ldconfig -p | grep 'libonnxruntime\.so' >/dev/null; then
     say "ONNX Runtime: the system's own"
     return
   fi

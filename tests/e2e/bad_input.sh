@@ -21,7 +21,7 @@ refused_by_check() {
   local status=0
   cei3d check "$out/capture" >"$out/stdout" 2>"$out/stderr" || status=$?
   [[ $status == 1 ]] || fail "check: exit code $status"
-  cat "$out/stdout" "$out/stderr" | grep -Eqi -- "$1" || fail "check does not say /$1/: $(cat "$out/stdout" "$out/stderr")"
+  grep -Eqi -- "$1" "$out/stdout" "$out/stderr" || fail "check does not say /$1/: $(cat "$out/stdout" "$out/stderr")"
 }
 
 refused 2 '50 training views' reconstruct "$sample" -o "$out/project" --views 51

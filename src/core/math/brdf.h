@@ -38,9 +38,9 @@ HD T microfacet_brdf(Vec3<T> n, Vec3<T> v, Vec3<T> l, T f0, T roughness) {
   return select((dot(n, v) > T(0.0f)) & (dot(n, l) > T(0.0f)), f, T(0.0f));
 }
 
-// What a diffuse surface sends towards a viewer at cosine nv, over what a Lambertian one does: light is lost where it
-// passes a smooth surface at a flat angle, and thrown back by a rough one [Burley 2012, sec. 5.3]. Mean over light
-// that comes from everywhere, its cosine to the viewer by the mean: 2/3 nv of all light, 1/4 nv of that which comes in flat.
+// What a diffuse surface sends to a viewer at cosine nv, over what a Lambertian one does: a smooth one loses
+// light at flat angles, a rough one throws it back [Burley 2012, sec. 5.3]. Mean over light from everywhere;
+// its mean cosine to the viewer stands for all: 2/3 nv, and 1/4 nv of what comes in flat.
 template <class T>
 HD T diffuse_view(T nv, T roughness) {
   const T out = roughness * (T(1.0f) + nv * T(2.0f / 3)) - T(0.5f), c = T(1.0f) - nv, c2 = c * c;

@@ -69,7 +69,8 @@ PixelStore pictures(const Device& device) {
         }
         if (hits.empty()) continue;
         Vec3f sum{0, 0, 0};
-        for (const Vec3f& s : lighting.shade(hits, std::vector<Vec3f>(hits.size(), grey[0])).specular) sum += s;
+        for (const Vec3f& s : lighting.shade(hits, std::vector<Vec3f>(hits.size(), grey[0])).specular)
+          sum += s;
         for (int c = 0; c < 3; ++c) image.at(x, y)[c] = sum[c] / float(hits.size());
         image.at(x, y)[3] = float(hits.size()) / 16;
       }

@@ -139,7 +139,8 @@ std::vector<Vec3f> Lighting::normal_slopes(std::span<const Hit> hits, const HitL
   for (size_t i = 0; i < hits.size(); ++i) {
     const float nv = dot(hits[i].normal, hits[i].to_camera);
     const Vec2f above = env_brdf_at(env_table_, nv + kStep), below = env_brdf_at(env_table_, nv - kStep);
-    const float d_diffuse = (1 - material_.metalness) / kPi * (seen_at(nv + kStep) - seen_at(nv - kStep)) / (2 * kStep);
+    const float d_diffuse =
+        (1 - material_.metalness) / kPi * (seen_at(nv + kStep) - seen_at(nv - kStep)) / (2 * kStep);
     float d_nv = 0;
     for (int c = 0; c < 3; ++c) {
       d_nv += d_radiance[i][c] * albedo[i][c] * light.irradiance[i][c] * d_diffuse;
