@@ -9,7 +9,6 @@
 #include "core/math/loss.h"
 #include "core/math/rng.h"
 #include "core/math/volume.h"
-#include "engine/reconstruct/carve.h"
 
 namespace cei3d {
 
@@ -21,7 +20,6 @@ constexpr int kKeptPerRay = 64, kCandidates = 320;  // most of a ray: one that g
 constexpr int kBlock = 512;                                 // candidates evaluated at a time
 constexpr int kRefreshEvery = 25, kFullRefreshEvery = 400;  // steps between looks at the occupancy grid
 constexpr float kRefreshMargin = 0.15f;
-constexpr int kStartCells = 128;       // an axis, of the start shape
 constexpr float kAnchorWidth = 0.02f;  // of its loss
 const Vec3f kWhite{1, 1, 1};
 
@@ -92,17 +90,9 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
 
 GeometryStage::~GeometryStage() = default;
 
-void GeometryStage::prefit(Start start) {
-  std::vector<HullMask> masks;
-  for (size_t v = 0; v < pixels_.cameras().size(); ++v)
-    masks.push_back({pixels_.cameras()[v], pixels_.masks()[v]});
-  VisualHull hull = visual_hull(masks, kStartCells);
-  CarveOptions carving;
-  carving.seed = seed_;
-  if (start == Start::carved) hull = carve(pixels_, hull, carving);
-  const DistanceGrid distance{hull.n, signed_distance(hull)};
-  cei3d::prefit(device_, sdf_, distance, options_.prefit_steps, levels_at(0), seed_);
-  anchor_ = start == Start::carved ? distance : DistanceGrid{};
+void GeometryStage::prefit(const StartShape& start) {
+  cei3d::prefit(device_, sdf_, start.distance, options_.prefit_steps, levels_at(0), seed_);
+  anchor_ = start.anchored ? start.distance : DistanceGrid{};
 }
 
 int GeometryStage::levels_at(double u) const {
@@ -456,8 +446,10 @@ void GeometryStage::load(const Tensors& in) {
   optimizer_.load(in, "adam");
   const int64_t n = grid_.resolution();
   grid_.set(require_tensor(in, "occupancy", {n, n, n}).f32);
-  if (in.contains("anchor"))
-    anchor_ = {kStartCells, require_tensor(in, "anchor", {kStartCells, kStartCells, kStartCells}).f32};
+  if (const auto anchor = in.find("anchor"); anchor != in.end() && !anchor->second.shape.empty()) {
+    const int64_t cells = anchor->second.shape[0];
+    anchor_ = {int(cells), require_tensor(in, "anchor", {cells, cells, cells}).f32};
+  }
 }
 
 }  // namespace cei3d

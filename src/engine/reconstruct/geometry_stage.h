@@ -32,12 +32,12 @@ struct GeometryOptions {
   float keep_weight = 0.003f;                 // samples below it get no jet and no radiance
   float huber_width = 0.05f, eikonal_weight = 0.3f;
   float empty_weight = 0.1f;  // of empty_push(), times the sharpness
-  float view_from = 0.25f;    // from a carved start: until here colours do not depend on the view, so that what moves
+  float view_from = 0.25f;    // from an anchored start: until here colours do not depend on the view, so that what moves
                               // with it must be the surface; mirror images would eat a hull
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
   float decay_from = 0.3f, decay_to = 0.01f;  // exponential decay of the rate over the rest of the schedule
   int prefit_steps = 300;
-  float anchor_until = 0.2f;    // a carved start holds the surface, less and less, until here: colours that know
+  float anchor_until = 0.2f;    // such a start holds the surface, less and less, until here: colours that know
   float anchor_weight = 0.15f;  // nothing yet would blow it up again. Times the sharpness
 };
 
@@ -54,6 +54,13 @@ struct ValueSlopes {
   std::span<const float> slopes;  // #points
 };
 
+// What descent starts from. anchored: it shows hollows that no mask does; they are held open until colours mean
+// something.
+struct StartShape {
+  DistanceGrid distance;
+  bool anchored = false;
+};
+
 class GeometryStage {
  public:
   GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
@@ -61,10 +68,8 @@ class GeometryStage {
 
   ~GeometryStage();
 
-  // Fits the field to the visual hull, as it is or carved by the colours (engine/reconstruct/carve.h): descent
-  // then starts from the right object. Error: empty hull.
-  enum class Start { hull, carved };
-  void prefit(Start);
+  // Fits the field to a shape: descent then starts from the right object. Error: it is empty.
+  void prefit(const StartShape&);
   // One training step at schedule position u in [0, 1).
   GeometryStats step(int64_t step, double u, const ValueSlopes& more = {});
   // Loss statistics of random pixels of another store (held-out views), no training.
@@ -73,7 +78,6 @@ class GeometryStage {
   Image render_radiance(const Camera& unit_camera, int samples);
 
   const Field& sdf() const { return sdf_; }
-  bool carved() const { return anchor_.n > 0; }  // where it started
   void time_into(StepTimes* times) { times_ = times; }  // null: no clock is read
   int levels_at(double u) const;
   void save(Tensors& out) const;
@@ -106,7 +110,7 @@ class GeometryStage {
   ParamSet radiance_;
   Optimizer optimizer_;
   OccupancyGrid grid_;
-  DistanceGrid anchor_;  // of a carved start; else empty
+  DistanceGrid anchor_;  // the start shape, if it holds the surface; else empty
   std::unique_ptr<MlpWeights> sdf_weights_, radiance_weights_;  // of the current step
   Pool<Work> work_;
   StepTimes* times_ = nullptr;

@@ -12,6 +12,7 @@
 #include "engine/reconstruct/geometry_stage.h"
 #include "engine/reconstruct/presets.h"
 #include "engine/reconstruct/silhouette_level.h"
+#include "engine/reconstruct/start.h"
 #include "engine/reconstruct/surface_polish.h"
 #include "engine/render/render.h"
 #include "model/geometry/surface_nets.h"
@@ -88,30 +89,8 @@ void save_geometry(Checkpoints& checkpoints, const GeometryStage& stage, int64_t
   checkpoints.save(state);
 }
 
-// Carving opens what the visual hull cannot (the inside of a shovel), but mirror images deceive it (a metal
-// body is hollowed out where the reflections seem to be). A short training from either start tells: that
-// which explains the pictures better goes on.
-GeometryStage::Start choose_start(const Device& device, const PixelStore& pixels,
-                                  const GeometryOptions& options, uint64_t seed, Progress& progress) {
-  constexpr int kSteps = 400, kRays = 32768;
-  double psnr[2];
-  for (const auto start : {GeometryStage::Start::hull, GeometryStage::Start::carved}) {
-    GeometryStage trial(device, pixels, options, seed);
-    trial.prefit(start);
-    for (int step = 0; step < kSteps; ++step) {
-      if (progress.cancelled())
-        throw Error(ErrorCode::interrupted, "interrupted before there was a state to save");
-      trial.step(step, double(step) / kSteps);
-      if (step % 20 == 0) progress.report({"choosing a start", 0.01, -1, ""});
-    }
-    psnr[int(start)] = trial.evaluate(pixels, kRays, 1).psnr();
-  }
-  progress.log(Json{{"stage", "start"}, {"hull_psnr", psnr[0]}, {"carved_psnr", psnr[1]}}.dump());
-  return psnr[1] > psnr[0] ? GeometryStage::Start::carved : GeometryStage::Start::hull;
-}
-
 // Trains until the schedule is over. Returns the number of steps.
-int64_t train_geometry(GeometryStage& stage, GeometryStage::Start start, const TrainingViews& views,
+int64_t train_geometry(GeometryStage& stage, const StartShape& start, const TrainingViews& views,
                        Schedule schedule, Checkpoints& checkpoints, Progress& progress) {
   int64_t step = 0;
   if (const auto state = checkpoints.latest()) {
@@ -322,9 +301,10 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   {
     const double begin = now();
     const bool long_run = plan.geometry > 0 ? plan.geometry >= kLongRun : plan.iterations >= kLongRunSteps;
-    const auto start = long_run && !checkpoints.latest()
-                           ? choose_start(device, views.train, preset.geometry, options.seed, progress)
-                           : GeometryStage::Start::hull;
+    StartShape start;
+    if (!checkpoints.latest())
+      start = long_run ? choose_start(device, views.train, preset.geometry, options.seed, progress)
+                       : start_shape(views.train, Start::hull, options.seed);
     const double seconds = plan.geometry > 0 ? std::max(plan.geometry - (now() - begin), 1.0) : 0;
     GeometryStage stage(device, views.train, preset.geometry, options.seed);
     train_geometry(stage, start, views, Schedule(seconds, plan.iterations), checkpoints, progress);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/math/color.h"
+#include "engine/reconstruct/start.h"
 #include "engine/render/lighting.h"
 #include "engine/render/render.h"
 #include "engine/render/sphere_scene.h"
@@ -126,7 +127,7 @@ TEST(SurfacePolish, BringsNormalsNearerToTheTruthThanTheSameStepsWithoutIt) {
   const Device device = make_device("cpu");
   const PixelStore pixels = pictures(device);
   GeometryStage stage(device, pixels, small_geometry(), 1);
-  stage.prefit(GeometryStage::Start::hull);
+  stage.prefit(start_shape(pixels, Start::hull, 1));
   for (int step = 0; step < 150; ++step) stage.step(step, 0.66 * step / 150);
   Tensors before;
   stage.save(before);

@@ -9,6 +9,7 @@
 #include "engine/io/normalize.h"
 #include "engine/reconstruct/geometry_stage.h"
 #include "engine/reconstruct/presets.h"
+#include "engine/reconstruct/start.h"
 #include "engine/session/bench.h"
 #include "engine/session/stopwatch.h"
 
@@ -152,7 +153,7 @@ std::vector<BenchFigure> bench_training(const Device& device, const TrainingBenc
   preset.geometry.prefit_steps = std::min(preset.geometry.prefit_steps, 2 * options.warm_up);
   GeometryStage stage(device, subject.pixels, preset.geometry, 1);
   progress.report({"training: visual hull", 0.3, -1, ""});
-  stage.prefit(GeometryStage::Start::hull);
+  stage.prefit(start_shape(subject.pixels, Start::hull, 1));
   int64_t step = 0;
   while (step < options.warm_up) {
     if (progress.cancelled()) throw Error(ErrorCode::interrupted, "The measurement was interrupted.");

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/start.h"
+
+#include "core/base/error.h"
+#include "core/base/json.h"
+#include "engine/reconstruct/carve.h"
+#include "engine/reconstruct/stereo.h"
+
+namespace cei3d {
+
+namespace {
+
+constexpr int kCells = 128, kStereoCells = 192;  // an axis
+
+VisualHull hull_of(const PixelStore& pixels, int cells) {
+  std::vector<HullMask> masks;
+  for (size_t v = 0; v < pixels.cameras().size(); ++v)
+    masks.push_back({pixels.cameras()[v], pixels.masks()[v]});
+  return visual_hull(masks, cells);
+}
+
+StartShape shape_of(const VisualHull& hull, bool anchored) { return {{hull.n, signed_distance(hull)}, anchored}; }
+
+// dB on random training pixels after a short training.
+double trial(const Device& device, const PixelStore& pixels, const GeometryOptions& options, const StartShape& shape,
+             uint64_t seed, Progress& progress) {
+  constexpr int kSteps = 400, kRays = 32768;
+  GeometryStage stage(device, pixels, options, seed);
+  stage.prefit(shape);
+  for (int step = 0; step < kSteps; ++step) {
+    if (progress.cancelled()) throw Error(ErrorCode::interrupted, "interrupted before there was a state to save");
+    stage.step(step, double(step) / kSteps);
+    if (step % 20 == 0) progress.report({"choosing a start", 0.01, -1, ""});
+  }
+  return stage.evaluate(pixels, kRays, 1).psnr();
+}
+
+}  // namespace
+
+StartShape start_shape(const PixelStore& pixels, Start start, uint64_t seed) {
+  if (start == Start::stereo) {
+    const VisualHull hull = hull_of(pixels, kStereoCells);
+    return shape_of(carve_by_depths(hull, stereo_depths(pixels, hull, {})), true);
+  }
+  const VisualHull hull = hull_of(pixels, kCells);
+  if (start == Start::hull) return shape_of(hull, false);
+  CarveOptions carving;
+  carving.seed = seed;
+  return shape_of(carve(pixels, hull, carving), true);
+}
+
+StartShape choose_start(const Device& device, const PixelStore& pixels, const GeometryOptions& options, uint64_t seed,
+                        Progress& progress) {
+  StartShape best;
+  double best_psnr = -1e9;
+  Json log{{"stage", "start"}};
+  const std::pair<Start, const char*> starts[] = {
+      {Start::hull, "hull_psnr"}, {Start::carved, "carved_psnr"}, {Start::stereo, "stereo_psnr"}};
+  for (const auto& [start, name] : starts) {
+    StartShape shape = start_shape(pixels, start, seed);
+    const double psnr = trial(device, pixels, options, shape, seed, progress);
+    log[name] = psnr;
+    if (psnr <= best_psnr) continue;
+    best = std::move(shape);
+    best_psnr = psnr;
+  }
+  progress.log(log.dump());
+  return best;
+}
+
+}  // namespace cei3d
