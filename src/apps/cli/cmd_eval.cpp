@@ -44,6 +44,12 @@ void add_networks(CLI::App* verb, NetworkFiles& files) {
       ->check(CLI::ExistingFile);
 }
 
+void add_residual_switch(CLI::App* verb, bool& on) {
+  verb->add_flag("!--no-residual", on,
+                 "Light and material alone, without what was learnt of the photographs besides (never used under "
+                 "another light, nor where an edit was made)");
+}
+
 void add_eval(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add("eval",
@@ -65,6 +71,7 @@ void add_eval(Commands& commands) {
   verb->add_option("--samples", o->request.samples, "Sub-pixel samples per axis")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
+  add_residual_switch(verb, o->request.residual);
   verb->add_option(
       "--edit", o->request.edit,
       "Also score this edit (an id of `log`): the area that it does not touch against the photographs");

@@ -10,6 +10,7 @@ struct Options {
   std::string project, out, cameras, channels = "rgb", size, env, convention;
   double rotate = 0;
   int turntable = 0, samples = 2;
+  bool residual = true;
 };
 
 RenderRequest request_of(const Options& o) {
@@ -24,6 +25,7 @@ RenderRequest request_of(const Options& o) {
     r.height = size.height;
   }
   r.samples = o.samples;
+  r.residual = o.residual;
   r.light.env = o.env;
   r.light.rotate_degrees = o.rotate;
   if (!o.convention.empty()) r.light.convention = parse_env_convention(o.convention);
@@ -80,6 +82,7 @@ void add_render(Commands& commands) {
   verb->add_option("--env-convention", o->convention,
                    "Axes of the picture: zup, yup, mitsuba, blender (default: by the capture's up axis)")
       ->needs(env);
+  add_residual_switch(verb, o->residual);
   commands.on(verb, o, render);
 }
 

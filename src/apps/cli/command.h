@@ -48,6 +48,7 @@ class Commands {
 };
 
 void add_networks(CLI::App* verb, NetworkFiles&);  // --lpips-model, --fid-model
+void add_residual_switch(CLI::App* verb, bool& on);  // --no-residual
 
 void add_check(Commands&);
 void add_reconstruct(Commands&);

@@ -11,6 +11,7 @@
 #include "engine/reconstruct/appearance_stage.h"
 #include "engine/reconstruct/geometry_stage.h"
 #include "engine/reconstruct/presets.h"
+#include "engine/reconstruct/residual_fit.h"
 #include "engine/reconstruct/silhouette_level.h"
 #include "engine/reconstruct/start.h"
 #include "engine/reconstruct/surface_polish.h"
@@ -27,6 +28,7 @@ constexpr double kLongRun = 120;           // seconds of training from which two
 constexpr int kLongRunSteps = 4000;        // or steps
 constexpr double kPixelsASecond = 100000;  // of training, that the appearance stage gets time for: from
 constexpr double kLeastAppearance = 20, kMostAppearance = 60;  // to so many seconds; more brings nothing
+constexpr double kMostResidual = 25;
 constexpr double kMostPolish = 60;                             // seconds a round: likewise
 constexpr double kBetweenRounds = 7;  // seconds for a mesh, its hits and a brief look at light and material
 constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;  // a round, at most
@@ -204,7 +206,7 @@ ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& su
 
 // How the time that is asked for is spent. Seconds; 0: no limit, the steps count.
 struct Plan {
-  double geometry = 0, polish = 0, appearance = 0;  // polish: a round
+  double geometry = 0, polish = 0, appearance = 0, residual = 0;  // polish: a round
   int iterations = 0;                               // of the geometry stage
   int rounds = 0, polish_steps = 0;
 };
@@ -225,7 +227,8 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   p.polish_steps = kPolishSteps;
   p.polish = std::min(kMostPolish, 0.1 * t);
   p.appearance = std::min(appearance, 0.2 * t);
-  const double rest = t - p.appearance - p.rounds * (p.polish + kBetweenRounds) - std::max(8.0, 0.06 * t);
+  p.residual = std::min(kMostResidual, 0.04 * t);
+  const double rest = t - p.appearance - p.residual - p.rounds * (p.polish + kBetweenRounds) - std::max(8.0, 0.06 * t);
   p.geometry = std::max(0.45 * t, rest);
   return p;
 }
@@ -328,6 +331,11 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   scene.light = std::move(result.light);
   scene.material = result.material;
   scene.albedo = std::move(result.albedo);
+  ResidualOptions residual;
+  residual.seconds = plan.residual;
+  residual.seed = options.seed;
+  scene.residual = std::make_shared<const Residual>(
+      fit_residual(device, scene, standing.input().samples, residual, progress));
   progress.report({"done", 1, 0, ""});
   return scene;
 }

@@ -57,21 +57,44 @@ void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverag
   image.data[4 * pixel + 3] = coverage;
 }
 
+// The residual where no edit has been; else nothing. #hits
+std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const Appearance& look, std::span<const Hit> hits) {
+  std::vector<Vec3f> out(hits.size(), Vec3f{0, 0, 0});
+  if (!scene.residual) return out;
+  std::vector<Hit> untouched;
+  std::vector<size_t> of;
+  for (size_t i = 0; i < hits.size(); ++i)
+    if (look.layer[i] < 0) {
+      untouched.push_back(hits[i]);
+      of.push_back(i);
+    }
+  const std::vector<Vec3f> values = residual_at(device, *scene.sdf, *scene.residual, untouched);
+  for (size_t k = 0; k < of.size(); ++k) out[of[k]] = values[k];
+  return out;
+}
+
+Vec3f sent(const Shading& shading, const std::vector<Vec3f>& residual, size_t hit) {
+  const Vec3f sum = shading.diffuse[hit] + shading.specular[hit] + residual[hit];
+  return {std::max(sum.x, 0.0f), std::max(sum.y, 0.0f), std::max(sum.z, 0.0f)};
+}
+
 }  // namespace
 
 Frame shade_view(const Device& device, const Scene& scene, const SceneLight& light, const GBuffer& g) {
   const Appearance look = appearance_at(device, scene, g.hits);
   const Shading shading = light.shade(g.hits, look);
+  const std::vector<Vec3f> residual = residuals(device, scene, look, g.hits);
   Frame f = empty_frame(g.width, g.height);
   parallel_for(g.height, [&](int y) {
     for (int x = 0; x < g.width; ++x) {
       const size_t p = size_t(y) * g.width + x;
-      Vec3f albedo{0, 0, 0}, diffuse{0, 0, 0}, specular{0, 0, 0}, normal{0, 0, 0};
+      Vec3f albedo{0, 0, 0}, diffuse{0, 0, 0}, specular{0, 0, 0}, normal{0, 0, 0}, rgb{0, 0, 0};
       float depth = 0, roughness = 0, weight = 0;
       for_hits_around(g, x, y, [&](uint32_t i, float w) {
         albedo += w * look.albedo[i];
         diffuse += w * shading.diffuse[i];
         specular += w * shading.specular[i];
+        rgb += w * sent(shading, residual, i);
         normal += w * g.hits[i].normal;
         depth += w * g.depths[i];
         roughness += w * look.materials[look.material[i]].roughness;
@@ -84,7 +107,7 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
       put_mean(f.albedo, p, albedo, weight, coverage);
       put_mean(f.diffuse, p, diffuse, weight, coverage);
       put_mean(f.specular, p, specular, weight, coverage);
-      put_mean(f.rgb, p, diffuse + specular, weight, coverage);
+      put_mean(f.rgb, p, rgb, weight, coverage);
       const Vec3f n = normalize(normal);
       for (int c = 0; c < 3; ++c) f.normal.data[3 * p + c] = n[c];
       f.depth.data[p] = depth / weight / float(scene.normalization.scale);

@@ -80,6 +80,7 @@ EvalReport eval_report_from_json(const Json& j) {
   r.psnr_masked = decibels_from(j.at("psnr_masked"));
   r.psnr_worst = decibels_from(j.at("psnr_worst"));
   r.worst_view = j.at("worst_view").get<std::string>();
+  r.residual = j.value("residual", false);
   r.lpips = number_from(j, "lpips");
   r.fid = number_from(j, "fid");
   if (j.contains("edit")) r.edit = edit_from(j.at("edit"));
@@ -93,7 +94,8 @@ Json EvalReport::json() const {
             {"psnr_masked", decibels(psnr_masked)},
             {"psnr_worst", decibels(psnr_worst)},
             {"worst_view", worst_view},
-            {"background", "white"}};
+            {"background", "white"},
+            {"residual", residual}};
   if (lpips) j["lpips"] = *lpips;
   if (fid) j["fid"] = *fid;
   if (edit) j["edit"] = edit_json(*edit);
@@ -129,6 +131,8 @@ std::string EvalReport::markdown() const {
         "the same "
         "size only.\n",
         views.size());
+  text += residual ? "\nWith the residual, what light and material cannot explain; --no-residual leaves it out.\n"
+                   : "\nLight and material alone.\n";
   if (edit) text += edit_markdown(*edit);
   return text;
 }

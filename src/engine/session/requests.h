@@ -200,6 +200,7 @@ struct LightChoice {
   double rotate_degrees = 0;  // counter-clockwise about the up axis, seen from above
   EnvConvention convention = EnvConvention::by_up_axis;
   double scale = 1;  // times the radiance
+  bool is_own() const { return env.empty() && rotate_degrees == 0 && scale == 1; }
 };
 
 struct RenderRequest {
@@ -208,7 +209,8 @@ struct RenderRequest {
   std::vector<Channel> channels{Channel::rgb};
   int width = 0, height = 0;  // 0: the cameras' own
   LightChoice light;
-  int samples = 2;  // a pixel and axis
+  int samples = 2;       // a pixel and axis
+  bool residual = true;  // with what light and material cannot explain; never under another light
 };
 struct RenderReport {
   size_t views = 0;
@@ -249,6 +251,7 @@ struct EvalRequest {
   std::filesystem::path capture;  // empty: the project's own
   std::optional<Split> split;     // none: test when there is one, else all
   int samples = 2;
+  bool residual = true;  // with what light and material cannot explain
   NetworkFiles networks;
   std::string edit;                    // also score this edit, an id of the log; empty: none
   std::filesystem::path truth, masks;  // with it: folders of pictures named like the views; both or none
@@ -283,6 +286,7 @@ struct EvalReport {
   double psnr = 0, ssim = 0, psnr_masked = 0;  // means over views
   double psnr_worst = 0;
   std::string worst_view;
+  bool residual = false;  // what light and material cannot explain was in the pictures
   std::optional<double> lpips, fid;  // fid: between renders and photographs
   std::optional<EditScore> edit;
   Json json() const;

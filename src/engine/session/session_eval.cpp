@@ -94,9 +94,10 @@ Image side_by_side(const EditPictures& p, bool edited) {
 EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
   const Perceptual perceptual(request.networks);
   const std::vector<View> views = views_to_score(project(), request);
-  const Scene scene = project().scene();
+  Scene scene = project().scene(), base = project().base();
+  if (!request.residual) scene.residual = base.residual = nullptr;
   const EditLayer* edit = layer_of(scene, request.edit);
-  const Scene without = edit ? scene_without(project().base(), scene, request.edit) : scene;
+  const Scene without = edit ? scene_without(base, scene, request.edit) : scene;
   const SceneLight lit = light(scene), lit_without = edit ? light(without) : lit;
   const auto trace = [&](const Scene& s, const View& v) {
     return trace_view(*device_, s, s.normalization.unit_from_input(v.camera), request.samples);
@@ -122,6 +123,7 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
     if (!request.pictures.empty()) write_png(picture_like(request.pictures, views[i]), side_by_side(p, edit));
   }
   summarise(report);
+  report.residual = bool(scene.residual);
   report.fid = perceptual.frechet(sets.rendered, sets.photos);
   if (edit) report.edit = scorer.result();
   return report;

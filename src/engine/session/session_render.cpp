@@ -44,7 +44,7 @@ Json light_json(const LightChoice& light) {
 }
 
 Json run_json(const Project& project, const RenderRequest& request, const std::vector<NamedCamera>& cameras,
-              double depth) {
+              double depth, bool residual) {
   Json channels = Json::array(), list = Json::array();
   for (const Channel c : request.channels) channels.push_back(channel_name(c));
   for (const NamedCamera& c : cameras) {
@@ -57,7 +57,7 @@ Json run_json(const Project& project, const RenderRequest& request, const std::v
           {"edits", project.stack().active()},
           {"light", light_json(request.light)},
           {"channels", std::move(channels)},
-          {"switches", {{"samples_per_axis", request.samples}}},
+          {"switches", {{"samples_per_axis", request.samples}, {"residual", residual}}},
           {"depth",
            {{"scale", depth}, {"meaning", "z-depth in capture units = 16-bit value / scale; 0: nothing"}}},
           {"axes", "OpenCV: x right, y down, z forward; world: the capture's; pixel centres at +0.5"},
@@ -77,6 +77,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
       choose_cameras(project(), request.cameras, request.width, request.height);
   Scene scene = project().scene();
   scene.light = chosen_light(*device_, request.light, scene.light, scene.up, {project().folder() / "cache"});
+  if (!request.residual || !request.light.is_own()) scene.residual = nullptr;
   const double depth = depth_scale(cameras, scene.normalization);
   const SceneLight light = this->light(scene);
   RenderReport report;
@@ -93,7 +94,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
     for (const Channel c : request.channels)
       write_png(picture_path(request.out, c, cameras[i]), channel_picture(frame, c, depth), channel_bits(c));
   }
-  write_file_atomic(request.out / "render.json", run_json(project(), request, cameras, depth).dump(1) + "\n");
+  write_file_atomic(request.out / "render.json", run_json(project(), request, cameras, depth, bool(scene.residual)).dump(1) + "\n");
   progress.report({"render", 1, 0, ""});
   report.views = cameras.size();
   for (const Channel c : request.channels) report.folders.push_back(request.out / channel_name(c));

@@ -67,6 +67,17 @@ std::shared_ptr<const HandlerPoints> load_handlers(const Tensors& tensors, const
   return points;
 }
 
+void save_residual(const Residual& residual, Tensors& tensors, Json& head) {
+  head["residual"] = true;
+  residual.params.save(tensors, "residual");
+}
+
+std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const Field& sdf) {
+  auto residual = std::make_shared<Residual>(make_residual(sdf.config(), 0));
+  residual->params.load(tensors, "residual");
+  return residual;
+}
+
 Scene reshaped(Scene scene, const Reshape& change) {
   const std::shared_ptr<const Surface> before = scene.surface;
   if (!before) fail("The object has no surface that could be changed; reconstruct it again.");
@@ -86,6 +97,7 @@ Scene with_layer(Scene scene, EditLayer layer) {
   if (layer.pose < 0 || layer.pose > latest || (layer.reshape && layer.pose != latest))
     fail("edit {} was made for another shape of the object; undo it, or make it again", layer.id);
   if (layer.light) scene.light = *layer.light;
+  if (layer.light || layer.everywhere) scene.residual = nullptr;
   if (layer.reshape) scene = reshaped(std::move(scene), *layer.reshape);
   scene.layers.push_back(std::move(layer));
   return scene;
@@ -102,6 +114,7 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   save_field(scene.albedo, "albedo", tensors, head);
   if (scene.surface) save_surface(*scene.surface, tensors, head);
   save_light(scene.light, tensors, head);
+  if (scene.residual) save_residual(*scene.residual, tensors, head);
   if (scene.handlers) save_handlers(*scene.handlers, tensors, head);
 }
 
@@ -118,6 +131,7 @@ Scene load_scene(const Tensors& tensors, const Json& head) {
     scene.albedo = load_field("albedo", tensors, head);
     if (head.contains("surface")) scene.surface = load_surface(tensors, head.at("surface"));
     scene.light = load_light(tensors, head.at("light"));
+    if (head.contains("residual")) scene.residual = load_residual(tensors, *scene.sdf);
     if (head.contains("handlers")) scene.handlers = load_handlers(tensors, head.at("handlers"));
     return scene;
   });

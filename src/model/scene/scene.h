@@ -17,6 +17,7 @@
 #include "model/material/material.h"
 #include "model/scene/layer.h"
 #include "model/scene/normalization.h"
+#include "model/scene/residual.h"
 #include "model/scene/view.h"
 
 namespace cei3d {
@@ -30,6 +31,8 @@ struct Scene {
   std::shared_ptr<const Surface> surface;
   SgMixture light;  // that of the last edit that has one, when the layers have been put on
   Material material;
+  // What they cannot explain; null: nothing, or not any more, since the light or all of the object was changed.
+  std::shared_ptr<const Residual> residual;
   std::shared_ptr<const HandlerPoints> handlers;  // of the present shape
   Poses poses;  // of the object, the last one being `surface`; empty while it has the shape it was
                 // reconstructed in

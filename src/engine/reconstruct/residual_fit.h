@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trains the residual (model/scene/residual.h) on what the physical model leaves of the training pictures.
+#pragma once
+
+#include "core/base/progress.h"
+#include "engine/reconstruct/linear_split.h"
+#include "model/scene/residual.h"
+#include "model/scene/scene.h"
+
+namespace cei3d {
+
+struct ResidualOptions {
+  double seconds = 0;  // 0: no limit, the steps count
+  int steps = 1500;
+  float rate = 2e-3f;  // Adam; falls to a hundredth
+  uint64_t seed = 1;
+};
+
+// scene: the object without residual. samples: as for the appearance stage. Unchanged when it is cancelled.
+Residual fit_residual(const Device&, const Scene& scene, const SurfaceSamples& samples, const ResidualOptions&,
+                      Progress&);
+
+}  // namespace cei3d
