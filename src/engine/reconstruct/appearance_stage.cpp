@@ -51,24 +51,27 @@ std::vector<Vec3f> colors_at(const Device& device, const Field& field, std::span
   return out;
 }
 
-// Descent on the albedo field under a light, and then on both.
+// Descent on the albedo field under a light, and then on both. bouncing: base colours of the mesh's vertices
+// to begin with.
 class Descent {
  public:
   Descent(const Device& device, const AppearanceInput& input, std::shared_ptr<const Transport> transport,
-          const AppearanceOptions& options, AppearanceResult& result, Progress& progress)
+          const AppearanceOptions& options, Field field, const std::vector<Vec3f>& bouncing,
+          AppearanceResult& result, Progress& progress)
       : device_(device),
         input_(input),
         transport_(std::move(transport)),
         options_(options),
         result_(result),
         progress_(progress),
-        field_(options.albedo, options.seed + 100),
+        field_(std::move(field)),
         trainer_(field_, {}) {
-    relight(result.split.albedo);
+    relight(bouncing);
   }
 
-  // The field alone: every sample's radiance is linear in its base colour, dark + a gain.
-  void fit_albedo(int steps) {
+  // The field alone, `rate` times the full rates, falling to a tenth: every sample's radiance is linear in
+  // its base colour, dark + a gain.
+  void fit_albedo(int steps, float rate) {
     const SurfaceSamples& samples = input_.samples;
     const HitLight light = lighting_->light_at(samples.hits);
     for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
@@ -78,7 +81,7 @@ class Descent {
           color_gradient(batch_[i], light.at(batch_[i], result_.material), a, d_a);
         });
       };
-      trainer_.step(device_, positions_, loss, std::pow(0.1f, float(step) / float(steps)));
+      trainer_.step(device_, positions_, loss, rate * std::pow(0.1f, float(step) / float(steps)));
       if (step % 50 == 0) progress_.report({"albedo", 0.92 + 0.03 * step / steps, -1, ""});
     }
   }
@@ -206,13 +209,22 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   lobes.seen_through = 0.5f * reflection_scale(result.material.roughness);
   result.light = fit_lobes(device, result.split.light, lobes);
   const bool brief = options.seconds > 0 && options.seconds < kFullEffort;
-  Descent descent(device, input, transport, options, result, progress);
-  descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800);
+  Descent descent(device, input, transport, options, Field(options.albedo, options.seed + 100),
+                  result.split.albedo, result, progress);
+  descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800, 1);
   descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps
                                                : joint_steps_for(result.material, brief));
   result.albedo = std::make_shared<const Field>(descent.take_field());
   progress.log(Json{{"stage", "appearance"}, {"seconds", now() - start}}.dump());
   return result;
+}
+
+void refine_albedo(const Device& device, const AppearanceInput& input, const AppearanceOptions& options,
+                   AppearanceResult& result, Progress& progress, int steps) {
+  Descent descent(device, input, std::make_shared<const Transport>(input.surface), options, *result.albedo,
+                  colors_at(device, *result.albedo, input.surface.mesh().positions), result, progress);
+  descent.fit_albedo(steps, 0.2f);
+  result.albedo = std::make_shared<const Field>(descent.take_field());
 }
 
 }  // namespace cei3d

@@ -29,6 +29,7 @@ constexpr int kLongRunSteps = 4000;        // or steps
 constexpr double kPixelsASecond = 100000;  // of training, that the appearance stage gets time for: from
 constexpr double kLeastAppearance = 20, kMostAppearance = 60;  // to so many seconds; more brings nothing
 constexpr double kMostResidual = 25;
+constexpr double kRefinement = 36;  // one of the albedo, with its hits
 constexpr double kMostPolish = 60;                             // seconds a round: likewise
 constexpr double kBetweenRounds = 7;  // seconds for a mesh, its hits and a brief look at light and material
 constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;  // a round, at most
@@ -178,14 +179,14 @@ struct ObjectHits {
 };
 
 ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& surface,
-                       const PixelStore& pixels) {
+                       const PixelStore& pixels, uint64_t subset = 0) {
   std::vector<Pixel> inner;
   for (const Pixel& p : pixels.pixels())
     if (p.srgba[3] == 255) inner.push_back(p);
   const double keep = std::min(1.0, double(kMostHits) / double(std::max<size_t>(inner.size(), 1)));
   std::vector<Pixel> chosen;
   for (size_t i = 0; i < inner.size(); ++i)
-    if (keep == 1 || Rng(7, 0, i).uniform() < keep) chosen.push_back(inner[i]);
+    if (keep == 1 || Rng(7, subset, i).uniform() < keep) chosen.push_back(inner[i]);
   std::vector<Ray> rays;
   rays.reserve(chosen.size());
   for (const Pixel& p : chosen) rays.push_back(pixels.cameras()[p.view].ray(p.x + 0.5, p.y + 0.5));
@@ -209,6 +210,7 @@ struct Plan {
   double geometry = 0, polish = 0, appearance = 0, residual = 0;  // polish: a round
   int iterations = 0;                               // of the geometry stage
   int rounds = 0, polish_steps = 0;
+  int refinements = 0;  // of the albedo, on other pixels
 };
 
 // pixels: all of training.
@@ -228,7 +230,11 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   p.polish = std::min(kMostPolish, 0.1 * t);
   p.appearance = std::min(appearance, 0.2 * t);
   p.residual = std::min(kMostResidual, 0.04 * t);
-  const double rest = t - p.appearance - p.residual - p.rounds * (p.polish + kBetweenRounds) - std::max(8.0, 0.06 * t);
+  const double wanted = double(pixels) / kPixelsASecond - kMostAppearance, affordable = 0.1 * t;
+  p.refinements = std::max(0, int(std::min(wanted, affordable) / kRefinement));
+  const double polishing = p.rounds * (p.polish + kBetweenRounds);
+  const double last = p.appearance + p.refinements * kRefinement + p.residual + std::max(8.0, 0.06 * t);
+  const double rest = t - polishing - last;
   p.geometry = std::max(0.45 * t, rest);
   return p;
 }
@@ -317,7 +323,7 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
         at_silhouettes(device, stage.sdf(), views.train, options.seed, progress));
   }
   progress.report({"surface", 0.74, -1, ""});
-  const Standing standing = stand(device, *scene.sdf, preset, views.train);
+  Standing standing = stand(device, *scene.sdf, preset, views.train);
   scene.surface = standing.surface;
   progress.report({"handler points", 0.78, -1, ""});
   scene.handlers = std::make_shared<const HandlerPoints>(
@@ -328,6 +334,10 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   appearance.seed = options.seed;
   appearance.albedo = preset.albedo;
   AppearanceResult result = fit_appearance(device, standing.input(), appearance, progress);
+  for (int round = 1; round <= plan.refinements; ++round) {
+    standing.hits = object_hits(device, *scene.sdf, *standing.surface, views.train, uint64_t(round));
+    refine_albedo(device, standing.input(), appearance, result, progress);
+  }
   scene.light = std::move(result.light);
   scene.material = result.material;
   scene.albedo = std::move(result.albedo);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/residual_fit.h"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 
@@ -17,7 +18,7 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kBatch = 8192;
+constexpr int kChunks = 16, kBatch = kChunks * ResidualPass::kMost;  // pixels a step
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -25,60 +26,96 @@ double now() {
 
 // What the physical model sends out.
 std::vector<Vec3f> physical(const Device& device, const Scene& scene, std::span<const Hit> hits) {
-  const Shading shading = SceneLight(device, scene, scene_transports(scene)).shade(hits, appearance_at(device, scene, hits));
+  const SceneLight light(device, scene, scene_transports(scene));
+  const Shading shading = light.shade(hits, appearance_at(device, scene, hits));
   std::vector<Vec3f> out(hits.size());
   for (size_t i = 0; i < out.size(); ++i) out[i] = shading.diffuse[i] + shading.specular[i];
   return out;
 }
+
+class Trainer {
+ public:
+  Trainer(const Device& device, const Scene& scene, const SurfaceSamples& samples,
+          const ResidualOptions& options)
+      : device_(device),
+        sdf_(*scene.sdf),
+        samples_(samples),
+        seed_(options.seed),
+        sent_(physical(device, scene, samples.hits)),
+        residual_(make_residual(sdf_.config(), options.seed)),
+        sdf_weights_(mlp_config(sdf_.config()), sdf_.params()),
+        passes_([this] { return std::make_unique<ResidualPass>(sdf_.config(), residual_.network); }) {
+    optimizer_.add(residual_.params, "", {options.rate});
+  }
+
+  void step(int step, double rate) {
+    const MlpWeights weights(residual_.network, residual_.params);
+    std::array<std::vector<float>, kChunks> gradients;
+    parallel_for(kChunks, [&](int chunk) {
+      gradients[chunk].assign(weights.gradient_size(), 0.0f);
+      passes_.with(
+          [&](ResidualPass& pass) { learn(pass, weights, choose(step, chunk), gradients[chunk].data()); });
+    });
+    std::vector<const std::vector<float>*> all;
+    for (const auto& g : gradients) all.push_back(&g);
+    accumulate_layers(residual_.params, all, optimizer_);
+    optimizer_.step(device_, float(rate));
+  }
+
+  Residual take() { return std::move(residual_); }
+
+ private:
+  std::vector<uint32_t> choose(int step, int chunk) const {
+    std::vector<uint32_t> out(ResidualPass::kMost);
+    for (size_t i = 0; i < out.size(); ++i)
+      out[i] =
+          Rng(seed_, uint64_t(step), uint64_t(chunk) * out.size() + i).below(uint32_t(samples_.hits.size()));
+    return out;
+  }
+
+  void learn(ResidualPass& pass, const MlpWeights& weights, const std::vector<uint32_t>& chosen,
+             float* gradient) {
+    std::vector<Hit> hits;
+    for (const uint32_t s : chosen) hits.push_back(samples_.hits[s]);
+    const int n = pass.forward(device_, sdf_, sdf_weights_, weights, hits);
+    for (int i = 0; i < n; ++i) pass.set_slope(i, slope(chosen[i], pass.output(i)));
+    pass.backward(device_, weights, n, gradient);
+  }
+
+  // Of the loss by the residual; zero where the picture is clipped.
+  Vec3f slope(uint32_t sample, Vec3f residual) const {
+    if (!samples_.saturated.empty() && samples_.saturated[sample]) return {0, 0, 0};
+    Vec3f out;
+    for (int c = 0; c < 3; ++c)
+      out[c] = display_loss_slope(sent_[sample][c] + residual[c], samples_.colors[sample][c]) / float(kBatch);
+    return out;
+  }
+
+  const Device& device_;
+  const Field& sdf_;
+  const SurfaceSamples& samples_;
+  uint64_t seed_;
+  std::vector<Vec3f> sent_;
+  Residual residual_;
+  MlpWeights sdf_weights_;
+  Pool<ResidualPass> passes_;
+  Optimizer optimizer_;
+};
 
 }  // namespace
 
 Residual fit_residual(const Device& device, const Scene& scene, const SurfaceSamples& samples,
                       const ResidualOptions& options, Progress& progress) {
   const double start = now();
-  const Field& sdf = *scene.sdf;
-  const std::vector<Vec3f> sent = physical(device, scene, samples.hits);
-  Residual residual = make_residual(sdf.config(), options.seed);
-  Optimizer optimizer;
-  optimizer.add(residual.params, "", {options.rate});
-  const MlpWeights sdf_weights(mlp_config(sdf.config()), sdf.params());
-  Pool<ResidualPass> passes([&] { return std::make_unique<ResidualPass>(sdf.config(), residual.network); });
-  constexpr int kChunks = kBatch / ResidualPass::kMost;
-  std::vector<std::vector<float>> gradients(kChunks);
-  for (int step = 0; !progress.cancelled(); ++step) {
-    const double u = std::max(double(step) / options.steps, options.seconds > 0 ? (now() - start) / options.seconds : 0.0);
+  Trainer trainer(device, scene, samples, options);
+  for (int step = 0; step < options.steps && !progress.cancelled(); ++step) {
+    const double by_clock = options.seconds > 0 ? (now() - start) / options.seconds : 0;
+    const double u = std::max(double(step) / options.steps, by_clock);
     if (u >= 1) break;
-    const MlpWeights weights(residual.network, residual.params);
-    parallel_for(kChunks, [&](int chunk) {
-      std::vector<uint32_t> chosen(ResidualPass::kMost);
-      std::vector<Hit> hits(chosen.size());
-      for (size_t i = 0; i < chosen.size(); ++i) {
-        Rng rng(options.seed, uint64_t(step), uint64_t(chunk) * chosen.size() + i);
-        chosen[i] = rng.below(uint32_t(samples.hits.size()));
-        hits[i] = samples.hits[chosen[i]];
-      }
-      gradients[chunk].assign(weights.gradient_size(), 0.0f);
-      passes.with([&](ResidualPass& pass) {
-        const int n = pass.forward(device, sdf, sdf_weights, weights, hits);
-        for (int i = 0; i < n; ++i) {
-          const uint32_t s = chosen[i];
-          const bool clipped = !samples.saturated.empty() && samples.saturated[s];
-          const Vec3f got = sent[s] + pass.output(i);
-          Vec3f slope{0, 0, 0};
-          for (int c = 0; c < 3 && !clipped; ++c)
-            slope[c] = display_loss_slope(got[c], samples.colors[s][c]) / float(kBatch);
-          pass.set_slope(i, slope);
-        }
-        pass.backward(device, weights, n, gradients[chunk].data());
-      });
-    });
-    std::vector<const std::vector<float>*> all;
-    for (const auto& g : gradients) all.push_back(&g);
-    accumulate_layers(residual.params, all, optimizer);
-    optimizer.step(device, float(std::pow(0.01, u)));
+    trainer.step(step, std::pow(0.01, u));
     if (step % 50 == 0) progress.report({"residual", 0.99, -1, ""});
   }
-  return residual;
+  return trainer.take();
 }
 
 }  // namespace cei3d

@@ -16,8 +16,8 @@ struct ResidualOptions {
   uint64_t seed = 1;
 };
 
-// scene: the object without residual. samples: as for the appearance stage. Unchanged when it is cancelled.
-Residual fit_residual(const Device&, const Scene& scene, const SurfaceSamples& samples, const ResidualOptions&,
-                      Progress&);
+// scene: the object without residual. samples: as for the appearance stage. Cancelled: as far as it got.
+Residual fit_residual(const Device&, const Scene& scene, const SurfaceSamples& samples,
+                      const ResidualOptions&, Progress&);
 
 }  // namespace cei3d

@@ -28,10 +28,12 @@ struct Photographed {
   explicit Photographed(const Device& device, const Scene& scene) {
     for (int v = 0; v < 8; ++v) {
       const double turn = 0.785 * v;
-      const std::vector<Hit> more = seen_from(device, scene, {3 * std::cos(turn), 3 * std::sin(turn), v % 2 ? 1.0 : -1.0});
+      const std::vector<Hit> more =
+          seen_from(device, scene, {3 * std::cos(turn), 3 * std::sin(turn), v % 2 ? 1.0 : -1.0});
       hits.insert(hits.end(), more.begin(), more.end());
     }
-    const Shading s = SceneLight(device, scene, scene_transports(scene)).shade(hits, appearance_at(device, scene, hits));
+    const Shading s =
+        SceneLight(device, scene, scene_transports(scene)).shade(hits, appearance_at(device, scene, hits));
     for (size_t i = 0; i < hits.size(); ++i) colors.push_back(s.diffuse[i] + s.specular[i] + glow(hits[i]));
   }
   std::vector<Hit> hits;
@@ -98,7 +100,8 @@ TEST_F(ResidualTest, StaysOutOfAnEditsRegionAndWholeOutsideIt) {
   const Scene edited = with_layer(scene, upper_half(scene));
   const Image glowing = picture(scene), plain = picture(without()), got = picture(edited);
   int inside = 0, outside = 0;
-  const Frame marks = shade_view(device, edited, trace_view(device, edited, camera_towards_origin({2.5, 1.5, 0.5}, 96), 1));
+  const Frame marks =
+      shade_view(device, edited, trace_view(device, edited, camera_towards_origin({2.5, 1.5, 0.5}, 96), 1));
   for (size_t i = 0; i < marks.edited.size(); ++i)
     for (int c = 0; c < 3; ++c) {
       const int y = int(i) / 96;

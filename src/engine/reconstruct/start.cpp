@@ -19,16 +19,19 @@ VisualHull hull_of(const PixelStore& pixels, int cells) {
   return visual_hull(masks, cells);
 }
 
-StartShape shape_of(const VisualHull& hull, bool anchored) { return {{hull.n, signed_distance(hull)}, anchored}; }
+StartShape shape_of(const VisualHull& hull, bool anchored) {
+  return {{hull.n, signed_distance(hull)}, anchored};
+}
 
 // dB on random training pixels after a short training.
-double trial(const Device& device, const PixelStore& pixels, const GeometryOptions& options, const StartShape& shape,
-             uint64_t seed, Progress& progress) {
+double trial(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
+             const StartShape& shape, uint64_t seed, Progress& progress) {
   constexpr int kSteps = 400, kRays = 32768;
   GeometryStage stage(device, pixels, options, seed);
   stage.prefit(shape);
   for (int step = 0; step < kSteps; ++step) {
-    if (progress.cancelled()) throw Error(ErrorCode::interrupted, "interrupted before there was a state to save");
+    if (progress.cancelled())
+      throw Error(ErrorCode::interrupted, "interrupted before there was a state to save");
     stage.step(step, double(step) / kSteps);
     if (step % 20 == 0) progress.report({"choosing a start", 0.01, -1, ""});
   }
@@ -49,8 +52,8 @@ StartShape start_shape(const PixelStore& pixels, Start start, uint64_t seed) {
   return shape_of(carve(pixels, hull, carving), true);
 }
 
-StartShape choose_start(const Device& device, const PixelStore& pixels, const GeometryOptions& options, uint64_t seed,
-                        Progress& progress) {
+StartShape choose_start(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
+                        uint64_t seed, Progress& progress) {
   StartShape best;
   double best_psnr = -1e9;
   Json log{{"stage", "start"}};

@@ -16,9 +16,9 @@ enum class Start {
 // Error: empty hull.
 StartShape start_shape(const PixelStore&, Start, uint64_t seed);
 
-// The one from which a short training explains the pictures best: no rule tells beforehand. Carving opens what the
-// visual hull cannot (the inside of a shovel) but is deceived by mirror images (a metal body is hollowed out where
-// the reflections seem to be); stereo finds courtyards of brick but needs texture.
+// The one from which a short training explains the pictures best: no rule tells beforehand. Carving opens
+// what the visual hull cannot (the inside of a shovel) but is deceived by mirror images (a metal body is
+// hollowed out where the reflections seem to be); stereo finds courtyards of brick but needs texture.
 StartShape choose_start(const Device&, const PixelStore&, const GeometryOptions&, uint64_t seed, Progress&);
 
 }  // namespace cei3d

@@ -41,7 +41,8 @@ TEST_F(Box, DepthsAreThoseOfTheSurface) {
         const float distance = distance_to_solid(ray), depth = map.depth[size_t(y) * map.camera.width + x];
         on_object += distance > 0;
         known += depth > 0;
-        right += distance > 0 && depth > 0 && std::abs(depth - distance * dot(ray.direction, map.camera.forward())) < 0.04f;
+        right += distance > 0 && depth > 0 &&
+                 std::abs(depth - distance * dot(ray.direction, map.camera.forward())) < 0.04f;
       }
   EXPECT_GT(known, 0.5 * on_object);
   EXPECT_GT(right, 0.9 * known);

@@ -48,8 +48,8 @@ int ResidualPass::forward(const Device& device, const Field& sdf, const MlpWeigh
       jets_[panel_at(i, 4, 0, rows, o)] = values_.output()[panel_at(i, 1, 0, rows, o)];
     for (int c = 0; c < 3; ++c) jets_[panel_at(i, 4, 1 + c, rows, 0)] = hit(i).normal[c];
   }
-  device.launch<RadianceInput>({points_.data(), directions_.data(), jets_.data(), nullptr, network_.input(), rows - 1},
-                               samples);
+  device.launch<RadianceInput>(
+      {points_.data(), directions_.data(), jets_.data(), nullptr, network_.input(), rows - 1}, samples);
   network_.forward(device, weights, samples, weights.config().inputs, 3);
   return samples;
 }
@@ -71,7 +71,8 @@ std::vector<Vec3f> residual_at(const Device& device, const Field& sdf, const Res
                                std::span<const Hit> hits) {
   constexpr int kGrain = 4096;
   std::vector<Vec3f> out(hits.size());
-  const MlpWeights sdf_weights(mlp_config(sdf.config()), sdf.params()), weights(residual.network, residual.params);
+  const MlpWeights sdf_weights(mlp_config(sdf.config()), sdf.params()),
+      weights(residual.network, residual.params);
   parallel_ranges(int(hits.size()), kGrain, [&](int begin, int end) {
     ResidualPass pass(sdf.config(), residual.network);
     for (int first = begin; first < end; first += ResidualPass::kMost) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What light and material cannot explain: a small network over the features of the distance field, the normal and
-// the view, whose output is added to what the physical model sends out. It belongs to the object as it was
-// photographed: an edit's region, another light and the base colour never see it. [architecture 1.2]
+// What light and material cannot explain: a small network over the features of the distance field, the normal
+// and the view, whose output is added to what the physical model sends out. It belongs to the object as it
+// was photographed: an edit's region, another light and the base colour never see it. [architecture 1.2]
 #pragma once
 
 #include <span>
