@@ -28,7 +28,8 @@ constexpr double kLongRun = 120;           // seconds of training from which two
 constexpr int kLongRunSteps = 4000;        // or steps
 constexpr double kPixelsASecond = 100000;  // of training, that the appearance stage gets time for: from
 constexpr double kLeastAppearance = 20, kMostAppearance = 60;  // to so many seconds; more brings nothing
-constexpr double kMostResidual = 25;
+constexpr double kMostResidual = 45;  // seconds of training, or
+constexpr int kResidualSteps = 1500;  // steps
 constexpr double kRefinement = 36;  // one of the albedo, with its hits
 constexpr double kMostPolish = 60;                             // seconds a round: likewise
 constexpr double kBetweenRounds = 7;  // seconds for a mesh, its hits and a brief look at light and material
@@ -208,9 +209,10 @@ ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& su
 // How the time that is asked for is spent. Seconds; 0: no limit, the steps count.
 struct Plan {
   double geometry = 0, polish = 0, appearance = 0, residual = 0;  // polish: a round
-  int iterations = 0;                               // of the geometry stage
+  int iterations = 0;  // of the geometry stage
   int rounds = 0, polish_steps = 0;
   int refinements = 0;  // of the albedo, on other pixels
+  int residual_steps = 0;
 };
 
 // pixels: all of training.
@@ -223,13 +225,15 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
     p.appearance = t > 0 ? std::min(appearance, 0.2 * t) : 0;
     p.rounds = p.iterations >= 1000 ? 2 : 0;
     p.polish_steps = kPolishStepsUntimed;
+    p.residual_steps = std::min(kResidualSteps, p.iterations / 2);
     return p;
   }
   p.rounds = t >= 180 ? 2 : t >= 45 ? 1 : 0;
   p.polish_steps = kPolishSteps;
+  p.residual_steps = kResidualSteps;
   p.polish = std::min(kMostPolish, 0.1 * t);
   p.appearance = std::min(appearance, 0.2 * t);
-  p.residual = std::min(kMostResidual, 0.04 * t);
+  p.residual = std::min(kMostResidual, 0.05 * t);
   const double wanted = double(pixels) / kPixelsASecond - kMostAppearance, affordable = 0.1 * t;
   p.refinements = std::max(0, int(std::min(wanted, affordable) / kRefinement));
   const double polishing = p.rounds * (p.polish + kBetweenRounds);
@@ -343,6 +347,7 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   scene.albedo = std::move(result.albedo);
   ResidualOptions residual;
   residual.seconds = plan.residual;
+  residual.steps = plan.residual_steps;
   residual.seed = options.seed;
   scene.residual = std::make_shared<const Residual>(
       fit_residual(device, scene, standing.input().samples, residual, progress));

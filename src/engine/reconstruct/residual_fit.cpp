@@ -106,8 +106,8 @@ class Trainer {
 
 Residual fit_residual(const Device& device, const Scene& scene, const SurfaceSamples& samples,
                       const ResidualOptions& options, Progress& progress) {
-  const double start = now();
   Trainer trainer(device, scene, samples, options);
+  const double start = now();
   for (int step = 0; step < options.steps && !progress.cancelled(); ++step) {
     const double by_clock = options.seconds > 0 ? (now() - start) / options.seconds : 0;
     const double u = std::max(double(step) / options.steps, by_clock);

@@ -10,7 +10,7 @@
 namespace cei3d {
 
 struct ResidualOptions {
-  double seconds = 0;  // 0: no limit, the steps count
+  double seconds = 0;  // of training, after the shading of all samples; 0: no limit, the steps count
   int steps = 1500;
   float rate = 2e-3f;  // Adam; falls to a hundredth
   uint64_t seed = 1;

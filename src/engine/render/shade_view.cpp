@@ -57,19 +57,20 @@ void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverag
   image.data[4 * pixel + 3] = coverage;
 }
 
-// The residual where no edit has been; else nothing. #hits
-std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const Appearance& look, std::span<const Hit> hits) {
+// The residual of what is as it was photographed; else nothing. #hits
+std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const Appearance& look,
+                             std::span<const Hit> hits) {
   std::vector<Vec3f> out(hits.size(), Vec3f{0, 0, 0});
   if (!scene.residual) return out;
-  std::vector<Hit> untouched;
+  std::vector<Hit> original;
   std::vector<size_t> of;
   for (size_t i = 0; i < hits.size(); ++i)
-    if (look.layer[i] < 0) {
-      untouched.push_back(hits[i]);
+    if (look.original[i] > 0) {
+      original.push_back(hits[i]);
       of.push_back(i);
     }
-  const std::vector<Vec3f> values = residual_at(device, *scene.sdf, *scene.residual, untouched);
-  for (size_t k = 0; k < of.size(); ++k) out[of[k]] = values[k];
+  const std::vector<Vec3f> values = residual_at(device, *scene.sdf, *scene.residual, original);
+  for (size_t k = 0; k < of.size(); ++k) out[of[k]] = values[k] * look.original[of[k]];
   return out;
 }
 

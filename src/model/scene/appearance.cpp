@@ -185,6 +185,20 @@ void put_colors(const Device& device, const Scene& scene, std::span<const Hit> h
     }
 }
 
+std::vector<float> original_shares(const Scene& scene, std::span<const Hit> hits, const Routes& routes) {
+  std::vector<float> share(hits.size(), 1.0f);
+  for (const Chunk& chunk : routes.chunks)
+    for (auto op = chunk.ops.rbegin(); op != chunk.ops.rend(); ++op) {
+      float& s = share[op->hit];
+      s = s * (1 - op->weight) + (op->kind == Op::Kind::base ? op->weight : 0);
+    }
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const bool moved = !scene.poses.empty() && scene.poses.back()->shaped_in(hits[i].triangle) > 0;
+    if (moved || !routes.at[i].material.empty()) share[i] = 0;
+  }
+  return share;
+}
+
 // The list of distinct materials, in the order of their first hit.
 class Materials {
  public:
@@ -216,6 +230,7 @@ Appearance appearance_at(const Device& device, const Scene& scene, std::span<con
     if (!r.material.empty()) out.material[i] = materials.index_of(changed(scene.material, r.material));
   }
   out.materials = std::move(materials.list);
+  if (scene.residual) out.original = original_shares(scene, hits, routes);
   return out;
 }
 

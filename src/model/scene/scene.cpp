@@ -96,8 +96,10 @@ Scene with_layer(Scene scene, EditLayer layer) {
   if (layer.pose == kLatestPose) layer.pose = latest;
   if (layer.pose < 0 || layer.pose > latest || (layer.reshape && layer.pose != latest))
     fail("edit {} was made for another shape of the object; undo it, or make it again", layer.id);
-  if (layer.light) scene.light = *layer.light;
-  if (layer.light || layer.everywhere) scene.residual = nullptr;
+  if (layer.light) {
+    scene.light = *layer.light;
+    scene.residual = nullptr;
+  }
   if (layer.reshape) scene = reshaped(std::move(scene), *layer.reshape);
   scene.layers.push_back(std::move(layer));
   return scene;

@@ -31,7 +31,7 @@ struct Scene {
   std::shared_ptr<const Surface> surface;
   SgMixture light;  // that of the last edit that has one, when the layers have been put on
   Material material;
-  // What they cannot explain; null: nothing, or not any more, since the light or all of the object was changed.
+  // What they cannot explain; null: nothing, or not any more, since the light was changed.
   std::shared_ptr<const Residual> residual;
   std::shared_ptr<const HandlerPoints> handlers;  // of the present shape
   Poses poses;  // of the object, the last one being `surface`; empty while it has the shape it was
