@@ -349,8 +349,9 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   residual.seconds = plan.residual;
   residual.steps = plan.residual_steps;
   residual.seed = options.seed;
-  scene.residual = std::make_shared<const Residual>(
-      fit_residual(device, scene, standing.input().samples, residual, progress));
+  if (auto fitted =
+          fit_residual(device, scene, standing.input().samples, standing.hits.views, residual, progress))
+    scene.residual = std::make_shared<const Residual>(std::move(*fitted));
   progress.report({"done", 1, 0, ""});
   return scene;
 }

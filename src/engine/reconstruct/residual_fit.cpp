@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/base/pool.h"
 #include "core/math/rng.h"
@@ -19,6 +20,9 @@ namespace cei3d {
 namespace {
 
 constexpr int kChunks = 16, kBatch = kChunks * ResidualPass::kMost;  // pixels a step
+constexpr int kApart = 8;                                            // every so many views one to judge by,
+constexpr size_t kJudged = 100000;                                   // at most so many of its pixels
+constexpr double kLeastGain = 0.03;                                  // of the squared error there
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -36,7 +40,7 @@ std::vector<Vec3f> physical(const Device& device, const Scene& scene, std::span<
 class Trainer {
  public:
   Trainer(const Device& device, const Scene& scene, const SurfaceSamples& samples,
-          const ResidualOptions& options)
+          std::span<const uint16_t> views, const ResidualOptions& options)
       : device_(device),
         sdf_(*scene.sdf),
         samples_(samples),
@@ -46,6 +50,26 @@ class Trainer {
         sdf_weights_(mlp_config(sdf_.config()), sdf_.params()),
         passes_([this] { return std::make_unique<ResidualPass>(sdf_.config(), residual_.network); }) {
     optimizer_.add(residual_.params, "", {options.rate});
+    for (uint32_t i = 0; i < views.size(); ++i)
+      (views[i] % kApart == kApart - 1 ? apart_ : taught_).push_back(i);
+  }
+  bool can_judge() const { return !apart_.empty() && !taught_.empty(); }
+
+  // Share of the squared error, as displayed, that the residual takes off views it has not seen.
+  double gain() const {
+    std::vector<uint32_t> judged;
+    std::vector<Hit> hits;
+    for (size_t i = 0; i < apart_.size(); i += 1 + apart_.size() / kJudged) {
+      judged.push_back(apart_[i]);
+      hits.push_back(samples_.hits[apart_[i]]);
+    }
+    const std::vector<Vec3f> values = residual_at(device_, sdf_, residual_, hits);
+    double with = 0, without = 1e-12;
+    for (size_t i = 0; i < judged.size(); ++i) {
+      with += squared_error(judged[i], sent_[judged[i]] + values[i]);
+      without += squared_error(judged[i], sent_[judged[i]]);
+    }
+    return 1 - with / without;
   }
 
   void step(int step, double rate) {
@@ -68,8 +92,8 @@ class Trainer {
   std::vector<uint32_t> choose(int step, int chunk) const {
     std::vector<uint32_t> out(ResidualPass::kMost);
     for (size_t i = 0; i < out.size(); ++i)
-      out[i] =
-          Rng(seed_, uint64_t(step), uint64_t(chunk) * out.size() + i).below(uint32_t(samples_.hits.size()));
+      out[i] = Rng(seed_, uint64_t(step), uint64_t(chunk) * out.size() + i).below(uint32_t(taught_.size()));
+    for (uint32_t& i : out) i = taught_[i];
     return out;
   }
 
@@ -80,6 +104,14 @@ class Trainer {
     const int n = pass.forward(device_, sdf_, sdf_weights_, weights, hits);
     for (int i = 0; i < n; ++i) pass.set_slope(i, slope(chosen[i], pass.output(i)));
     pass.backward(device_, weights, n, gradient);
+  }
+
+  double squared_error(uint32_t sample, Vec3f got) const {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c)
+      sum +=
+          square(srgb_from_linear(clamp(got[c], 0.0f, 1.0f)) - srgb_from_linear(samples_.colors[sample][c]));
+    return sum;
   }
 
   // Of the loss by the residual; zero where the picture is clipped.
@@ -94,6 +126,7 @@ class Trainer {
   const Device& device_;
   const Field& sdf_;
   const SurfaceSamples& samples_;
+  std::vector<uint32_t> taught_, apart_;  // samples
   uint64_t seed_;
   std::vector<Vec3f> sent_;
   Residual residual_;
@@ -104,9 +137,11 @@ class Trainer {
 
 }  // namespace
 
-Residual fit_residual(const Device& device, const Scene& scene, const SurfaceSamples& samples,
-                      const ResidualOptions& options, Progress& progress) {
-  Trainer trainer(device, scene, samples, options);
+std::optional<Residual> fit_residual(const Device& device, const Scene& scene, const SurfaceSamples& samples,
+                                     std::span<const uint16_t> views, const ResidualOptions& options,
+                                     Progress& progress) {
+  Trainer trainer(device, scene, samples, views, options);
+  if (!trainer.can_judge()) return {};
   const double start = now();
   for (int step = 0; step < options.steps && !progress.cancelled(); ++step) {
     const double by_clock = options.seconds > 0 ? (now() - start) / options.seconds : 0;
@@ -115,6 +150,9 @@ Residual fit_residual(const Device& device, const Scene& scene, const SurfaceSam
     trainer.step(step, std::pow(0.01, u));
     if (step % 50 == 0) progress.report({"residual", 0.99, -1, ""});
   }
+  const double gain = trainer.gain();
+  progress.log(Json{{"stage", "residual"}, {"gain_on_views_kept_apart", gain}}.dump());
+  if (gain < kLeastGain) return {};
   return trainer.take();
 }
 

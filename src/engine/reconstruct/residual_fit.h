@@ -2,6 +2,8 @@
 // Trains the residual (model/scene/residual.h) on what the physical model leaves of the training pictures.
 #pragma once
 
+#include <optional>
+
 #include "core/base/progress.h"
 #include "engine/reconstruct/linear_split.h"
 #include "model/scene/residual.h"
@@ -16,8 +18,10 @@ struct ResidualOptions {
   uint64_t seed = 1;
 };
 
-// scene: the object without residual. samples: as for the appearance stage. Cancelled: as far as it got.
-Residual fit_residual(const Device&, const Scene& scene, const SurfaceSamples& samples,
-                      const ResidualOptions&, Progress&);
+// scene: the object without residual. samples: as for the appearance stage; views: #samples. Every eighth
+// view is kept apart, to judge by: nothing is returned where its pixels do not gain (spot: what light and
+// material leave there is noise), or where there is no such view. Cancelled: as far as it got.
+std::optional<Residual> fit_residual(const Device&, const Scene& scene, const SurfaceSamples& samples,
+                                     std::span<const uint16_t> views, const ResidualOptions&, Progress&);
 
 }  // namespace cei3d

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "core/math/rng.h"
 #include "engine/render/render.h"
 #include "engine/render/scene_light.h"
 #include "engine/render/sphere_scene.h"
@@ -31,6 +32,7 @@ struct Photographed {
       const std::vector<Hit> more =
           seen_from(device, scene, {3 * std::cos(turn), 3 * std::sin(turn), v % 2 ? 1.0 : -1.0});
       hits.insert(hits.end(), more.begin(), more.end());
+      views.insert(views.end(), more.size(), uint16_t(v));
     }
     const Shading s =
         SceneLight(device, scene, scene_transports(scene)).shade(hits, appearance_at(device, scene, hits));
@@ -38,6 +40,7 @@ struct Photographed {
   }
   std::vector<Hit> hits;
   std::vector<Vec3f> colors;
+  std::vector<uint16_t> views;
 };
 
 // Upper half: a layer's region.
@@ -65,7 +68,9 @@ struct ResidualTest : testing::Test {
     ResidualOptions options;
     options.steps = 250;
     scene.residual = std::make_shared<const Residual>(
-        fit_residual(device, scene, {photographed.hits, photographed.colors, {}, {}}, options, quiet));
+        fit_residual(device, scene, {photographed.hits, photographed.colors, {}, {}}, photographed.views,
+                     options, quiet)
+            .value());
   }
   static Scene without() {
     Scene plain = scene;
@@ -88,6 +93,20 @@ TEST_F(ResidualTest, LearnsWhatThePhysicalModelLeavesAndHoldsInOtherViews) {
     all += dot(glow(hits[i]), glow(hits[i]));
   }
   EXPECT_LT(std::sqrt(error / all), 0.2);
+}
+
+TEST_F(ResidualTest, IsNotKeptWhereViewsThatItHasNotSeenGainNothing) {
+  Photographed noisy(device, without());
+  for (size_t i = 0; i < noisy.hits.size(); ++i) {
+    Rng rng(1, 2, i);
+    const float noise = 0.05f * (rng.uniform() - 0.5f);
+    noisy.colors[i] += Vec3f{noise, noise, noise} - glow(noisy.hits[i]);
+  }
+  Progress quiet;
+  ResidualOptions options;
+  options.steps = 30;
+  EXPECT_FALSE(
+      fit_residual(device, without(), {noisy.hits, noisy.colors, {}, {}}, noisy.views, options, quiet));
 }
 
 TEST_F(ResidualTest, StartsAsNothing) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "core/base/parallel.h"
 #include "engine/reconstruct/window_match.h"
@@ -12,8 +11,8 @@ namespace cei3d {
 
 namespace {
 
-constexpr double kBestAngle =
-    0.2;  // between the two views of a pair, radians: less tells little, more looks different
+// Between the two views of a pair, radians: less tells little, more looks different.
+constexpr double kBestAngle = 0.2;
 constexpr double kLeastAngle = 0.05, kMostAngle = 0.7;
 constexpr int kMostPlanes = 256;
 
@@ -21,6 +20,28 @@ int shrink_for(const PixelStore& pixels, size_t most) {
   int factor = 1;
   while (pixels.pixels().size() / size_t(factor * factor) > most) ++factor;
   return factor;
+}
+
+// The part of the picture that has the object; most frames are mostly empty.
+Grey cropped(const Grey& g) {
+  int x0 = g.camera.width, y0 = g.camera.height, x1 = 0, y1 = 0;
+  for (int y = 0; y < g.camera.height; ++y)
+    for (int x = 0; x < g.camera.width; ++x)
+      if (g.inside[g.at(x, y)] > 0) {
+        x0 = std::min(x0, x), x1 = std::max(x1, x + 1);
+        y0 = std::min(y0, y), y1 = std::max(y1, y + 1);
+      }
+  Grey out{g.camera, {}, {}};
+  out.camera.width = std::max(x1 - x0, 0);
+  out.camera.height = std::max(y1 - y0, 0);
+  out.camera.cx -= x0;
+  out.camera.cy -= y0;
+  for (int y = y0; y < y1; ++y)
+    for (int x = x0; x < x1; ++x) {
+      out.value.push_back(g.value[g.at(x, y)]);
+      out.inside.push_back(g.inside[g.at(x, y)]);
+    }
+  return out;
 }
 
 std::vector<Grey> grey_pictures(const PixelStore& pixels, int factor) {
@@ -40,11 +61,13 @@ std::vector<Grey> grey_pictures(const PixelStore& pixels, int factor) {
     g.inside[g.at(x, y)] += 1;
   }
   const float all = float(factor * factor);
-  for (Grey& g : out)
+  for (Grey& g : out) {
     for (size_t i = 0; i < g.value.size(); ++i) {
       g.inside[i] = g.inside[i] == all;
       g.value[i] = g.inside[i] > 0 ? g.value[i] / all - 0.5f : 0;
     }
+    g = cropped(g);
+  }
   return out;
 }
 
@@ -87,11 +110,45 @@ Planes planes_for(const Camera& camera, const std::vector<Vec3d>& corners, doubl
   return p;
 }
 
+// The best plane of each pixel, with the scores of the planes before and after it.
+class Peaks {
+ public:
+  explicit Peaks(size_t pixels)
+      : plane_(pixels, -9), best_(pixels, -1.0f), before_(best_), after_(best_), last_(best_) {}
+
+  // Plane after plane.
+  void add(int plane, const std::vector<float>& score) {
+    for (size_t i = 0; i < score.size(); ++i) {
+      if (plane_[i] == plane - 1) after_[i] = score[i];
+      if (score[i] > best_[i]) {
+        best_[i] = score[i];
+        plane_[i] = plane;
+        before_[i] = last_[i];
+        after_[i] = -1;
+      }
+      last_[i] = score[i];
+    }
+  }
+  float score(size_t pixel) const { return best_[pixel]; }
+  // Between the planes: where a parabola through the three scores is highest.
+  double position(size_t i) const {
+    const float bend = before_[i] + after_[i] - 2 * best_[i];
+    if (bend > -1e-6f) return plane_[i];
+    return plane_[i] + std::clamp(0.5f * (before_[i] - after_[i]) / bend, -0.5f, 0.5f);
+  }
+
+ private:
+  std::vector<int> plane_;
+  std::vector<float> best_, before_, after_, last_;
+};
+
 struct Estimate {
   std::vector<float> depth;
   Planes planes{1, 2, 2};
 };
 
+// Every plane's score is the mean of the two pictures that agree best with it: the others may not see the
+// place.
 Estimate sweep(int view, const std::vector<Grey>& pictures, const std::vector<Vec3d>& corners,
                const StereoOptions& options) {
   const Grey& a = pictures[view];
@@ -107,9 +164,8 @@ Estimate sweep(int view, const std::vector<Grey>& pictures, const std::vector<Ve
   }
   out.planes = planes_for(a.camera, corners, baseline);
   WindowMatcher matcher(a, options.window);
-  std::vector<float> score(n), first(n), second(n), last(n, -1.0f), best(n, -1.0f), before(n, -1.0f),
-      after(n, -1.0f);
-  std::vector<int> plane(n, -9);
+  Peaks peaks(n);
+  std::vector<float> score(n), first(n), second(n);
   for (int k = 0; k < out.planes.count; ++k) {
     std::fill(first.begin(), first.end(), -1.0f);
     std::fill(second.begin(), second.end(), -1.0f);
@@ -120,24 +176,11 @@ Estimate sweep(int view, const std::vector<Grey>& pictures, const std::vector<Ve
         first[i] = std::max(first[i], score[i]);
       }
     }
-    for (size_t i = 0; i < n; ++i) {
-      const float s = 0.5f * (first[i] + second[i]);
-      if (plane[i] == k - 1) after[i] = s;
-      if (s > best[i]) {
-        best[i] = s;
-        plane[i] = k;
-        before[i] = last[i];
-        after[i] = -1;
-      }
-      last[i] = s;
-    }
+    for (size_t i = 0; i < n; ++i) score[i] = 0.5f * (first[i] + second[i]);
+    peaks.add(k, score);
   }
-  for (size_t i = 0; i < n; ++i) {
-    if (best[i] < options.least_score) continue;
-    const float bend = before[i] + after[i] - 2 * best[i];  // a parabola through the three
-    const float shift = bend < -1e-6f ? std::clamp(0.5f * (before[i] - after[i]) / bend, -0.5f, 0.5f) : 0.0f;
-    out.depth[i] = float(out.planes.depth(plane[i] + shift));
-  }
+  for (size_t i = 0; i < n; ++i)
+    if (peaks.score(i) >= options.least_score) out.depth[i] = float(out.planes.depth(peaks.position(i)));
   return out;
 }
 

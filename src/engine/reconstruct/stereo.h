@@ -21,7 +21,7 @@ struct StereoOptions {
 };
 
 struct DepthMap {
-  Camera camera;             // of the shrunk picture
+  Camera camera;             // of the shrunk and cropped picture
   std::vector<float> depth;  // [y][x] z-depth, unit-sphere units; 0: unknown
 };
 
