@@ -10,6 +10,7 @@
 #include "core/base/pool.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/display_loss.h"
+#include "engine/reconstruct/pixel_points.h"
 #include "engine/render/scene_light.h"
 #include "model/field/gradients.h"
 #include "model/field/optimizer.h"
@@ -28,11 +29,34 @@ double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// Mean base colour of each pixel: at its centre alone the texture is sharper than the picture, and the
+// residual would learn to blur it.
+std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, const SurfaceSamples& samples) {
+  constexpr size_t kSlab = 1 << 16;  // pixels at a time
+  std::vector<Vec3f> out(samples.hits.size(), Vec3f{0, 0, 0});
+  for (size_t begin = 0; begin < out.size(); begin += kSlab) {
+    const size_t end = std::min(begin + kSlab, out.size());
+    std::vector<Vec3f> points;
+    for (size_t i = begin; i < end; ++i) {
+      const float footprint = samples.footprints.empty() ? 0 : samples.footprints[i];
+      for (const Vec3f p : pixel_points(samples.hits[i], footprint)) points.push_back(p);
+    }
+    std::vector<float> values(3 * points.size());
+    albedo.eval(device, points, values);
+    for (size_t k = 0; k < points.size(); ++k)
+      out[begin + k / kPixelPoints] +=
+          Vec3f{values[3 * k], values[3 * k + 1], values[3 * k + 2]} / float(kPixelPoints);
+  }
+  return out;
+}
+
 // What the physical model sends out.
-std::vector<Vec3f> physical(const Device& device, const Scene& scene, std::span<const Hit> hits) {
+std::vector<Vec3f> physical(const Device& device, const Scene& scene, const SurfaceSamples& samples) {
   const SceneLight light(device, scene, scene_transports(scene));
-  const Shading shading = light.shade(hits, appearance_at(device, scene, hits));
-  std::vector<Vec3f> out(hits.size());
+  Appearance look = appearance_at(device, scene, samples.hits);
+  look.albedo = pixel_colors(device, *scene.albedo, samples);
+  const Shading shading = light.shade(samples.hits, look);
+  std::vector<Vec3f> out(samples.hits.size());
   for (size_t i = 0; i < out.size(); ++i) out[i] = shading.diffuse[i] + shading.specular[i];
   return out;
 }
@@ -45,7 +69,7 @@ class Trainer {
         sdf_(*scene.sdf),
         samples_(samples),
         seed_(options.seed),
-        sent_(physical(device, scene, samples.hits)),
+        sent_(physical(device, scene, samples)),
         residual_(make_residual(sdf_.config(), options.seed)),
         sdf_weights_(mlp_config(sdf_.config()), sdf_.params()),
         passes_([this] { return std::make_unique<ResidualPass>(sdf_.config(), residual_.network); }) {
