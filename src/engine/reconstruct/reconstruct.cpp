@@ -29,7 +29,9 @@ constexpr int kLongRunSteps = 4000;        // or steps
 constexpr double kPixelsASecond = 100000;  // of training, that the appearance stage gets time for: from
 constexpr double kLeastAppearance = 20, kMostAppearance = 60;  // to so many seconds; more brings nothing
 constexpr double kMostResidual = 45;  // seconds of training, or
-constexpr int kResidualSteps = 1500;  // steps
+constexpr int kResidualSteps = 1500;  // steps; it has no table, a share of the hits is enough,
+constexpr size_t kResidualHits = 500000;
+constexpr double kResidualRun = 120;  // seconds; shorter runs spend them on the surface
 constexpr double kRefinement = 36;  // one of the albedo, with its hits
 constexpr double kMostPolish = 60;                             // seconds a round: likewise
 constexpr double kBetweenRounds = 7;  // seconds for a mesh, its hits and a brief look at light and material
@@ -206,6 +208,20 @@ ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& su
   return out;
 }
 
+// Every k-th hit, at most `most` of them.
+ObjectHits thinned(const ObjectHits& all, size_t most) {
+  const size_t stride = 1 + (all.hits.size() - 1) / most;
+  ObjectHits out;
+  for (size_t i = 0; i < all.hits.size(); i += stride) {
+    out.hits.push_back(all.hits[i]);
+    out.colors.push_back(all.colors[i]);
+    out.saturated.push_back(all.saturated[i]);
+    out.views.push_back(all.views[i]);
+    out.footprints.push_back(all.footprints[i]);
+  }
+  return out;
+}
+
 // How the time that is asked for is spent. Seconds; 0: no limit, the steps count.
 struct Plan {
   double geometry = 0, polish = 0, appearance = 0, residual = 0;  // polish: a round
@@ -230,10 +246,10 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   }
   p.rounds = t >= 180 ? 2 : t >= 45 ? 1 : 0;
   p.polish_steps = kPolishSteps;
-  p.residual_steps = kResidualSteps;
+  p.residual_steps = t >= kResidualRun ? kResidualSteps : 0;
   p.polish = std::min(kMostPolish, 0.1 * t);
   p.appearance = std::min(appearance, 0.2 * t);
-  p.residual = std::min(kMostResidual, 0.05 * t);
+  p.residual = t >= kResidualRun ? std::min(kMostResidual, 0.05 * t) : 0;
   const double wanted = double(pixels) / kPixelsASecond - kMostAppearance, affordable = 0.1 * t;
   p.refinements = std::max(0, int(std::min(wanted, affordable) / kRefinement));
   const double polishing = p.rounds * (p.polish + kBetweenRounds);
@@ -345,13 +361,16 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   scene.light = std::move(result.light);
   scene.material = result.material;
   scene.albedo = std::move(result.albedo);
-  ResidualOptions residual;
-  residual.seconds = plan.residual;
-  residual.steps = plan.residual_steps;
-  residual.seed = options.seed;
-  if (auto fitted =
-          fit_residual(device, scene, standing.input().samples, standing.hits.views, residual, progress))
-    scene.residual = std::make_shared<const Residual>(std::move(*fitted));
+  if (plan.residual_steps > 0) {
+    ResidualOptions residual;
+    residual.seconds = plan.residual;
+    residual.steps = plan.residual_steps;
+    residual.seed = options.seed;
+    standing.hits = thinned(standing.hits, kResidualHits);
+    if (auto fitted =
+            fit_residual(device, scene, standing.input().samples, standing.hits.views, residual, progress))
+      scene.residual = std::make_shared<const Residual>(std::move(*fitted));
+  }
   progress.report({"done", 1, 0, ""});
   return scene;
 }
