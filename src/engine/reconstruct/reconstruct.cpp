@@ -29,8 +29,8 @@ constexpr int kLongRunSteps = 4000;        // or steps
 constexpr double kPixelsASecond = 100000;  // of training, that the appearance stage gets time for: from
 constexpr double kLeastAppearance = 20, kMostAppearance = 60;  // to so many seconds; more brings nothing
 constexpr double kMostResidual = 45;  // seconds of training, or
-constexpr int kResidualSteps = 1500;  // steps; it has no table, a share of the hits is enough,
-constexpr size_t kResidualHits = 500000;
+constexpr int kResidualSteps = 4500;  // steps; it has no table, a share of the hits is enough,
+constexpr size_t kResidualHits = 1000000;
 constexpr double kResidualRun = 120;  // seconds; shorter runs spend them on the surface
 constexpr double kRefinement = 36;  // one of the albedo, with its hits
 constexpr double kMostPolish = 60;                             // seconds a round: likewise

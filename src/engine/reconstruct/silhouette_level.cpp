@@ -17,11 +17,20 @@ constexpr size_t kSlab = 512;                    // rays at a time
 constexpr float kStep = 0.005f;                  // along rays
 constexpr int kFine = 16;                        // steps, from one before the lowest to one behind it
 
-std::vector<Pixel> half_covered(const PixelStore& store) {
-  std::vector<Pixel> out;
-  for (const Pixel& p : store.pixels())
-    if (p.srgba[3] > 0 && p.srgba[3] < 255) out.push_back(p);
-  return out;
+// Pixels that the silhouette runs through: half covered, or, where masks know no halves, beside one of the other kind.
+std::vector<Pixel> silhouette_pixels(const PixelStore& store) {
+  std::vector<Pixel> half, border;
+  for (const Pixel& p : store.pixels()) {
+    if (p.srgba[3] > 0 && p.srgba[3] < 255) half.push_back(p);
+    const int width = store.cameras()[p.view].width, height = store.cameras()[p.view].height;
+    const auto in = [&](int x, int y) {
+      return store.masks()[p.view][size_t(std::clamp(y, 0, height - 1)) * width + std::clamp(x, 0, width - 1)];
+    };
+    const auto here = in(p.x, p.y);
+    if (in(p.x - 1, p.y) != here || in(p.x + 1, p.y) != here || in(p.x, p.y - 1) != here || in(p.x, p.y + 1) != here)
+      border.push_back(p);
+  }
+  return half.size() >= kFewest ? half : border;
 }
 
 // Lowest value of the field along each ray, and where. The depths of ray i are first + k step, k < count.
@@ -66,7 +75,7 @@ std::vector<Lowest> lowest_along(const Device& device, const Field& sdf, std::sp
 
 float silhouette_level(const Device& device, const Field& sdf, const PixelStore& store, float most,
                        uint64_t seed) {
-  const std::vector<Pixel> pixels = half_covered(store);
+  const std::vector<Pixel> pixels = silhouette_pixels(store);
   if (pixels.size() < kFewest) return 0;
   std::vector<Ray> rays;
   double coverage = 0;

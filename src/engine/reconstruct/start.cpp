@@ -11,6 +11,9 @@ namespace cei3d {
 namespace {
 
 constexpr int kCells = 128, kStereoCells = 192;  // an axis
+// Carved by colours, mirror images go on eating at the shape unless they have to be the surface. Stereo's is near
+// enough the surface for highlights to be told from it; without a view to depend on they would dent it.
+constexpr float kMatteUntil = 0.25f;
 
 VisualHull hull_of(const PixelStore& pixels, int cells) {
   std::vector<HullMask> masks;
@@ -19,14 +22,15 @@ VisualHull hull_of(const PixelStore& pixels, int cells) {
   return visual_hull(masks, cells);
 }
 
-StartShape shape_of(const VisualHull& hull, bool anchored) {
-  return {{hull.n, signed_distance(hull)}, anchored};
+StartShape shape_of(const VisualHull& hull, bool anchored, float matte_until) {
+  return {{hull.n, signed_distance(hull)}, anchored, matte_until};
 }
 
 // dB on random training pixels after a short training.
-double trial(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
-             const StartShape& shape, uint64_t seed, Progress& progress) {
+double trial(const Device& device, const PixelStore& pixels, GeometryOptions options, const StartShape& shape,
+             uint64_t seed, Progress& progress) {
   constexpr int kSteps = 400, kRays = 32768;
+  options.detail.encoding.levels = 0;  // texture does not tell them apart so soon
   GeometryStage stage(device, pixels, options, seed);
   stage.prefit(shape);
   for (int step = 0; step < kSteps; ++step) {
@@ -43,13 +47,13 @@ double trial(const Device& device, const PixelStore& pixels, const GeometryOptio
 StartShape start_shape(const PixelStore& pixels, Start start, uint64_t seed) {
   if (start == Start::stereo) {
     const VisualHull hull = hull_of(pixels, kStereoCells);
-    return shape_of(carve_by_depths(hull, stereo_depths(pixels, hull, {})), true);
+    return shape_of(carve_by_depths(hull, stereo_depths(pixels, hull, {})), true, 0);
   }
   const VisualHull hull = hull_of(pixels, kCells);
-  if (start == Start::hull) return shape_of(hull, false);
+  if (start == Start::hull) return shape_of(hull, false, 0);
   CarveOptions carving;
   carving.seed = seed;
-  return shape_of(carve(pixels, hull, carving), true);
+  return shape_of(carve(pixels, hull, carving), true, kMatteUntil);
 }
 
 StartShape choose_start(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
