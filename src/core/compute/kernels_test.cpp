@@ -70,8 +70,7 @@ struct RadianceData {
                      d_sdf = std::vector<float>(kN * 4 * (1 + kFeatures), 0.0f),
                      input = std::vector<float>(kN * radiance_rows(kFeatures), 0.0f);
   RadianceArgs forward() {
-    return {points.data(), directions.data(), sdf.data(), nullptr, input.data(), kFeatures,
-            radiance_rows(kFeatures)};
+    return {points.data(), directions.data(), sdf.data(), nullptr, input.data(), kFeatures};
   }
 };
 
@@ -83,9 +82,7 @@ std::vector<float> radiance_case(const Device& device, bool gradient) {
   }
   d.input = noise(d.input.size(), 13);
   device.launch<RadianceInputGrad>(
-      {d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures,
-       radiance_rows(kFeatures)},
-      kN);
+      {d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures}, kN);
   return d.d_sdf;
 }
 
@@ -148,9 +145,7 @@ TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
   const auto weights = noise(d.input.size(), 20);
   d.input = weights;
   device.launch<RadianceInputGrad>(
-      {d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures,
-       radiance_rows(kFeatures)},
-      kN);
+      {d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures}, kN);
   const auto loss = [&](int sample) {
     device.launch<RadianceInput>(d.forward(), kN);
     double sum = 0;

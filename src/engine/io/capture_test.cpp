@@ -95,6 +95,9 @@ TEST(Capture, FrameIntrinsicsWinAndMaskPathsAreRead) {
     write_png(temp.path() / "images" / (v.stem + ".png"), ball_image(ball, v.camera));
     Image mask(64, 48, 1);
     mask.at(3, 4)[0] = 1;
+    mask.at(4, 4)[0] = 0.5f;
+    mask.at(5, 4)[0] = 0.03f;
+    mask.at(6, 4)[0] = 0.97f;
     write_png(temp.path() / "masks" / (v.stem + ".png"), mask);
   }
   write_file_atomic(temp.path() / "transforms.json", j.dump());
@@ -105,6 +108,11 @@ TEST(Capture, FrameIntrinsicsWinAndMaskPathsAreRead) {
   const Image image = load_linear_rgba(capture.views[0]);
   EXPECT_EQ(image.at(3, 4)[3], 1);
   EXPECT_EQ(image.at(32, 24)[3], 0);  // the mask file wins over alpha
+  EXPECT_NEAR(image.at(4, 4)[3], 0.5f, 0.01f);
+  EXPECT_EQ(image.at(5, 4)[3], 0);  // what compression leaves of black and white
+  EXPECT_EQ(image.at(6, 4)[3], 1);
+  EXPECT_EQ(load_mask(capture.views[0]).object[4 * 64 + 6], 1);
+  EXPECT_EQ(load_mask(capture.views[0]).object[4 * 64 + 5], 0);
 }
 
 TEST(Capture, NerfstudioListsOfFilesAreSplits) {

@@ -23,9 +23,6 @@ constexpr float kRefreshMargin = 0.15f;
 constexpr float kAnchorWidth = 0.02f;  // of its loss
 const Vec3f kWhite{1, 1, 1};
 
-// What comes into use late has to begin as nothing.
-std::string last_layer(const FieldConfig& c) { return "layer" + std::to_string(c.hidden_layers) + "/"; }
-
 }  // namespace
 
 double GeometryStats::psnr() const {
@@ -41,16 +38,15 @@ struct GeometryStage::RayBatch {
 };
 
 struct GeometryStage::Work {
-  Work(const FieldConfig& sdf, const FieldConfig& detail, const MlpConfig& radiance)
+  Work(const FieldConfig& sdf, const MlpConfig& radiance)
       : value(sdf, kBlock, 1),
         jet(sdf, kKept, 4),
-        detail(detail, kKept, 1),
         color(radiance, kKept, 1),
         block_points(kBlock * 3),
         points(kKept * 3),
         directions(kKept * 3),
         d_color_input(size_t(kKept) * radiance.inputs) {}
-  FieldPass value, jet, detail;
+  FieldPass value, jet;
   MlpPass color;
   std::vector<float> depths, values;  // candidates of all rays, ray after ray
   std::vector<int> first_candidate;   // #rays + 1
@@ -73,8 +69,7 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
       options_(options),
       seed_(seed),
       sdf_(options.sdf, seed),
-      detail_(options.detail, seed + 2),
-      radiance_config_{radiance_rows(options.sdf.outputs - 1) + (has_detail() ? options.detail.outputs : 0),
+      radiance_config_{radiance_rows(options.sdf.outputs - 1),
                        options.radiance_layers,
                        options.radiance_width,
                        -1,
@@ -82,23 +77,15 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
                        1,
                        3,
                        Activation::sigmoid},
-      work_([this] { return std::make_unique<Work>(options_.sdf, options_.detail, radiance_config_); }),
+      work_([this] { return std::make_unique<Work>(options_.sdf, radiance_config_); }),
       sdf_gradients_(options.rays / kRays),
-      detail_gradients_(options.rays / kRays),
       radiance_gradients_(options.rays / kRays) {
   add_mlp_params(radiance_config_, radiance_, seed + 1);
-  for (Param& p : detail_.params().all())
-    if (p.name.starts_with(last_layer(options.detail))) std::fill(p.value.begin(), p.value.end(), 0.0f);
   Optimizer::Group tables{options.table_rate}, layers{options.layer_rate};
   tables.skip_zero = true;
   optimizer_.add(sdf_.params(), "encoding/", tables);
   optimizer_.add(sdf_.params(), "layer", layers);
   optimizer_.add(radiance_, "layer", layers);
-  if (has_detail()) {
-    tables.rate = options_.detail_rate;
-    optimizer_.add(detail_.params(), "encoding/", tables);
-    optimizer_.add(detail_.params(), "layer", layers);
-  }
 }
 
 GeometryStage::~GeometryStage() = default;
@@ -122,7 +109,6 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   s.step = std::clamp(1 / s.sharpness, options_.step_min, options_.step_max);
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
   s.levels = levels_at(u);
-  s.detail = has_detail() && s.levels == options_.sdf.encoding.levels;
   s.views = u >= matte_until_;
   s.anchor = anchor_.n ? options_.anchor_weight * s.sharpness * float(std::max(0.0, 1 - u / options_.anchor_until)) : 0;
   return s;
@@ -225,29 +211,11 @@ void GeometryStage::forward(const Schedule& s, const RayBatch& batch, Work& w) c
     }
   }
   w.jet.forward(device_, sdf_, *sdf_weights_, w.points.data(), w.padded, s.levels, options_.sdf.outputs);
-  radiance_forward(s, w);
-  composite(s, batch, w);
-}
-
-void GeometryStage::radiance_forward(const Schedule& s, Work& w) const {
-  const int features = options_.sdf.outputs - 1, rows = radiance_config_.inputs;
   device_.launch<RadianceInput>({w.points.data(), w.directions.data(), const_cast<float*>(w.jet.output()),
-                                 nullptr, w.color.input(), features, rows},
+                                 nullptr, w.color.input(), options_.sdf.outputs - 1},
                                 w.padded);
-  if (has_detail()) {
-    const int first = radiance_rows(features), more = options_.detail.outputs;
-    if (s.detail)
-      w.detail.forward(device_, detail_, *detail_weights_, w.points.data(), w.padded,
-                       options_.detail.encoding.levels, more);
-    for (int i = 0; i < w.padded; i += kPanel) {
-      float* input = w.color.input() + panel_at(i, 1, 0, rows, first);
-      if (s.detail)
-        std::copy_n(w.detail.output() + panel_at(i, 1, 0, more, 0), more * kPanel, input);
-      else
-        std::fill_n(input, more * kPanel, 0.0f);
-    }
-  }
-  w.color.forward(device_, *radiance_weights_, w.padded, rows, 3);
+  w.color.forward(device_, *radiance_weights_, w.padded, radiance_config_.inputs, 3);
+  composite(s, batch, w);
 }
 
 void GeometryStage::composite(const Schedule& s, const RayBatch& batch, Work& w) const {
@@ -282,27 +250,8 @@ float empty_push(float sdf, float sharpness) { return -Softplus::eval(-sdf, shar
 
 }  // namespace
 
-void GeometryStage::radiance_backward(const Schedule& s, Work& w, int chunk) {
-  const int features = options_.sdf.outputs - 1, rows = radiance_config_.inputs;
-  radiance_gradients_[chunk].assign(radiance_weights_->gradient_size(), 0.0f);
-  w.color.backward(device_, *radiance_weights_, w.padded, rows, radiance_gradients_[chunk].data(),
-                   w.d_color_input.data());
-  device_.launch<RadianceInputGrad>({w.points.data(), w.directions.data(), w.jet.d_output(), w.jet.output(),
-                                     w.d_color_input.data(), features, rows},
-                                    w.padded);
-  if (!s.detail) return;
-  const int first = radiance_rows(features), more = options_.detail.outputs;
-  for (int i = 0; i < w.padded; i += kPanel)
-    std::copy_n(w.d_color_input.data() + panel_at(i, 1, 0, rows, first), more * kPanel,
-                w.detail.d_output() + panel_at(i, 1, 0, more, 0));
-  ChunkGradients& g = detail_gradients_[chunk];
-  g.reset(options_.detail, detail_weights_->gradient_size(), w.padded, 1);
-  std::copy_n(w.points.begin(), size_t(w.padded) * 3, g.points.begin());
-  w.detail.backward(device_, *detail_weights_, w.padded, options_.detail.encoding.levels, g.network.data(), g.d_encoding.data());
-}
-
-void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, int chunk,
-                             GeometryStats& stats) {
+void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, ChunkGradients& g,
+                             std::vector<float>& radiance, GeometryStats& stats) const {
   const int rows = options_.sdf.outputs;
   const float per_ray = 1.0f / float(options_.rays),
               per_sample = per_ray / 4;  // about four samples a ray are kept
@@ -348,8 +297,12 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
                                                 options_.eikonal_weight * per_sample * d_gradient[c];
     }
   }
-  radiance_backward(s, w, chunk);
-  ChunkGradients& g = sdf_gradients_[chunk];
+  radiance.assign(radiance_weights_->gradient_size(), 0.0f);
+  w.color.backward(device_, *radiance_weights_, w.padded, radiance_config_.inputs, radiance.data(),
+                   w.d_color_input.data());
+  device_.launch<RadianceInputGrad>(
+      {w.points.data(), w.directions.data(), d_jet, w.jet.output(), w.d_color_input.data(), rows - 1},
+      w.padded);
   g.reset(options_.sdf, sdf_weights_->gradient_size(), w.padded, 4);
   std::copy(w.points.begin(), w.points.begin() + std::ptrdiff_t(w.padded) * 3, g.points.begin());
   w.jet.backward(device_, *sdf_weights_, w.padded, s.levels, g.network.data(), g.d_encoding.data());
@@ -383,19 +336,14 @@ void GeometryStage::add_slopes(const Schedule& s, const ValueSlopes& more, int f
   w.value.backward(device_, *sdf_weights_, padded, s.levels, g.network.data(), g.d_encoding.data());
 }
 
-void GeometryStage::make_weights() {
-  sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
-  detail_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.detail), detail_.params());
-  radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
-}
-
 GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& more) {
   const Schedule s = schedule_at(u);
   if (step % kRefreshEvery == 0)
     StepTimes::process(times_, StepPart::occupancy, [&] {
       grid_.refresh(device_, sdf_, step % kFullRefreshEvery == 0 ? 1e9f : kRefreshMargin);
     });
-  make_weights();
+  sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
+  radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
   const int chunks = options_.rays / kRays;
   const int more_chunks = (int(more.points.size()) + kBlock - 1) / kBlock;
   sdf_gradients_.resize(chunks + more_chunks);
@@ -412,15 +360,14 @@ GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& mor
                         [&] { gather_samples(s, batch, w, uint64_t(step) * 4096 + uint64_t(c), true); });
       StepTimes::thread(times_, StepPart::forward, [&] { forward(s, batch, w); });
       StepTimes::thread(times_, StepPart::backward,
-                        [&] { backward(s, batch, w, c, stats[c]); });
+                        [&] { backward(s, batch, w, sdf_gradients_[c], radiance_gradients_[c], stats[c]); });
     });
   });
   std::vector<const std::vector<float>*> radiance;
   for (const auto& g : radiance_gradients_) radiance.push_back(&g);
   accumulate_layers(radiance_, radiance, optimizer_);
   StepTimes::process(times_, StepPart::scatter,
-                     [&] { accumulate_gradients(device_, sdf_, sdf_gradients_, s.levels, optimizer_);
-                       if (s.detail) accumulate_gradients(device_, detail_, detail_gradients_, options_.detail.encoding.levels, optimizer_); });
+                     [&] { accumulate_gradients(device_, sdf_, sdf_gradients_, s.levels, optimizer_); });
 
   const double warm_up = std::min(1.0, u / 0.02 + 0.01);
   const double decay =
@@ -435,7 +382,8 @@ GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& mor
 
 GeometryStats GeometryStage::evaluate(const PixelStore& held_out, int rays, double u) {
   const Schedule s = schedule_at(u);
-  make_weights();
+  sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
+  radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
   const int chunks = rays / kRays;
   std::vector<GeometryStats> stats(chunks);
   parallel_for(chunks, [&](int c) {
@@ -458,7 +406,8 @@ GeometryStats GeometryStage::evaluate(const PixelStore& held_out, int rays, doub
 
 Image GeometryStage::render_radiance(const Camera& camera, int samples) {
   const Schedule s = schedule_at(1);
-  make_weights();
+  sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
+  radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
   Image out(camera.width, camera.height, 3);
   const int per_pixel = samples * samples, pixels = kRays / per_pixel, all = camera.width * camera.height;
   if (pixels < 1) fail("render_radiance: at most 8 samples a pixel and axis");
@@ -484,7 +433,6 @@ Image GeometryStage::render_radiance(const Camera& camera, int samples) {
 
 void GeometryStage::save(Tensors& out) const {
   sdf_.params().save(out, "sdf");
-  if (has_detail()) detail_.params().save(out, "detail");
   radiance_.save(out, "radiance");
   optimizer_.save(out, "adam");
   const int64_t n = grid_.resolution();
@@ -496,7 +444,6 @@ void GeometryStage::save(Tensors& out) const {
 
 void GeometryStage::load(const Tensors& in) {
   sdf_.params().load(in, "sdf");
-  if (has_detail()) detail_.params().load(in, "detail");
   radiance_.load(in, "radiance");
   optimizer_.load(in, "adam");
   const int64_t n = grid_.resolution();

@@ -22,10 +22,6 @@ namespace cei3d {
 struct GeometryOptions {
   FieldConfig sdf;  // outputs: 1 + features
   int radiance_layers = 2, radiance_width = 64;
-  // What else the radiance network sees of a place: the distance field's table has no room for texture, and jets of
-  // a larger one are dear. Values only; no levels: none.
-  FieldConfig detail{{0, 0}};
-  float detail_rate = 1e-2f;  // of its tables
   int rays = 2048;  // a step
   float sharpness_start = 200,
         sharpness_end = 800;     // of the logistic density, geometric over `sharpness_until`
@@ -61,8 +57,9 @@ struct ValueSlopes {
 struct StartShape {
   DistanceGrid distance;
   bool anchored = false;
-  float matte_until = 0;  // fraction of the schedule: colours do not depend on the view until here, so that what moves
-                          // with it must be the surface
+  // Until this fraction of the schedule colours do not depend on the view, so that what moves with it must be
+  // the surface.
+  float matte_until = 0;
 };
 
 class GeometryStage {
@@ -93,7 +90,6 @@ class GeometryStage {
   struct Schedule {
     float sharpness, step, band;
     int levels;
-    bool detail;   // the radiance network sees it: once all levels are open, lest colours know the place before it is one
     bool views;    // colours depend on the view
     float anchor;  // weight of the start shape
   };
@@ -101,11 +97,8 @@ class GeometryStage {
   void sample_rays(const PixelStore&, int64_t step, int first, bool training, RayBatch&) const;
   void gather_samples(const Schedule&, const RayBatch&, Work&, uint64_t jitter_key, bool training) const;
   void forward(const Schedule&, const RayBatch&, Work&) const;
-  void backward(const Schedule&, const RayBatch&, Work&, int chunk, GeometryStats&);
-  void radiance_forward(const Schedule&, Work&) const;
-  void radiance_backward(const Schedule&, Work&, int chunk);
-  bool has_detail() const { return options_.detail.encoding.levels > 0; }
-  void make_weights();
+  void backward(const Schedule&, const RayBatch&, Work&, ChunkGradients& sdf, std::vector<float>& radiance,
+                GeometryStats&) const;
   void add_slopes(const Schedule&, const ValueSlopes&, int first, Work&, ChunkGradients&) const;
   void composite(const Schedule&, const RayBatch&, Work&) const;
 
@@ -114,17 +107,16 @@ class GeometryStage {
   GeometryOptions options_;
   uint64_t seed_;
   Field sdf_;
-  Field detail_;
   MlpConfig radiance_config_;
   ParamSet radiance_;
   Optimizer optimizer_;
   OccupancyGrid grid_;
   DistanceGrid anchor_;  // the start shape, if it holds the surface; else empty
   float matte_until_ = 0;
-  std::unique_ptr<MlpWeights> sdf_weights_, detail_weights_, radiance_weights_;  // of the current step
+  std::unique_ptr<MlpWeights> sdf_weights_, radiance_weights_;  // of the current step
   Pool<Work> work_;
   StepTimes* times_ = nullptr;
-  std::vector<ChunkGradients> sdf_gradients_, detail_gradients_;  // of each chunk
+  std::vector<ChunkGradients> sdf_gradients_;
   std::vector<std::vector<float>> radiance_gradients_;
 };
 

@@ -78,15 +78,6 @@ void fit_to_footprint(Preset& p, double footprint) {
   sdf.finest_resolution = albedo.finest_resolution = finest;
   sdf.log2_table = finest > 330 ? 17 : 15;
   albedo.log2_table = finest > 330 ? 19 : 16;
-  // Large pictures show more texture than the distance field's table has room for.
-  FieldConfig& detail = p.geometry.detail;
-  if (finest > 330) {
-    detail.encoding = {0, 6, 40, finest, 18};
-    detail.hidden_layers = 1;
-    detail.width = 32;
-    detail.activation = Activation::relu;
-    detail.outputs = 16;
-  }
   p.meshing.resolution = finest > 330 ? 256 : finest > 140 ? 192 : 96;
 }
 

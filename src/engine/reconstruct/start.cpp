@@ -27,10 +27,9 @@ StartShape shape_of(const VisualHull& hull, bool anchored, float matte_until) {
 }
 
 // dB on random training pixels after a short training.
-double trial(const Device& device, const PixelStore& pixels, GeometryOptions options, const StartShape& shape,
-             uint64_t seed, Progress& progress) {
+double trial(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
+             const StartShape& shape, uint64_t seed, Progress& progress) {
   constexpr int kSteps = 400, kRays = 32768;
-  options.detail.encoding.levels = 0;  // texture does not tell them apart so soon
   GeometryStage stage(device, pixels, options, seed);
   stage.prefit(shape);
   for (int step = 0; step < kSteps; ++step) {

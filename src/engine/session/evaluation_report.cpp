@@ -74,7 +74,10 @@ const std::vector<Column> kNovelViews{
     {"SSIM", [](const EvaluationRow& r) { return fmt::format("{:.4f}", r.scores.ssim); }},
     {"PSNR in the mask", [](const EvaluationRow& r) { return db(r.scores.psnr_masked); }},
     {"LPIPS", [](const EvaluationRow& r) { return or_nothing(r.scores.lpips, "{:.4f}"); }},
-    {"FID", [](const EvaluationRow& r) { return or_nothing(r.scores.fid, "{:.1f}"); }}};
+    {"FID", [](const EvaluationRow& r) { return or_nothing(r.scores.fid, "{:.1f}"); }},
+    {"pictures by", [](const EvaluationRow& r) {
+       return std::string(r.scores.residual ? "light, material, residual" : "light, material");
+     }}};
 const std::vector<Column> kFidelity{
     {"PSNR inside the edit",
      [](const EvaluationRow& r) { return truth_of(r) ? db(truth_of(r)->psnr_inside) : ""; }},

@@ -49,9 +49,7 @@ int ResidualPass::forward(const Device& device, const Field& sdf, const MlpWeigh
     for (int c = 0; c < 3; ++c) jets_[panel_at(i, 4, 1 + c, rows, 0)] = hit(i).normal[c];
   }
   device.launch<RadianceInput>(
-      {points_.data(), directions_.data(), jets_.data(), nullptr, network_.input(), rows - 1,
-       radiance_rows(rows - 1)},
-      samples);
+      {points_.data(), directions_.data(), jets_.data(), nullptr, network_.input(), rows - 1}, samples);
   network_.forward(device, weights, samples, weights.config().inputs, 3);
   return samples;
 }

@@ -16,9 +16,8 @@ struct RadianceArgs {
   const float* directions;  // [panels][3][32], unit, from the camera
   float* sdf;  // jets [panels * 4][1 + features][32]: read by the forward, holds gradients in the backward
   const float* sdf_value;  // backward only: the jets of the forward
-  float* input;  // [panels][rows][32]: written by the forward, gradients read by the backward
+  float* input;  // [panels][radiance_rows][32]: written by the forward, gradients read by the backward
   int features;
-  int rows;  // of `input`: radiance_rows(features), or more: what follows is left alone
 };
 
 template <class T>
@@ -31,7 +30,8 @@ struct RadianceInput {
   using Args = RadianceArgs;
   template <class T>
   static HD void run(const Args& a, int i) {
-    float* out = a.input + panel_at(i, 1, 0, a.rows, 0);
+    const int rows = radiance_rows(a.features);
+    float* out = a.input + panel_at(i, 1, 0, rows, 0);
     const auto put = [&](T v) {
       store<T>(out, v);
       out += kPanel;
@@ -61,8 +61,8 @@ struct RadianceInputGrad {
   using Args = RadianceArgs;
   template <class T>
   static HD void run(const Args& a, int i) {
-    const int sdf_rows = 1 + a.features;
-    const float* in = a.input + panel_at(i, 1, 0, a.rows, 0);
+    const int rows = radiance_rows(a.features), sdf_rows = 1 + a.features;
+    const float* in = a.input + panel_at(i, 1, 0, rows, 0);
     const auto get = [&](int row) { return load<T>(in + size_t(row) * kPanel); };
     const auto get3 = [&](int row) { return Vec3<T>{get(row), get(row + 1), get(row + 2)}; };
     for (int f = 0; f < a.features; ++f) {
