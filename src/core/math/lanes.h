@@ -268,6 +268,17 @@ HD void add_sums4(float* p, const Lanes<W> a[4]) {
   add_sums4(p, sum_halves(a[0]), sum_halves(a[1]), sum_halves(a[2]), sum_halves(a[3]));
 }
 
+#ifdef __AVX512F__
+HD void add_sums4(float* p, const Lanes<16> a[4]) {  // the quarters of all four at once
+  const __m512 v0 = __m512(a[0].v), v1 = __m512(a[1].v), v2 = __m512(a[2].v), v3 = __m512(a[3].v);
+  const __m512d ab = _mm512_castps_pd(_mm512_add_ps(_mm512_unpacklo_ps(v0, v1), _mm512_unpackhi_ps(v0, v1))),
+                cd = _mm512_castps_pd(_mm512_add_ps(_mm512_unpacklo_ps(v2, v3), _mm512_unpackhi_ps(v2, v3)));
+  const Lanes<16> quarters(Reg<16>::f(_mm512_add_ps(_mm512_castpd_ps(_mm512_unpacklo_pd(ab, cd)),
+                                                    _mm512_castpd_ps(_mm512_unpackhi_pd(ab, cd)))));
+  _mm_storeu_ps(p, _mm_add_ps(_mm_loadu_ps(p), sum_halves(quarters)));
+}
+#endif
+
 template <class L>
 struct LanesMemory {
   using F = typename L::F;

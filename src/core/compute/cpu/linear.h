@@ -75,12 +75,11 @@ HD void weight_grad_tile(const LinearWeightGradArgs& a, int o, int i) {
 }
 
 template <int R, class T, int W>
-HD void weight_grad_rows(const LinearWeightGradArgs& a, int o) {
-  int i = 0;
+HD void weight_grad_rows(const LinearWeightGradArgs& a, int o, int i, int end) {
   if constexpr (R == 1)
-    for (; i + 8 <= a.in; i += 8) weight_grad_tile<R, 8, T, W>(a, o, i);
-  for (; i + 4 <= a.in; i += 4) weight_grad_tile<R, 4, T, W>(a, o, i);
-  for (; i < a.in; ++i) weight_grad_tile<R, 1, T, W>(a, o, i);
+    for (; i + 8 <= end; i += 8) weight_grad_tile<R, 8, T, W>(a, o, i);
+  for (; i + 4 <= end; i += 4) weight_grad_tile<R, 4, T, W>(a, o, i);
+  for (; i < end; ++i) weight_grad_tile<R, 1, T, W>(a, o, i);
 }
 
 template <class T, int W>
@@ -94,21 +93,22 @@ inline __attribute__((always_inline)) void bias_grad(const LinearWeightGradArgs&
   }
 }
 
-// Blocks of panels: the rows of one tile lie a whole panel apart, so that few cache sets hold them; six
-// panels of them stay in the first level while the tile's columns pass by, and still outweigh the sums across
-// lanes. Of 41 % of the multiply-add peak with 32 panels: 61 with 8, 67 with 6, 66 with 5, 57 with 3 (64 x
-// 64, AVX-512).
+// Blocks of panels and of inputs: they stay in the first level while all outputs pass by (its ways are as many pages
+// as 12 panels of 32 inputs), and outweigh the sums across lanes.
 template <class T, int W>
 inline __attribute__((always_inline)) void weight_grad_run(const LinearWeightGradArgs& all) {
-  constexpr int kBlock = 6;
-  for (int p = 0; p < all.panels; p += kBlock) {
+  constexpr int kPanels = 10, kInputs = 32;
+  for (int p = 0; p < all.panels; p += kPanels) {
     LinearWeightGradArgs a = all;
     a.x += size_t(p) * a.x_stride * kPanel;
     a.d_y += size_t(p) * a.y_stride * kPanel;
-    a.panels = all.panels - p < kBlock ? all.panels - p : kBlock;
-    int o = 0;
-    for (; o + 4 <= a.out; o += 4) weight_grad_rows<4, T, W>(a, o);
-    for (; o < a.out; ++o) weight_grad_rows<1, T, W>(a, o);
+    a.panels = all.panels - p < kPanels ? all.panels - p : kPanels;
+    for (int i = 0; i < a.in; i += kInputs) {
+      const int end = i + kInputs < a.in ? i + kInputs : a.in;
+      int o = 0;
+      for (; o + 4 <= a.out; o += 4) weight_grad_rows<4, T, W>(a, o, i, end);
+      for (; o < a.out; ++o) weight_grad_rows<1, T, W>(a, o, i, end);
+    }
   }
   if (all.d_bias) bias_grad<T, W>(all);
 }
