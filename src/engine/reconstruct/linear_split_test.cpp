@@ -182,14 +182,6 @@ TEST(LinearSplit, TellsAMetalFromADielectric) {
   EXPECT_LT(match(pick(split.albedo, seen(d)), pick(d.base, seen(d))).error, 0.15);
 }
 
-// Noise is explained by neither; that a metal leaves as little of the rest as a dielectric makes no metal of it.
-TEST(LinearSplit, TakesAMatteBodyInNoisyPicturesForADielectric) {
-  Drawn d = draw({0.95f, 0, 0});
-  for (size_t i = 0; i < d.colors.size(); ++i) d.colors[i] = d.colors[i] * std::exp(0.3f * Rng(3, 0, i).normal());
-  Progress quiet;
-  EXPECT_EQ(linear_split(*d.transport, d.samples(), small(), quiet).material.metalness, 0);
-}
-
 TEST(LinearSplit, IsTheSameEveryTimeAndSaysWhenThereIsTooLittle) {
   const Drawn d = draw({0.3f, 0.5f, 0});
   LinearSplitOptions o = small();
