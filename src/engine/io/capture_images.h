@@ -11,8 +11,8 @@
 namespace cei3d {
 
 // RGBA, linear, straight alpha. Alpha: the mask file's luminance where the view has one (near black: 0, near
-// white: 1), else the picture's own, else 1. PNG and JPEG are sRGB; EXR and HDR are linear as stored. Errors name the
-// file: missing, broken, of another size than the camera or the mask, NaN or infinite values.
+// white: 1), else the picture's own, else 1. PNG and JPEG are sRGB; EXR and HDR are linear as stored. Errors
+// name the file: missing, broken, of another size than the camera or the mask, NaN or infinite values.
 Image load_linear_rgba(const View& view);
 
 struct Mask {

@@ -31,11 +31,11 @@ struct GeometryOptions {
   float step_min = 0.004f, step_max = 0.02f;  // along rays, unit-sphere units; in between: 1 / sharpness
   float keep_weight = 0.003f;                 // samples below it get no jet and no radiance
   float huber_width = 0.05f, eikonal_weight = 0.3f;
-  float empty_weight = 0.1f;  // of empty_push(), times the sharpness
+  float empty_weight = 0.1f;                     // of empty_push(), times the sharpness
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
   float decay_from = 0.3f, decay_to = 0.01f;  // exponential decay of the rate over the rest of the schedule
   int prefit_steps = 300;
-  float anchor_until = 0.2f;    // such a start holds the surface, less and less, until here: colours that know
+  float anchor_until = 0.2f;  // such a start holds the surface, less and less, until here: colours that know
   float anchor_weight = 0.15f;  // nothing yet would blow it up again. Times the sharpness
 };
 
@@ -52,8 +52,8 @@ struct ValueSlopes {
   std::span<const float> slopes;  // #points
 };
 
-// What descent starts from. anchored: it shows hollows that no mask does; they are held open until colours mean
-// something.
+// What descent starts from. anchored: it shows hollows that no mask does; they are held open until colours
+// mean something.
 struct StartShape {
   DistanceGrid distance;
   bool anchored = false;

@@ -28,12 +28,12 @@ constexpr double kLongRun = 120;           // seconds of training from which two
 constexpr int kLongRunSteps = 4000;        // or steps
 constexpr double kPixelsASecond = 100000;  // of training, that the appearance stage gets time for: from
 constexpr double kLeastAppearance = 20, kMostAppearance = 60;  // to so many seconds; more brings nothing
-constexpr double kMostResidual = 45;  // seconds of training, or
+constexpr double kMostResidual = 45;                           // seconds of training, or
 constexpr int kResidualSteps = 4500;  // steps; it has no table, a share of the hits is enough,
 constexpr size_t kResidualHits = 1000000;
 constexpr double kResidualRun = 120;  // seconds; shorter runs spend them on the surface
-constexpr double kRefinement = 36;  // one of the albedo, with its hits
-constexpr double kMostPolish = 60;                             // seconds a round: likewise
+constexpr double kRefinement = 36;    // one of the albedo, with its hits
+constexpr double kMostPolish = 60;    // seconds a round: likewise
 constexpr double kBetweenRounds = 7;  // seconds for a mesh, its hits and a brief look at light and material
 constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;  // a round, at most
 constexpr size_t kMostHits = 1500000;                         // training pixels of the appearance stage
@@ -225,7 +225,7 @@ ObjectHits thinned(const ObjectHits& all, size_t most) {
 // How the time that is asked for is spent. Seconds; 0: no limit, the steps count.
 struct Plan {
   double geometry = 0, polish = 0, appearance = 0, residual = 0;  // polish: a round
-  int iterations = 0;  // of the geometry stage
+  int iterations = 0;                                             // of the geometry stage
   int rounds = 0, polish_steps = 0;
   int refinements = 0;  // of the albedo, on other pixels
   int residual_steps = 0;

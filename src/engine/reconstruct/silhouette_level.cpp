@@ -17,17 +17,20 @@ constexpr size_t kSlab = 512;                    // rays at a time
 constexpr float kStep = 0.005f;                  // along rays
 constexpr int kFine = 16;                        // steps, from one before the lowest to one behind it
 
-// Pixels that the silhouette runs through: half covered, or, where masks know no halves, beside one of the other kind.
+// Pixels that the silhouette runs through: half covered, or, where masks know no halves, beside one of the
+// other kind.
 std::vector<Pixel> silhouette_pixels(const PixelStore& store) {
   std::vector<Pixel> half, border;
   for (const Pixel& p : store.pixels()) {
     if (p.srgba[3] > 0 && p.srgba[3] < 255) half.push_back(p);
-    const int width = store.cameras()[p.view].width, height = store.cameras()[p.view].height;
-    const auto in = [&](int x, int y) {
-      return store.masks()[p.view][size_t(std::clamp(y, 0, height - 1)) * width + std::clamp(x, 0, width - 1)];
+    const Camera& camera = store.cameras()[p.view];
+    const auto object = [&, &mask = store.masks()[p.view]](int x, int y) {
+      return mask[size_t(std::clamp(y, 0, camera.height - 1)) * camera.width +
+                  std::clamp(x, 0, camera.width - 1)];
     };
-    const auto here = in(p.x, p.y);
-    if (in(p.x - 1, p.y) != here || in(p.x + 1, p.y) != here || in(p.x, p.y - 1) != here || in(p.x, p.y + 1) != here)
+    const auto here = object(p.x, p.y);
+    if (object(p.x - 1, p.y) != here || object(p.x + 1, p.y) != here || object(p.x, p.y - 1) != here ||
+        object(p.x, p.y + 1) != here)
       border.push_back(p);
   }
   return half.size() >= kFewest ? half : border;

@@ -10,8 +10,8 @@
 namespace cei3d {
 
 // The level, unit-sphere units, at which as many rays through pixels half covered in the pictures meet the
-// surface as those say, on average. Positive: the object grows. Where masks are black and white, by the pixels
-// on both sides of their borders. Zero when those are too few; never farther from zero than `most`.
+// surface as those say, on average. Positive: the object grows. Where masks are black and white, by the
+// pixels on both sides of their borders. Zero when those are too few; never farther from zero than `most`.
 float silhouette_level(const Device&, const Field& sdf, const PixelStore&, float most, uint64_t seed);
 
 }  // namespace cei3d

@@ -65,7 +65,8 @@ TEST(SilhouetteLevel, IsWhereThePicturesSayThatTheSurfaceIs) {
 TEST(SilhouetteLevel, IsReadOffTheBordersOfMasksInBlackAndWhite) {
   const Device device = make_device("cpu");
   for (const float more : {-0.004f, 0.0f, 0.003f})
-    EXPECT_NEAR(silhouette_level(device, ball_field(), pictures(kRadius + more, false), 0.01f, 1), more, 6e-4f);
+    EXPECT_NEAR(silhouette_level(device, ball_field(), pictures(kRadius + more, false), 0.01f, 1), more,
+                6e-4f);
 }
 
 }  // namespace

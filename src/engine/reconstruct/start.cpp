@@ -11,8 +11,8 @@ namespace cei3d {
 namespace {
 
 constexpr int kCells = 128, kStereoCells = 192;  // an axis
-// Carved by colours, mirror images go on eating at the shape unless they have to be the surface. Stereo's is near
-// enough the surface for highlights to be told from it; without a view to depend on they would dent it.
+// Carved by colours, mirror images go on eating at the shape unless they have to be the surface. Stereo's is
+// near enough the surface for highlights to be told from it; without a view to depend on they would dent it.
 constexpr float kMatteUntil = 0.25f;
 
 VisualHull hull_of(const PixelStore& pixels, int cells) {

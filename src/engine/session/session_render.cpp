@@ -94,7 +94,8 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
     for (const Channel c : request.channels)
       write_png(picture_path(request.out, c, cameras[i]), channel_picture(frame, c, depth), channel_bits(c));
   }
-  write_file_atomic(request.out / "render.json", run_json(project(), request, cameras, depth, bool(scene.residual)).dump(1) + "\n");
+  write_file_atomic(request.out / "render.json",
+                    run_json(project(), request, cameras, depth, bool(scene.residual)).dump(1) + "\n");
   progress.report({"render", 1, 0, ""});
   report.views = cameras.size();
   for (const Channel c : request.channels) report.folders.push_back(request.out / channel_name(c));

@@ -93,8 +93,9 @@ inline __attribute__((always_inline)) void bias_grad(const LinearWeightGradArgs&
   }
 }
 
-// Blocks of panels and of inputs: they stay in the first level while all outputs pass by (its ways are as many pages
-// as 12 panels of 32 inputs), and outweigh the sums across lanes.
+// Blocks of panels and of inputs, which stay in the first level while all outputs pass by: 32 inputs of a
+// panel are a page, as is one of its 12 ways (48 KiB), and two are left to the outputs. The more panels, the
+// less the sums across lanes weigh.
 template <class T, int W>
 inline __attribute__((always_inline)) void weight_grad_run(const LinearWeightGradArgs& all) {
   constexpr int kPanels = 10, kInputs = 32;
