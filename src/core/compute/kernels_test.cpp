@@ -177,9 +177,9 @@ TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
   EXPECT_GT(checked, 10);
 }
 
-TEST(Linear, EqualsPlainLoopsWithBiasOnValuePanelsOnly) {
+void expect_plain_loops(int in, int panels) {
   for (const Device& device : all_devices()) {
-    const int in = 9, out = 6, panels = 8, x_stride = 11, y_stride = 7;
+    const int out = 6, x_stride = in + 2, y_stride = 7;
     const auto x = noise(size_t(panels) * x_stride * kPanel, 1), w = noise(in * out, 2), b = noise(out, 3);
     std::vector<float> y(size_t(panels) * y_stride * kPanel, -5.0f);
     device.linear({panels, in, out, x.data(), x_stride, w.data(), in, b.data(), 4, y.data(), y_stride});
@@ -206,6 +206,11 @@ TEST(Linear, EqualsPlainLoopsWithBiasOnValuePanelsOnly) {
     for (int k = 0; k < in * out; ++k) EXPECT_NEAR(d_w[k], want_w[k], 1e-4) << device.name();
     for (int o = 0; o < out; ++o) EXPECT_NEAR(d_b[o], want_b[o], 1e-4);
   }
+}
+
+TEST(Linear, EqualsPlainLoopsWithBiasOnValuePanelsOnly) {
+  expect_plain_loops(9, 8);
+  expect_plain_loops(41, 24);  // more than a block of weight gradients, either way
 }
 
 TEST(Device, UnknownNamesAreUsageErrors) {
