@@ -18,7 +18,6 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kBatch = 4096;        // pixels, of kPixelPoints each
 constexpr double kFullEffort = 10;  // seconds on two cores that all of it needs; with less, half the work
 
 double now() {
@@ -65,7 +64,7 @@ class Descent {
         result_(result),
         progress_(progress),
         field_(std::move(field)),
-        trainer_(field_, {}) {
+        trainer_(field_, {.network_rate = options.network_rate}) {
     relight(bouncing);
   }
 
@@ -110,9 +109,9 @@ class Descent {
   }
 
   void choose_batch() {
-    batch_.resize(kBatch);
+    batch_.resize(options_.batch);
     positions_.clear();
-    for (int i = 0; i < kBatch; ++i) {
+    for (int i = 0; i < options_.batch; ++i) {
       batch_[i] =
           Rng(options_.seed, uint64_t(epoch_), uint64_t(i)).below(uint32_t(input_.samples.hits.size()));
       const SurfaceSamples& s = input_.samples;
@@ -137,15 +136,14 @@ class Descent {
     }
   }
 
-  // dL/d(radiance) of one pixel with mean base colour `a`, and dL/da; zero where the picture is clipped. The
-  // radiance is linear in the base colour, whose light is taken as the same all over the pixel.
+  // dL/d(radiance) of one pixel with mean base colour `a`, and dL/da. The radiance is linear in the base
+  // colour, whose light is taken as the same all over the pixel.
   Vec3f color_gradient(uint32_t sample, const HitLight::Terms& t, Vec3f a, Vec3f& d_a) const {
     const SurfaceSamples& s = input_.samples;
-    const bool clipped = !s.saturated.empty() && s.saturated[sample];
     Vec3f g{0, 0, 0};
     for (int c = 0; c < 3; ++c) {
       const float gain = t.diffuse_gain[c] + t.specular_gain[c], got = t.specular_floor[c] + a[c] * gain;
-      if (!clipped) g[c] = display_loss_slope(got, s.colors[sample][c]) / float(kBatch);
+      g[c] = display_loss_slope(got, s.colors[sample][c], s.is_clipped(sample, c)) / float(options_.batch);
       d_a[c] = g[c] * gain;
     }
     return g;
@@ -153,11 +151,11 @@ class Descent {
 
   void joint_step(LightDescent& descent, float rate) {
     choose_batch();
-    std::vector<Hit> hits(kBatch);
-    for (int i = 0; i < kBatch; ++i) hits[i] = input_.samples.hits[batch_[i]];
+    std::vector<Hit> hits(options_.batch);
+    for (int i = 0; i < options_.batch; ++i) hits[i] = input_.samples.hits[batch_[i]];
     const HitLight light = lighting_->light_at(hits);
     const Material& m = result_.material;
-    std::vector<Vec3f> d_irradiance(kBatch), d_reflected(kBatch);
+    std::vector<Vec3f> d_irradiance(options_.batch), d_reflected(options_.batch);
     const auto loss = [&](int begin, int end, const float* out, float* d_out) {
       for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
         const Vec3f g = color_gradient(batch_[i], light.at(i, m), a, d_a);

@@ -25,6 +25,8 @@ struct AppearanceOptions {
   float roughness = 0;    // > 0: known, not searched
   uint64_t seed = 1;
   FieldConfig albedo;  // 3 outputs, sigmoid
+  int batch = 4096;            // pixels a step, of kPixelPoints each
+  float network_rate = 2e-3f;  // Adam's, of the field's layers
 };
 
 struct AppearanceResult {

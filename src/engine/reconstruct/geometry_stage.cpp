@@ -18,7 +18,7 @@ constexpr int kRays = 64;        // a chunk
 constexpr int kKept = kRays * 32;  // most samples of a chunk that get jets; about ten a ray are usual
 constexpr int kKeptPerRay = 64, kCandidates = 320;  // most of a ray: one that grazes the object needs them
 constexpr int kBlock = 512;                                 // candidates evaluated at a time
-constexpr int kRefreshEvery = 25, kFullRefreshEvery = 400;  // steps between looks at the occupancy grid
+constexpr int kFullRefreshEvery = 400;  // steps between looks at all of the occupancy grid
 constexpr float kRefreshMargin = 0.15f;
 constexpr float kAnchorWidth = 0.02f;  // of its loss
 const Vec3f kWhite{1, 1, 1};
@@ -91,7 +91,7 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
 GeometryStage::~GeometryStage() = default;
 
 void GeometryStage::prefit(const StartShape& start) {
-  cei3d::prefit(device_, sdf_, start.distance, options_.prefit_steps, levels_at(0), seed_);
+  cei3d::prefit(device_, sdf_, start.distance, options_.prefit_steps, options_.layer_rate, levels_at(0), seed_);
   anchor_ = start.anchored ? start.distance : DistanceGrid{};
   matte_until_ = start.matte_until;
 }
@@ -338,7 +338,7 @@ void GeometryStage::add_slopes(const Schedule& s, const ValueSlopes& more, int f
 
 GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& more) {
   const Schedule s = schedule_at(u);
-  if (step % kRefreshEvery == 0)
+  if (step % options_.refresh_every == 0)
     StepTimes::process(times_, StepPart::occupancy, [&] {
       grid_.refresh(device_, sdf_, step % kFullRefreshEvery == 0 ? 1e9f : kRefreshMargin);
     });

@@ -20,8 +20,12 @@ namespace cei3d {
 struct SurfaceSamples {
   std::span<const Hit> hits;               // #N, unit-sphere frame
   std::span<const Vec3f> colors;           // #N linear radiance
-  std::span<const uint8_t> saturated;      // #N, 1: clipped in the picture, not to be believed; may be empty
+  // #N, bit c: channel c is as bright as pictures get, and the radiance at least that; empty: no channel is.
+  std::span<const uint8_t> clipped;
   std::span<const float> footprints = {};  // #N, of pixels (pixel_points()); empty: colours of points
+  bool is_clipped(size_t sample, int channel) const {
+    return !clipped.empty() && (clipped[sample] >> channel & 1);
+  }
 };
 
 struct LinearSplitOptions {

@@ -59,7 +59,8 @@ struct Drawn {
   std::vector<Vec3f> base;
   std::vector<Hit> hits;
   std::vector<Vec3f> colors;
-  SurfaceSamples samples() const { return {hits, colors, {}}; }
+  std::vector<uint8_t> clipped = {};
+  SurfaceSamples samples() const { return {hits, colors, clipped}; }
 };
 
 Drawn draw(const Material& material, float brightness = 1) {
@@ -196,19 +197,20 @@ TEST(LinearSplit, IsTheSameEveryTimeAndSaysWhenThereIsTooLittle) {
       Error);
 }
 
-TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
-  const Drawn d = draw({0.3f, 0.5f, 0});
+AppearanceOptions brief(float roughness) {
   AppearanceOptions o;
   o.albedo.encoding = {0, 8, 8, 64, 12};
   o.albedo.width = 16;
   o.albedo.output_activation = Activation::sigmoid;
   o.seconds = 1;
-  o.roughness = 0.3f;
+  o.roughness = roughness;
   o.albedo_steps = 150;
   o.joint_steps = 12;
-  Progress quiet;
-  const Device device = make_device();
-  const AppearanceResult a = fit_appearance(device, {*d.surface, d.samples()}, o, quiet);
+  return o;
+}
+
+// What the object of the result looks like where the drawn one was seen.
+std::vector<Vec3f> redrawn(const Device& device, const Drawn& d, const AppearanceResult& a) {
   std::vector<Vec3f> x;
   for (const Hit& h : d.hits) x.push_back(h.position);
   std::vector<float> v(3 * x.size());
@@ -217,9 +219,21 @@ TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
   for (size_t i = 0; i < x.size(); ++i) albedo[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
   const Shading s =
       Lighting(device, *d.surface, a.light, a.split.albedo, a.material, d.transport).shade(d.hits, albedo);
+  std::vector<Vec3f> out(x.size());
+  for (size_t i = 0; i < x.size(); ++i) out[i] = s.diffuse[i] + s.specular[i];
+  return out;
+}
+
+TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
+  const Drawn d = draw({0.3f, 0.5f, 0});
+  const AppearanceOptions o = brief(0.3f);
+  Progress quiet;
+  const Device device = make_device();
+  const AppearanceResult a = fit_appearance(device, {*d.surface, d.samples()}, o, quiet);
+  const std::vector<Vec3f> got = redrawn(device, d, a);
   double error = 0, total = 0;
-  for (size_t i = 0; i < x.size(); ++i) {
-    const Vec3f e = s.diffuse[i] + s.specular[i] - d.colors[i];
+  for (size_t i = 0; i < got.size(); ++i) {
+    const Vec3f e = got[i] - d.colors[i];
     error += dot(e, e);
     total += dot(d.colors[i], d.colors[i]);
   }
@@ -228,6 +242,42 @@ TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
   EXPECT_EQ(to_array(a.light), to_array(b.light));
   for (size_t i = 0; i < a.albedo->params().all().size(); ++i)
     EXPECT_EQ(a.albedo->params().all()[i].value, b.albedo->params().all()[i].value);
+}
+
+// Where a picture clips red, green and blue still tell the light's colour, and the darker stripes, which mirror the
+// same light unclipped, its strength.
+TEST(AppearanceStage, TakesClippedChannelsForLowerBounds) {
+  constexpr float kWhite = 0.7f;
+  Drawn d = draw({0.3f, 0.5f, 1});
+  const std::vector<Vec3f> truth = d.colors;
+  std::vector<size_t> red;  // samples of which nothing but red is clipped
+  for (size_t i = 0; i < truth.size(); ++i) {
+    uint8_t bits = 0;
+    for (int c = 0; c < 3; ++c) {
+      if (truth[i][c] < kWhite) continue;
+      bits |= uint8_t(1 << c);
+      d.colors[i][c] = kWhite;
+    }
+    d.clipped.push_back(bits);
+    if (bits == 1) red.push_back(i);
+  }
+  ASSERT_GT(red.size(), 200u);
+  Progress quiet;
+  const Device device = make_device();
+  const auto means = [&] {
+    const std::vector<Vec3f> got =
+        redrawn(device, d, fit_appearance(device, {*d.surface, d.samples()}, brief(0.3f), quiet));
+    Vec3f mean{0, 0, 0};
+    for (const size_t i : red) mean += got[i] / truth[i] / float(red.size());
+    return mean;
+  };
+  const Vec3f bounded = means();
+  d.clipped.clear();  // as if the pictures were right
+  const Vec3f believed = means();
+  EXPECT_LT(std::abs(bounded.x - 1), 0.5f * std::abs(believed.x - 1));
+  EXPECT_GT(bounded.x, 0.88f);
+  EXPECT_NEAR(bounded.y, 1, 0.07);
+  EXPECT_NEAR(bounded.z, 1, 0.07);
 }
 
 }  // namespace

@@ -19,7 +19,9 @@ struct DistanceGrid {
   float at(Vec3f p) const;    // trilinear, clamped to the grid
 };
 
-// Fits output 0 of `sdf` to the grid, most of all near its surface. Error when it has no surface.
-void prefit(const Device&, Field& sdf, const DistanceGrid& grid, int steps, int levels, uint64_t seed);
+// Fits output 0 of `sdf` to the grid, most of all near its surface. layer_rate: Adam's. Error when it has no
+// surface.
+void prefit(const Device&, Field& sdf, const DistanceGrid& grid, int steps, float layer_rate, int levels,
+            uint64_t seed);
 
 }  // namespace cei3d

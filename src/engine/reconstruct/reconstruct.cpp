@@ -36,7 +36,6 @@ constexpr double kRefinement = 36;    // one of the albedo, with its hits
 constexpr double kMostPolish = 60;    // seconds a round: likewise
 constexpr double kBetweenRounds = 7;  // seconds for a mesh, its hits and a brief look at light and material
 constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;  // a round, at most
-constexpr size_t kMostHits = 1500000;                         // training pixels of the appearance stage
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -106,11 +105,12 @@ int64_t train_geometry(GeometryStage& stage, const StartShape& start, const Trai
   } else {
     progress.report({"visual hull", 0.01, -1, ""});
     stage.prefit(start);
+    progress.log(Json{{"stage", "prefit"}, {"seconds", schedule.elapsed()}}.dump());
     schedule.resume_at(0);
   }
   const PixelStore& judged = views.held_out.pixels().empty() ? views.train : views.held_out;
   const char* label = views.held_out.pixels().empty() ? "train" : "held-out";
-  double last_report = 0, last_save = schedule.elapsed();
+  double next_report = 2, last_save = schedule.elapsed();
   GeometryStats sum;
   for (;; ++step) {
     const double u = schedule.position(step);
@@ -121,7 +121,8 @@ int64_t train_geometry(GeometryStage& stage, const StartShape& start, const Trai
     }
     sum = stage.step(step, u);
     if (!std::isfinite(sum.color)) fail("training diverged at step {}: the loss is not a number", step);
-    if (schedule.elapsed() - last_report > 2) {
+    if (schedule.elapsed() > next_report) {
+      const double before = schedule.elapsed();
       const double psnr = stage.evaluate(judged, 4096, u).psnr(), rays = double(sum.rays);
       progress.report(
           {"geometry", 0.02 + 0.7 * u, schedule.seconds_left(u),
@@ -136,7 +137,8 @@ int64_t train_geometry(GeometryStage& stage, const StartShape& start, const Trai
                         {"on", label},
                         {"kept", double(sum.kept) / rays}}
                        .dump());
-      last_report = schedule.elapsed();
+      const double after = schedule.elapsed();
+      next_report = after + std::max(2.0, 20 * (after - before));  // large networks take long to look at
     }
     if (schedule.elapsed() - last_save > kCheckpointSeconds) {
       save_geometry(checkpoints, stage, step + 1, schedule.elapsed());
@@ -176,17 +178,17 @@ void report_radiance(GeometryStage& stage, const Capture& capture, const ImageSo
 struct ObjectHits {
   std::vector<Hit> hits;
   std::vector<Vec3f> colors;       // linear
-  std::vector<uint8_t> saturated;  // a channel is clipped
+  std::vector<uint8_t> clipped;  // SurfaceSamples::clipped
   std::vector<uint16_t> views;
   std::vector<float> footprints;  // distance between neighbouring pixels on the surface
 };
 
 ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& surface,
-                       const PixelStore& pixels, uint64_t subset = 0) {
+                       const PixelStore& pixels, size_t most, uint64_t subset = 0) {
   std::vector<Pixel> inner;
   for (const Pixel& p : pixels.pixels())
     if (p.srgba[3] == 255) inner.push_back(p);
-  const double keep = std::min(1.0, double(kMostHits) / double(std::max<size_t>(inner.size(), 1)));
+  const double keep = std::min(1.0, double(most) / double(std::max<size_t>(inner.size(), 1)));
   std::vector<Pixel> chosen;
   for (size_t i = 0; i < inner.size(); ++i)
     if (keep == 1 || Rng(7, subset, i).uniform() < keep) chosen.push_back(inner[i]);
@@ -201,7 +203,7 @@ ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& su
     const Camera& camera = pixels.cameras()[p.view];
     const auto channel = [&](int c) { return linear_from_srgb(float(p.srgba[c]) / 255); };
     out.colors.push_back({channel(0), channel(1), channel(2)});
-    out.saturated.push_back(p.srgba[0] == 255 || p.srgba[1] == 255 || p.srgba[2] == 255);
+    out.clipped.push_back(uint8_t((p.srgba[0] == 255) | (p.srgba[1] == 255) << 1 | (p.srgba[2] == 255) << 2));
     out.views.push_back(p.view);
     out.footprints.push_back(length(out.hits[i].position - to_float(camera.center)) / float(camera.fx));
   }
@@ -215,7 +217,7 @@ ObjectHits thinned(const ObjectHits& all, size_t most) {
   for (size_t i = 0; i < all.hits.size(); i += stride) {
     out.hits.push_back(all.hits[i]);
     out.colors.push_back(all.colors[i]);
-    out.saturated.push_back(all.saturated[i]);
+    out.clipped.push_back(all.clipped[i]);
     out.views.push_back(all.views[i]);
     out.footprints.push_back(all.footprints[i]);
   }
@@ -236,7 +238,8 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   Plan p;
   p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
   const double t = options.seconds;
-  const double appearance = std::clamp(double(pixels) / kPixelsASecond, kLeastAppearance, kMostAppearance);
+  const double appearance =
+      preset.stretch * std::clamp(double(pixels) / kPixelsASecond, kLeastAppearance, kMostAppearance);
   if (t <= 0 || options.iterations > 0) {
     p.appearance = t > 0 ? std::min(appearance, 0.2 * t) : 0;
     p.rounds = p.iterations >= 1000 ? 2 : 0;
@@ -247,13 +250,14 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   p.rounds = t >= 180 ? 2 : t >= 45 ? 1 : 0;
   p.polish_steps = kPolishSteps;
   p.residual_steps = t >= kResidualRun ? kResidualSteps : 0;
-  p.polish = std::min(kMostPolish, 0.1 * t);
+  p.polish = std::min(kMostPolish * preset.stretch, 0.1 * t);
   p.appearance = std::min(appearance, 0.2 * t);
   p.residual = t >= kResidualRun ? std::min(kMostResidual, 0.05 * t) : 0;
-  const double wanted = double(pixels) / kPixelsASecond - kMostAppearance, affordable = 0.1 * t;
+  const double wanted = double(pixels) / kPixelsASecond - kMostAppearance,
+               affordable = 0.1 * t / preset.stretch;
   p.refinements = std::max(0, int(std::min(wanted, affordable) / kRefinement));
-  const double polishing = p.rounds * (p.polish + kBetweenRounds);
-  const double last = p.appearance + p.refinements * kRefinement + p.residual + std::max(8.0, 0.06 * t);
+  const double polishing = p.rounds * (p.polish + kBetweenRounds * preset.stretch);
+  const double last = p.appearance + p.refinements * kRefinement * preset.stretch + p.residual + std::max(8.0, 0.06 * t);
   const double rest = t - polishing - last;
   p.geometry = std::max(0.45 * t, rest);
   return p;
@@ -264,14 +268,14 @@ struct Standing {
   std::shared_ptr<const Surface> surface;
   ObjectHits hits;
   AppearanceInput input() const {
-    return {*surface, {hits.hits, hits.colors, hits.saturated, hits.footprints}};
+    return {*surface, {hits.hits, hits.colors, hits.clipped, hits.footprints}};
   }
 };
 
 Standing stand(const Device& device, const Field& sdf, const Preset& preset, const PixelStore& pixels) {
   Standing s;
   s.surface = std::make_shared<const Surface>(extract_mesh(device, sdf, preset.meshing));
-  s.hits = object_hits(device, sdf, *s.surface, pixels);
+  s.hits = object_hits(device, sdf, *s.surface, pixels, preset.most_hits);
   if (s.hits.hits.empty()) fail("the reconstructed surface is not where the pictures show the object");
   return s;
 }
@@ -290,20 +294,20 @@ Field at_silhouettes(const Device& device, Field sdf, const PixelStore& pixels, 
 void polish(const Device& device, GeometryStage& stage, const Preset& preset, const Plan& plan,
             const PixelStore& pixels, uint64_t seed, Progress& progress) {
   constexpr double kBrief = 5;  // seconds of the appearance stage: half its effort
-  const double deadline = now() + plan.rounds * (plan.polish + kBetweenRounds);
+  const double between = kBetweenRounds * preset.stretch;
+  const double deadline = now() + plan.rounds * (plan.polish + between);
   for (int round = 0; round < plan.rounds; ++round) {
     progress.report({"surface by its reflections", 0.72, -1, ""});
     const Standing standing = stand(device, stage.sdf(), preset, pixels);
-    AppearanceOptions brief;
+    AppearanceOptions brief = preset.appearance;
     brief.seconds = kBrief;
     brief.seed = seed;
-    brief.albedo = preset.albedo;
     const AppearanceResult look = fit_appearance(device, standing.input(), brief, progress);
-    PolishOptions options;
+    PolishOptions options = preset.polish;
     options.steps = plan.polish_steps;
     // Of what is left, other rounds' looks taken off: large captures need longer for them than planned.
     const int rounds_left = plan.rounds - round;
-    const double left = (deadline - now() - (rounds_left - 1) * kBetweenRounds) / rounds_left;
+    const double left = (deadline - now() - (rounds_left - 1) * between) / rounds_left;
     options.seconds = plan.polish > 0 ? std::clamp(left, 1.0, plan.polish) : 0;
     options.seed = seed + uint64_t(round);
     options.first_step = (int64_t(round) + 1) << 24;
@@ -331,8 +335,11 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
     const double begin = now();
     const bool long_run = plan.geometry > 0 ? plan.geometry >= kLongRun : plan.iterations >= kLongRunSteps;
     StartShape start;
+    // Starts are compared by the quickest networks: what they tell holds for all.
+    Preset quick = preset_by_name("fast");
+    fit_to_footprint(quick, views.footprint);
     if (!checkpoints.latest())
-      start = long_run ? choose_start(device, views.train, preset.geometry, options.seed, progress)
+      start = long_run ? choose_start(device, views.train, quick.geometry, options.seed, progress)
                        : start_shape(views.train, Start::hull, options.seed);
     const double seconds = plan.geometry > 0 ? std::max(plan.geometry - (now() - begin), 1.0) : 0;
     GeometryStage stage(device, views.train, preset.geometry, options.seed);
@@ -349,13 +356,12 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   scene.handlers = std::make_shared<const HandlerPoints>(
       thin_hits(standing.hits.hits, standing.hits.footprints, 1.5f * float(views.footprint)));
 
-  AppearanceOptions appearance;
+  AppearanceOptions appearance = preset.appearance;
   appearance.seconds = plan.appearance;
   appearance.seed = options.seed;
-  appearance.albedo = preset.albedo;
   AppearanceResult result = fit_appearance(device, standing.input(), appearance, progress);
   for (int round = 1; round <= plan.refinements; ++round) {
-    standing.hits = object_hits(device, *scene.sdf, *standing.surface, views.train, uint64_t(round));
+    standing.hits = object_hits(device, *scene.sdf, *standing.surface, views.train, preset.most_hits, uint64_t(round));
     refine_albedo(device, standing.input(), appearance, result, progress);
   }
   scene.light = std::move(result.light);

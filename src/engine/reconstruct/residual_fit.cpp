@@ -138,12 +138,13 @@ class Trainer {
     return sum;
   }
 
-  // Of the loss by the residual; zero where the picture is clipped.
+  // Of the loss by the residual.
   Vec3f slope(uint32_t sample, Vec3f residual) const {
-    if (!samples_.saturated.empty() && samples_.saturated[sample]) return {0, 0, 0};
     Vec3f out;
     for (int c = 0; c < 3; ++c)
-      out[c] = display_loss_slope(sent_[sample][c] + residual[c], samples_.colors[sample][c]) / float(kBatch);
+      out[c] = display_loss_slope(sent_[sample][c] + residual[c], samples_.colors[sample][c],
+                                  samples_.is_clipped(sample, c)) /
+               float(kBatch);
     return out;
   }
 

@@ -50,7 +50,6 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
   std::vector<Vec3f> origins(n), directions(n);
   for (size_t k = 0; k < n; ++k) {
     const Hit& h = samples.hits[kept[k]];
-    const bool clipped = !samples.saturated.empty() && samples.saturated[kept[k]];
     SplitRow& row = rows[k];
     const auto& t = mesh.triangles[h.triangle];
     row = {};
@@ -58,7 +57,8 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     row.barycentric = {1 - h.b1 - h.b2, h.b1, h.b2};
     row.nv = dot(h.normal, h.to_camera);
     row.color = samples.colors[kept[k]];
-    for (int c = 0; c < 3; ++c) row.weight[c] = clipped ? 0 : square(srgb_slope(max(row.color[c], kDarkest)));
+    for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_slope(max(row.color[c], kDarkest)));
+    row.clipped = samples.clipped.empty() ? 0 : samples.clipped[kept[k]];
     origins[k] = h.position + h.normal * 2e-3f;
     directions[k] = mirror_direction(h);
   }
@@ -134,6 +134,7 @@ void LobeBlur::apply_squared_transposed(const std::vector<Vec3f>& blurred, std::
 SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
                          const LinearSplitOptions& options)
     : mesh_(mesh), rows_(rows), options_(options) {
+  for (const SplitRow& row : rows) weights_.push_back(row.weight);
   for (const auto& t : mesh.triangles)
     for (int c = 0; c < 3; ++c)
       if (t[c] < t[(c + 1) % 3]) edges_.push_back({t[c], t[(c + 1) % 3]});
@@ -179,6 +180,20 @@ Vec3f SplitSystem::predict(const SplitRow& row, const SplitUnknowns& x,
   return interpolate(x.diffuse, row.vertices, row.barycentric) * sent(row) + gain(row) * seen;
 }
 
+void SplitSystem::release_bounds(const SplitUnknowns& x) {
+  std::vector<Vec3f> blurred;
+  blur_->apply(x.light, blurred);
+  parallel_ranges(int(rows_.size()), 4096, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const SplitRow& row = rows_[i];
+      if (!row.clipped) continue;
+      const Vec3f above = predict(row, x, blurred) - row.color;
+      for (int c = 0; c < 3; ++c)
+        weights_[i][c] = (row.clipped >> c & 1) && above[c] > 0 ? 0 : row.weight[c];
+    }
+  });
+}
+
 template <class F>
 void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
   const size_t cells = size_t(2) * options_.light_height * options_.light_height;
@@ -192,7 +207,7 @@ void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
     for (size_t i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
       if (!dielectric && row.blocked) continue;
-      const Vec3f y = row_value(row) * row.weight, g = y * gain(row);
+      const Vec3f y = row_value(row) * weights_[i], g = y * gain(row);
       if (dielectric)
         for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += y * (row.barycentric[k] * sent(row));
       if (row.blocked)
@@ -247,16 +262,17 @@ void SplitSystem::right_side(SplitUnknowns& out) const {
 double SplitSystem::residual(const SplitUnknowns& x) const {
   std::vector<Vec3f> blurred;
   blur_->apply(x.light, blurred);
-  std::vector<double> sum(kChunks, 0), count(kChunks, 0);
+  std::vector<double> sum(kChunks, 0), count(kChunks, 0);  // of rows and channels
   parallel_for(kChunks, [&](int chunk) {
     const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
     for (size_t i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
       if (row.blocked) continue;
       const Vec3f e = predict(row, x, blurred) - row.color;
+      count[chunk] += 3;
       for (int c = 0; c < 3; ++c) {
+        if ((row.clipped >> c & 1) && e[c] > 0) continue;
         sum[chunk] += double(row.weight[c]) * e[c] * e[c];
-        count[chunk] += row.weight[c] > 0;
       }
     }
   });
@@ -349,19 +365,19 @@ void SplitSystem::descend(SplitUnknowns& x, const SplitUnknowns& inverse, int st
   }
 }
 
-void SplitSystem::solve(SplitUnknowns& x, int rounds, int steps) const {
+void SplitSystem::solve(SplitUnknowns& x, int rounds, int steps) {
   SplitUnknowns inverse = diagonal();
   Vec3f mean_light{0, 0, 0}, mean_diffuse{0, 0, 0};
   for (const Vec3f& d : inverse.light) mean_light += d / float(inverse.light.size());
   for (const Vec3f& d : inverse.diffuse) mean_diffuse += d / float(inverse.diffuse.size());
-  auto* self = const_cast<SplitSystem*>(this);
-  self->light_smoothness_ = options_.smoothness * (mean_light.x + mean_light.y + mean_light.z) / 3;
-  self->diffuse_smoothness_ = 1e-3f * (mean_diffuse.x + mean_diffuse.y + mean_diffuse.z) / 3;
+  light_smoothness_ = options_.smoothness * (mean_light.x + mean_light.y + mean_light.z) / 3;
+  diffuse_smoothness_ = 1e-3f * (mean_diffuse.x + mean_diffuse.y + mean_diffuse.z) / 3;
   for (Vec3f& d : inverse.light)
     for (int c = 0; c < 3; ++c) d[c] = 1 / (d[c] + 4 * light_smoothness_ + 1e-3f * mean_light[c] + 1e-20f);
   for (Vec3f& d : inverse.diffuse)
     for (int c = 0; c < 3; ++c) d[c] = 1 / (d[c] + 6 * diffuse_smoothness_ + 1e-20f);
   for (int round = 0; round < rounds; ++round) {
+    release_bounds(x);
     descend(x, inverse, steps);
     for (Vec3f& l : x.light)
       for (int c = 0; c < 3; ++c) l[c] = max(l[c], 0.0f);
@@ -373,15 +389,16 @@ std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) const {
   blur_->apply(x.light, blurred);
   const size_t n = mesh_.positions.size();
   std::vector<Vec3f> above(n, Vec3f{0, 0, 0}), below(n, Vec3f{0, 0, 0});
-  for (const SplitRow& row : rows_) {
+  for (size_t i = 0; i < rows_.size(); ++i) {
+    const SplitRow& row = rows_[i];
     if (row.blocked) continue;
     Vec3f seen{0, 0, 0};
     for (int k = 0; k < 4; ++k) seen += blurred[row.taps.pixel[k]] * row.taps.weight[k];
     const Vec3f one = env_gain(row.nv, {1, 1, 1}), bias = env_gain(row.nv, {0, 0, 0});
     const Vec3f slope = (one - bias) * seen, rest = row.color - bias * seen;
     for (int k = 0; k < 3; ++k) {
-      above[row.vertices[k]] += row.weight * slope * rest * row.barycentric[k];
-      below[row.vertices[k]] += row.weight * slope * slope * row.barycentric[k];
+      above[row.vertices[k]] += weights_[i] * slope * rest * row.barycentric[k];
+      below[row.vertices[k]] += weights_[i] * slope * slope * row.barycentric[k];
     }
   }
   // Unseen vertices, and to a small part all, take the mean colour.

@@ -21,7 +21,8 @@ struct SplitRow {
   std::array<float, 3> far_barycentric;
   EnvTaps taps;  // of the sky along the mirror ray
   Vec3f color;   // linear
-  Vec3f weight;  // squared slope of the display curve; 0 where the picture is clipped
+  Vec3f weight;  // squared slope of the display curve
+  uint8_t clipped;  // SurfaceSamples::clipped
 };
 
 std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&);
@@ -58,10 +59,10 @@ class SplitSystem {
   // mirror ray is blocked are left out. Empty: a dielectric.
   void set_metal(std::vector<Vec3f> color);
 
-  // Improves x by rounds of conjugate gradients, light kept >= 0.
-  void solve(SplitUnknowns& x, int rounds, int steps) const;
+  // Improves x by rounds of conjugate gradients, light kept >= 0, clipped channels at least what they show.
+  void solve(SplitUnknowns& x, int rounds, int steps);
   double residual(const SplitUnknowns& x) const;  // mean of weight * error^2 over samples that mirror the sky
-  // Base colour per vertex that fits best under the light: #V.
+  // Base colour per vertex that fits best under the light: #V. Clipped channels as of the last solve().
   std::vector<Vec3f> fit_metal_color(const SplitUnknowns& x) const;
 
  private:
@@ -71,6 +72,7 @@ class SplitSystem {
   float sent(const SplitRow&) const;  // of D towards the viewer, see diffuse_view()
   Vec3f predict(const SplitRow&, const SplitUnknowns&, const std::vector<Vec3f>& blurred) const;
   void smooth(const SplitUnknowns& x, SplitUnknowns& out) const;  // out += gradient of the priors
+  void release_bounds(const SplitUnknowns& x);                    // sets weights_
   template <class F>
   void accumulate(F row_value, SplitUnknowns& out) const;         // out = A^T (weight * row_value)
   void normal(const SplitUnknowns& x, SplitUnknowns& out) const;  // out = (A^T W A + priors) x
@@ -80,6 +82,7 @@ class SplitSystem {
 
   const Mesh& mesh_;
   const std::vector<SplitRow>& rows_;
+  std::vector<Vec3f> weights_;  // of the rows; 0 where a clipped channel is brighter than it shows already
   LinearSplitOptions options_;
   std::vector<std::array<uint32_t, 2>> edges_;
   float roughness_ = 0;

@@ -83,11 +83,11 @@ class Polish {
         const float* a = out + 3 * (i - begin);
         const HitLight::Terms t = light.at(i, appearance_.material);
         const uint32_t sample = batch_[i];
-        const bool clipped = !samples_.saturated.empty() && samples_.saturated[sample];
         for (int c = 0; c < 3; ++c) {
           const float gain = t.diffuse_gain[c] + t.specular_gain[c], got = t.specular_floor[c] + a[c] * gain;
           const float g =
-              clipped ? 0 : display_loss_slope(got, samples_.colors[sample][c]) / float(options_.batch);
+              display_loss_slope(got, samples_.colors[sample][c], samples_.is_clipped(sample, c)) /
+              float(options_.batch);
           d_radiance_[i][c] = g;
           colors_[i][c] = a[c];
           d_out[3 * (i - begin) + c] = g * gain;
