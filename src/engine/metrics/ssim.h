@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "core/image/image.h"
-#include "engine/metrics/area.h"
+#include "core/image/area.h"
 
 namespace cei3d {
 

@@ -92,7 +92,7 @@ GeometryStage::~GeometryStage() = default;
 
 void GeometryStage::prefit(const StartShape& start) {
   cei3d::prefit(device_, sdf_, start.distance, options_.prefit_steps, options_.layer_rate, levels_at(0), seed_);
-  anchor_ = start.anchored ? start.distance : DistanceGrid{};
+  anchor_ = start.anchored || options_.hold_start ? start.distance : DistanceGrid{};
   matte_until_ = start.matte_until;
 }
 

@@ -36,6 +36,7 @@ struct GeometryOptions {
   float decay_from = 0.3f, decay_to = 0.01f;  // exponential decay of the rate over the rest of the schedule
   int prefit_steps = 300;
   int refresh_every = 25;     // steps between looks at the occupancy grid
+  bool hold_start = false;    // hold every start, not only those that are anchored
   float anchor_until = 0.2f;  // such a start holds the surface, less and less, until here: colours that know
   float anchor_weight = 0.15f;  // nothing yet would blow it up again. Times the sharpness
 };

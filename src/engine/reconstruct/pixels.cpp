@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/image/area.h"
 #include "core/math/color.h"
 
 namespace cei3d {
@@ -12,33 +13,17 @@ namespace {
 
 uint8_t to_byte(float v) { return uint8_t(std::lround(std::clamp(v, 0.0f, 1.0f) * 255)); }
 
-// Square dilation by `r`, one axis after the other.
-std::vector<uint8_t> dilate(const std::vector<uint8_t>& mask, int width, int height, int r) {
-  std::vector<uint8_t> rows(mask.size(), 0), out(mask.size(), 0);
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      if (mask[size_t(y) * width + x])
-        for (int k = std::max(0, x - r); k <= std::min(width - 1, x + r); ++k)
-          rows[size_t(y) * width + k] = 1;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x)
-      if (rows[size_t(y) * width + x])
-        for (int k = std::max(0, y - r); k <= std::min(height - 1, y + r); ++k)
-          out[size_t(k) * width + x] = 1;
-  return out;
-}
-
 }  // namespace
 
 void PixelStore::add_view(const Camera& unit_camera, const Image& image, int rim) {
   const auto view = uint16_t(cameras_.size());
   cameras_.push_back(unit_camera);
-  std::vector<uint8_t> touched(size_t(image.width) * image.height), mask(touched.size());
+  Area touched(size_t(image.width) * image.height), mask(touched.size());
   for (size_t i = 0; i < touched.size(); ++i) {
     touched[i] = image.data[4 * i + 3] > 0;
     mask[i] = image.data[4 * i + 3] > 0.5f;
   }
-  const std::vector<uint8_t> keep = dilate(touched, image.width, image.height, rim);
+  const Area keep = dilated(touched, image.width, image.height, rim);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       if (!keep[size_t(y) * image.width + x]) continue;

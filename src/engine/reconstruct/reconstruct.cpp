@@ -138,7 +138,7 @@ int64_t train_geometry(GeometryStage& stage, const StartShape& start, const Trai
                         {"kept", double(sum.kept) / rays}}
                        .dump());
       const double after = schedule.elapsed();
-      next_report = after + std::max(2.0, 20 * (after - before));  // large networks take long to look at
+      next_report = after + std::max(2.0, 40 * (after - before));  // large networks take long to look at
     }
     if (schedule.elapsed() - last_save > kCheckpointSeconds) {
       save_geometry(checkpoints, stage, step + 1, schedule.elapsed());

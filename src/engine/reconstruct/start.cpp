@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/start.h"
 
+#include <cmath>
+
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/image/area.h"
 #include "engine/reconstruct/carve.h"
 #include "engine/reconstruct/stereo.h"
 
@@ -15,10 +18,18 @@ constexpr int kCells = 128, kStereoCells = 192;  // an axis
 // near enough the surface for highlights to be told from it; without a view to depend on they would dent it.
 constexpr float kMatteUntil = 0.25f;
 
+// Cells that may hold matter: masks are grown by half a cell, as the cameras see it at the object's centre, or rods
+// thinner than a cell would be lost, and descent makes no matter where there is none. It does take away.
 VisualHull hull_of(const PixelStore& pixels, int cells) {
+  std::vector<Area> areas;
+  areas.reserve(pixels.cameras().size());
   std::vector<HullMask> masks;
-  for (size_t v = 0; v < pixels.cameras().size(); ++v)
-    masks.push_back({pixels.cameras()[v], pixels.masks()[v]});
+  for (size_t v = 0; v < pixels.cameras().size(); ++v) {
+    const Camera& c = pixels.cameras()[v];
+    const int half_cell = int(std::lround(c.fx / length(c.center) / cells));
+    areas.push_back(dilated(pixels.masks()[v], c.width, c.height, half_cell));
+    masks.push_back({c, areas.back()});
+  }
   return visual_hull(masks, cells);
 }
 

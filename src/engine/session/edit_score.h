@@ -3,7 +3,7 @@
 // the object.
 #pragma once
 
-#include "engine/metrics/area.h"
+#include "core/image/area.h"
 #include "engine/render/render.h"
 #include "engine/session/perceptual.h"
 #include "engine/session/requests.h"

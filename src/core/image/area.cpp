@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/metrics/area.h"
+#include "core/image/area.h"
 
 #include <algorithm>
 
 namespace cei3d {
 
 Area dilated(const Area& area, int width, int height, int radius) {
-  Area out(area.size(), 0);
+  Area rows(area.size(), 0), out(area.size(), 0);
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      if (!area[size_t(y) * width + x]) continue;
-      const int x0 = std::max(x - radius, 0), x1 = std::min(x + radius, width - 1);
-      for (int v = std::max(y - radius, 0); v <= std::min(y + radius, height - 1); ++v)
-        std::fill(&out[size_t(v) * width + x0], &out[size_t(v) * width + x1] + 1, uint8_t(1));
-    }
+    for (int x = 0; x < width; ++x)
+      if (area[size_t(y) * width + x])
+        for (int k = std::max(0, x - radius); k <= std::min(width - 1, x + radius); ++k)
+          rows[size_t(y) * width + k] = 1;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (rows[size_t(y) * width + x])
+        for (int k = std::max(0, y - radius); k <= std::min(height - 1, y + radius); ++k)
+          out[size_t(k) * width + x] = 1;
   return out;
 }
 
