@@ -7,16 +7,14 @@
 
 #include "core/base/error.h"
 #include "core/math/color.h"
-#include "core/math/rng.h"
 #include "engine/reconstruct/appearance_stage.h"
 #include "engine/reconstruct/geometry_stage.h"
-#include "engine/reconstruct/presets.h"
+#include "engine/reconstruct/plan.h"
 #include "engine/reconstruct/residual_fit.h"
 #include "engine/reconstruct/silhouette_level.h"
+#include "engine/reconstruct/standing.h"
 #include "engine/reconstruct/start.h"
 #include "engine/reconstruct/surface_polish.h"
-#include "engine/render/render.h"
-#include "model/geometry/surface_nets.h"
 
 namespace cei3d {
 
@@ -26,16 +24,7 @@ constexpr int kRim = 6;  // pixels around the object that are trained on
 constexpr double kCheckpointSeconds = 30;
 constexpr double kLongRun = 120;           // seconds of training from which two starts are tried,
 constexpr int kLongRunSteps = 4000;        // or steps
-constexpr double kPixelsASecond = 100000;  // of training, that the appearance stage gets time for: from
-constexpr double kLeastAppearance = 20, kMostAppearance = 60;  // to so many seconds; more brings nothing
-constexpr double kMostResidual = 45;                           // seconds of training, or
-constexpr int kResidualSteps = 4500;  // steps; it has no table, a share of the hits is enough,
-constexpr size_t kResidualHits = 1000000;
-constexpr double kResidualRun = 120;  // seconds; shorter runs spend them on the surface
-constexpr double kRefinement = 36;    // one of the albedo, with its hits
-constexpr double kMostPolish = 60;    // seconds a round: likewise
-constexpr double kBetweenRounds = 7;  // seconds for a mesh, its hits and a brief look at light and material
-constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;  // a round, at most
+constexpr size_t kResidualHits = 1000000;  // it has no table, a share of the hits is enough
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -87,16 +76,17 @@ class Schedule {
   double start_;
 };
 
-void save_geometry(Checkpoints& checkpoints, const GeometryStage& stage, int64_t step, double elapsed) {
+// start: seconds that choosing it took, which a resumed run must not get for training.
+void save_geometry(Checkpoints& checkpoints, const GeometryStage& stage, int64_t step, double elapsed, double start) {
   Checkpoints::State state;
-  state.head = {{"stage", "geometry"}, {"step", step}, {"elapsed", elapsed}};
+  state.head = {{"stage", "geometry"}, {"step", step}, {"elapsed", elapsed}, {"start", start}};
   stage.save(state.tensors);
   checkpoints.save(state);
 }
 
-// Trains until the schedule is over. Returns the number of steps.
-int64_t train_geometry(GeometryStage& stage, const StartShape& start, const TrainingViews& views,
-                       Schedule schedule, Checkpoints& checkpoints, Progress& progress) {
+// Trains until the schedule is over.
+void train_geometry(GeometryStage& stage, const StartShape& start, const TrainingViews& views, Schedule schedule,
+                    double start_seconds, Checkpoints& checkpoints, Progress& progress) {
   int64_t step = 0;
   if (const auto state = checkpoints.latest()) {
     stage.load(state->tensors);
@@ -116,7 +106,7 @@ int64_t train_geometry(GeometryStage& stage, const StartShape& start, const Trai
     const double u = schedule.position(step);
     if (u >= 1) break;
     if (progress.cancelled()) {
-      save_geometry(checkpoints, stage, step, schedule.elapsed());
+      save_geometry(checkpoints, stage, step, schedule.elapsed(), start_seconds);
       throw Error(ErrorCode::interrupted, "interrupted; the state is saved", "go on with --resume");
     }
     sum = stage.step(step, u);
@@ -141,30 +131,34 @@ int64_t train_geometry(GeometryStage& stage, const StartShape& start, const Trai
       next_report = after + std::max(2.0, 40 * (after - before));  // large networks take long to look at
     }
     if (schedule.elapsed() - last_save > kCheckpointSeconds) {
-      save_geometry(checkpoints, stage, step + 1, schedule.elapsed());
+      save_geometry(checkpoints, stage, step + 1, schedule.elapsed(), start_seconds);
       last_save = schedule.elapsed();
     }
   }
-  save_geometry(checkpoints, stage, step, schedule.elapsed());
-  return step;
+  save_geometry(checkpoints, stage, step, schedule.elapsed(), start_seconds);
 }
 
 // The radiance field's own pictures of the held-out views, for the record: what the physical model is
 // measured against.
 void report_radiance(GeometryStage& stage, const Capture& capture, const ImageSource& images,
                      const Normalization& normalization, Progress& progress) {
+  constexpr size_t kViews = 8;  // spread evenly
+  std::vector<const View*> held_out;
+  for (const View& view : capture.views)
+    if (view.split != Split::train) held_out.push_back(&view);
   double sum = 0;
   int views = 0;
-  for (const View& view : capture.views) {
-    if (view.split == Split::train || views == 4) continue;
+  for (size_t i = 0; i < held_out.size(); ++i) {
+    if (i > 0 && i * kViews / held_out.size() == (i - 1) * kViews / held_out.size()) continue;
+    const View& view = *held_out[i];
     const Image truth = images.load(view);
     if (truth.width != view.camera.width) return;
     const Image got = stage.render_radiance(normalization.unit_from_input(view.camera), 2);
     double error = 0;
-    for (size_t i = 0; i < got.data.size() / 3; ++i)
+    for (size_t k = 0; k < got.data.size() / 3; ++k)
       for (int c = 0; c < 3; ++c) {
-        const float a = truth.data[4 * i + 3], want = srgb_from_linear(truth.data[4 * i + c]) * a + 1 - a;
-        error += square(double(got.data[3 * i + c]) - want);
+        const float a = truth.data[4 * k + 3], want = srgb_from_linear(truth.data[4 * k + c]) * a + 1 - a;
+        error += square(double(got.data[3 * k + c]) - want);
       }
     sum += -10 * std::log10(error / double(got.data.size()));
     ++views;
@@ -172,112 +166,6 @@ void report_radiance(GeometryStage& stage, const Capture& capture, const ImageSo
   if (views)
     progress.log(
         Json{{"stage", "radiance field"}, {"held_out_psnr_on_white", sum / views}, {"views", views}}.dump());
-}
-
-// Pixels wholly on the object, as hits with colour; a fixed random subset when there are too many.
-struct ObjectHits {
-  std::vector<Hit> hits;
-  std::vector<Vec3f> colors;       // linear
-  std::vector<uint8_t> clipped;  // SurfaceSamples::clipped
-  std::vector<uint16_t> views;
-  std::vector<float> footprints;  // distance between neighbouring pixels on the surface
-};
-
-ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& surface,
-                       const PixelStore& pixels, size_t most, uint64_t subset = 0) {
-  std::vector<Pixel> inner;
-  for (const Pixel& p : pixels.pixels())
-    if (p.srgba[3] == 255) inner.push_back(p);
-  const double keep = std::min(1.0, double(most) / double(std::max<size_t>(inner.size(), 1)));
-  std::vector<Pixel> chosen;
-  for (size_t i = 0; i < inner.size(); ++i)
-    if (keep == 1 || Rng(7, subset, i).uniform() < keep) chosen.push_back(inner[i]);
-  std::vector<Ray> rays;
-  rays.reserve(chosen.size());
-  for (const Pixel& p : chosen) rays.push_back(pixels.cameras()[p.view].ray(p.x + 0.5, p.y + 0.5));
-  ObjectHits out;
-  std::vector<uint32_t> ray_of_hit;
-  out.hits = trace_rays(device, sdf, surface, rays, ray_of_hit);
-  for (size_t i = 0; i < out.hits.size(); ++i) {
-    const Pixel& p = chosen[ray_of_hit[i]];
-    const Camera& camera = pixels.cameras()[p.view];
-    const auto channel = [&](int c) { return linear_from_srgb(float(p.srgba[c]) / 255); };
-    out.colors.push_back({channel(0), channel(1), channel(2)});
-    out.clipped.push_back(uint8_t((p.srgba[0] == 255) | (p.srgba[1] == 255) << 1 | (p.srgba[2] == 255) << 2));
-    out.views.push_back(p.view);
-    out.footprints.push_back(length(out.hits[i].position - to_float(camera.center)) / float(camera.fx));
-  }
-  return out;
-}
-
-// Every k-th hit, at most `most` of them.
-ObjectHits thinned(const ObjectHits& all, size_t most) {
-  const size_t stride = 1 + (all.hits.size() - 1) / most;
-  ObjectHits out;
-  for (size_t i = 0; i < all.hits.size(); i += stride) {
-    out.hits.push_back(all.hits[i]);
-    out.colors.push_back(all.colors[i]);
-    out.clipped.push_back(all.clipped[i]);
-    out.views.push_back(all.views[i]);
-    out.footprints.push_back(all.footprints[i]);
-  }
-  return out;
-}
-
-// How the time that is asked for is spent. Seconds; 0: no limit, the steps count.
-struct Plan {
-  double geometry = 0, polish = 0, appearance = 0, residual = 0;  // polish: a round
-  int iterations = 0;                                             // of the geometry stage
-  int rounds = 0, polish_steps = 0;
-  int refinements = 0;  // of the albedo, on other pixels
-  int residual_steps = 0;
-};
-
-// pixels: all of training.
-Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pixels) {
-  Plan p;
-  p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
-  const double t = options.seconds;
-  const double appearance =
-      preset.stretch * std::clamp(double(pixels) / kPixelsASecond, kLeastAppearance, kMostAppearance);
-  if (t <= 0 || options.iterations > 0) {
-    p.appearance = t > 0 ? std::min(appearance, 0.2 * t) : 0;
-    p.rounds = p.iterations >= 1000 ? 2 : 0;
-    p.polish_steps = kPolishStepsUntimed;
-    p.residual_steps = std::min(kResidualSteps, p.iterations / 2);
-    return p;
-  }
-  p.rounds = t >= 180 ? 2 : t >= 45 ? 1 : 0;
-  p.polish_steps = kPolishSteps;
-  p.residual_steps = t >= kResidualRun ? kResidualSteps : 0;
-  p.polish = std::min(kMostPolish * preset.stretch, 0.1 * t);
-  p.appearance = std::min(appearance, 0.2 * t);
-  p.residual = t >= kResidualRun ? std::min(kMostResidual, 0.05 * t) : 0;
-  const double wanted = double(pixels) / kPixelsASecond - kMostAppearance,
-               affordable = 0.1 * t / preset.stretch;
-  p.refinements = std::max(0, int(std::min(wanted, affordable) / kRefinement));
-  const double polishing = p.rounds * (p.polish + kBetweenRounds * preset.stretch);
-  const double last = p.appearance + p.refinements * kRefinement * preset.stretch + p.residual + std::max(8.0, 0.06 * t);
-  const double rest = t - polishing - last;
-  p.geometry = std::max(0.45 * t, rest);
-  return p;
-}
-
-// The surface of a field and where the training pictures show it.
-struct Standing {
-  std::shared_ptr<const Surface> surface;
-  ObjectHits hits;
-  AppearanceInput input() const {
-    return {*surface, {hits.hits, hits.colors, hits.clipped, hits.footprints}};
-  }
-};
-
-Standing stand(const Device& device, const Field& sdf, const Preset& preset, const PixelStore& pixels) {
-  Standing s;
-  s.surface = std::make_shared<const Surface>(extract_mesh(device, sdf, preset.meshing));
-  s.hits = object_hits(device, sdf, *s.surface, pixels, preset.most_hits);
-  if (s.hits.hits.empty()) fail("the reconstructed surface is not where the pictures show the object");
-  return s;
 }
 
 // The field with the surface that the silhouettes show at its zero level.
@@ -294,8 +182,7 @@ Field at_silhouettes(const Device& device, Field sdf, const PixelStore& pixels, 
 void polish(const Device& device, GeometryStage& stage, const Preset& preset, const Plan& plan,
             const PixelStore& pixels, uint64_t seed, Progress& progress) {
   constexpr double kBrief = 5;  // seconds of the appearance stage: half its effort
-  const double between = kBetweenRounds * preset.stretch;
-  const double deadline = now() + plan.rounds * (plan.polish + between);
+  const double deadline = now() + plan.rounds * (plan.polish + plan.between);
   for (int round = 0; round < plan.rounds; ++round) {
     progress.report({"surface by its reflections", 0.72, -1, ""});
     const Standing standing = stand(device, stage.sdf(), preset, pixels);
@@ -307,7 +194,7 @@ void polish(const Device& device, GeometryStage& stage, const Preset& preset, co
     options.steps = plan.polish_steps;
     // Of what is left, other rounds' looks taken off: large captures need longer for them than planned.
     const int rounds_left = plan.rounds - round;
-    const double left = (deadline - now() - (rounds_left - 1) * between) / rounds_left;
+    const double left = (deadline - now() - (rounds_left - 1) * plan.between) / rounds_left;
     options.seconds = plan.polish > 0 ? std::clamp(left, 1.0, plan.polish) : 0;
     options.seed = seed + uint64_t(round);
     options.first_step = (int64_t(round) + 1) << 24;
@@ -333,17 +220,19 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   scene.up = capture.up;
   {
     const double begin = now();
+    const auto saved = checkpoints.latest();
     const bool long_run = plan.geometry > 0 ? plan.geometry >= kLongRun : plan.iterations >= kLongRunSteps;
     StartShape start;
     // Starts are compared by the quickest networks: what they tell holds for all.
     Preset quick = preset_by_name("fast");
     fit_to_footprint(quick, views.footprint);
-    if (!checkpoints.latest())
+    if (!saved)
       start = long_run ? choose_start(device, views.train, quick.geometry, options.seed, progress)
                        : start_shape(views.train, Start::hull, options.seed);
-    const double seconds = plan.geometry > 0 ? std::max(plan.geometry - (now() - begin), 1.0) : 0;
+    const double start_seconds = saved ? saved->head.value("start", 0.0) : now() - begin;
+    const double seconds = plan.geometry > 0 ? std::max(plan.geometry - start_seconds, 1.0) : 0;
     GeometryStage stage(device, views.train, preset.geometry, options.seed);
-    train_geometry(stage, start, views, Schedule(seconds, plan.iterations), checkpoints, progress);
+    train_geometry(stage, start, views, Schedule(seconds, plan.iterations), start_seconds, checkpoints, progress);
     report_radiance(stage, capture, images, normalization, progress);
     polish(device, stage, preset, plan, views.train, options.seed, progress);
     scene.sdf = std::make_shared<const Field>(

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/plan.h"
+
+#include <algorithm>
+
+namespace cei3d {
+
+namespace {
+
+constexpr double kPixelsASecond = 100000;  // of training, that the appearance stage gets time for: from
+constexpr double kLeastAppearance = 20, kMostAppearance = 60;  // to so many seconds; more brings nothing
+constexpr double kRefinement = 36;                             // seconds of one of the albedo, with its hits
+constexpr double kMostPolish = 60;                             // seconds a round; more brings nothing
+constexpr double kBetweenRounds = 7;                           // Plan::between
+constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;   // a round, at most
+constexpr double kMostResidual = 45;                           // seconds of training, or
+constexpr int kResidualSteps = 4500;                           // steps
+constexpr double kResidualRun = 120;  // seconds; shorter runs spend them on the surface
+
+}  // namespace
+
+Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pixels) {
+  Plan p;
+  p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
+  const double t = options.seconds;
+  const double appearance =
+      preset.stretch * std::clamp(double(pixels) / kPixelsASecond, kLeastAppearance, kMostAppearance);
+  if (t <= 0 || options.iterations > 0) {
+    p.appearance = t > 0 ? std::min(appearance, 0.2 * t) : 0;
+    p.rounds = p.iterations >= 1000 ? 2 : 0;
+    p.polish_steps = kPolishStepsUntimed;
+    p.residual_steps = std::min(kResidualSteps, p.iterations / 2);
+    return p;
+  }
+  p.between = kBetweenRounds * preset.stretch;
+  p.rounds = t >= 180 ? 2 : t >= 45 ? 1 : 0;
+  p.polish_steps = kPolishSteps;
+  p.residual_steps = t >= kResidualRun ? kResidualSteps : 0;
+  p.polish = std::min(kMostPolish * preset.stretch, 0.1 * t);
+  while (p.rounds * (p.polish + p.between) > 0.3 * t) --p.rounds;
+  p.appearance = std::min(appearance, 0.2 * t);
+  p.residual = t >= kResidualRun ? std::min(kMostResidual, 0.05 * t) : 0;
+  const double wanted = double(pixels) / kPixelsASecond - kMostAppearance,
+               affordable = 0.1 * t / preset.stretch;
+  p.refinements = std::max(0, int(std::min(wanted, affordable) / kRefinement));
+  const double polishing = p.rounds * (p.polish + p.between);
+  const double refining = p.refinements * kRefinement * preset.stretch;
+  const double last = p.appearance + refining + p.residual + std::max(8.0, 0.06 * t);
+  const double rest = t - polishing - last;
+  p.geometry = std::max(0.45 * t, rest);
+  return p;
+}
+
+}  // namespace cei3d

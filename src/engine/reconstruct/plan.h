@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// How the time of a reconstruction is divided among its stages.
+#pragma once
+
+#include "engine/reconstruct/presets.h"
+#include "engine/reconstruct/reconstruct.h"
+
+namespace cei3d {
+
+// Seconds; 0: no limit, the steps count.
+struct Plan {
+  double geometry = 0;
+  double polish = 0, between = 0;  // a round of polishing; the mesh, its hits and a brief look at them before it
+  double appearance = 0, residual = 0;
+  int iterations = 0;  // of the geometry stage
+  int rounds = 0, polish_steps = 0;
+  int refinements = 0;  // of the albedo, on other pixels
+  int residual_steps = 0;
+};
+
+// pixels: all of training.
+Plan plan_of(const ReconstructOptions&, const Preset&, size_t pixels);
+
+}  // namespace cei3d
