@@ -323,17 +323,37 @@ void add(GeometryStats& a, const GeometryStats& b) {
 }
 }  // namespace
 
-void GeometryStage::add_slopes(const Schedule& s, const ValueSlopes& more, int first, Work& w,
+template <class SlopeOf>
+void GeometryStage::add_slopes(const Schedule& s, std::span<const Vec3f> x, const SlopeOf& slope_of, Work& w,
                                ChunkGradients& g) const {
-  const int n = std::min(kBlock, int(more.points.size()) - first), padded = (n + kPanel - 1) / kPanel * kPanel;
+  const int n = int(x.size()), padded = (n + kPanel - 1) / kPanel * kPanel;
   const int rows = options_.sdf.outputs;
   g.reset(options_.sdf, sdf_weights_->gradient_size(), padded, 1);
-  points_to_panels(&more.points[first], n, g.points.data());
+  points_to_panels(x.data(), n, g.points.data());
   w.value.forward(device_, sdf_, *sdf_weights_, g.points.data(), padded, s.levels, rows);
   float* d_value = w.value.d_output();
   std::fill(d_value, d_value + size_t(padded) * rows, 0.0f);
-  for (int i = 0; i < n; ++i) d_value[panel_at(i, 1, 0, rows, 0)] = more.slopes[first + i];
+  for (int i = 0; i < n; ++i) {
+    const int at = panel_at(i, 1, 0, rows, 0);
+    d_value[at] = slope_of(i, w.value.output()[at]);
+  }
   w.value.backward(device_, *sdf_weights_, padded, s.levels, g.network.data(), g.d_encoding.data());
+}
+
+// Also where no ray looks any more: what is gone has no samples that could bring it back.
+void GeometryStage::hold_start(const Schedule& s, int64_t step, Work& w, ChunkGradients& g) const {
+  constexpr float kNear = 0.08f, kWeight = 2;  // of the surface; as much as so many samples a ray
+  constexpr int kTries = 16;
+  std::vector<Vec3f> x(kBlock);
+  for (int i = 0; i < kBlock; ++i) {
+    Rng rng(seed_ ^ 0x401d, uint64_t(step), uint64_t(i));
+    for (int k = 0; k < kTries && (k == 0 || std::abs(anchor_.at(x[i])) > kNear); ++k)
+      x[i] = Vec3f{rng.uniform(), rng.uniform(), rng.uniform()} * 2.0f - Vec3f{1, 1, 1};
+  }
+  const float weight = kWeight * s.anchor / float(kBlock);
+  add_slopes(
+      s, x, [&](int i, float value) { return weight * huber(value - anchor_.at(x[i]), kAnchorWidth).gradient; },
+      w, g);
 }
 
 GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& more) {
@@ -346,11 +366,18 @@ GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& mor
   radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
   const int chunks = options_.rays / kRays;
   const int more_chunks = (int(more.points.size()) + kBlock - 1) / kBlock;
-  sdf_gradients_.resize(chunks + more_chunks);
+  const int hold_chunks = options_.hold_start && s.anchor > 0;
+  sdf_gradients_.resize(chunks + more_chunks + hold_chunks);
   std::vector<GeometryStats> stats(chunks);
-  parallel_for(chunks + more_chunks, [&](int c) {
+  parallel_for(chunks + more_chunks + hold_chunks, [&](int c) {
+    if (c >= chunks + more_chunks) {
+      work_.with([&](Work& w) { hold_start(s, step, w, sdf_gradients_[c]); });
+      return;
+    }
     if (c >= chunks) {
-      work_.with([&](Work& w) { add_slopes(s, more, (c - chunks) * kBlock, w, sdf_gradients_[c]); });
+      const int first = (c - chunks) * kBlock, n = std::min(kBlock, int(more.points.size()) - first);
+      const auto slope_of = [&](int i, float) { return more.slopes[first + i]; };
+      work_.with([&](Work& w) { add_slopes(s, more.points.subspan(first, n), slope_of, w, sdf_gradients_[c]); });
       return;
     }
     RayBatch batch;

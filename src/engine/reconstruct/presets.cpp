@@ -51,6 +51,7 @@ Preset paper() {
   // and a smaller batch makes more of a processor's hours.
   p.geometry.rays = 256;
   p.geometry.refresh_every = 100;
+  p.geometry.anchor_until = 0.4f;
   p.geometry.hold_start = true;  // one network for all of space: what it does not hold, it forgets at once
   p.appearance.albedo.encoding.frequencies = 10;
   p.appearance.albedo.hidden_layers = 4;

@@ -100,7 +100,7 @@ void train_geometry(GeometryStage& stage, const StartShape& start, const Trainin
   }
   const PixelStore& judged = views.held_out.pixels().empty() ? views.train : views.held_out;
   const char* label = views.held_out.pixels().empty() ? "train" : "held-out";
-  double next_report = 2, last_save = schedule.elapsed();
+  double next_report = 2, next_look = 2, last_save = schedule.elapsed(), psnr = 0;
   GeometryStats sum;
   for (;; ++step) {
     const double u = schedule.position(step);
@@ -111,12 +111,12 @@ void train_geometry(GeometryStage& stage, const StartShape& start, const Trainin
     }
     sum = stage.step(step, u);
     if (!std::isfinite(sum.color)) fail("training diverged at step {}: the loss is not a number", step);
-    if (schedule.elapsed() > next_report) {
+    const double rays = double(sum.rays);
+    if (schedule.elapsed() > next_look) {
       const double before = schedule.elapsed();
-      const double psnr = stage.evaluate(judged, 4096, u).psnr(), rays = double(sum.rays);
-      progress.report(
-          {"geometry", 0.02 + 0.7 * u, schedule.seconds_left(u),
-           fmt::format("loss {:.4f}  {} {:.1f} dB at the object", sum.color / rays, label, psnr)});
+      psnr = stage.evaluate(judged, 4096, u).psnr();
+      const double after = schedule.elapsed();
+      next_look = after + std::max(2.0, 40 * (after - before));  // large networks take long to look at
       progress.log(Json{{"stage", "geometry"},
                         {"step", step},
                         {"u", u},
@@ -127,8 +127,12 @@ void train_geometry(GeometryStage& stage, const StartShape& start, const Trainin
                         {"on", label},
                         {"kept", double(sum.kept) / rays}}
                        .dump());
-      const double after = schedule.elapsed();
-      next_report = after + std::max(2.0, 40 * (after - before));  // large networks take long to look at
+    }
+    if (schedule.elapsed() > next_report) {
+      progress.report(
+          {"geometry", 0.02 + 0.7 * u, schedule.seconds_left(u),
+           fmt::format("loss {:.4f}  {} {:.1f} dB at the object", sum.color / rays, label, psnr)});
+      next_report = schedule.elapsed() + 2;
     }
     if (schedule.elapsed() - last_save > kCheckpointSeconds) {
       save_geometry(checkpoints, stage, step + 1, schedule.elapsed(), start_seconds);
