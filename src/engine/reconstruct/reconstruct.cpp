@@ -146,7 +146,9 @@ void train_geometry(GeometryStage& stage, const StartShape& start, const Trainin
 // measured against.
 void report_radiance(GeometryStage& stage, const Capture& capture, const ImageSource& images,
                      const Normalization& normalization, Progress& progress) {
-  constexpr size_t kViews = 8;  // spread evenly
+  constexpr size_t kViews = 8;  // spread evenly, as many of them as
+  constexpr double kSeconds = 15;  // allow
+  const double begin = now();
   std::vector<const View*> held_out;
   for (const View& view : capture.views)
     if (view.split != Split::train) held_out.push_back(&view);
@@ -154,6 +156,7 @@ void report_radiance(GeometryStage& stage, const Capture& capture, const ImageSo
   int views = 0;
   for (size_t i = 0; i < held_out.size(); ++i) {
     if (i > 0 && i * kViews / held_out.size() == (i - 1) * kViews / held_out.size()) continue;
+    if (now() - begin > kSeconds) break;
     const View& view = *held_out[i];
     const Image truth = images.load(view);
     if (truth.width != view.camera.width) return;
