@@ -68,8 +68,9 @@ void add_part_effects(CLI::App* verb, Options& o) {
                  "[--replace]")
       ->needs(color);
   add_material_values(verb, e);
-  verb->add_flag("--remove", o.remove,
-                 "The part is taken off and the surface behind it closed: a second edit, as `edit remove` makes it")
+  verb->add_flag(
+          "--remove", o.remove,
+          "The part is taken off and the surface behind it closed: a second edit, as `edit remove` makes it")
       ->excludes(color);
 }
 

@@ -47,7 +47,7 @@ class Commands {
   std::function<void(Session&, Console&)> run_;
 };
 
-void add_networks(CLI::App* verb, NetworkFiles&);  // --lpips-model, --fid-model
+void add_networks(CLI::App* verb, NetworkFiles&);    // --lpips-model, --fid-model
 void add_residual_switch(CLI::App* verb, bool& on);  // --no-residual
 
 void add_check(Commands&);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The microfacet model: GGX distribution with alpha = roughness^2, Smith masking, Schlick's Fresnel term; its
 // pre-integrated form (split sum); and its reflection lobe as a few spherical Gaussians.
-// [Walter et al. 2007; Schlick 1994; Karis 2013]; and what a diffuse surface loses at flat angles [Burley 2012]
+// [Walter et al. 2007; Schlick 1994; Karis 2013]; and what a diffuse surface loses at flat angles [Burley
+// 2012]
 #pragma once
 
 #include "core/math/vec.h"
@@ -74,12 +75,13 @@ inline EnvBrdf env_brdf(double roughness, double nv) {
   return {float(scale / (rings * steps)), float(bias / (rings * steps))};
 }
 
-// The reflection lobe of GGX seen along the normal, in incident directions at angle t to the mirror direction:
-// proportional to 1 / (1 + x)^2 with x = (t / (2 alpha))^2 for small angles, and masked towards the horizon. Since
-// 1 / (1 + x)^2 is the integral of s e^-s e^(-s x) ds, the lobe is a mixture of Gaussians with sharpness s / alpha^2;
-// five of them, fitted to the logarithm of the density and to the energy within each angle over roughness 0.1 to
-// 0.65, follow it to 99.5 % of its energy (energy within an angle: .01 root mean square up to roughness 0.45, .07 at
-// 0.8). The broad ones matter: they bring the sun to where the mirror direction is dark.
+// The reflection lobe of GGX seen along the normal, in incident directions at angle t to the mirror
+// direction: proportional to 1 / (1 + x)^2 with x = (t / (2 alpha))^2 for small angles, and masked towards
+// the horizon. Since 1 / (1 + x)^2 is the integral of s e^-s e^(-s x) ds, the lobe is a mixture of Gaussians
+// with sharpness s / alpha^2; five of them, fitted to the logarithm of the density and to the energy within
+// each angle over roughness 0.1 to 0.65, follow it to 99.5 % of its energy (energy within an angle: .01 root
+// mean square up to roughness 0.45, .07 at 0.8). The broad ones matter: they bring the sun to where the
+// mirror direction is dark.
 inline constexpr int kReflectionLobes = 5;
 inline constexpr float kReflectionNodes[5] = {0.0073650f, 0.0354975f, 0.1154150f, 0.3714659f, 1.3242071f};
 inline constexpr float kReflectionShare[5] = {0.0267184f, 0.0805499f, 0.1724400f, 0.5452267f,

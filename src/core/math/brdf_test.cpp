@@ -59,7 +59,9 @@ TEST(Brdf, TheLobeOfGaussiansCarriesTheEnergyOfTheExactOneRingByRing) {
   // (density of the half vector, masking of the light) against the mixture.
   for (const double roughness : {0.15, 0.3, 0.45, 0.7}) {
     const double alpha = roughness * roughness;
-    const auto exact = [&](double t) { return ggx_density(std::cos(t / 2), alpha) * smith_g1(std::cos(t), alpha); };
+    const auto exact = [&](double t) {
+      return ggx_density(std::cos(t / 2), alpha) * smith_g1(std::cos(t), alpha);
+    };
     const auto mixture = [&](double t) {
       double sum = 0;
       for (int j = 0; j < kReflectionLobes; ++j) {
@@ -80,7 +82,8 @@ TEST(Brdf, TheLobeOfGaussiansCarriesTheEnergyOfTheExactOneRingByRing) {
     const double total = within(exact, M_PI / 2), total_mixture = within(mixture, M_PI / 2);
     for (const double x : {0.5, 1.0, 2.0, 4.0, 8.0}) {
       const double angle = std::min(2 * alpha * x, M_PI / 2);
-      EXPECT_NEAR(within(mixture, angle) / total_mixture, within(exact, angle) / total, roughness < 0.5 ? 0.05 : 0.1)
+      EXPECT_NEAR(within(mixture, angle) / total_mixture, within(exact, angle) / total,
+                  roughness < 0.5 ? 0.05 : 0.1)
           << roughness << ' ' << x;
     }
     double all = 0;
@@ -96,8 +99,8 @@ TEST(Brdf, DiffuseViewIsTheMeanOfTheDiffuseTerm) {
       const Vec3d v{std::sqrt(1 - nv * nv), 0, nv};
       const double exact = over_hemisphere([&](Vec3d l) {
         const double half = dot(l, normalize(v + l)), grazing = 0.5 + 2 * roughness * half * half;
-        return (1 + (grazing - 1) * std::pow(1 - l.z, 5)) *
-               (1 + (grazing - 1) * std::pow(1 - nv, 5)) * l.z / M_PI;
+        return (1 + (grazing - 1) * std::pow(1 - l.z, 5)) * (1 + (grazing - 1) * std::pow(1 - nv, 5)) * l.z /
+               M_PI;
       });
       EXPECT_NEAR(diffuse_view(nv, roughness), exact, 0.01 * exact) << roughness << ' ' << nv;
     }

@@ -4,8 +4,8 @@
 
 #include <optional>
 
-#include "core/image/image.h"
 #include "core/image/area.h"
+#include "core/image/image.h"
 
 namespace cei3d {
 

@@ -24,7 +24,7 @@ struct AppearanceOptions {
   int joint_steps = -1;   // of field and light together; -1: as `seconds` allow
   float roughness = 0;    // > 0: known, not searched
   uint64_t seed = 1;
-  FieldConfig albedo;  // 3 outputs, sigmoid
+  FieldConfig albedo;          // 3 outputs, sigmoid
   int batch = 4096;            // pixels a step, of kPixelPoints each
   float network_rate = 2e-3f;  // Adam's, of the field's layers
 };
@@ -38,8 +38,8 @@ struct AppearanceResult {
 
 AppearanceResult fit_appearance(const Device&, const AppearanceInput&, const AppearanceOptions&, Progress&);
 
-// The albedo again, gently, on other samples: of a large capture, one random subset leaves a few samples to a texel,
-// whose noise the field learns. result: of the same surface. About 30 seconds on two cores.
+// The albedo again, gently, on other samples: of a large capture, one random subset leaves a few samples to a
+// texel, whose noise the field learns. result: of the same surface. About 30 seconds on two cores.
 void refine_albedo(const Device&, const AppearanceInput&, const AppearanceOptions&, AppearanceResult& result,
                    Progress&, int steps = 600);
 

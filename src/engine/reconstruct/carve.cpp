@@ -47,7 +47,8 @@ class Fog {
   void step(int step) {
     parallel_for(int(chunks_.size()), [&](int c) {
       chunks_[c].clear();
-      for (int r = 0; r < kRaysPerChunk; ++r) trace(Rng(options_.seed, uint64_t(step), uint64_t(c * kRaysPerChunk + r)), chunks_[c]);
+      for (int r = 0; r < kRaysPerChunk; ++r)
+        trace(Rng(options_.seed, uint64_t(step), uint64_t(c * kRaysPerChunk + r)), chunks_[c]);
     });
     const bool settled = step > options_.steps * 3 / 4;
     std::vector<uint32_t> touched;
@@ -118,7 +119,8 @@ class Fog {
 
   // Adam without bias correction.
   void update(uint32_t i, float decay) {
-    const float most[] = {options_.density_rate / size_, options_.color_rate, options_.color_rate, options_.color_rate};
+    const float most[] = {options_.density_rate / size_, options_.color_rate, options_.color_rate,
+                          options_.color_rate};
     const float high[] = {3 / size_, 1, 1, 1};
     for (int k = 0; k < 4; ++k) {
       const float d = slope_[i][k];
@@ -137,7 +139,7 @@ class Fog {
   std::vector<uint32_t> id_;     // of the hull's cells among those inside, or kNone
   std::vector<uint32_t> place_;  // and back
   std::vector<Cell> cells_, slope_, mean_, square_;
-  std::vector<float> lit_;       // the most light that reached the cell once the fog had settled
+  std::vector<float> lit_;  // the most light that reached the cell once the fog had settled
   std::vector<std::vector<Slope>> chunks_;
 };
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the masks cannot tell and the colours can: concavities. A coarse grid of free densities and colours (no
-// surface, no dependence on the view) is fitted to the pictures inside the visual hull; cells that come out empty
-// although light reaches them are taken off the hull. Densities have no shape to keep, so they find a hollow in
-// seconds that a distance field, which can only move its surface, does not find at all. [the fit: Sun et al. 2022;
-// Yu et al. 2022]
+// What the masks cannot tell and the colours can: concavities. A coarse grid of free densities and colours
+// (no surface, no dependence on the view) is fitted to the pictures inside the visual hull; cells that come
+// out empty although light reaches them are taken off the hull. Densities have no shape to keep, so they find
+// a hollow in seconds that a distance field, which can only move its surface, does not find at all. [the fit:
+// Sun et al. 2022; Yu et al. 2022]
 #pragma once
 
 #include "engine/reconstruct/pixels.h"

@@ -9,8 +9,8 @@
 
 namespace cei3d {
 
-// Its slope by `got`; both linear. The display curve is not followed where it is steepest. clipped: the picture shows
-// no more than that it is at least `want`.
+// Its slope by `got`; both linear. The display curve is not followed where it is steepest. clipped: the
+// picture shows no more than that it is at least `want`.
 inline float display_loss_slope(float got, float want, bool clipped = false) {
   if (clipped && got >= want) return 0;
   const float error = srgb_from_linear(std::max(got, 0.0f)) - srgb_from_linear(want);

@@ -14,11 +14,11 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kRays = 64;        // a chunk
+constexpr int kRays = 64;          // a chunk
 constexpr int kKept = kRays * 32;  // most samples of a chunk that get jets; about ten a ray are usual
 constexpr int kKeptPerRay = 64, kCandidates = 320;  // most of a ray: one that grazes the object needs them
-constexpr int kBlock = 512;                                 // candidates evaluated at a time
-constexpr int kFullRefreshEvery = 400;  // steps between looks at all of the occupancy grid
+constexpr int kBlock = 512;                         // candidates evaluated at a time
+constexpr int kFullRefreshEvery = 400;              // steps between looks at all of the occupancy grid
 constexpr float kRefreshMargin = 0.15f;
 constexpr float kAnchorWidth = 0.02f;  // of its loss
 const Vec3f kWhite{1, 1, 1};
@@ -91,7 +91,8 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
 GeometryStage::~GeometryStage() = default;
 
 void GeometryStage::prefit(const StartShape& start) {
-  cei3d::prefit(device_, sdf_, start.distance, options_.prefit_steps, options_.layer_rate, levels_at(0), seed_);
+  cei3d::prefit(device_, sdf_, start.distance, options_.prefit_steps, options_.layer_rate, levels_at(0),
+                seed_);
   anchor_ = start.anchored || options_.hold_start ? start.distance : DistanceGrid{};
   matte_until_ = start.matte_until;
 }
@@ -110,7 +111,9 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
   s.levels = levels_at(u);
   s.views = u >= matte_until_;
-  s.anchor = anchor_.n ? options_.anchor_weight * s.sharpness * float(std::max(0.0, 1 - u / options_.anchor_until)) : 0;
+  s.anchor = anchor_.n
+                 ? options_.anchor_weight * s.sharpness * float(std::max(0.0, 1 - u / options_.anchor_until))
+                 : 0;
   return s;
 }
 
@@ -243,9 +246,9 @@ void GeometryStage::composite(const Schedule& s, const RayBatch& batch, Work& w)
 
 namespace {
 
-// Slope of the penalty on being inside, softplus(-f), at a point on a ray that shows background. The colour loss
-// cannot open a gap that has closed: where a ray is opaque its opacity does not change with the distance any
-// more, but this still does.
+// Slope of the penalty on being inside, softplus(-f), at a point on a ray that shows background. The colour
+// loss cannot open a gap that has closed: where a ray is opaque its opacity does not change with the distance
+// any more, but this still does.
 float empty_push(float sdf, float sharpness) { return -Softplus::eval(-sdf, sharpness).first; }
 
 }  // namespace
@@ -268,7 +271,8 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
       stats.color += l.value;
       stats.squared_error += e * e / 3;
     }
-    // Watched, but no loss: it would never rest, since coverage is always a little below one (decisions/0004).
+    // Watched, but no loss: it would never rest, since coverage is always a little below one
+    // (decisions/0004).
     stats.mask += std::abs(w.coverage[r] - batch.targets[r].alpha);
     const float push = batch.empty[r] ? options_.empty_weight * s.sharpness * per_ray : 0;
     float behind = 0;  // sum of weight x d_weight over the samples behind
@@ -352,8 +356,9 @@ void GeometryStage::hold_start(const Schedule& s, int64_t step, Work& w, ChunkGr
   }
   const float weight = kWeight * s.anchor / float(kBlock);
   add_slopes(
-      s, x, [&](int i, float value) { return weight * huber(value - anchor_.at(x[i]), kAnchorWidth).gradient; },
-      w, g);
+      s, x,
+      [&](int i, float value) { return weight * huber(value - anchor_.at(x[i]), kAnchorWidth).gradient; }, w,
+      g);
 }
 
 GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& more) {
@@ -377,7 +382,8 @@ GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& mor
     if (c >= chunks) {
       const int first = (c - chunks) * kBlock, n = std::min(kBlock, int(more.points.size()) - first);
       const auto slope_of = [&](int i, float) { return more.slopes[first + i]; };
-      work_.with([&](Work& w) { add_slopes(s, more.points.subspan(first, n), slope_of, w, sdf_gradients_[c]); });
+      work_.with(
+          [&](Work& w) { add_slopes(s, more.points.subspan(first, n), slope_of, w, sdf_gradients_[c]); });
       return;
     }
     RayBatch batch;

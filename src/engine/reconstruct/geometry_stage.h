@@ -35,8 +35,8 @@ struct GeometryOptions {
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
   float decay_from = 0.3f, decay_to = 0.01f;  // exponential decay of the rate over the rest of the schedule
   int prefit_steps = 300;
-  int refresh_every = 25;     // steps between looks at the occupancy grid
-  bool hold_start = false;    // hold every start, not only those that are anchored, and all around its surface
+  int refresh_every = 25;   // steps between looks at the occupancy grid
+  bool hold_start = false;  // hold every start, not only those that are anchored, and all around its surface
   float anchor_until = 0.2f;  // such a start holds the surface, less and less, until here: colours that know
   float anchor_weight = 0.15f;  // nothing yet would blow it up again. Times the sharpness
 };
@@ -103,7 +103,8 @@ class GeometryStage {
                 GeometryStats&) const;
   // Gradients of a loss of values at x, whose slope there is slope_of(i, value).
   template <class SlopeOf>
-  void add_slopes(const Schedule&, std::span<const Vec3f> x, const SlopeOf& slope_of, Work&, ChunkGradients&) const;
+  void add_slopes(const Schedule&, std::span<const Vec3f> x, const SlopeOf& slope_of, Work&,
+                  ChunkGradients&) const;
   void hold_start(const Schedule&, int64_t step, Work&, ChunkGradients&) const;
   void composite(const Schedule&, const RayBatch&, Work&) const;
 

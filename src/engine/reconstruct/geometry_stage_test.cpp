@@ -13,7 +13,12 @@ PixelStore photographs() {
   PixelStore store;
   for (int v = 0; v < 12; ++v) {
     const Camera camera = box_camera(-0.4 + 0.08 * v, 2.4 * v, 48);
-    store.add_view(camera, box_picture(camera, [](Vec3f p) { return p.x > 0 ? Vec3f{1, 0, 0} : Vec3f{0, 0, 1}; }), 4);
+    store.add_view(camera,
+                   box_picture(camera,
+                               [](Vec3f p) {
+                                 return p.x > 0 ? Vec3f{1, 0, 0} : Vec3f{0, 0, 1};
+                               }),
+                   4);
   }
   return store;
 }
@@ -33,8 +38,8 @@ GeometryOptions small_network() {
   return o;
 }
 
-// Mean distance between field and start around the start's surface after some steps, in which an unfamiliar rate
-// throws the network about.
+// Mean distance between field and start around the start's surface after some steps, in which an unfamiliar
+// rate throws the network about.
 double strayed(const PixelStore& pixels, GeometryOptions options) {
   const Device device = make_device();
   options.layer_rate = 5e-3f;

@@ -16,8 +16,8 @@ namespace {
 
 constexpr float kSmoothest = 0.12f, kRoughest = 0.95f;
 constexpr double kFar = 1.25;  // a residual this much above the best ends the scan
-// A metal explains everything by reflections; of a matte object of many colours it explains as much as a dielectric
-// does (dtu24). Of a metal (teapot) it leaves a fifth.
+// A metal explains everything by reflections; of a matte object of many colours it explains as much as a
+// dielectric does (dtu24). Of a metal (teapot) it leaves a fifth.
 constexpr double kMetalBy = 0.5;
 
 struct Solution {
@@ -142,9 +142,10 @@ float percentile(std::vector<float> values, double share) {
   return *at;
 }
 
-// Reflections show the product of light and specular reflectance; the split takes specular 0.5 for granted. On
-// surfaces that reflect less the light comes out too dark, and more diffuse light leaves them than arrives. No
-// base colour is above one: that bounds the light from below, and the specular reflectance from above.
+// Reflections show the product of light and specular reflectance; the split takes specular 0.5 for granted.
+// On surfaces that reflect less the light comes out too dark, and more diffuse light leaves them than
+// arrives. No base colour is above one: that bounds the light from below, and the specular reflectance from
+// above.
 void brighten_light(const Transport& transport, LinearSplit& r) {
   constexpr double kShare = 0.98;  // of the surface is believed
   constexpr int kRounds = 3;       // the bounce does not scale with the light

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light and material told apart by one linear solve. A pixel is D(x) d(v; roughness) + S(x, v; roughness) L, with
-// d known (diffuse_view()): whatever of it does not change with the view stays in D, free for every surface
-// point, so the light L can only be read from how a point changes with the view, where albedo cannot interfere.
-// For a given roughness both are linear unknowns. Albedo then is D over the irradiance of L: explicit. Metals
-// have no D; there light and reflectance alternate.
+// Light and material told apart by one linear solve. A pixel is D(x) d(v; roughness) + S(x, v; roughness) L,
+// with d known (diffuse_view()): whatever of it does not change with the view stays in D, free for every
+// surface point, so the light L can only be read from how a point changes with the view, where albedo cannot
+// interfere. For a given roughness both are linear unknowns. Albedo then is D over the irradiance of L:
+// explicit. Metals have no D; there light and reflectance alternate.
 #pragma once
 
 #include <span>
@@ -18,8 +18,8 @@ namespace cei3d {
 
 // What the cameras saw of the surface.
 struct SurfaceSamples {
-  std::span<const Hit> hits;               // #N, unit-sphere frame
-  std::span<const Vec3f> colors;           // #N linear radiance
+  std::span<const Hit> hits;      // #N, unit-sphere frame
+  std::span<const Vec3f> colors;  // #N linear radiance
   // #N, bit c: channel c is as bright as pictures get, and the radiance at least that; empty: no channel is.
   std::span<const uint8_t> clipped;
   std::span<const float> footprints = {};  // #N, of pixels (pixel_points()); empty: colours of points

@@ -143,7 +143,8 @@ TEST(LinearSplit, FindsLightRoughnessAndAlbedoOfADielectric) {
   EXPECT_EQ(split.material.metalness, 0);
   EXPECT_NEAR(split.material.roughness, 0.3f, 0.03f);
   const Match albedo = match(pick(split.albedo, seen(d)), pick(d.base, seen(d)));
-  // The pictures are drawn with a lobe of few Gaussians, the solve knows the exact one: a seventh of the scale.
+  // The pictures are drawn with a lobe of few Gaussians, the solve knows the exact one: a seventh of the
+  // scale.
   EXPECT_NEAR(albedo.scale, 1, 0.15);
   EXPECT_LT(albedo.error, 0.04);
   std::vector<Vec3f> got, truth;
@@ -158,7 +159,8 @@ TEST(LinearSplit, FindsLightRoughnessAndAlbedoOfADielectric) {
   EXPECT_LT(match(got, truth).error, 0.45);  // a deconvolution: sharp spots come out spiky
 }
 
-// A body drawn 1.5 times whiter than white is one under a brighter light that reflects less than is taken for granted.
+// A body drawn 1.5 times whiter than white is one under a brighter light that reflects less than is taken for
+// granted.
 TEST(LinearSplit, MakesNoSurfaceSendOutMoreThanArrives) {
   const Drawn d = draw({0.3f, 0.5f, 0}, 1.5f / 0.6f);
   LinearSplitOptions o = small();
@@ -244,8 +246,8 @@ TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
     EXPECT_EQ(a.albedo->params().all()[i].value, b.albedo->params().all()[i].value);
 }
 
-// Where a picture clips red, green and blue still tell the light's colour, and the darker stripes, which mirror the
-// same light unclipped, its strength.
+// Where a picture clips red, green and blue still tell the light's colour, and the darker stripes, which
+// mirror the same light unclipped, its strength.
 TEST(AppearanceStage, TakesClippedChannelsForLowerBounds) {
   constexpr float kWhite = 0.7f;
   Drawn d = draw({0.3f, 0.5f, 1});

@@ -46,8 +46,8 @@ void OccupancyGrid::march(const Ray& ray, float step, float band, float jitter, 
     const float d = at(ray.origin + ray.direction * t);
     if (d < -reach) return;
     if (d > reach) {
-      // A cell's distance is off by half its diagonal at most. Away from the surface nothing holds the field's slope
-      // at one: a leap of all of it would land behind the surface, and the ray find nothing.
+      // A cell's distance is off by half its diagonal at most. Away from the surface nothing holds the
+      // field's slope at one: a leap of all of it would land behind the surface, and the ray find nothing.
       t += std::max(0.5f * (d - reach), step);
       continue;
     }

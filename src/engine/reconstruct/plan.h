@@ -10,7 +10,8 @@ namespace cei3d {
 // Seconds; 0: no limit, the steps count.
 struct Plan {
   double geometry = 0;
-  double polish = 0, between = 0;  // a round of polishing; the mesh, its hits and a brief look at them before it
+  double polish = 0,
+         between = 0;  // a round of polishing; the mesh, its hits and a brief look at them before it
   double appearance = 0, residual = 0;
   int iterations = 0;  // of the geometry stage
   int rounds = 0, polish_steps = 0;

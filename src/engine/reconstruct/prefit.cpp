@@ -90,13 +90,14 @@ float DistanceGrid::at(Vec3f p) const {
   return sum;
 }
 
-void prefit(const Device& device, Field& sdf, const DistanceGrid& grid, int steps, float layer_rate, int levels,
-            uint64_t seed) {
+void prefit(const Device& device, Field& sdf, const DistanceGrid& grid, int steps, float layer_rate,
+            int levels, uint64_t seed) {
   const std::vector<float>& distance = grid.values;
   std::vector<uint32_t> near;  // cells close to the surface
   for (size_t i = 0; i < distance.size(); ++i)
     if (std::abs(distance[i]) < 0.08f) near.push_back(uint32_t(i));
-  if (near.empty()) fail("the visual hull of the masks is empty: masks and camera poses disagree, or the masks are wrong");
+  if (near.empty())
+    fail("the visual hull of the masks is empty: masks and camera poses disagree, or the masks are wrong");
 
   FieldTrainer::Options rates;
   rates.network_rate = layer_rate;

@@ -77,7 +77,8 @@ class Schedule {
 };
 
 // start: seconds that choosing it took, which a resumed run must not get for training.
-void save_geometry(Checkpoints& checkpoints, const GeometryStage& stage, int64_t step, double elapsed, double start) {
+void save_geometry(Checkpoints& checkpoints, const GeometryStage& stage, int64_t step, double elapsed,
+                   double start) {
   Checkpoints::State state;
   state.head = {{"stage", "geometry"}, {"step", step}, {"elapsed", elapsed}, {"start", start}};
   stage.save(state.tensors);
@@ -85,8 +86,8 @@ void save_geometry(Checkpoints& checkpoints, const GeometryStage& stage, int64_t
 }
 
 // Trains until the schedule is over.
-void train_geometry(GeometryStage& stage, const StartShape& start, const TrainingViews& views, Schedule schedule,
-                    double start_seconds, Checkpoints& checkpoints, Progress& progress) {
+void train_geometry(GeometryStage& stage, const StartShape& start, const TrainingViews& views,
+                    Schedule schedule, double start_seconds, Checkpoints& checkpoints, Progress& progress) {
   int64_t step = 0;
   if (const auto state = checkpoints.latest()) {
     stage.load(state->tensors);
@@ -146,7 +147,7 @@ void train_geometry(GeometryStage& stage, const StartShape& start, const Trainin
 // measured against.
 void report_radiance(GeometryStage& stage, const Capture& capture, const ImageSource& images,
                      const Normalization& normalization, Progress& progress) {
-  constexpr size_t kViews = 8;  // spread evenly, as many of them as
+  constexpr size_t kViews = 8;     // spread evenly, as many of them as
   constexpr double kSeconds = 15;  // allow
   const double begin = now();
   std::vector<const View*> held_out;
@@ -239,7 +240,8 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
     const double start_seconds = saved ? saved->head.value("start", 0.0) : now() - begin;
     const double seconds = plan.geometry > 0 ? std::max(plan.geometry - start_seconds, 1.0) : 0;
     GeometryStage stage(device, views.train, preset.geometry, options.seed);
-    train_geometry(stage, start, views, Schedule(seconds, plan.iterations), start_seconds, checkpoints, progress);
+    train_geometry(stage, start, views, Schedule(seconds, plan.iterations), start_seconds, checkpoints,
+                   progress);
     report_radiance(stage, capture, images, normalization, progress);
     polish(device, stage, preset, plan, views.train, options.seed, progress);
     scene.sdf = std::make_shared<const Field>(
@@ -257,7 +259,8 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   appearance.seed = options.seed;
   AppearanceResult result = fit_appearance(device, standing.input(), appearance, progress);
   for (int round = 1; round <= plan.refinements; ++round) {
-    standing.hits = object_hits(device, *scene.sdf, *standing.surface, views.train, preset.most_hits, uint64_t(round));
+    standing.hits =
+        object_hits(device, *scene.sdf, *standing.surface, views.train, preset.most_hits, uint64_t(round));
     refine_albedo(device, standing.input(), appearance, result, progress);
   }
   scene.light = std::move(result.light);

@@ -188,8 +188,7 @@ void SplitSystem::release_bounds(const SplitUnknowns& x) {
       const SplitRow& row = rows_[i];
       if (!row.clipped) continue;
       const Vec3f above = predict(row, x, blurred) - row.color;
-      for (int c = 0; c < 3; ++c)
-        weights_[i][c] = (row.clipped >> c & 1) && above[c] > 0 ? 0 : row.weight[c];
+      for (int c = 0; c < 3; ++c) weights_[i][c] = (row.clipped >> c & 1) && above[c] > 0 ? 0 : row.weight[c];
     }
   });
 }
@@ -289,7 +288,8 @@ SplitUnknowns SplitSystem::diagonal() const {
   for (const SplitRow& row : rows_) {
     if (!metal_.empty() && row.blocked) continue;
     const Vec3f g = gain(row), gg = row.weight * g * g;
-    for (int k = 0; k < 3; ++k) d.diffuse[row.vertices[k]] += row.weight * square(row.barycentric[k] * sent(row));
+    for (int k = 0; k < 3; ++k)
+      d.diffuse[row.vertices[k]] += row.weight * square(row.barycentric[k] * sent(row));
     if (row.blocked)
       for (int k = 0; k < 3; ++k) d.diffuse[row.far_vertices[k]] += gg * square(row.far_barycentric[k]);
     else

@@ -19,9 +19,9 @@ struct SplitRow {
   bool blocked;                          // the mirror ray meets the surface again:
   std::array<uint32_t, 3> far_vertices;  // ... here
   std::array<float, 3> far_barycentric;
-  EnvTaps taps;  // of the sky along the mirror ray
-  Vec3f color;   // linear
-  Vec3f weight;  // squared slope of the display curve
+  EnvTaps taps;     // of the sky along the mirror ray
+  Vec3f color;      // linear
+  Vec3f weight;     // squared slope of the display curve
   uint8_t clipped;  // SurfaceSamples::clipped
 };
 

@@ -13,8 +13,8 @@ namespace cei3d {
 // Pixels wholly on the object that meet the surface.
 struct ObjectHits {
   std::vector<Hit> hits;
-  std::vector<Vec3f> colors;      // linear
-  std::vector<uint8_t> clipped;   // SurfaceSamples::clipped
+  std::vector<Vec3f> colors;     // linear
+  std::vector<uint8_t> clipped;  // SurfaceSamples::clipped
   std::vector<uint16_t> views;
   std::vector<float> footprints;  // distance between neighbouring pixels on the surface
 };

@@ -18,8 +18,9 @@ constexpr int kCells = 128, kStereoCells = 192;  // an axis
 // near enough the surface for highlights to be told from it; without a view to depend on they would dent it.
 constexpr float kMatteUntil = 0.25f;
 
-// Cells that may hold matter: masks are grown by half a cell, as the cameras see it at the object's centre, or rods
-// thinner than a cell would be lost, and descent makes no matter where there is none. It does take away.
+// Cells that may hold matter: masks are grown by half a cell, as the cameras see it at the object's centre,
+// or rods thinner than a cell would be lost, and descent makes no matter where there is none. It does take
+// away.
 VisualHull hull_of(const PixelStore& pixels, int cells) {
   std::vector<Area> areas;
   areas.reserve(pixels.cameras().size());

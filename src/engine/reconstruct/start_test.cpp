@@ -29,8 +29,7 @@ PixelStore photographs() {
     Image image(camera.width, camera.height, 4);
     for (int y = 0; y < camera.height; ++y)
       for (int x = 0; x < camera.width; ++x)
-        if (on_object(camera.ray(x + 0.5, y + 0.5)))
-          std::fill_n(image.at(x, y), 4, 1.0f);
+        if (on_object(camera.ray(x + 0.5, y + 0.5))) std::fill_n(image.at(x, y), 4, 1.0f);
     store.add_view(camera, image, 2);
   }
   return store;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shading model: what a surface point sends to the camera under a light of lobes. Direct light in closed
 // form, dimmed by what the vertices around the point see of the sky, plus one diffuse bounce; reflections in
-// closed form, replaced by what the surface itself shows where rays of the reflection lobe meet it: its diffuse
-// radiance and one more reflection.
+// closed form, replaced by what the surface itself shows where rays of the reflection lobe meet it: its
+// diffuse radiance and one more reflection.
 #pragma once
 
 #include <memory>
@@ -46,19 +46,20 @@ class Lighting {
   Lighting(const Device&, const Surface&, const SgMixture&, const Material&, VertexLight);
   ~Lighting();
 
-  // A hit's result depends on nothing but that hit, its base colour and its material. seen: #V, what reflections see
-  // in place of the base colours above; empty: those.
+  // A hit's result depends on nothing but that hit, its base colour and its material. seen: #V, what
+  // reflections see in place of the base colours above; empty: those.
   Shading shade(std::span<const Hit> hits, const Appearance&, std::span<const Vec3f> seen = {}) const;
   // ... all of the object's own material. albedo: #hits base colour.
   Shading shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const;
   // As if the object were of that material.
   HitLight light_at(std::span<const Hit> hits, const Material&, std::span<const Vec3f> seen = {}) const;
   HitLight light_at(std::span<const Hit> hits) const { return light_at(hits, material_); }
-  // dL/d(normal) of each hit, tangent to the sphere, from dL/d(radiance that it sends out), for the object's own
-  // material: through the mirror direction and the reflectance. Irradiance is taken at the mesh's normals and
-  // does not enter; nor does what blocks the reflection. light: light_at(hits); albedo: #hits base colour.
-  std::vector<Vec3f> normal_slopes(std::span<const Hit> hits, const HitLight& light, std::span<const Vec3f> albedo,
-                                   std::span<const Vec3f> d_radiance) const;
+  // dL/d(normal) of each hit, tangent to the sphere, from dL/d(radiance that it sends out), for the object's
+  // own material: through the mirror direction and the reflectance. Irradiance is taken at the mesh's normals
+  // and does not enter; nor does what blocks the reflection. light: light_at(hits); albedo: #hits base
+  // colour.
+  std::vector<Vec3f> normal_slopes(std::span<const Hit> hits, const HitLight& light,
+                                   std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const;
   // Another light close to the first: bounce and openness stay. For descent on the light.
   void set_lobes(const SgMixture&);
 

@@ -193,8 +193,8 @@ TEST(Transport, AWhiteCavityGlows) {
 }
 
 // Brute force: GGX facets sampled, paths of up to four reflections.
-Vec3f traced_reflection(const Surface& surface, const SgMixture& sky, const Hit& first, Vec3f f0, float roughness,
-                        uint64_t key) {
+Vec3f traced_reflection(const Surface& surface, const SgMixture& sky, const Hit& first, Vec3f f0,
+                        float roughness, uint64_t key) {
   const float alpha = roughness * roughness;
   constexpr int kPaths = 3000;
   Vec3f sum{0, 0, 0};
@@ -204,7 +204,8 @@ Vec3f traced_reflection(const Surface& surface, const SgMixture& sky, const Hit&
     for (int bounce = 0; bounce < 4; ++bounce) {
       const float u = rng.uniform(), a = 2 * kPi * rng.uniform();
       const float c = std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)), r = std::sqrt(1 - c * c);
-      const Vec3f x = normalize(cross(n, std::abs(n.x) > 0.9f ? Vec3f{0, 1, 0} : Vec3f{1, 0, 0})), y = cross(n, x);
+      const Vec3f x = normalize(cross(n, std::abs(n.x) > 0.9f ? Vec3f{0, 1, 0} : Vec3f{1, 0, 0})),
+                  y = cross(n, x);
       const Vec3f h = x * (r * std::cos(a)) + y * (r * std::sin(a)) + n * c;
       const float vh = dot(v, h), nv = dot(n, v);
       const Vec3f l = h * (2 * vh) - v;
@@ -237,7 +238,8 @@ TEST(Lighting, AMetalMirrorsItself) {
   const Device device = make_device();
   const Vec3f copper{0.9f, 0.6f, 0.4f};
   const Material metal{0.3f, 0.5f, 1};
-  const Lighting lighting(device, surface, some_sky(), std::vector<Vec3f>(mesh.positions.size(), copper), metal);
+  const Lighting lighting(device, surface, some_sky(), std::vector<Vec3f>(mesh.positions.size(), copper),
+                          metal);
   const auto hits = some_hits(surface.mesh(), 400);
   const HitLight light = lighting.light_at(hits);
   const Shading shading = lighting.shade(hits, std::vector<Vec3f>(hits.size(), copper));
@@ -270,8 +272,8 @@ TEST(Lighting, NormalSlopesEqualDifferencesOfTheShading) {
     }
   for (const float metalness : {0.0f, 1.0f}) {
     const Material material{0.35f, 0.5f, metalness};
-    const Lighting lighting(device, surface, some_sky(), std::vector<Vec3f>(mesh.positions.size(), {0.5f, 0.5f, 0.5f}),
-                            material);
+    const Lighting lighting(device, surface, some_sky(),
+                            std::vector<Vec3f>(mesh.positions.size(), {0.5f, 0.5f, 0.5f}), material);
     const std::vector<Vec3f> slopes = lighting.normal_slopes(hits, lighting.light_at(hits), albedo, weight);
     const auto sent = [&](size_t i, Vec3f normal) {
       Hit h = hits[i];

@@ -27,8 +27,8 @@ struct GBuffer {
 std::vector<Hit> trace_rays(const Device&, const Field& sdf, const Surface&, std::span<const Ray> rays,
                             std::vector<uint32_t>& ray_of_hit);
 
-// Moves hits along their rays (directions: #hits, unit) onto the zero set of the field; normals (and edges, if
-// asked for) are sdf_normals().
+// Moves hits along their rays (directions: #hits, unit) onto the zero set of the field; normals (and edges,
+// if asked for) are sdf_normals().
 void refine_hits(const Device&, const Field& sdf, std::span<const Vec3f> directions, std::span<Hit> hits,
                  std::span<float> edges = {});
 

@@ -106,9 +106,8 @@ std::vector<Vec3f> SelfReflection::shown(std::span<const Hit> met) const {
   for (size_t k = 0; k < n; ++k) {
     const Vec3f color = at(colors_, met[k]);
     const Vec3f diffuse = color * at(vertices_.arriving, met[k]);
-    const Vec3f reflected = next[k].t < 0
-                                ? Vec3f{sky[k], sky[stride + k], sky[2 * stride + k]}
-                                : at(colors_, next[k]) * at(vertices_.arriving, next[k]);
+    const Vec3f reflected = next[k].t < 0 ? Vec3f{sky[k], sky[stride + k], sky[2 * stride + k]}
+                                          : at(colors_, next[k]) * at(vertices_.arriving, next[k]);
     const Vec2f env = env_brdf_at(env_table_, max(dot(met[k].normal, met[k].to_camera), kGrazing));
     for (int c = 0; c < 3; ++c)
       out[k][c] = (1 - m) * diffuse[c] + ((m * color[c] + dielectric) * env.x + env.y) * reflected[c];

@@ -13,9 +13,10 @@ namespace cei3d {
 
 struct VertexLight {
   std::vector<Vec3f> base_color;  // #V linear
-  std::vector<Vec3f> openness;  // #V share of the open sky's irradiance that arrives, per channel
-  std::vector<Vec3f> bounce;    // #V irradiance from the surface itself
-  std::vector<Vec3f> arriving;  // #V irradiance of both over pi: times the base colour, what a diffuse surface sends out
+  std::vector<Vec3f> openness;    // #V share of the open sky's irradiance that arrives, per channel
+  std::vector<Vec3f> bounce;      // #V irradiance from the surface itself
+  std::vector<Vec3f>
+      arriving;  // #V irradiance of both over pi: times the base colour, what a diffuse surface sends out
 };
 
 // Mean radiance of a light around each of sky_directions().

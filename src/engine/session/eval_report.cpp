@@ -131,8 +131,9 @@ std::string EvalReport::markdown() const {
         "the same "
         "size only.\n",
         views.size());
-  text += residual ? "\nWith the residual, what light and material cannot explain; --no-residual leaves it out.\n"
-                   : "\nLight and material alone.\n";
+  text += residual
+              ? "\nWith the residual, what light and material cannot explain; --no-residual leaves it out.\n"
+              : "\nLight and material alone.\n";
   if (edit) text += edit_markdown(*edit);
   return text;
 }

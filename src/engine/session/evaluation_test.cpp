@@ -43,7 +43,8 @@ class EvaluationTest : public ::testing::Test {
     write_nerf_split(folder("capture"), "test", ball, {views[4], views[5]});
     views.resize(4);
     write_nerf_split(folder("capture"), "train", ball, views);
-    Project::create(folder("object"), {}, load_capture(folder("capture")), false).save_base(sphere_with_handlers());
+    Project::create(folder("object"), {}, load_capture(folder("capture")), false)
+        .save_base(sphere_with_handlers());
     write_scribble(0.9f);
   }
   fs::path folder(const std::string& name) const { return temp_.path() / name; }

@@ -286,7 +286,7 @@ struct EvalReport {
   double psnr = 0, ssim = 0, psnr_masked = 0;  // means over views
   double psnr_worst = 0;
   std::string worst_view;
-  bool residual = false;  // what light and material cannot explain was in the pictures
+  bool residual = false;             // what light and material cannot explain was in the pictures
   std::optional<double> lpips, fid;  // fid: between renders and photographs
   std::optional<EditScore> edit;
   Json json() const;

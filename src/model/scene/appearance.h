@@ -18,8 +18,8 @@ struct Appearance {
       materials;               // those that occur; the first is the object's own, whether it occurs or not
   std::vector<int> layer;      // #hits, the last layer that is local and has to do with the hit; -1: none
   std::vector<float> unlit{};  // #hits, share of the base colour that shows whatever the light; empty: none
-  // #hits, how much of it is as it was photographed: neither colour nor material nor shape edited, or erased again.
-  // Empty where the scene has no residual, which this is for.
+  // #hits, how much of it is as it was photographed: neither colour nor material nor shape edited, or erased
+  // again. Empty where the scene has no residual, which this is for.
   std::vector<float> original{};
 };
 
