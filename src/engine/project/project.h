@@ -31,8 +31,9 @@
 
 namespace cei3d {
 
-// 1: an edit has one result, that of its first making. 2: results by what they depend on.
-inline constexpr int kProjectVersion = 2;
+// 1: an edit has one result, that of its first making. 2: results by what they depend on. 3: the residual has
+// features of its own.
+inline constexpr int kProjectVersion = 3;
 
 struct ProjectHead {
   Normalization normalization;

@@ -14,7 +14,10 @@ constexpr double kMostPolish = 60;                             // seconds a roun
 constexpr double kBetweenRounds = 7;                           // Plan::between
 constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;   // a round, at most
 constexpr double kMostResidual = 45;                           // seconds of training, or
-constexpr int kResidualSteps = 4500;                           // steps
+constexpr int kResidualSteps = 4500;                           // steps,
+constexpr double kResidualHitsASecond = 4500;                  // on so many hits for each second of the run,
+constexpr size_t kResidualHitsUntimed = 1000000;               // or so many; shading
+constexpr double kHitSeconds = 1e-5;                           // one takes so long
 constexpr double kResidualRun = 120;  // seconds; shorter runs spend them on the surface
 
 }  // namespace
@@ -30,6 +33,7 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
     p.rounds = p.iterations >= 1000 ? 2 : 0;
     p.polish_steps = kPolishStepsUntimed;
     p.residual_steps = std::min(kResidualSteps, p.iterations / 2);
+    p.residual_hits = std::min(preset.residual_hits, kResidualHitsUntimed);
     return p;
   }
   p.between = kBetweenRounds * preset.stretch;
@@ -40,12 +44,14 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   while (p.rounds * (p.polish + p.between) > 0.3 * t) --p.rounds;
   p.appearance = std::min(appearance, 0.2 * t);
   p.residual = t >= kResidualRun ? std::min(kMostResidual, 0.05 * t) : 0;
+  p.residual_hits = std::min({preset.residual_hits, size_t(kResidualHitsASecond * t), pixels});
   const double wanted = double(pixels) / kPixelsASecond - kMostAppearance,
                affordable = 0.1 * t / preset.stretch;
   p.refinements = std::max(0, int(std::min(wanted, affordable) / kRefinement));
   const double polishing = p.rounds * (p.polish + p.between);
   const double refining = p.refinements * kRefinement * preset.stretch;
-  const double last = p.appearance + refining + p.residual + std::max(8.0, 0.06 * t);
+  const double last = p.appearance + refining + p.residual +
+                      kHitSeconds * preset.stretch * double(p.residual_hits) + std::max(8.0, 0.06 * t);
   const double rest = t - polishing - last;
   p.geometry = std::max(0.45 * t, rest);
   return p;

@@ -17,6 +17,7 @@ struct Plan {
   int rounds = 0, polish_steps = 0;
   int refinements = 0;  // of the albedo, on other pixels
   int residual_steps = 0;
+  size_t residual_hits = 0;  // that it learns from
 };
 
 // pixels: all of training.

@@ -65,7 +65,7 @@ Preset paper() {
   p.meshing.resolution = 128;
   p.iterations = 200000;
   p.resolution_from_views = false;
-  p.most_hits = 200000;
+  p.most_hits = p.residual_hits = 200000;
   p.stretch = 8;
   return p;
 }

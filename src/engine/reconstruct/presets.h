@@ -16,11 +16,12 @@ struct Preset {
   AppearanceOptions appearance;
   PolishOptions polish;
   MeshingOptions meshing;
-  int iterations;              // of the geometry stage when neither a time nor a number is asked for
-  bool resolution_from_views;  // grids as fine as the pixels: finest_resolution and log2_table follow the
-                               // capture
-  size_t most_hits = 1500000;  // training pixels of the appearance stage
-  double stretch = 1;          // how many times as long as with "fast" what follows the geometry takes
+  int iterations;                  // of the geometry stage when neither a time nor a number is asked for
+  bool resolution_from_views;      // grids as fine as the pixels: finest_resolution and log2_table follow the
+                                   // capture
+  size_t most_hits = 1500000;      // training pixels of the appearance stage
+  size_t residual_hits = 4000000;  // ... and of the residual, which learns the noise of fewer
+  double stretch = 1;              // how many times as long as with "fast" what follows the geometry takes
 };
 
 // "fast" (hash grids), "balanced" (the same for longer), "paper" (the paper's networks: 8x512 SDF, 4x512

@@ -22,9 +22,9 @@ namespace {
 
 constexpr int kRim = 6;  // pixels around the object that are trained on
 constexpr double kCheckpointSeconds = 30;
-constexpr double kLongRun = 120;           // seconds of training from which two starts are tried,
-constexpr int kLongRunSteps = 4000;        // or steps
-constexpr size_t kResidualHits = 1000000;  // it has no table, a share of the hits is enough
+constexpr uint64_t kResidualSubset = 1000;  // not those of the albedo's refinements
+constexpr double kLongRun = 120;            // seconds of training from which two starts are tried,
+constexpr int kLongRunSteps = 4000;         // or steps
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -271,7 +271,8 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
     residual.seconds = plan.residual;
     residual.steps = plan.residual_steps;
     residual.seed = options.seed;
-    standing.hits = thinned(standing.hits, kResidualHits);
+    standing.hits =
+        object_hits(device, *scene.sdf, *standing.surface, views.train, plan.residual_hits, kResidualSubset);
     if (auto fitted =
             fit_residual(device, scene, standing.input().samples, standing.hits.views, residual, progress))
       scene.residual = std::make_shared<const Residual>(std::move(*fitted));

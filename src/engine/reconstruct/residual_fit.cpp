@@ -24,6 +24,7 @@ constexpr int kChunks = 16, kBatch = kChunks * ResidualPass::kMost;  // pixels a
 constexpr int kApart = 8;                                            // every so many views one to judge by,
 constexpr size_t kJudged = 100000;                                   // at most so many of its pixels
 constexpr double kLeastGain = 0.03;                                  // of the squared error there
+constexpr double kJudging = 1.0 / 3;                                 // of the steps come before that
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -31,33 +32,34 @@ double now() {
 
 // Mean base colour of each pixel: at its centre alone the texture is sharper than the picture, and the
 // residual would learn to blur it.
-std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, const SurfaceSamples& samples) {
-  constexpr size_t kSlab = 1 << 16;  // pixels at a time
-  std::vector<Vec3f> out(samples.hits.size(), Vec3f{0, 0, 0});
-  for (size_t begin = 0; begin < out.size(); begin += kSlab) {
-    const size_t end = std::min(begin + kSlab, out.size());
-    std::vector<Vec3f> points;
-    for (size_t i = begin; i < end; ++i) {
-      const float footprint = samples.footprints.empty() ? 0 : samples.footprints[i];
-      for (const Vec3f p : pixel_points(samples.hits[i], footprint)) points.push_back(p);
-    }
-    std::vector<float> values(3 * points.size());
-    albedo.eval(device, points, values);
-    for (size_t k = 0; k < points.size(); ++k)
-      out[begin + k / kPixelPoints] +=
-          Vec3f{values[3 * k], values[3 * k + 1], values[3 * k + 2]} / float(kPixelPoints);
-  }
+std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::span<const Hit> hits,
+                                std::span<const float> footprints) {
+  std::vector<Vec3f> points, out(hits.size(), Vec3f{0, 0, 0});
+  for (size_t i = 0; i < hits.size(); ++i)
+    for (const Vec3f p : pixel_points(hits[i], footprints.empty() ? 0 : footprints[i])) points.push_back(p);
+  std::vector<float> values(3 * points.size());
+  albedo.eval(device, points, values);
+  for (size_t k = 0; k < points.size(); ++k)
+    out[k / kPixelPoints] += Vec3f{values[3 * k], values[3 * k + 1], values[3 * k + 2]} / float(kPixelPoints);
   return out;
 }
 
 // What the physical model sends out.
 std::vector<Vec3f> physical(const Device& device, const Scene& scene, const SurfaceSamples& samples) {
+  constexpr size_t kSlab = 1 << 17;  // hits at a time: shading takes more memory than they do
   const SceneLight light(device, scene, scene_transports(scene));
-  Appearance look = appearance_at(device, scene, samples.hits);
-  look.albedo = pixel_colors(device, *scene.albedo, samples);
-  const Shading shading = light.shade(samples.hits, look);
-  std::vector<Vec3f> out(samples.hits.size());
-  for (size_t i = 0; i < out.size(); ++i) out[i] = shading.diffuse[i] + shading.specular[i];
+  std::vector<Vec3f> out;
+  out.reserve(samples.hits.size());
+  for (size_t begin = 0; begin < samples.hits.size(); begin += kSlab) {
+    const size_t n = std::min(kSlab, samples.hits.size() - begin);
+    const std::span<const Hit> hits = samples.hits.subspan(begin, n);
+    Appearance look = appearance_at(device, scene, hits);
+    look.albedo =
+        pixel_colors(device, *scene.albedo, hits,
+                     samples.footprints.empty() ? samples.footprints : samples.footprints.subspan(begin, n));
+    const Shading shading = light.shade(hits, look);
+    for (size_t i = 0; i < n; ++i) out.push_back(shading.diffuse[i] + shading.specular[i]);
+  }
   return out;
 }
 
@@ -66,18 +68,25 @@ class Trainer {
   Trainer(const Device& device, const Scene& scene, const SurfaceSamples& samples,
           std::span<const uint16_t> views, const ResidualOptions& options)
       : device_(device),
-        sdf_(*scene.sdf),
         samples_(samples),
         seed_(options.seed),
         sent_(physical(device, scene, samples)),
-        residual_(make_residual(sdf_.config(), options.seed)),
-        sdf_weights_(mlp_config(sdf_.config()), sdf_.params()),
-        passes_([this] { return std::make_unique<ResidualPass>(sdf_.config(), residual_.network); }) {
+        features_(std::make_shared<Field>(*scene.sdf)),
+        features_learn_(features_->config().encoding.levels > 0),
+        residual_(make_residual(features_learn_ ? features_ : scene.sdf, options.seed)),
+        passes_([this] { return std::make_unique<ResidualPass>(features_->config(), residual_.network); }) {
     optimizer_.add(residual_.params, "", {options.rate});
+    if (features_learn_) {
+      Optimizer::Group tables{options.table_rate};
+      tables.skip_zero = true;
+      optimizer_.add(features_->params(), "encoding/", tables);
+      optimizer_.add(features_->params(), "layer", {options.feature_rate});
+    }
     for (uint32_t i = 0; i < views.size(); ++i)
       (views[i] % kApart == kApart - 1 ? apart_ : taught_).push_back(i);
   }
   bool can_judge() const { return !apart_.empty() && !taught_.empty(); }
+  void teach_all() { taught_.insert(taught_.end(), apart_.begin(), apart_.end()); }
 
   // Share of the squared error, as displayed, that the residual takes off views it has not seen.
   double gain() const {
@@ -87,7 +96,7 @@ class Trainer {
       judged.push_back(apart_[i]);
       hits.push_back(samples_.hits[apart_[i]]);
     }
-    const std::vector<Vec3f> values = residual_at(device_, sdf_, residual_, hits);
+    const std::vector<Vec3f> values = residual_at(device_, residual_, hits);
     double with = 0, without = 1e-12;
     for (size_t i = 0; i < judged.size(); ++i) {
       with += squared_error(judged[i], sent_[judged[i]] + values[i]);
@@ -96,38 +105,48 @@ class Trainer {
     return 1 - with / without;
   }
 
-  void step(int step, double rate) {
-    const MlpWeights weights(residual_.network, residual_.params);
+  void step(double rate) {
+    const MlpWeights weights(residual_.network, residual_.params),
+        feature_weights(mlp_config(features_->config()), features_->params());
     std::array<std::vector<float>, kChunks> gradients;
+    std::vector<ChunkGradients> feature_gradients(features_learn_ ? kChunks : 0);
     parallel_for(kChunks, [&](int chunk) {
       gradients[chunk].assign(weights.gradient_size(), 0.0f);
-      passes_.with(
-          [&](ResidualPass& pass) { learn(pass, weights, choose(step, chunk), gradients[chunk].data()); });
+      passes_.with([&](ResidualPass& pass) {
+        const int n = learn(pass, feature_weights, weights, choose(chunk), gradients[chunk].data());
+        if (features_learn_) pass.backward_features(device_, feature_weights, n, feature_gradients[chunk]);
+      });
     });
     std::vector<const std::vector<float>*> all;
     for (const auto& g : gradients) all.push_back(&g);
     accumulate_layers(residual_.params, all, optimizer_);
+    if (features_learn_)
+      accumulate_gradients(device_, *features_, feature_gradients, features_->config().encoding.levels,
+                           optimizer_);
     optimizer_.step(device_, float(rate));
+    ++steps_;
   }
 
   Residual take() { return std::move(residual_); }
 
  private:
-  std::vector<uint32_t> choose(int step, int chunk) const {
+  std::vector<uint32_t> choose(int chunk) const {
     std::vector<uint32_t> out(ResidualPass::kMost);
     for (size_t i = 0; i < out.size(); ++i)
-      out[i] = Rng(seed_, uint64_t(step), uint64_t(chunk) * out.size() + i).below(uint32_t(taught_.size()));
+      out[i] = Rng(seed_, uint64_t(steps_), uint64_t(chunk) * out.size() + i).below(uint32_t(taught_.size()));
     for (uint32_t& i : out) i = taught_[i];
     return out;
   }
 
-  void learn(ResidualPass& pass, const MlpWeights& weights, const std::vector<uint32_t>& chosen,
-             float* gradient) {
+  // Returns the pass's samples.
+  int learn(ResidualPass& pass, const MlpWeights& feature_weights, const MlpWeights& weights,
+            const std::vector<uint32_t>& chosen, float* gradient) {
     std::vector<Hit> hits;
     for (const uint32_t s : chosen) hits.push_back(samples_.hits[s]);
-    const int n = pass.forward(device_, sdf_, sdf_weights_, weights, hits);
+    const int n = pass.forward(device_, *features_, feature_weights, weights, hits);
     for (int i = 0; i < n; ++i) pass.set_slope(i, slope(chosen[i], pass.output(i)));
     pass.backward(device_, weights, n, gradient);
+    return n;
   }
 
   double squared_error(uint32_t sample, Vec3f got) const {
@@ -149,16 +168,30 @@ class Trainer {
   }
 
   const Device& device_;
-  const Field& sdf_;
   const SurfaceSamples& samples_;
   std::vector<uint32_t> taught_, apart_;  // samples
   uint64_t seed_;
   std::vector<Vec3f> sent_;
+  std::shared_ptr<Field> features_;
+  bool features_learn_;
   Residual residual_;
-  MlpWeights sdf_weights_;
   Pool<ResidualPass> passes_;
   Optimizer optimizer_;
+  int steps_ = 0;
 };
+
+// A share of all steps and seconds, the rates falling from all to a hundredth.
+void train(Trainer& trainer, double share, const ResidualOptions& options, Progress& progress) {
+  const int steps = std::max(1, int(share * options.steps));
+  const double start = now(), seconds = share * options.seconds;
+  for (int step = 0; step < steps && !progress.cancelled(); ++step) {
+    const double by_clock = seconds > 0 ? (now() - start) / seconds : 0;
+    const double u = std::max(double(step) / steps, by_clock);
+    if (u >= 1) break;
+    trainer.step(std::pow(0.01, u));
+    if (step % 50 == 0) progress.report({"residual", 0.99, -1, ""});
+  }
+}
 
 }  // namespace
 
@@ -167,17 +200,12 @@ std::optional<Residual> fit_residual(const Device& device, const Scene& scene, c
                                      Progress& progress) {
   Trainer trainer(device, scene, samples, views, options);
   if (!trainer.can_judge()) return {};
-  const double start = now();
-  for (int step = 0; step < options.steps && !progress.cancelled(); ++step) {
-    const double by_clock = options.seconds > 0 ? (now() - start) / options.seconds : 0;
-    const double u = std::max(double(step) / options.steps, by_clock);
-    if (u >= 1) break;
-    trainer.step(step, std::pow(0.01, u));
-    if (step % 50 == 0) progress.report({"residual", 0.99, -1, ""});
-  }
+  train(trainer, kJudging, options, progress);
   const double gain = trainer.gain();
   progress.log(Json{{"stage", "residual"}, {"gain_on_views_kept_apart", gain}}.dump());
   if (gain < kLeastGain) return {};
+  trainer.teach_all();
+  train(trainer, 1 - kJudging, options, progress);
   return trainer.take();
 }
 

@@ -86,7 +86,7 @@ struct ResidualTest : testing::Test {
 
 TEST_F(ResidualTest, LearnsWhatThePhysicalModelLeavesAndHoldsInOtherViews) {
   const std::vector<Hit> hits = seen_from(device, scene, {2.2, 2.0, 0.3});
-  const std::vector<Vec3f> got = residual_at(device, *scene.sdf, *scene.residual, hits);
+  const std::vector<Vec3f> got = residual_at(device, *scene.residual, hits);
   double error = 0, all = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
     error += dot(got[i] - glow(hits[i]), got[i] - glow(hits[i]));
@@ -109,10 +109,49 @@ TEST_F(ResidualTest, IsNotKeptWhereViewsThatItHasNotSeenGainNothing) {
       fit_residual(device, without(), {noisy.hits, noisy.colors, {}, {}}, noisy.views, options, quiet));
 }
 
+// Stripes that the distance field knows nothing of: its features are zero everywhere.
+Vec3f stripes(const Hit& h) { return Vec3f{0.05f, 0.05f, 0.05f} * (1 + std::sin(40 * h.position.z)); }
+
+TEST_F(ResidualTest, FeaturesLearnWhatTheDistanceFieldDoesNotKnow) {
+  Scene tabled = without();
+  FieldConfig config;
+  config.encoding = {0, 6, 8, 64, 12};
+  config.activation = Activation::softplus;
+  config.outputs = 1 + 8;
+  config.width = 32;
+  config.sphere_radius = kSphereRadius;
+  const auto sdf = std::make_shared<Field>(config, 1);
+  std::vector<Param>& params = sdf->params().all();
+  for (size_t k = params.size() - 2; k < params.size(); ++k)
+    for (size_t i = 0; i < params[k].count(); ++i)
+      if (k + 1 == params.size() || i < size_t(config.width)) params[k].value[i] = 0;  // exactly the sphere
+  tabled.sdf = sdf;
+  Photographed striped(device, tabled);
+  for (size_t i = 0; i < striped.hits.size(); ++i)
+    striped.colors[i] += stripes(striped.hits[i]) - glow(striped.hits[i]);
+  const std::vector<Param> before = sdf->params().all();
+  Progress quiet;
+  ResidualOptions options;
+  options.steps = 250;
+  const auto got =
+      fit_residual(device, tabled, {striped.hits, striped.colors, {}, {}}, striped.views, options, quiet);
+  ASSERT_TRUE(got);
+  EXPECT_NE(got->features, tabled.sdf);
+  for (size_t k = 0; k < before.size(); ++k) EXPECT_EQ(before[k].value, sdf->params().all()[k].value);
+  const std::vector<Hit> hits = seen_from(device, tabled, {2.2, 2.0, 0.3});
+  const std::vector<Vec3f> values = residual_at(device, *got, hits);
+  double error = 0, all = 0;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const Vec3f off = values[i] - stripes(hits[i]);
+    error += dot(off, off);
+    all += dot(stripes(hits[i]), stripes(hits[i]));
+  }
+  EXPECT_LT(std::sqrt(error / all), 0.25);
+}
+
 TEST_F(ResidualTest, StartsAsNothing) {
   const std::vector<Hit> hits = seen_from(device, scene, {3, 0, 0});
-  for (const Vec3f r : residual_at(device, *scene.sdf, make_residual(scene.sdf->config(), 1), hits))
-    EXPECT_EQ(dot(r, r), 0);
+  for (const Vec3f r : residual_at(device, make_residual(scene.sdf, 1), hits)) EXPECT_EQ(dot(r, r), 0);
 }
 
 TEST_F(ResidualTest, StaysOutOfAnEditsRegionAndWholeOutsideIt) {

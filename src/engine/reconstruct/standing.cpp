@@ -38,19 +38,6 @@ ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& su
   return out;
 }
 
-ObjectHits thinned(const ObjectHits& all, size_t most) {
-  const size_t stride = 1 + (all.hits.size() - 1) / most;
-  ObjectHits out;
-  for (size_t i = 0; i < all.hits.size(); i += stride) {
-    out.hits.push_back(all.hits[i]);
-    out.colors.push_back(all.colors[i]);
-    out.clipped.push_back(all.clipped[i]);
-    out.views.push_back(all.views[i]);
-    out.footprints.push_back(all.footprints[i]);
-  }
-  return out;
-}
-
 Standing stand(const Device& device, const Field& sdf, const Preset& preset, const PixelStore& pixels) {
   Standing s;
   s.surface = std::make_shared<const Surface>(extract_mesh(device, sdf, preset.meshing));

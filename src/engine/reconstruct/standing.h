@@ -23,9 +23,6 @@ struct ObjectHits {
 ObjectHits object_hits(const Device&, const Field& sdf, const Surface&, const PixelStore&, size_t most,
                        uint64_t subset = 0);
 
-// Every k-th hit, at most `most` of them.
-ObjectHits thinned(const ObjectHits& all, size_t most);
-
 struct Standing {
   std::shared_ptr<const Surface> surface;
   ObjectHits hits;

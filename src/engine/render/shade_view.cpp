@@ -69,7 +69,7 @@ std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const App
       original.push_back(hits[i]);
       of.push_back(i);
     }
-  const std::vector<Vec3f> values = residual_at(device, *scene.sdf, *scene.residual, original);
+  const std::vector<Vec3f> values = residual_at(device, *scene.residual, original);
   for (size_t k = 0; k < of.size(); ++k) out[of[k]] = values[k] * look.original[of[k]];
   return out;
 }

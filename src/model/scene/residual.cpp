@@ -10,13 +10,21 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kLayers = 2, kWidth = 64;
+constexpr int kWidth = 64;
 
 }  // namespace
 
-Residual make_residual(const FieldConfig& sdf, uint64_t seed) {
+Residual make_residual(std::shared_ptr<const Field> features, uint64_t seed, int layers) {
   Residual r;
-  r.network = {radiance_rows(sdf.outputs - 1), kLayers, kWidth, -1, Activation::relu, 1, 3, Activation::none};
+  r.network = {radiance_rows(features->config().outputs - 1),
+               layers,
+               kWidth,
+               -1,
+               Activation::relu,
+               1,
+               3,
+               Activation::none};
+  r.features = std::move(features);
   add_mlp_params(r.network, r.params, seed);
   std::vector<Param>& all = r.params.all();
   for (size_t k = all.size() - 2; k < all.size(); ++k)  // the last layer
@@ -24,24 +32,27 @@ Residual make_residual(const FieldConfig& sdf, uint64_t seed) {
   return r;
 }
 
-ResidualPass::ResidualPass(const FieldConfig& sdf, const MlpConfig& network)
-    : sdf_(sdf),
-      values_(sdf, kMost, 1),
+ResidualPass::ResidualPass(const FieldConfig& features, const MlpConfig& network)
+    : features_(features),
+      values_(features, kMost, 1),
       network_(network, kMost, 1),
       points_(size_t(kMost) * 3),
       directions_(size_t(kMost) * 3),
-      jets_(size_t(kMost) * 4 * sdf.outputs) {}
+      jets_(size_t(kMost) * 4 * features.outputs),
+      d_jets_(jets_.size()),
+      d_input_(size_t(kMost) * network.inputs) {}
 
-int ResidualPass::forward(const Device& device, const Field& sdf, const MlpWeights& sdf_weights,
+int ResidualPass::forward(const Device& device, const Field& features, const MlpWeights& feature_weights,
                           const MlpWeights& weights, std::span<const Hit> hits) {
-  const int n = int(hits.size()), samples = (n + kPanel - 1) / kPanel * kPanel, rows = sdf_.outputs;
+  const int n = int(hits.size()), samples = (n + kPanel - 1) / kPanel * kPanel, rows = features_.outputs;
   const auto hit = [&](int i) -> const Hit& { return hits[std::min(i, n - 1)]; };
   for (int i = 0; i < samples; ++i)
     for (int c = 0; c < 3; ++c) {
       points_[panel_at(i, 1, 0, 3, c)] = hit(i).position[c];
       directions_[panel_at(i, 1, 0, 3, c)] = -hit(i).to_camera[c];
     }
-  values_.forward(device, sdf, sdf_weights, points_.data(), samples, sdf_.encoding.levels, rows);
+  values_.forward(device, features, feature_weights, points_.data(), samples, features_.encoding.levels,
+                  rows);
   // The network reads jets; their slopes are the normals that shading uses.
   for (int i = 0; i < samples; ++i) {
     for (int o = 0; o < rows; ++o)
@@ -64,20 +75,36 @@ void ResidualPass::set_slope(int hit, Vec3f slope) {
 }
 
 void ResidualPass::backward(const Device& device, const MlpWeights& weights, int samples, float* gradient) {
-  network_.backward(device, weights, samples, weights.config().inputs, gradient, nullptr);
+  network_.backward(device, weights, samples, weights.config().inputs, gradient, d_input_.data());
 }
 
-std::vector<Vec3f> residual_at(const Device& device, const Field& sdf, const Residual& residual,
-                               std::span<const Hit> hits) {
+void ResidualPass::backward_features(const Device& device, const MlpWeights& feature_weights, int samples,
+                                     ChunkGradients& g) {
+  const int rows = features_.outputs;
+  std::fill(d_jets_.begin(), d_jets_.end(), 0.0f);
+  device.launch<RadianceInputGrad>(
+      {points_.data(), directions_.data(), d_jets_.data(), jets_.data(), d_input_.data(), rows - 1}, samples);
+  float* d_value = values_.d_output();
+  for (int i = 0; i < samples; ++i)
+    for (int o = 0; o < rows; ++o)  // the distance itself is no feature
+      d_value[panel_at(i, 1, 0, rows, o)] = o == 0 ? 0.0f : d_jets_[panel_at(i, 4, 0, rows, o)];
+  g.reset(features_, feature_weights.gradient_size(), samples, 1);
+  std::copy(points_.begin(), points_.begin() + std::ptrdiff_t(samples) * 3, g.points.begin());
+  values_.backward(device, feature_weights, samples, features_.encoding.levels, g.network.data(),
+                   g.d_encoding.data());
+}
+
+std::vector<Vec3f> residual_at(const Device& device, const Residual& residual, std::span<const Hit> hits) {
   constexpr int kGrain = 4096;
+  const Field& features = *residual.features;
   std::vector<Vec3f> out(hits.size());
-  const MlpWeights sdf_weights(mlp_config(sdf.config()), sdf.params()),
+  const MlpWeights feature_weights(mlp_config(features.config()), features.params()),
       weights(residual.network, residual.params);
   parallel_ranges(int(hits.size()), kGrain, [&](int begin, int end) {
-    ResidualPass pass(sdf.config(), residual.network);
+    ResidualPass pass(features.config(), residual.network);
     for (int first = begin; first < end; first += ResidualPass::kMost) {
       const int n = std::min(ResidualPass::kMost, end - first);
-      pass.forward(device, sdf, sdf_weights, weights, hits.subspan(size_t(first), size_t(n)));
+      pass.forward(device, features, feature_weights, weights, hits.subspan(size_t(first), size_t(n)));
       for (int i = 0; i < n; ++i) out[first + i] = pass.output(i);
     }
   });

@@ -1,48 +1,56 @@
 // SPDX-License-Identifier: Apache-2.0
-// What light and material cannot explain: a small network over the features of the distance field, the normal
-// and the view, whose output is added to what the physical model sends out. It belongs to the object as it
-// was photographed: an edit's region, another light and the base colour never see it. [architecture 1.2]
+// What light and material cannot explain: a small network over features of the point, the normal and the
+// view, whose output is added to what the physical model sends out. It belongs to the object as it was
+// photographed: an edit's region, another light and the base colour never see it. [architecture 1.2]
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "model/field/field.h"
 #include "model/field/field_pass.h"
+#include "model/field/gradients.h"
 #include "model/geometry/hit.h"
 
 namespace cei3d {
 
 struct Residual {
+  // Outputs 1.. describe a point: those of the distance field, or a copy of it that has learnt further.
+  std::shared_ptr<const Field> features;
   MlpConfig network;  // 3 outputs: linear radiance
   ParamSet params;
 };
 
+inline constexpr int kResidualLayers = 3, kMostResidualLayers = 8;
+
 // Starts as nothing: zero everywhere.
-Residual make_residual(const FieldConfig& sdf, uint64_t seed);
+Residual make_residual(std::shared_ptr<const Field> features, uint64_t seed, int layers = kResidualLayers);
 
 // Work memory of one chunk of hits.
 class ResidualPass {
  public:
   static constexpr int kMost = 512;  // hits
-  ResidualPass(const FieldConfig& sdf, const MlpConfig& network);
+  ResidualPass(const FieldConfig& features, const MlpConfig& network);
 
   // Returns the number of samples, hits rounded up to a panel. hits: in the shape that was photographed.
-  int forward(const Device&, const Field& sdf, const MlpWeights& sdf_weights, const MlpWeights& weights,
-              std::span<const Hit> hits);
+  int forward(const Device&, const Field& features, const MlpWeights& feature_weights,
+              const MlpWeights& weights, std::span<const Hit> hits);
   Vec3f output(int hit) const;
   void set_slope(int hit, Vec3f slope);  // dL/d(output); of padding, zero
   // gradient: [MlpWeights::gradient_size()], added to.
   void backward(const Device&, const MlpWeights& weights, int samples, float* gradient);
+  // After backward(): the features' own gradient, written.
+  void backward_features(const Device&, const MlpWeights& feature_weights, int samples, ChunkGradients&);
 
  private:
-  FieldConfig sdf_;
+  FieldConfig features_;
   FieldPass values_;
   MlpPass network_;
-  std::vector<float> points_, directions_, jets_;
+  std::vector<float> points_, directions_, jets_, d_jets_, d_input_;
 };
 
 // #hits
-std::vector<Vec3f> residual_at(const Device&, const Field& sdf, const Residual&, std::span<const Hit> hits);
+std::vector<Vec3f> residual_at(const Device&, const Residual&, std::span<const Hit> hits);
 
 }  // namespace cei3d

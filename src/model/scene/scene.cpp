@@ -67,13 +67,20 @@ std::shared_ptr<const HandlerPoints> load_handlers(const Tensors& tensors, const
   return points;
 }
 
-void save_residual(const Residual& residual, Tensors& tensors, Json& head) {
-  head["residual"] = true;
+void save_residual(const Residual& residual, const std::shared_ptr<const Field>& sdf, Tensors& tensors,
+                   Json& head) {
+  head["residual"] = {{"layers", residual.network.hidden_layers}};
   residual.params.save(tensors, "residual");
+  if (residual.features != sdf) save_field(residual.features, "residual_features", tensors, head);
 }
 
-std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const Field& sdf) {
-  auto residual = std::make_shared<Residual>(make_residual(sdf.config(), 0));
+std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const std::shared_ptr<const Field>& sdf,
+                                              const Json& head) {
+  // Objects of project version 2: two layers over the distance field's own features.
+  const int layers = head.at("residual").is_object() ? head.at("residual").at("layers").get<int>() : 2;
+  if (layers < 1 || layers > kMostResidualLayers) fail("the residual's network has {} layers", layers);
+  const std::shared_ptr<const Field> own = load_field("residual_features", tensors, head);
+  auto residual = std::make_shared<Residual>(make_residual(own ? own : sdf, 0, layers));
   residual->params.load(tensors, "residual");
   return residual;
 }
@@ -116,7 +123,7 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   save_field(scene.albedo, "albedo", tensors, head);
   if (scene.surface) save_surface(*scene.surface, tensors, head);
   save_light(scene.light, tensors, head);
-  if (scene.residual) save_residual(*scene.residual, tensors, head);
+  if (scene.residual) save_residual(*scene.residual, scene.sdf, tensors, head);
   if (scene.handlers) save_handlers(*scene.handlers, tensors, head);
 }
 
@@ -133,7 +140,7 @@ Scene load_scene(const Tensors& tensors, const Json& head) {
     scene.albedo = load_field("albedo", tensors, head);
     if (head.contains("surface")) scene.surface = load_surface(tensors, head.at("surface"));
     scene.light = load_light(tensors, head.at("light"));
-    if (head.contains("residual")) scene.residual = load_residual(tensors, *scene.sdf);
+    if (head.contains("residual")) scene.residual = load_residual(tensors, scene.sdf, head);
     if (head.contains("handlers")) scene.handlers = load_handlers(tensors, head.at("handlers"));
     return scene;
   });
