@@ -17,7 +17,9 @@ namespace {
 constexpr int kRays = 64;          // a chunk
 constexpr int kKept = kRays * 32;  // most samples of a chunk that get jets; about ten a ray are usual
 constexpr int kKeptPerRay = 64, kCandidates = 320;  // most of a ray: one that grazes the object needs them
-constexpr int kBlock = 512;                         // candidates evaluated at a time
+constexpr int kBlock = 512;                         // candidates evaluated at a time,
+constexpr int kGlance = 8;                          // of a ray
+constexpr float kOpaque = 1e-3f;                    // transmittance that counts as none
 constexpr int kFullRefreshEvery = 400;              // steps between looks at all of the occupancy grid
 constexpr float kRefreshMargin = 0.15f;
 constexpr float kAnchorWidth = 0.02f;  // of its loss
@@ -31,6 +33,7 @@ double GeometryStats::psnr() const {
 
 struct GeometryStage::RayBatch {
   int count = 0;
+  std::vector<size_t> pixels;  // in their store
   std::vector<Ray> rays;
   std::vector<Target> targets;
   std::vector<Vec3f> backgrounds;  // display-encoded; what a ray shows where it meets nothing
@@ -48,8 +51,9 @@ struct GeometryStage::Work {
         d_color_input(size_t(kKept) * radiance.inputs) {}
   FieldPass value, jet;
   MlpPass color;
-  std::vector<float> depths, values;  // candidates of all rays, ray after ray
-  std::vector<int> first_candidate;   // #rays + 1
+  std::vector<float> depths, values;  // candidates of all rays, ray after ray; only some get a value
+  std::vector<int> ray_of;            // #candidates
+  int looked_at = 0;                  // candidates with a value
   std::vector<float> block_points;
   std::vector<float> kept_depth;             // #kept
   std::vector<int> first_kept;               // #rays + 1
@@ -77,6 +81,7 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
                        1,
                        3,
                        Activation::sigmoid},
+      errors_(pixels.pixels().size()),
       work_([this] { return std::make_unique<Work>(options_.sdf, radiance_config_); }),
       sdf_gradients_(options.rays / kRays),
       radiance_gradients_(options.rays / kRays) {
@@ -120,13 +125,15 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
 void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first, bool training,
                                 RayBatch& batch) const {
   batch.count = kRays;
+  batch.pixels.resize(kRays);
   batch.rays.resize(kRays);
   batch.targets.resize(kRays);
   batch.backgrounds.assign(kRays, kWhite);
   batch.empty.assign(kRays, 0);
   for (int r = 0; r < kRays; ++r) {
     Rng rng(seed_, uint64_t(step), uint64_t(first + r));
-    const Pixel& p = store.pixels()[rng.below(uint32_t(store.pixels().size()))];
+    batch.pixels[r] = training ? errors_.choose(rng) : rng.below(uint32_t(store.pixels().size()));
+    const Pixel& p = store.pixels()[batch.pixels[r]];
     const FilteredRay filtered = store.filtered_ray(p, rng);
     batch.rays[r] = filtered.ray;
     batch.targets[r] = target_of(p);
@@ -143,59 +150,100 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
 
 namespace {
 
-// First look at a ray, by values alone: which candidates carry weight. Where the picture shows background
-// (`empty`), also those inside the surface, however little light reaches them.
-void select_samples(const float* depth, const float* value, int n, float step, float sharpness,
-                    float keep_weight, bool empty, std::vector<float>& kept) {
+// Candidates of a ray, front to back, with the field's values there.
+struct Candidates {
+  std::span<const float> depths, values;
+  float step, sharpness;
+
+  float alpha(size_t i) const {
+    const bool joined_before = i > 0 && depths[i] - depths[i - 1] < 1.5f * step;
+    const bool joined_after = i + 1 < depths.size() && depths[i + 1] - depths[i] < 1.5f * step;
+    const float half_slope = joined_after    ? 0.5f * (values[i + 1] - values[i])
+                             : joined_before ? 0.5f * (values[i] - values[i - 1])
+                                             : -0.35f * step;
+    const float before = joined_before ? 0.5f * (values[i] + values[i - 1]) : values[i] - half_slope;
+    const float after = values[i] + half_slope;
+    const float p = Sigmoid::eval(sharpness * before, 1).value, q = Sigmoid::eval(sharpness * after, 1).value;
+    return std::clamp((p - q) / (p + 1e-5f), 0.0f, 1.0f);
+  }
+};
+
+// Those that carry weight. Where the picture shows background (`empty`), also those inside the surface,
+// however little light reaches them.
+void select_samples(const Candidates& c, float keep_weight, bool empty, std::vector<float>& kept) {
   float transmittance = 1;
   const size_t end = std::min(kept.size() + kKeptPerRay, size_t(kKept));
-  for (int i = 0; i < n && kept.size() < end && (empty || transmittance > 1e-3f); ++i) {
-    const bool joined_before = i > 0 && depth[i] - depth[i - 1] < 1.5f * step;
-    const bool joined_after = i + 1 < n && depth[i + 1] - depth[i] < 1.5f * step;
-    const float half_slope = joined_after    ? 0.5f * (value[i + 1] - value[i])
-                             : joined_before ? 0.5f * (value[i] - value[i - 1])
-                                             : -0.35f * step;
-    const float before = joined_before ? 0.5f * (value[i] + value[i - 1]) : value[i] - half_slope;
-    const float after = value[i] + half_slope;
-    const float p = Sigmoid::eval(sharpness * before, 1).value, q = Sigmoid::eval(sharpness * after, 1).value;
-    const float alpha = std::clamp((p - q) / (p + 1e-5f), 0.0f, 1.0f), weight = transmittance * alpha;
-    if (weight > keep_weight || (empty && value[i] < 0)) kept.push_back(depth[i]);
+  for (size_t i = 0; i < c.depths.size() && kept.size() < end && (empty || transmittance > kOpaque); ++i) {
+    const float alpha = c.alpha(i), weight = transmittance * alpha;
+    if (weight > keep_weight || (empty && c.values[i] < 0)) kept.push_back(c.depths[i]);
     transmittance *= 1 - alpha;
   }
 }
 
 }  // namespace
 
-void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Work& w, uint64_t jitter_key,
-                                   bool training) const {
-  w.depths.clear();
-  w.first_candidate.assign(1, 0);
-  for (int r = 0; r < batch.count; ++r) {
-    const float jitter = training ? Rng(seed_ ^ 0x5eed, jitter_key, uint64_t(r)).uniform() : 0.5f;
-    grid_.march(batch.rays[r], s.step, s.band, jitter, kCandidates, w.depths);
-    w.first_candidate.push_back(int(w.depths.size()));
-  }
-  const int n = int(w.depths.size());
-  w.values.resize(n);
-  for (int begin = 0, ray = 0; begin < n; begin += kBlock) {
-    const int count = std::min(kBlock, n - begin), padded = (count + kPanel - 1) / kPanel * kPanel;
+void GeometryStage::find_values(const Schedule& s, const RayBatch& batch, std::span<const int> candidates,
+                                Work& w) const {
+  for (size_t begin = 0; begin < candidates.size(); begin += kBlock) {
+    const auto block = candidates.subspan(begin, std::min(size_t(kBlock), candidates.size() - begin));
+    const int count = int(block.size()), padded = (count + kPanel - 1) / kPanel * kPanel;
     for (int i = 0; i < padded; ++i) {
-      while (i < count && begin + i >= w.first_candidate[ray + 1]) ++ray;
-      const Vec3f p = i < count ? batch.rays[ray].origin + batch.rays[ray].direction * w.depths[begin + i]
-                                : Vec3f{0, 0, 0};
+      const int k = block[std::min(i, count - 1)];
+      const Ray& ray = batch.rays[w.ray_of[k]];
+      const Vec3f p = ray.origin + ray.direction * w.depths[k];
       for (int c = 0; c < 3; ++c) w.block_points[panel_at(i, 1, 0, 3, c)] = p[c];
     }
     w.value.forward(device_, sdf_, *sdf_weights_, w.block_points.data(), padded, s.levels, 1);
     for (int i = 0; i < count; ++i)
-      w.values[begin + i] = w.value.output()[panel_at(i, 1, 0, options_.sdf.outputs, 0)];
+      w.values[block[i]] = w.value.output()[panel_at(i, 1, 0, options_.sdf.outputs, 0)];
+  }
+}
+
+void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Work& w, uint64_t jitter_key,
+                                   bool training) const {
+  w.depths.clear();
+  w.ray_of.clear();
+  std::vector<int> first, alive;
+  for (int r = 0; r < batch.count; ++r) {
+    first.push_back(int(w.depths.size()));
+    alive.push_back(r);
+    const float jitter = training ? Rng(seed_ ^ 0x5eed, jitter_key, uint64_t(r)).uniform() : 0.5f;
+    grid_.march(batch.rays[r], s.step, s.band, jitter, kCandidates, w.depths);
+    w.ray_of.resize(w.depths.size(), r);
+  }
+  first.push_back(int(w.depths.size()));
+  w.values.resize(w.depths.size());
+
+  // A few of each ray at a time, until nothing gets through: what lies behind needs no value.
+  struct Looked {
+    int count = 0, passed = 0;
+    float transmittance = 1;  // behind those passed
+  };
+  std::vector<Looked> looked(batch.count);
+  const auto candidates = [&](int r) {
+    const size_t n = size_t(looked[r].count);
+    return Candidates{{&w.depths[first[r]], n}, {&w.values[first[r]], n}, s.step, s.sharpness};
+  };
+  const auto sees_all = [&](int r) { return training && batch.empty[r]; };
+  w.looked_at = 0;
+  for (std::vector<int> next; !alive.empty(); next.clear()) {
+    for (const int r : alive)
+      for (int k = 0; k < kGlance && first[r] + looked[r].count < first[r + 1]; ++k)
+        next.push_back(first[r] + looked[r].count++);
+    find_values(s, batch, next, w);
+    w.looked_at += int(next.size());
+    std::erase_if(alive, [&](int r) {
+      Looked& l = looked[r];
+      while (l.passed + 1 < l.count)  // the last one's slope needs the next
+        l.transmittance *= 1 - candidates(r).alpha(size_t(l.passed++));
+      return first[r] + l.count == first[r + 1] || (!sees_all(r) && l.transmittance <= kOpaque);
+    });
   }
 
   w.kept_depth.clear();
   w.first_kept.assign(1, 0);
   for (int r = 0; r < batch.count; ++r) {
-    const int first = w.first_candidate[r], count = w.first_candidate[r + 1] - first;
-    select_samples(w.depths.data() + first, w.values.data() + first, count, s.step, s.sharpness,
-                   options_.keep_weight, training && batch.empty[r], w.kept_depth);
+    if (looked[r].count > 0) select_samples(candidates(r), options_.keep_weight, sees_all(r), w.kept_depth);
     w.first_kept.push_back(int(w.kept_depth.size()));
   }
 }
@@ -311,7 +359,7 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
   std::copy(w.points.begin(), w.points.begin() + std::ptrdiff_t(w.padded) * 3, g.points.begin());
   w.jet.backward(device_, *sdf_weights_, w.padded, s.levels, g.network.data(), g.d_encoding.data());
   stats.kept += int64_t(w.kept_depth.size());
-  stats.candidates += int64_t(w.depths.size());
+  stats.candidates += w.looked_at;
   stats.rays += batch.count;
 }
 
@@ -374,6 +422,7 @@ GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& mor
   const int hold_chunks = options_.hold_start && s.anchor > 0;
   sdf_gradients_.resize(chunks + more_chunks + hold_chunks);
   std::vector<GeometryStats> stats(chunks);
+  std::vector<std::pair<size_t, float>> seen(options_.rays);  // pixel, squared error
   parallel_for(chunks + more_chunks + hold_chunks, [&](int c) {
     if (c >= chunks + more_chunks) {
       work_.with([&](Work& w) { hold_start(s, step, w, sdf_gradients_[c]); });
@@ -394,8 +443,13 @@ GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& mor
       StepTimes::thread(times_, StepPart::forward, [&] { forward(s, batch, w); });
       StepTimes::thread(times_, StepPart::backward,
                         [&] { backward(s, batch, w, sdf_gradients_[c], radiance_gradients_[c], stats[c]); });
+      for (int r = 0; r < kRays; ++r) {
+        const Vec3f off = w.pixel[r] - batch.targets[r].srgb;
+        seen[size_t(c) * kRays + r] = {batch.pixels[r], dot(off, off)};
+      }
     });
   });
+  for (const auto& [pixel, error] : seen) errors_.saw(pixel, error);
   std::vector<const std::vector<float>*> radiance;
   for (const auto& g : radiance_gradients_) radiance.push_back(&g);
   accumulate_layers(radiance_, radiance, optimizer_);
@@ -469,6 +523,7 @@ void GeometryStage::save(Tensors& out) const {
   radiance_.save(out, "radiance");
   optimizer_.save(out, "adam");
   const int64_t n = grid_.resolution();
+  out["pixel_errors"] = {{int64_t(errors_.runs().size())}, errors_.runs(), {}};
   out["matte_until"] = {{1}, {matte_until_}, {}};
   if (anchor_.n) out["anchor"] = {{anchor_.n, anchor_.n, anchor_.n}, anchor_.values, {}};
   out["occupancy"] = {
@@ -481,6 +536,7 @@ void GeometryStage::load(const Tensors& in) {
   optimizer_.load(in, "adam");
   const int64_t n = grid_.resolution();
   grid_.set(require_tensor(in, "occupancy", {n, n, n}).f32);
+  errors_.set_runs(require_tensor(in, "pixel_errors", {int64_t(errors_.runs().size())}).f32);
   matte_until_ = require_tensor(in, "matte_until", {1}).f32[0];
   if (const auto anchor = in.find("anchor"); anchor != in.end() && !anchor->second.shape.empty()) {
     const int64_t cells = anchor->second.shape[0];

@@ -9,6 +9,7 @@
 
 #include "core/base/pool.h"
 #include "engine/reconstruct/occupancy.h"
+#include "engine/reconstruct/pixel_errors.h"
 #include "engine/reconstruct/pixels.h"
 #include "engine/reconstruct/prefit.h"
 #include "engine/reconstruct/step_times.h"
@@ -97,6 +98,7 @@ class GeometryStage {
   };
   Schedule schedule_at(double u) const;
   void sample_rays(const PixelStore&, int64_t step, int first, bool training, RayBatch&) const;
+  void find_values(const Schedule&, const RayBatch&, std::span<const int> candidates, Work&) const;
   void gather_samples(const Schedule&, const RayBatch&, Work&, uint64_t jitter_key, bool training) const;
   void forward(const Schedule&, const RayBatch&, Work&) const;
   void backward(const Schedule&, const RayBatch&, Work&, ChunkGradients& sdf, std::vector<float>& radiance,
@@ -117,6 +119,7 @@ class GeometryStage {
   ParamSet radiance_;
   Optimizer optimizer_;
   OccupancyGrid grid_;
+  PixelErrors errors_;
   DistanceGrid anchor_;  // the start shape, if it holds the surface; else empty
   float matte_until_ = 0;
   std::unique_ptr<MlpWeights> sdf_weights_, radiance_weights_;  // of the current step
