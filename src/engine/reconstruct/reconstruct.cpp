@@ -259,6 +259,7 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   appearance.seed = options.seed;
   AppearanceResult result = fit_appearance(device, standing.input(), appearance, progress);
   for (int round = 1; round <= plan.refinements; ++round) {
+    standing.hits = {};  // not both at a time
     standing.hits =
         object_hits(device, *scene.sdf, *standing.surface, views.train, preset.most_hits, uint64_t(round));
     refine_albedo(device, standing.input(), appearance, result, progress);
@@ -271,6 +272,7 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
     residual.seconds = plan.residual;
     residual.steps = plan.residual_steps;
     residual.seed = options.seed;
+    standing.hits = {};  // not both at a time
     standing.hits =
         object_hits(device, *scene.sdf, *standing.surface, views.train, plan.residual_hits, kResidualSubset);
     if (auto fitted =

@@ -11,29 +11,48 @@
 
 namespace cei3d {
 
-ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& surface,
-                       const PixelStore& pixels, size_t most, uint64_t subset) {
-  std::vector<Pixel> inner;
-  for (const Pixel& p : pixels.pixels())
-    if (p.srgba[3] == 255) inner.push_back(p);
-  const double keep = std::min(1.0, double(most) / double(std::max<size_t>(inner.size(), 1)));
-  std::vector<Pixel> chosen;
-  for (size_t i = 0; i < inner.size(); ++i)
-    if (keep == 1 || Rng(7, subset, i).uniform() < keep) chosen.push_back(inner[i]);
+namespace {
+
+constexpr size_t kSlab = 1 << 18;  // pixels at a time: tracing takes more memory than their hits do
+
+// Empties the slab.
+void add_hits(const Device& device, const Field& sdf, const Surface& surface, const PixelStore& pixels,
+              std::vector<Pixel>& slab, ObjectHits& out) {
   std::vector<Ray> rays;
-  rays.reserve(chosen.size());
-  for (const Pixel& p : chosen) rays.push_back(pixels.cameras()[p.view].ray(p.x + 0.5, p.y + 0.5));
-  ObjectHits out;
+  rays.reserve(slab.size());
+  for (const Pixel& p : slab) rays.push_back(pixels.cameras()[p.view].ray(p.x + 0.5, p.y + 0.5));
   std::vector<uint32_t> ray_of_hit;
-  out.hits = trace_rays(device, sdf, surface, rays, ray_of_hit);
-  for (size_t i = 0; i < out.hits.size(); ++i) {
-    const Pixel& p = chosen[ray_of_hit[i]];
+  const std::vector<Hit> hits = trace_rays(device, sdf, surface, rays, ray_of_hit);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const Pixel& p = slab[ray_of_hit[i]];
     const Camera& camera = pixels.cameras()[p.view];
     const auto channel = [&](int c) { return linear_from_srgb(float(p.srgba[c]) / 255); };
+    out.hits.push_back(hits[i]);
     out.colors.push_back({channel(0), channel(1), channel(2)});
     out.clipped.push_back(uint8_t((p.srgba[0] == 255) | (p.srgba[1] == 255) << 1 | (p.srgba[2] == 255) << 2));
     out.views.push_back(p.view);
-    out.footprints.push_back(length(out.hits[i].position - to_float(camera.center)) / float(camera.fx));
+    out.footprints.push_back(length(hits[i].position - to_float(camera.center)) / float(camera.fx));
+  }
+  slab.clear();
+}
+
+}  // namespace
+
+ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& surface,
+                       const PixelStore& pixels, size_t most, uint64_t subset) {
+  size_t inner = 0;
+  const auto inside = [](const Pixel& p) { return p.srgba[3] == 255; };
+  for (const Pixel& p : pixels.pixels()) inner += inside(p);
+  const double keep = std::min(1.0, double(most) / double(std::max<size_t>(inner, 1)));
+  ObjectHits out;
+  out.hits.reserve(std::min(most, inner));
+  std::vector<Pixel> slab;
+  size_t i = 0;
+  for (const Pixel& p : pixels.pixels()) {
+    if (!inside(p)) continue;
+    if (keep == 1 || Rng(7, subset, i).uniform() < keep) slab.push_back(p);
+    ++i;
+    if (slab.size() == kSlab || i == inner) add_hits(device, sdf, surface, pixels, slab, out);
   }
   return out;
 }
