@@ -51,7 +51,7 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   const double polishing = p.rounds * (p.polish + p.between);
   const double refining = p.refinements * kRefinement * preset.stretch;
   const double last = p.appearance + refining + p.residual +
-                      kHitSeconds * preset.stretch * double(p.residual_hits) + std::max(8.0, 0.06 * t);
+                      kHitSeconds * preset.stretch * double(p.residual_hits) + std::max(8.0, 0.03 * t);
   const double rest = t - polishing - last;
   p.geometry = std::max(0.45 * t, rest);
   return p;
