@@ -113,7 +113,7 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   s.sharpness = float(options_.sharpness_start *
                       std::pow(double(options_.sharpness_end) / options_.sharpness_start, p));
   s.step = std::clamp(1 / s.sharpness, options_.step_min, options_.step_max);
-  s.band = std::max(5 / s.sharpness, 1.5f * s.step);
+  s.band = std::max(4 / s.sharpness, 1.5f * s.step);
   s.levels = levels_at(u);
   s.views = u >= matte_until_;
   s.anchor = anchor_.n

@@ -39,15 +39,15 @@ void OccupancyGrid::march(const Ray& ray, float step, float band, float jitter, 
                           std::vector<float>& depths) const {
   float t, far;
   if (!unit_sphere_span(ray, t, far)) return;
+  const float reach = band + half_diagonal();
   t += jitter * step;
   const size_t end = depths.size() + most;
   while (t < far && depths.size() < end) {
-    const Vec3f p = ray.origin + ray.direction * t;
-    const float d = at(p), reach = band + from_center(p);
+    const float d = at(ray.origin + ray.direction * t);
     if (d < -reach) return;
     if (d > reach) {
-      // The distance is that of the cell's centre. Away from the surface nothing holds the field's slope at
-      // one: a leap of all of it would land behind the surface, and the ray find nothing.
+      // A cell's distance is off by half its diagonal at most. Away from the surface nothing holds the
+      // field's slope at one: a leap of all of it would land behind the surface, and the ray find nothing.
       t += std::max(0.5f * (d - reach), step);
       continue;
     }

@@ -23,15 +23,10 @@ class OccupancyGrid {
   const std::vector<float>& values() const { return value_; }
 
   int resolution() const { return n_; }
+  float half_diagonal() const { return 1.7320508f / float(n_); }
   Vec3f center(int i) const;  // of cell i
   float at(Vec3f p) const {   // clamped to the grid
     return value_[(size_t(cell(p.z)) * n_ + cell(p.y)) * n_ + cell(p.x)];
-  }
-
-  // How far p is from its cell's centre.
-  float from_center(Vec3f p) const {
-    const auto off = [&](float x) { return (float(cell(x)) + 0.5f) * 2 / float(n_) - 1 - x; };
-    return length(Vec3f{off(p.x), off(p.y), off(p.z)});
   }
 
   // Depths along the ray, `step` apart, that lie within `band` of the surface, front to back, from the unit
