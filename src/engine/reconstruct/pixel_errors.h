@@ -15,10 +15,14 @@ class PixelErrors {
   explicit PixelErrors(size_t pixels)
       : pixels_(pixels), errors_((pixels + kRun - 1) / kRun, std::numeric_limits<float>::max()) {}
 
-  // Of two random pixels the one in whose run the error was larger when last seen; unseen ones come first.
+  // Of three random pixels the one in whose run the error was largest when last seen; unseen ones come first.
   size_t choose(Rng& rng) const {
-    const size_t a = rng.below(uint32_t(pixels_)), b = rng.below(uint32_t(pixels_));
-    return errors_[a / kRun] >= errors_[b / kRun] ? a : b;
+    size_t worst = rng.below(uint32_t(pixels_));
+    for (int k = 1; k < kDraws; ++k) {
+      const size_t other = rng.below(uint32_t(pixels_));
+      if (errors_[other / kRun] > errors_[worst / kRun]) worst = other;
+    }
+    return worst;
   }
   void saw(size_t pixel, float squared_error) {
     float& e = errors_[pixel / kRun];
@@ -29,8 +33,9 @@ class PixelErrors {
   void set_runs(std::vector<float> errors) { errors_ = std::move(errors); }
 
  private:
-  static constexpr size_t kRun = 16;  // neighbours in a row of the picture share an error
+  static constexpr size_t kRun = 4;  // neighbours in a row of the picture share an error
   static constexpr float kNews = 0.5f;
+  static constexpr int kDraws = 3;
   size_t pixels_;
   std::vector<float> errors_;
 };
