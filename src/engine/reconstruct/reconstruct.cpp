@@ -190,23 +190,33 @@ Field at_silhouettes(const Device& device, Field sdf, const PixelStore& pixels, 
 void polish(const Device& device, GeometryStage& stage, const Preset& preset, const Plan& plan,
             const PixelStore& pixels, uint64_t seed, Progress& progress) {
   constexpr double kBrief = 5;  // seconds of the appearance stage: half its effort
+  constexpr size_t kBriefHits = 300000;
+  constexpr double kLeastRound = 10;  // seconds of polishing that are worth another look
+  const bool timed = plan.polish > 0;
   const double deadline = now() + plan.rounds * (plan.polish + plan.between);
+  double looking = plan.between;  // as long as the last look took: concave objects take longer than planned
   for (int round = 0; round < plan.rounds; ++round) {
+    const double begin = now();
+    if (timed && round > 0 && deadline - begin < looking + kLeastRound) return;
     progress.report({"surface by its reflections", 0.72, -1, ""});
     const Standing standing = stand(device, stage.sdf(), preset, pixels);
+    const Standing fewer{standing.surface,
+                         object_hits(device, stage.sdf(), *standing.surface, pixels, kBriefHits)};
     AppearanceOptions brief = preset.appearance;
     brief.seconds = kBrief;
     brief.seed = seed;
-    const AppearanceResult look = fit_appearance(device, standing.input(), brief, progress);
+    const AppearanceResult look = fit_appearance(device, fewer.input(), brief, progress);
+    looking = now() - begin;
     PolishOptions options = preset.polish;
     options.steps = plan.polish_steps;
-    // Of what is left, other rounds' looks taken off: large captures need longer for them than planned.
     const int rounds_left = plan.rounds - round;
-    const double left = (deadline - now() - (rounds_left - 1) * plan.between) / rounds_left;
-    options.seconds = plan.polish > 0 ? std::clamp(left, 1.0, plan.polish) : 0;
+    const double left = (deadline - now() - (rounds_left - 1) * looking) / rounds_left;
+    options.seconds = timed ? std::clamp(left, 1.0, plan.polish) : 0;
     options.seed = seed + uint64_t(round);
     options.first_step = (int64_t(round) + 1) << 24;
+    const double polishing = now();
     polish_surface(device, stage, standing.input(), look, options, progress);
+    progress.log(Json{{"stage", "polish"}, {"looking", looking}, {"seconds", now() - polishing}}.dump());
     if (progress.cancelled())
       throw Error(ErrorCode::interrupted, "interrupted; the state is saved", "go on with --resume");
   }

@@ -24,7 +24,8 @@ constexpr int kChunks = 16, kBatch = kChunks * ResidualPass::kMost;  // pixels a
 constexpr int kApart = 8;                                            // every so many views one to judge by,
 constexpr size_t kJudged = 100000;                                   // at most so many of its pixels
 constexpr double kLeastGain = 0.03;                                  // of the squared error there
-constexpr double kJudging = 1.0 / 3;                                 // of the steps come before that
+constexpr double kJudging = 0.2;                                     // of the steps come before that,
+constexpr double kWarmUp = 0.05;  // and so many at rising rates: large first ones leave no unit alive
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -70,6 +71,7 @@ class Trainer {
       : device_(device),
         samples_(samples),
         seed_(options.seed),
+        warm_up_(kWarmUp * options.steps),
         sent_(physical(device, scene, samples)),
         features_(std::make_shared<Field>(*scene.sdf)),
         features_learn_(features_->config().encoding.levels > 0),
@@ -123,8 +125,8 @@ class Trainer {
     if (features_learn_)
       accumulate_gradients(device_, *features_, feature_gradients, features_->config().encoding.levels,
                            optimizer_);
-    optimizer_.step(device_, float(rate));
     ++steps_;
+    optimizer_.step(device_, float(rate * std::min(1.0, steps_ / warm_up_)));
   }
 
   Residual take() { return std::move(residual_); }
@@ -171,6 +173,7 @@ class Trainer {
   const SurfaceSamples& samples_;
   std::vector<uint32_t> taught_, apart_;  // samples
   uint64_t seed_;
+  double warm_up_;  // steps
   std::vector<Vec3f> sent_;
   std::shared_ptr<Field> features_;
   bool features_learn_;

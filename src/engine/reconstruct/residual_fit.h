@@ -16,12 +16,12 @@ struct ResidualOptions {
   int steps = 1500;
   // Adam's; they fall to a hundredth. Of the network, and of the features' tables and layers. Fields without
   // tables keep the features they have: they would take hours.
-  float rate = 5e-3f, table_rate = 1e-2f, feature_rate = 1e-3f;
+  float rate = 2.5e-3f, table_rate = 1e-2f, feature_rate = 3e-3f;
   uint64_t seed = 1;
 };
 
 // scene: the object without residual. samples: as for the appearance stage; views: #samples. For the first
-// third every eighth view is kept apart, to judge by: nothing is returned where its pixels do not gain (spot:
+// fifth every eighth view is kept apart, to judge by: nothing is returned where its pixels do not gain (spot:
 // what light and material leave there is noise), or where there is no such view. Cancelled: as far as it got.
 std::optional<Residual> fit_residual(const Device&, const Scene& scene, const SurfaceSamples& samples,
                                      std::span<const uint16_t> views, const ResidualOptions&, Progress&);
