@@ -13,8 +13,8 @@ namespace {
 
 constexpr float kLift = 2e-3f;  // rays start this far above the surface
 // Rays of the reflection lobe: a few to see whether anything is in its way, and where it is, enough to see
-// what.
-constexpr int kProbes = 6, kRays = 24;
+// what; fewer for a dielectric, which shows little of it.
+constexpr int kProbes = 6, kMetalRays = 24, kDielectricRays = 12;
 constexpr float kGrazing = 0.02f;  // least cosine of a reflection that another reflection sees
 
 // Directions of equal weight that stand for the reflection lobe of a roughness around +Z: one ring at the
@@ -73,7 +73,7 @@ SelfReflection::SelfReflection(const Device& device, const Surface& surface, con
       env_table_(env_table),
       colors_(colors),
       probes_(lobe_directions(roughness_, kProbes)),
-      lobe_(lobe_directions(roughness_, kRays)) {}
+      lobe_(lobe_directions(roughness_, material.metalness > 0 ? kMetalRays : kDielectricRays)) {}
 
 // A point that a ray met, looked at from where the ray began.
 Hit SelfReflection::met_by(Vec3f origin, Vec3f direction, const Surface::RayHit& r) const {
@@ -82,10 +82,9 @@ Hit SelfReflection::met_by(Vec3f origin, Vec3f direction, const Surface::RayHit&
   return {origin + direction * r.t, normal, -direction, r.triangle, r.b1, r.b2};
 }
 
-// Radiance that leaves these points for where they are looked at from. What their reflection meets is taken
-// as diffuse.
-std::vector<Vec3f> SelfReflection::shown(std::span<const Hit> met) const {
-  const Mesh& mesh = surface_.mesh();
+// Radiance along the mirror directions of these points: of the sky, or of what is met there, as if that were
+// diffuse.
+std::vector<Vec3f> SelfReflection::mirrored(std::span<const Hit> met) const {
   const size_t n = met.size(), stride = (n + kPanel - 1) / kPanel * kPanel;
   std::vector<Vec3f> from(n), mirrors(n), out(n);
   std::vector<float> mirror_planes(3 * stride, 0.0f), sky(3 * stride);
@@ -99,18 +98,25 @@ std::vector<Vec3f> SelfReflection::shown(std::span<const Hit> met) const {
   device_.launch<SgReflection>(args, int(stride));
   std::vector<Surface::RayHit> next(n);
   surface_.intersect(from, mirrors, 0, next);
-  const auto at = [&](std::span<const Vec3f> v, const auto& h) {
-    return at_corners(v, mesh.triangles[h.triangle], h.b1, h.b2);
-  };
+  for (size_t k = 0; k < n; ++k)
+    out[k] = next[k].t < 0 ? Vec3f{sky[k], sky[stride + k], sky[2 * stride + k]}
+                           : at(colors_, next[k]) * at(vertices_.arriving, next[k]);
+  return out;
+}
+
+// Radiance that leaves these points for where they are looked at from. Dielectrics reflect little of what
+// arrives there, so in another reflection its mean over all directions does.
+std::vector<Vec3f> SelfReflection::shown(std::span<const Hit> met) const {
   const float m = material_.metalness, dielectric = (1 - m) * kDielectricF0 * material_.specular;
-  for (size_t k = 0; k < n; ++k) {
-    const Vec3f color = at(colors_, met[k]);
-    const Vec3f diffuse = color * at(vertices_.arriving, met[k]);
-    const Vec3f reflected = next[k].t < 0 ? Vec3f{sky[k], sky[stride + k], sky[2 * stride + k]}
-                                          : at(colors_, next[k]) * at(vertices_.arriving, next[k]);
+  std::vector<Vec3f> out = m > 0 ? mirrored(met) : std::vector<Vec3f>();
+  out.resize(met.size());
+  for (size_t k = 0; k < met.size(); ++k) {
+    const Vec3f color = at(colors_, met[k]), arriving = at(vertices_.arriving, met[k]);
+    const Vec3f reflected = m > 0 ? out[k] : arriving;
     const Vec2f env = env_brdf_at(env_table_, max(dot(met[k].normal, met[k].to_camera), kGrazing));
     for (int c = 0; c < 3; ++c)
-      out[k][c] = (1 - m) * diffuse[c] + ((m * color[c] + dielectric) * env.x + env.y) * reflected[c];
+      out[k][c] = (1 - m) * color[c] * arriving[c] +
+                  ((m * color[c] + dielectric) * env.x + env.y) * reflected[c];
   }
   return out;
 }
@@ -133,12 +139,13 @@ std::vector<SelfReflection::Seen> SelfReflection::seen_by(std::span<const Hit> h
   for (size_t k = 0; k < rays.far.size(); ++k) {
     if (rays.far[k].t < 0) continue;
     met.push_back(met_by(rays.origins[k], rays.directions[k], rays.far[k]));
-    owner.push_back(index[k / kRays]);
+    owner.push_back(index[k / lobe_.size()]);
   }
   const std::vector<Vec3f> radiance = shown(met);
+  const float share = 1.0f / float(lobe_.size());
   for (size_t k = 0; k < met.size(); ++k) {
-    out[owner[k]].open -= 1.0f / kRays;
-    out[owner[k]].radiance += radiance[k] * (1.0f / kRays);
+    out[owner[k]].open -= share;
+    out[owner[k]].radiance += radiance[k] * share;
   }
   return out;
 }

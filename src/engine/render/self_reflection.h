@@ -30,7 +30,12 @@ class SelfReflection {
 
  private:
   Hit met_by(Vec3f origin, Vec3f direction, const Surface::RayHit&) const;
+  std::vector<Vec3f> mirrored(std::span<const Hit> met) const;
   std::vector<Vec3f> shown(std::span<const Hit> met) const;
+  template <class Where>  // a Hit or a Surface::RayHit
+  Vec3f at(std::span<const Vec3f> of_vertices, const Where& w) const {
+    return at_corners(of_vertices, surface_.mesh().triangles[w.triangle], w.b1, w.b2);
+  }
 
   const Device& device_;
   const Surface& surface_;
