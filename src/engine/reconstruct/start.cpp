@@ -17,6 +17,9 @@ constexpr int kCells = 128, kStereoCells = 192;  // an axis
 // Carved by colours, mirror images go on eating at the shape unless they have to be the surface. Stereo's is
 // near enough the surface for highlights to be told from it; without a view to depend on they would dent it.
 constexpr float kMatteUntil = 0.25f;
+// dB by which another start has to beat the visual hull, which nothing deceives: where the hull is wrong they
+// differ by one and a half and more.
+constexpr double kClearly = 0.3;
 
 // Cells that may hold matter: masks are grown by half a cell, as the cameras see it at the object's centre,
 // or rods thinner than a cell would be lost, and descent makes no matter where there is none. It does take
@@ -80,7 +83,7 @@ StartShape choose_start(const Device& device, const PixelStore& pixels, const Ge
     log[name] = psnr;
     if (psnr <= best_psnr) continue;
     best = std::move(shape);
-    best_psnr = psnr;
+    best_psnr = psnr + (start == Start::hull ? kClearly : 0);
   }
   progress.log(log.dump());
   return best;

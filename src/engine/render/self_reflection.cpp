@@ -115,8 +115,8 @@ std::vector<Vec3f> SelfReflection::shown(std::span<const Hit> met) const {
     const Vec3f reflected = m > 0 ? out[k] : arriving;
     const Vec2f env = env_brdf_at(env_table_, max(dot(met[k].normal, met[k].to_camera), kGrazing));
     for (int c = 0; c < 3; ++c)
-      out[k][c] = (1 - m) * color[c] * arriving[c] +
-                  ((m * color[c] + dielectric) * env.x + env.y) * reflected[c];
+      out[k][c] =
+          (1 - m) * color[c] * arriving[c] + ((m * color[c] + dielectric) * env.x + env.y) * reflected[c];
   }
   return out;
 }
