@@ -18,6 +18,7 @@ constexpr int kResidualSteps = 4500;                           // steps,
 constexpr double kResidualHitsASecond = 4500;                  // on so many hits for each second of the run,
 constexpr size_t kResidualHitsUntimed = 1000000;               // or so many; shading
 constexpr double kHitSeconds = 1e-5;                           // one takes so long
+constexpr double kSaving = 8, kSavingShare = 0.03;             // seconds; of the run: what is left at the end
 constexpr double kResidualRun = 120;  // seconds; shorter runs spend them on the surface
 
 }  // namespace
@@ -43,17 +44,17 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   p.polish = std::min(kMostPolish * preset.stretch, 0.1 * t);
   while (p.rounds * (p.polish + p.between) > 0.3 * t) --p.rounds;
   p.appearance = std::min(appearance, 0.2 * t);
-  p.residual = t >= kResidualRun ? std::min(kMostResidual, 0.05 * t) : 0;
   p.residual_hits = std::min({preset.residual_hits, size_t(kResidualHitsASecond * t), pixels});
+  if (t >= kResidualRun)
+    p.residual = std::min(kMostResidual, 0.05 * t) + kHitSeconds * preset.stretch * double(p.residual_hits);
+  p.saving = std::max(kSaving, kSavingShare * t);
   const double wanted = double(pixels) / kPixelsASecond - kMostAppearance,
                affordable = 0.1 * t / preset.stretch;
   p.refinements = std::max(0, int(std::min(wanted, affordable) / kRefinement));
+  p.refinement = kRefinement * preset.stretch;
   const double polishing = p.rounds * (p.polish + p.between);
-  const double refining = p.refinements * kRefinement * preset.stretch;
-  const double last = p.appearance + refining + p.residual +
-                      kHitSeconds * preset.stretch * double(p.residual_hits) + std::max(8.0, 0.03 * t);
-  const double rest = t - polishing - last;
-  p.geometry = std::max(0.45 * t, rest);
+  const double last = p.appearance + p.refinements * p.refinement + p.residual + p.saving;
+  p.geometry = std::max(0.35 * t, t - polishing - last);
   return p;
 }
 

@@ -13,6 +13,8 @@ struct Plan {
   double polish = 0,
          between = 0;  // a round of polishing; the mesh, its hits and a brief look at them before it
   double appearance = 0, residual = 0;
+  double refinement = 0;  // one, with its hits
+  double saving = 0;      // the mesh before all that, and the object after it
   int iterations = 0;  // of the geometry stage
   int rounds = 0, polish_steps = 0;
   int refinements = 0;  // of the albedo, on other pixels

@@ -11,6 +11,7 @@
 #include "engine/reconstruct/geometry_stage.h"
 #include "engine/reconstruct/plan.h"
 #include "engine/reconstruct/residual_fit.h"
+#include "engine/reconstruct/run_clock.h"
 #include "engine/reconstruct/silhouette_level.h"
 #include "engine/reconstruct/standing.h"
 #include "engine/reconstruct/start.h"
@@ -83,6 +84,12 @@ void save_geometry(Checkpoints& checkpoints, const GeometryStage& stage, int64_t
   state.head = {{"stage", "geometry"}, {"step", step}, {"elapsed", elapsed}, {"start", start}};
   stage.save(state.tensors);
   checkpoints.save(state);
+}
+
+// The geometry's last state is saved: what comes after it is done anew.
+void stop_if_cancelled(const Progress& progress) {
+  if (progress.cancelled())
+    throw Error(ErrorCode::interrupted, "interrupted; the state is saved", "go on with --resume");
 }
 
 // Trains until the schedule is over.
@@ -217,8 +224,7 @@ void polish(const Device& device, GeometryStage& stage, const Preset& preset, co
     const double polishing = now();
     polish_surface(device, stage, standing.input(), look, options, progress);
     progress.log(Json{{"stage", "polish"}, {"looking", looking}, {"seconds", now() - polishing}}.dump());
-    if (progress.cancelled())
-      throw Error(ErrorCode::interrupted, "interrupted; the state is saved", "go on with --resume");
+    stop_if_cancelled(progress);
   }
 }
 
@@ -226,7 +232,8 @@ void polish(const Device& device, GeometryStage& stage, const Preset& preset, co
 
 Scene reconstruct(const Device& device, const Capture& capture, const ImageSource& images,
                   const Normalization& normalization, const ReconstructOptions& options,
-                  Checkpoints& checkpoints, Progress& progress) {
+                  Checkpoints& checkpoints, Progress& listener) {
+  RunClock progress(listener, options.iterations > 0 ? 0 : options.seconds);
   Preset preset = preset_by_name(options.preset);
   TrainingViews views = load_views(capture, images, normalization, progress);
   if (views.train.pixels().empty()) fail("no training picture shows the object: every mask is empty");
@@ -239,6 +246,7 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   {
     const double begin = now();
     const auto saved = checkpoints.latest();
+    if (saved) progress.resume_at(saved->head.value("start", 0.0) + saved->head.at("elapsed").get<double>());
     const bool long_run = plan.geometry > 0 ? plan.geometry >= kLongRun : plan.iterations >= kLongRunSteps;
     StartShape start;
     // Starts are compared by the quickest networks: what they tell holds for all.
@@ -268,18 +276,23 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   appearance.seconds = plan.appearance;
   appearance.seed = options.seed;
   AppearanceResult result = fit_appearance(device, standing.input(), appearance, progress);
+  stop_if_cancelled(progress);
   for (int round = 1; round <= plan.refinements; ++round) {
+    if (progress.left() < plan.refinement + plan.residual) break;
     standing.hits = {};  // not both at a time
     standing.hits =
         object_hits(device, *scene.sdf, *standing.surface, views.train, preset.most_hits, uint64_t(round));
     refine_albedo(device, standing.input(), appearance, result, progress);
+    stop_if_cancelled(progress);
   }
   scene.light = std::move(result.light);
   scene.material = result.material;
   scene.albedo = std::move(result.albedo);
   if (plan.residual_steps > 0) {
     ResidualOptions residual;
-    residual.seconds = plan.residual;
+    // Late: half of it, which the training of residuals needs to be worth anything.
+    const double left = progress.left() - 0.5 * plan.saving;
+    residual.seconds = plan.residual > 0 ? std::clamp(left, 0.5 * plan.residual, plan.residual) : 0;
     residual.steps = plan.residual_steps;
     residual.seed = options.seed;
     standing.hits = {};  // not both at a time
@@ -288,6 +301,7 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
     if (auto fitted =
             fit_residual(device, scene, standing.input().samples, standing.hits.views, residual, progress))
       scene.residual = std::make_shared<const Residual>(std::move(*fitted));
+    stop_if_cancelled(progress);
   }
   progress.report({"done", 1, 0, ""});
   return scene;

@@ -183,10 +183,9 @@ class Trainer {
   int steps_ = 0;
 };
 
-// A share of all steps and seconds, the rates falling from all to a hundredth.
-void train(Trainer& trainer, double share, const ResidualOptions& options, Progress& progress) {
-  const int steps = std::max(1, int(share * options.steps));
-  const double start = now(), seconds = share * options.seconds;
+// The rates falling from all to a hundredth. seconds: at most; 0: no limit.
+void train(Trainer& trainer, int steps, double seconds, Progress& progress) {
+  const double start = now();
   for (int step = 0; step < steps && !progress.cancelled(); ++step) {
     const double by_clock = seconds > 0 ? (now() - start) / seconds : 0;
     const double u = std::max(double(step) / steps, by_clock);
@@ -201,14 +200,20 @@ void train(Trainer& trainer, double share, const ResidualOptions& options, Progr
 std::optional<Residual> fit_residual(const Device& device, const Scene& scene, const SurfaceSamples& samples,
                                      std::span<const uint16_t> views, const ResidualOptions& options,
                                      Progress& progress) {
+  const double start = now();
+  progress.report({"residual", 0.99, -1, ""});
   Trainer trainer(device, scene, samples, views, options);
   if (!trainer.can_judge()) return {};
-  train(trainer, kJudging, options, progress);
+  const double shading = now() - start;
+  const double seconds =
+      options.seconds > 0 ? std::max(options.seconds - shading, 0.5 * options.seconds) : 0;
+  const int judging = std::max(1, int(kJudging * options.steps));
+  train(trainer, judging, kJudging * seconds, progress);
   const double gain = trainer.gain();
-  progress.log(Json{{"stage", "residual"}, {"gain_on_views_kept_apart", gain}}.dump());
+  progress.log(Json{{"stage", "residual"}, {"shading", shading}, {"gain_on_views_kept_apart", gain}}.dump());
   if (gain < kLeastGain) return {};
   trainer.teach_all();
-  train(trainer, 1 - kJudging, options, progress);
+  train(trainer, options.steps - judging, (1 - kJudging) * seconds, progress);
   return trainer.take();
 }
 

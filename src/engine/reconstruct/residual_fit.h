@@ -12,7 +12,8 @@
 namespace cei3d {
 
 struct ResidualOptions {
-  double seconds = 0;  // of training, after the shading of all samples; 0: no limit, the steps count
+  // For the shading of all samples and the training, which gets half at least; 0: no limit, the steps count.
+  double seconds = 0;
   int steps = 1500;
   // Adam's; they fall to a hundredth. Of the network, and of the features' tables and layers. Fields without
   // tables keep the features they have: they would take hours.
