@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/aligned.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/loss.h"
@@ -54,16 +55,16 @@ struct GeometryStage::Work {
   std::vector<float> depths, values;  // candidates of all rays, ray after ray; only some get a value
   std::vector<int> ray_of;            // #candidates
   int looked_at = 0;                  // candidates with a value
-  std::vector<float> block_points;
+  AlignedVector<float> block_points;
   std::vector<float> kept_depth;             // #kept
   std::vector<int> first_kept;               // #rays + 1
   int padded = 0;                            // kept samples, rounded up to a panel
-  std::vector<float> points, directions;     // panels [3][32]
+  AlignedVector<float> points, directions;   // panels [3][32]
   std::vector<NeusSample<float>> alpha;      // #kept
   std::vector<float> weight, transmittance;  // #kept
   std::vector<Vec3f> pixel;                  // #rays: composite over white
   std::vector<float> coverage;               // #rays
-  std::vector<float> d_color_input;
+  AlignedVector<float> d_color_input;
 };
 
 GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options,

@@ -205,8 +205,7 @@ std::optional<Residual> fit_residual(const Device& device, const Scene& scene, c
   Trainer trainer(device, scene, samples, views, options);
   if (!trainer.can_judge()) return {};
   const double shading = now() - start;
-  const double seconds =
-      options.seconds > 0 ? std::max(options.seconds - shading, 0.5 * options.seconds) : 0;
+  const double seconds = options.seconds > 0 ? std::max(options.seconds - shading, 0.5 * options.seconds) : 0;
   const int judging = std::max(1, int(kJudging * options.steps));
   train(trainer, judging, kJudging * seconds, progress);
   const double gain = trainer.gain();

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 
+#include "core/base/aligned.h"
 #include "core/base/error.h"
 #include "core/math/rng.h"
 #include "engine/session/bench.h"
@@ -28,9 +29,9 @@ double processor_seconds() {
 struct LinearData {
   static constexpr int kPanels = 64, kSize = 64,
                        kRounds = 40;  // 64 panels of 64 rows: what a training chunk passes on
-  std::vector<float> x = std::vector<float>(size_t(kPanels) * kSize * kPanel, 0.5f), y = x,
-                     w = std::vector<float>(size_t(kSize) * kSize, 0.01f), d_w = w,
-                     bias = std::vector<float>(kSize, 0.1f);
+  AlignedVector<float> x = AlignedVector<float>(size_t(kPanels) * kSize * kPanel, 0.5f), y = x,
+                       w = AlignedVector<float>(size_t(kSize) * kSize, 0.01f), d_w = w,
+                       bias = AlignedVector<float>(kSize, 0.1f);
   static constexpr double flops() { return 2.0 * kPanels * kPanel * kSize * kSize * kRounds; }
 };
 

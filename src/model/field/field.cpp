@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/aligned.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/rng.h"
@@ -75,7 +76,7 @@ void Field::eval(const Device& device, std::span<const Vec3f> x, std::span<float
   const int outputs = config_.outputs;
   parallel_ranges(int(x.size()), kGrain, [&](int begin, int end) {
     FieldPass pass(config_, kBlock, 1);
-    std::vector<float> points(size_t(kBlock) * 3);
+    AlignedVector<float> points(size_t(kBlock) * 3);
     for (int b = begin; b < end; b += kBlock) {
       const int n = std::min(kBlock, end - b), padded = (n + kPanel - 1) / kPanel * kPanel;
       points_to_panels(&x[b], n, points.data());

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/base/aligned.h"
 #include "model/field/field.h"
 #include "model/field/optimizer.h"
 
@@ -11,10 +12,10 @@ namespace cei3d {
 
 // What one chunk leaves behind for the step.
 struct ChunkGradients {
-  int padded = 0, columns = 1;    // samples (multiple of 32) and panels a group
-  std::vector<float> points;      // [padded / 32][3][32]
-  std::vector<float> d_encoding;  // [padded / 32 * columns][encoding_rows][32]
-  std::vector<float> network;     // MlpWeights::gradient_size()
+  int padded = 0, columns = 1;      // samples (multiple of 32) and panels a group
+  AlignedVector<float> points;      // [padded / 32][3][32]
+  AlignedVector<float> d_encoding;  // [padded / 32 * columns][encoding_rows][32]
+  std::vector<float> network;       // MlpWeights::gradient_size()
 
   void reset(const FieldConfig& config, size_t network_size, int n, int columns);
 };

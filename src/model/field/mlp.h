@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "core/base/aligned.h"
 #include "core/compute/device.h"
 #include "model/field/params.h"
 
@@ -72,8 +73,8 @@ class MlpPass {
   MlpConfig config_;
   std::vector<MlpLayer> layers_;
   int columns_;
-  std::vector<float> x_, y_, y_raw_, d_y_, d_a_, d_b_, d_x_;
-  std::vector<std::vector<float>> z_, h_;  // before and after each hidden layer's activation
+  AlignedVector<float> x_, y_, y_raw_, d_y_, d_a_, d_b_, d_x_;
+  std::vector<AlignedVector<float>> z_, h_;  // before and after each hidden layer's activation
 };
 
 }  // namespace cei3d

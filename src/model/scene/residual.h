@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/aligned.h"
 #include "model/field/field.h"
 #include "model/field/field_pass.h"
 #include "model/field/gradients.h"
@@ -47,7 +48,7 @@ class ResidualPass {
   FieldConfig features_;
   FieldPass values_;
   MlpPass network_;
-  std::vector<float> points_, directions_, jets_, d_jets_, d_input_;
+  AlignedVector<float> points_, directions_, jets_, d_jets_, d_input_;
 };
 
 // #hits

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear layers as register tiles: 4 outputs x 2 registers of samples share every load. Included by run.cpp
-// only.
+// Linear layers as register tiles: 4 or 8 outputs x 2 registers of samples share every load. Included by
+// run.cpp only.
 #pragma once
 
 #include <cstddef>
@@ -9,11 +9,12 @@
 
 namespace cei3d {
 
-// y[o0..o0+R) for the 2 W samples at x (R outputs a tile, W samples a register).
+// y[o..o+R) for the 2 W samples at x (R outputs a tile, W samples a register).
 template <int R, class T, int W>
-HD void linear_tile(const LinearArgs& a, const float* x, const float* w, const float* bias, float* y) {
+HD void linear_rows(const LinearArgs& a, const float* x, const float* bias, int o, float* y) {
+  const float* w = a.weights + size_t(o) * a.weight_stride;
   T s0[R], s1[R];
-  for (int r = 0; r < R; ++r) s0[r] = s1[r] = T(bias ? bias[r] : 0.0f);
+  for (int r = 0; r < R; ++r) s0[r] = s1[r] = T(bias ? bias[o + r] : 0.0f);
   for (int i = 0; i < a.in; ++i) {
     const T x0 = load<T>(x + size_t(i) * kPanel), x1 = load<T>(x + size_t(i) * kPanel + W);
     for (int r = 0; r < R; ++r) {
@@ -23,25 +24,23 @@ HD void linear_tile(const LinearArgs& a, const float* x, const float* w, const f
     }
   }
   for (int r = 0; r < R; ++r) {
-    store<T>(y + size_t(r) * kPanel, s0[r]);
-    store<T>(y + size_t(r) * kPanel + W, s1[r]);
+    store<T>(y + size_t(o + r) * kPanel, s0[r]);
+    store<T>(y + size_t(o + r) * kPanel + W, s1[r]);
   }
 }
 
 template <class T, int W>
 inline __attribute__((always_inline)) void linear_run(const LinearArgs& a) {
+  constexpr int kRows = W == 16 ? 8 : 4;  // AVX-512 has twice the registers
   for (int p = 0; p < a.panels; ++p) {
     const float* bias = a.bias && p % a.bias_every == 0 ? a.bias : nullptr;
     for (int s = 0; s < kPanel; s += 2 * W) {
       const float* x = a.x + size_t(p) * a.x_stride * kPanel + s;
       float* y = a.y + size_t(p) * a.y_stride * kPanel + s;
       int o = 0;
-      for (; o + 4 <= a.out; o += 4)
-        linear_tile<4, T, W>(a, x, a.weights + size_t(o) * a.weight_stride, bias ? bias + o : nullptr,
-                             y + size_t(o) * kPanel);
-      for (; o < a.out; ++o)
-        linear_tile<1, T, W>(a, x, a.weights + size_t(o) * a.weight_stride, bias ? bias + o : nullptr,
-                             y + size_t(o) * kPanel);
+      for (; o + kRows <= a.out; o += kRows) linear_rows<kRows, T, W>(a, x, bias, o, y);
+      for (; o + 4 <= a.out; o += 4) linear_rows<4, T, W>(a, x, bias, o, y);
+      for (; o < a.out; ++o) linear_rows<1, T, W>(a, x, bias, o, y);
     }
   }
 }
