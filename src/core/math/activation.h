@@ -35,16 +35,16 @@ struct Softplus {  // log(1 + e^(beta z)) / beta, in the form that neither overf
   HD static ActivationValue<T> eval(T z, float beta) {
     const T b = T(beta), x = b * z;
     const T e = exp(-abs(x));  // in (0, 1]
-    const T inverse = T(1.0f) / (T(1.0f) + e);
+    const T inverse = reciprocal(T(1.0f) + e);
     const T sigma = select(x > T(0.0f), inverse, e * inverse);
-    return {max(z, T(0.0f)) + log(T(1.0f) + e) / b, sigma, b * sigma * (T(1.0f) - sigma)};
+    return {max(z, T(0.0f)) + log1p(e) * (T(1.0f) / b), sigma, b * sigma * (T(1.0f) - sigma)};
   }
 };
 
 struct Sigmoid {
   template <class T>
   HD static ActivationValue<T> eval(T z, float) {
-    const T e = exp(-abs(z)), inverse = T(1.0f) / (T(1.0f) + e);
+    const T e = exp(-abs(z)), inverse = reciprocal(T(1.0f) + e);
     const T s = select(z > T(0.0f), inverse, e * inverse);
     const T d = s * (T(1.0f) - s);
     return {s, d, d * (T(1.0f) - T(2.0f) * s)};

@@ -58,6 +58,11 @@ Dual<T> sqrt(Dual<T> a) {
   return {r, a.derivative / (r + r)};
 }
 template <class T>
+Dual<T> reciprocal(Dual<T> a) {
+  const T r = reciprocal(a.value);
+  return {r, -a.derivative * r * r};
+}
+template <class T>
 Dual<T> exp(Dual<T> a) {
   const T e = exp(a.value);
   return {e, a.derivative * e};
@@ -65,6 +70,10 @@ Dual<T> exp(Dual<T> a) {
 template <class T>
 Dual<T> log(Dual<T> a) {
   return {log(a.value), a.derivative / a.value};
+}
+template <class T>
+Dual<T> log1p(Dual<T> a) {
+  return {log1p(a.value), a.derivative / (T(1.0f) + a.value)};
 }
 template <class T>
 Dual<T> sin(Dual<T> a) {

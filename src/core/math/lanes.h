@@ -111,6 +111,7 @@ HD Lanes<W> abs(Lanes<W> a) {
 }
 
 HD Lanes<8> sqrt(Lanes<8> a) { return Reg<8>::f(_mm256_sqrt_ps(__m256(a.v))); }
+HD Lanes<8> reciprocal(Lanes<8> a) { return Lanes<8>(1.0f) / a; }
 HD Lanes<8> floor(Lanes<8> a) { return Reg<8>::f(_mm256_floor_ps(__m256(a.v))); }
 HD void gather2(const float* p, LaneIndex<8> i, Lanes<8>& a, Lanes<8>& b) {
   const __m256i idx = __m256i(i.v);
@@ -123,6 +124,11 @@ HD void gather2(const float* p, LaneIndex<8> i, Lanes<8>& a, Lanes<8>& b) {
 }
 #ifdef __AVX512F__
 HD Lanes<16> sqrt(Lanes<16> a) { return Reg<16>::f(_mm512_sqrt_ps(__m512(a.v))); }
+// Relative error 1e-7, as division's, in a third of its time: 14 bits and one step of Newton's.
+HD Lanes<16> reciprocal(Lanes<16> a) {
+  const Lanes<16> r = Reg<16>::f(_mm512_rcp14_ps(__m512(a.v)));
+  return r + r * (Lanes<16>(1.0f) - a * r);
+}
 HD Lanes<16> floor(Lanes<16> a) {
   return Reg<16>::f(_mm512_roundscale_ps(__m512(a.v), _MM_FROUND_TO_NEG_INF | _MM_FROUND_NO_EXC));
 }
@@ -182,6 +188,21 @@ HD Lanes<W> log(Lanes<W> x) {
   p = p * s2 + L(2.0f / 3.0f);
   p = p * s2 + L(2.0f);
   return L(__builtin_convertvector(e, typename Reg<W>::f)) * L(0.69314718f) + s * p;
+}
+
+// ln(1 + x) for x in [0, 1]: 2 artanh(x / (2 + x)), relative error 1e-7.
+template <int W>
+HD Lanes<W> log1p(Lanes<W> x) {
+  using L = Lanes<W>;
+  const L s = x * reciprocal(L(2.0f) + x), s2 = s * s;
+  L p = L(2.0f / 13.0f);
+  p = p * s2 + L(2.0f / 11.0f);
+  p = p * s2 + L(2.0f / 9.0f);
+  p = p * s2 + L(2.0f / 7.0f);
+  p = p * s2 + L(2.0f / 5.0f);
+  p = p * s2 + L(2.0f / 3.0f);
+  p = p * s2 + L(2.0f);
+  return s * p;
 }
 
 // sin and cos for |x| up to a few thousand: reduction by pi/2 in three parts, then Taylor polynomials.

@@ -30,10 +30,14 @@ HD float abs(float a) { return ::fabsf(a); }
 HD double abs(double a) { return ::fabs(a); }
 HD float sqrt(float a) { return ::sqrtf(a); }
 HD double sqrt(double a) { return ::sqrt(a); }
+HD float reciprocal(float a) { return 1 / a; }
+HD double reciprocal(double a) { return 1 / a; }
 HD float exp(float a) { return ::expf(a); }
 HD double exp(double a) { return ::exp(a); }
 HD float log(float a) { return ::logf(a); }
 HD double log(double a) { return ::log(a); }
+HD float log1p(float a) { return ::log1pf(a); }
+HD double log1p(double a) { return ::log1p(a); }
 HD float sin(float a) { return ::sinf(a); }
 HD double sin(double a) { return ::sin(a); }
 HD float cos(float a) { return ::cosf(a); }

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
 
 namespace cei3d {
 
@@ -15,6 +18,26 @@ bool unit_sphere_span(const Ray& ray, float& near, float& far) {
   return far > near;
 }
 
+OccupancyGrid::OccupancyGrid(int resolution)
+    : n_(resolution), value_(size_t(n_) * n_ * n_, std::numeric_limits<int16_t>::max()) {
+  if (n_ % 4 != 0) fail("an occupancy grid of {} cells an axis: bricks have 4", n_);
+}
+
+void OccupancyGrid::set_distance(size_t place, float d) {
+  constexpr float kMost = 3.9f;
+  value_[place] = int16_t(std::lround(std::clamp(d, -kMost, kMost) / kUnit));
+}
+
+void OccupancyGrid::set(std::span<const float> values) {
+  for (size_t i = 0; i < values.size(); ++i) set_distance(place(int(i)), values[i]);
+}
+
+std::vector<float> OccupancyGrid::values() const {
+  std::vector<float> out(value_.size());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = distance(place(int(i)));
+  return out;
+}
+
 Vec3f OccupancyGrid::center(int i) const {
   const auto at = [&](int k) { return (float(k) + 0.5f) * 2 / float(n_) - 1; };
   return {at(i % n_), at(i / n_ % n_), at(i / n_ / n_)};
@@ -24,7 +47,7 @@ void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin
   std::vector<int> cells;
   std::vector<Vec3f> points;
   for (int i = 0; i < int(value_.size()); ++i) {
-    if (std::abs(value_[i]) > margin) continue;
+    if (std::abs(distance(place(i))) > margin) continue;
     const Vec3f p = center(i);
     if (dot(p, p) > 1.1f) continue;
     cells.push_back(i);
@@ -32,7 +55,7 @@ void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin
   }
   std::vector<float> out(points.size() * sdf.config().outputs);
   sdf.eval(device, points, out);
-  for (size_t k = 0; k < cells.size(); ++k) value_[cells[k]] = out[k * sdf.config().outputs];
+  for (size_t k = 0; k < cells.size(); ++k) set_distance(place(cells[k]), out[k * sdf.config().outputs]);
 }
 
 void OccupancyGrid::march(const Ray& ray, float step, float band, float jitter, int most,

@@ -20,8 +20,9 @@ struct Activate {
   using Args = ActivateArgs;
   template <class T>
   static HD void run(const Args& a, int i) {
+    const float beta = a.beta;  // stores might change what `a` holds, for all the compiler knows
     for (int r = 0; r < a.rows; ++r) {
-      const auto s = A::eval(load<T>(a.z + panel_at(i, a.columns, 0, a.z_stride, r)), a.beta);
+      const auto s = A::eval(load<T>(a.z + panel_at(i, a.columns, 0, a.z_stride, r)), beta);
       store<T>(a.y + panel_at(i, a.columns, 0, a.y_stride, r), s.value);
       for (int c = 1; c < a.columns; ++c)
         store<T>(a.y + panel_at(i, a.columns, c, a.y_stride, r),
@@ -35,8 +36,9 @@ struct ActivateGrad {
   using Args = ActivateArgs;
   template <class T>
   static HD void run(const Args& a, int i) {
+    const float beta = a.beta;  // stores might change what `a` holds, for all the compiler knows
     for (int r = 0; r < a.rows; ++r) {
-      const auto s = A::eval(load<T>(a.z + panel_at(i, a.columns, 0, a.z_stride, r)), a.beta);
+      const auto s = A::eval(load<T>(a.z + panel_at(i, a.columns, 0, a.z_stride, r)), beta);
       float* value = a.y + panel_at(i, a.columns, 0, a.y_stride, r);
       T d = load<T>(value) * s.first;
       for (int c = 1; c < a.columns; ++c) {
