@@ -204,15 +204,17 @@ void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Wor
                                    bool training) const {
   w.depths.clear();
   w.ray_of.clear();
-  std::vector<int> first, alive;
+  std::vector<float> jitter(batch.count, 0.5f);
+  if (training)
+    for (int r = 0; r < batch.count; ++r) jitter[r] = Rng(seed_ ^ 0x5eed, jitter_key, uint64_t(r)).uniform();
+  std::vector<int> counts(batch.count), first{0}, alive;
+  grid_.march({batch.rays.data(), size_t(batch.count)}, s.step, s.band, jitter, kCandidates, w.depths,
+              counts);
   for (int r = 0; r < batch.count; ++r) {
-    first.push_back(int(w.depths.size()));
+    first.push_back(first.back() + counts[r]);
+    w.ray_of.resize(first.back(), r);
     alive.push_back(r);
-    const float jitter = training ? Rng(seed_ ^ 0x5eed, jitter_key, uint64_t(r)).uniform() : 0.5f;
-    grid_.march(batch.rays[r], s.step, s.band, jitter, kCandidates, w.depths);
-    w.ray_of.resize(w.depths.size(), r);
   }
-  first.push_back(int(w.depths.size()));
   w.values.resize(w.depths.size());
 
   // A few of each ray at a time, until nothing gets through: what lies behind needs no value.

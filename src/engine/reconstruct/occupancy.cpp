@@ -53,29 +53,46 @@ void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin
     cells.push_back(i);
     points.push_back(p);
   }
-  std::vector<float> out(points.size() * sdf.config().outputs);
-  sdf.eval(device, points, out);
-  for (size_t k = 0; k < cells.size(); ++k) set_distance(place(cells[k]), out[k * sdf.config().outputs]);
+  const std::vector<float> out = first_output(device, sdf, points);
+  for (size_t k = 0; k < cells.size(); ++k) set_distance(place(cells[k]), out[k]);
 }
 
-void OccupancyGrid::march(const Ray& ray, float step, float band, float jitter, int most,
-                          std::vector<float>& depths) const {
-  float t, far;
-  if (!unit_sphere_span(ray, t, far)) return;
-  const float reach = band + half_diagonal();
-  t += jitter * step;
-  const size_t end = depths.size() + most;
-  while (t < far && depths.size() < end) {
-    const float d = at(ray.origin + ray.direction * t);
-    if (d < -reach) return;
-    if (d > reach) {
-      // A cell's distance is off by half its diagonal at most. Away from the surface nothing holds the
-      // field's slope at one: a leap of all of it would land behind the surface, and the ray find nothing.
-      t += std::max(0.5f * (d - reach), step);
-      continue;
+// Looks at one cell; false at the walk's end.
+bool OccupancyGrid::advance(const Ray& ray, float step, float band, int most, Walk& walk,
+                            float* depths) const {
+  if (walk.t >= walk.far || walk.found >= most) return false;
+  const float reach = band + half_diagonal(), d = at(ray.origin + ray.direction * walk.t);
+  if (d < -reach) {
+    walk.far = walk.t;
+    return false;
+  }
+  // A cell's distance is off by half its diagonal at most. Away from the surface nothing holds the field's
+  // slope at one: a leap of all of it would land behind the surface, and the ray find nothing.
+  const bool leap = d > reach;
+  if (!leap) depths[walk.found++] = walk.t;
+  walk.t += leap ? std::max(0.5f * (d - reach), step) : step;
+  return true;
+}
+
+void OccupancyGrid::march(std::span<const Ray> rays, float step, float band, std::span<const float> jitter,
+                          int most, std::vector<float>& depths, std::span<int> counts) const {
+  constexpr size_t kTogether = 8;  // walks take turns: one's cells come from memory while others go on
+  std::vector<float> found(kTogether * size_t(most));
+  for (size_t first = 0; first < rays.size(); first += kTogether) {
+    const size_t n = std::min(kTogether, rays.size() - first);
+    Walk walks[kTogether];
+    for (size_t k = 0; k < n; ++k)
+      if (unit_sphere_span(rays[first + k], walks[k].t, walks[k].far)) walks[k].t += jitter[first + k] * step;
+    for (bool going = true; going;) {
+      going = false;
+      for (size_t k = 0; k < n; ++k)
+        going |= advance(rays[first + k], step, band, most, walks[k], &found[k * size_t(most)]);
     }
-    depths.push_back(t);
-    t += step;
+    for (size_t k = 0; k < n; ++k) {
+      const float* own = &found[k * size_t(most)];
+      depths.insert(depths.end(), own, own + walks[k].found);
+      counts[first + k] = walks[k].found;
+    }
   }
 }
 

@@ -12,8 +12,8 @@
 
 namespace cei3d {
 
-// Training is out for what this grid costs in cache misses: distances are 16-bit fixed point, and cells lie in
-// bricks of 4 x 4 x 4, so that a ray finds its next cell where it found the last one.
+// Training is out for what this grid costs in cache misses: distances are 16-bit fixed point, and cells lie
+// in bricks of 4 x 4 x 4, so that a ray finds its next cell where it found the last one.
 class OccupancyGrid {
  public:
   explicit OccupancyGrid(int resolution = 128);  // a multiple of 4; far from everything
@@ -31,14 +31,19 @@ class OccupancyGrid {
     return distance(place(cell(p.x), cell(p.y), cell(p.z)));
   }
 
-  // Depths along the ray, `step` apart, that lie within `band` of the surface, front to back, from the unit
-  // sphere's entry to its exit or until the ray is deeper than `band` inside. `jitter` in [0, 1) shifts the
-  // first one.
-  void march(const Ray& ray, float step, float band, float jitter, int most,
-             std::vector<float>& depths) const;
+  // Depths along each ray, `step` apart, that lie within `band` of the surface, front to back, from the unit
+  // sphere's entry to its exit or until the ray is deeper than `band` inside; at most `most` of a ray.
+  // jitter: [0, 1) of each ray, shifts its first one. depths: ray after ray, appended to; counts: #rays.
+  void march(std::span<const Ray> rays, float step, float band, std::span<const float> jitter, int most,
+             std::vector<float>& depths, std::span<int> counts) const;
 
  private:
   static constexpr float kUnit = 1.0f / 8192;
+  struct Walk {
+    float t = 0, far = 0;  // at, until
+    int found = 0;
+  };
+  bool advance(const Ray& ray, float step, float band, int most, Walk& walk, float* depths) const;
   float distance(size_t place) const { return kUnit * float(value_[place]); }
   void set_distance(size_t place, float d);
   int cell(float x) const { return min(max(int((x + 1) * 0.5f * float(n_)), 0), n_ - 1); }

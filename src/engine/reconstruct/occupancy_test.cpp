@@ -28,27 +28,54 @@ OccupancyGrid grid_of_ball() {
 TEST(OccupancyGrid, EveryRayThatMeetsTheSurfaceIsSampledOnBothSidesOfIt) {
   constexpr float kStep = 0.004f, kBand = 0.006f;
   const OccupancyGrid grid = grid_of_ball();
+  std::vector<Ray> rays;
+  std::vector<float> jitter;
   for (int i = 0; i < 2000; ++i) {
     Rng rng(5, 0, uint64_t(i));
     const auto uniform = [&] { return 2 * rng.uniform() - 1; };
     const Vec3f origin = normalize(Vec3f{uniform(), uniform(), uniform()}) * 3.0f;
     const Vec3f target = Vec3f{uniform(), uniform(), uniform()} * 0.25f;
-    const Ray ray{origin, normalize(target - origin)};
-    std::vector<float> depths;
-    grid.march(ray, kStep, kBand, rng.uniform(), 320, depths);
+    rays.push_back({origin, normalize(target - origin)});
+    jitter.push_back(rng.uniform());
+  }
+  std::vector<float> all;
+  std::vector<int> counts(rays.size());
+  grid.march(rays, kStep, kBand, jitter, 320, all, counts);
+  size_t first = 0;
+  for (size_t i = 0; i < rays.size(); ++i) {
+    const std::span depths(&all[first], size_t(counts[i]));
+    first += depths.size();
     ASSERT_FALSE(depths.empty()) << "ray " << i;
     size_t behind = 0;
-    while (behind < depths.size() && steep_ball(ray.origin + ray.direction * depths[behind]) > 0) ++behind;
+    while (behind < depths.size() && steep_ball(rays[i].origin + rays[i].direction * depths[behind]) > 0)
+      ++behind;
     ASSERT_GT(behind, 0u) << "ray " << i << " starts inside";
     ASSERT_LT(behind, depths.size()) << "ray " << i << " ends outside";
     EXPECT_LT(depths[behind] - depths[behind - 1], 1.01f * kStep) << "ray " << i;
   }
+  EXPECT_EQ(first, all.size());
 }
 
 TEST(OccupancyGrid, RaysThatPassFarFromTheSurfaceAreNotSampled) {
   std::vector<float> depths;
-  grid_of_ball().march({{0.8f, 0, -3}, {0, 0, 1}}, 0.004f, 0.006f, 0.5f, 320, depths);
+  int count = -1;
+  const Ray ray{{0.8f, 0, -3}, {0, 0, 1}};
+  const float jitter = 0.5f;
+  grid_of_ball().march({&ray, 1}, 0.004f, 0.006f, {&jitter, 1}, 320, depths, {&count, 1});
   EXPECT_TRUE(depths.empty());
+  EXPECT_EQ(count, 0);
+}
+
+TEST(OccupancyGrid, ValuesComeBackInTheirOrder) {
+  OccupancyGrid grid(8);
+  std::vector<float> values(8 * 8 * 8);
+  for (size_t i = 0; i < values.size(); ++i) values[i] = float(i) / 1024 - 0.2f;
+  grid.set(values);
+  const std::vector<float> back = grid.values();
+  for (size_t i = 0; i < values.size(); ++i) {
+    EXPECT_NEAR(back[i], values[i], 1e-4f);
+    EXPECT_EQ(grid.at(grid.center(int(i))), back[i]);
+  }
 }
 
 }  // namespace

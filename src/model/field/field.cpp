@@ -72,8 +72,11 @@ Field::Field(const FieldConfig& config, uint64_t seed) : config_(config) {
 
 void Field::eval(const Device& device, std::span<const Vec3f> x, std::span<float> out) const {
   constexpr int kGrain = 4096, kBlock = 512;
+  if (x.empty()) return;
   const MlpWeights weights(mlp_config(config_), params_);
-  const int outputs = config_.outputs;
+  const int outputs = int(out.size() / x.size());
+  if (outputs < 1 || outputs > config_.outputs || out.size() % x.size() != 0)
+    fail("a field of {} outputs at {} points: no room for {} values", config_.outputs, x.size(), out.size());
   parallel_ranges(int(x.size()), kGrain, [&](int begin, int end) {
     FieldPass pass(config_, kBlock, 1);
     AlignedVector<float> points(size_t(kBlock) * 3);
@@ -83,7 +86,7 @@ void Field::eval(const Device& device, std::span<const Vec3f> x, std::span<float
       pass.forward(device, *this, weights, points.data(), padded, config_.encoding.levels, outputs);
       for (int i = 0; i < n; ++i)
         for (int o = 0; o < outputs; ++o)
-          out[size_t(b + i) * outputs + o] = pass.output()[panel_at(i, 1, 0, outputs, o)];
+          out[size_t(b + i) * outputs + o] = pass.output()[panel_at(i, 1, 0, config_.outputs, o)];
     }
   });
 }
@@ -156,16 +159,8 @@ FieldConfig field_config_from_json(const Json& j) {
 }
 
 std::vector<float> first_output(const Device& device, const Field& field, std::span<const Vec3f> x) {
-  const size_t outputs = size_t(field.config().outputs);
   std::vector<float> first(x.size());
-  constexpr size_t kSlab = 1 << 18;  // bounds the memory of fields with many outputs
-  std::vector<float> all;
-  for (size_t begin = 0; begin < x.size(); begin += kSlab) {
-    const size_t n = std::min(kSlab, x.size() - begin);
-    all.resize(n * outputs);
-    field.eval(device, x.subspan(begin, n), all);
-    for (size_t i = 0; i < n; ++i) first[begin + i] = all[i * outputs];
-  }
+  field.eval(device, x, first);
   return first;
 }
 

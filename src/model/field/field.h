@@ -55,7 +55,8 @@ class Field {
   const ParamSet& params() const { return params_; }
   const float* table(int level) const { return params_.all()[level].value.data(); }  // tables come first
 
-  // Values at points in [-1, 1]^3. x: #N, out: #N x outputs, row-major. Runs on all threads.
+  // Values at points in [-1, 1]^3. x: #N, out: #N x the first so many outputs as there is room for,
+  // row-major. Runs on all threads.
   void eval(const Device& device, std::span<const Vec3f> x, std::span<float> out) const;
 
  private:
