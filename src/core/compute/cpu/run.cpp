@@ -32,28 +32,27 @@ using Number = float;
 using Number = Lanes<CEI3D_WIDTH>;
 #endif
 
-// While it lives, numbers below 1e-38 count as zero: each costs a hundred cycles otherwise, and what is left
-// of a lobe far from its axis is full of them.
-class FlushDenormals {
+// Runs `work` with numbers below 1e-38 counting as zero: each costs a hundred cycles otherwise, and what is
+// left of a lobe far from its axis is full of them. No destructor: its unwinding would be shared code.
+template <class Work>
+void flushing_denormals(const Work& work) {
 #ifdef __SSE__
- public:
-  FlushDenormals() : before_(_mm_getcsr()) { _mm_setcsr(before_ | kFlushResults | kFlushOperands); }
-  ~FlushDenormals() { _mm_setcsr(before_); }
-
- private:
-  static constexpr unsigned kFlushResults = 0x8000, kFlushOperands = 0x0040;
-  unsigned before_;
+  constexpr unsigned kFlushResults = 0x8000, kFlushOperands = 0x0040;
+  const unsigned before = _mm_getcsr();
+  _mm_setcsr(before | kFlushResults | kFlushOperands);
+  work();
+  _mm_setcsr(before);
 #else
- public:
-  FlushDenormals() {}
+  work();
 #endif
-};
+}
 
 template <class K>
 void launch(const void* p, int n) {
-  const FlushDenormals flush;
   const auto& args = *static_cast<const typename K::Args*>(p);
-  for (int i = 0; i < n; i += CEI3D_WIDTH) K::template run<Number>(args, i);
+  flushing_denormals([&] {
+    for (int i = 0; i < n; i += CEI3D_WIDTH) K::template run<Number>(args, i);
+  });
 }
 
 template <class List>
@@ -64,12 +63,10 @@ struct Table<KernelList<K...>> {
 };
 
 void linear(const LinearArgs& a) {
-  const FlushDenormals flush;
-  linear_run<Number, CEI3D_WIDTH>(a);
+  flushing_denormals([&] { linear_run<Number, CEI3D_WIDTH>(a); });
 }
 void linear_weight_grad(const LinearWeightGradArgs& a) {
-  const FlushDenormals flush;
-  weight_grad_run<Number, CEI3D_WIDTH>(a);
+  flushing_denormals([&] { weight_grad_run<Number, CEI3D_WIDTH>(a); });
 }
 
 // Independent multiply-adds in registers: what no kernel on this instruction set can exceed. Returns FLOPs
