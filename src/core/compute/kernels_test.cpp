@@ -177,9 +177,9 @@ TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
   EXPECT_GT(checked, 10);
 }
 
-void expect_plain_loops(int in, int panels) {
+void expect_plain_loops(int in, int out, int panels) {
   for (const Device& device : all_devices()) {
-    const int out = 6, x_stride = in + 2, y_stride = 7;
+    const int x_stride = in + 2, y_stride = out + 1;
     const auto x = noise(size_t(panels) * x_stride * kPanel, 1), w = noise(in * out, 2), b = noise(out, 3);
     std::vector<float> y(size_t(panels) * y_stride * kPanel, -5.0f);
     device.linear({panels, in, out, x.data(), x_stride, w.data(), in, b.data(), 4, y.data(), y_stride});
@@ -209,8 +209,19 @@ void expect_plain_loops(int in, int panels) {
 }
 
 TEST(Linear, EqualsPlainLoopsWithBiasOnValuePanelsOnly) {
-  expect_plain_loops(9, 8);
-  expect_plain_loops(41, 24);  // more than a block of weight gradients, either way
+  expect_plain_loops(9, 6, 8);
+  expect_plain_loops(41, 13, 24);  // more than a block of weight gradients, either way; tiles of every height
+}
+
+TEST(Kernels, FlushDenormalsOnlyForThemselves) {
+  volatile float small = 2e-38f, third = 0.3f;  // their product is denormal
+  for (const Device& device : all_devices()) {
+    const std::vector<float> x(kPanel, float(small)), weight{third};
+    std::vector<float> y(kPanel, 1.0f);
+    device.linear({1, 1, 1, x.data(), 1, weight.data(), 1, nullptr, 1, y.data(), 1});
+    EXPECT_EQ(y[0], 0) << device.name();
+    EXPECT_GT(small * third, 0) << device.name();
+  }
 }
 
 TEST(Device, UnknownNamesAreUsageErrors) {
