@@ -12,9 +12,9 @@ namespace cei3d {
 namespace {
 
 constexpr float kLift = 2e-3f;  // rays start this far above the surface
-// Rays of the reflection lobe: a few to see whether anything is in its way, and where it is, enough to see
-// what; fewer for a dielectric, which shows little of it.
-constexpr int kProbes = 6, kMetalRays = 24, kDielectricRays = 12;
+// Rays of the reflection lobe, fewer for a dielectric, which shows little of it. Every so many of them is a
+// probe: the others are cast only where one of the probes meets something.
+constexpr int kMetalRays = 24, kDielectricRays = 10, kMetalProbe = 3, kDielectricProbe = 2;
 constexpr float kGrazing = 0.02f;  // least cosine of a reflection that another reflection sees
 
 // Directions of equal weight that stand for the reflection lobe of a roughness around +Z: one ring at the
@@ -36,6 +36,7 @@ Vec3f turned(Vec3f z, Vec3f d) {  // d in a frame whose third axis is z
   return x * d.x + y * d.y + z * d.z;
 }
 
+// Ray k of hit i is at [i * #lobe + k].
 struct LobeRays {
   std::vector<Vec3f> origins, directions;
   std::vector<Surface::RayHit> far;
@@ -71,9 +72,12 @@ SelfReflection::SelfReflection(const Device& device, const Surface& surface, con
       material_(material),
       roughness_(max(material.roughness, kLeastRoughness)),
       env_table_(env_table),
-      colors_(colors),
-      probes_(lobe_directions(roughness_, kProbes)),
-      lobe_(lobe_directions(roughness_, material.metalness > 0 ? kMetalRays : kDielectricRays)) {}
+      colors_(colors) {
+  const bool metal = material.metalness > 0;
+  const std::vector<Vec3f> lobe = lobe_directions(roughness_, metal ? kMetalRays : kDielectricRays);
+  const size_t probe = metal ? kMetalProbe : kDielectricProbe;
+  for (size_t k = 0; k < lobe.size(); ++k) (k % probe == 1 ? probes_ : others_).push_back(lobe[k]);
+}
 
 // A point that a ray met, looked at from where the ray began.
 Hit SelfReflection::met_by(Vec3f origin, Vec3f direction, const Surface::RayHit& r) const {
@@ -127,22 +131,26 @@ std::vector<SelfReflection::Seen> SelfReflection::seen_by(std::span<const Hit> h
   std::vector<Hit> near;
   std::vector<uint32_t> index;
   for (size_t i = 0; i < hits.size(); ++i)
-    for (int k = 0; k < kProbes; ++k)
-      if (probes.far[i * kProbes + k].t >= 0) {
+    for (size_t k = 0; k < probes_.size(); ++k)
+      if (probes.far[i * probes_.size() + k].t >= 0) {
         near.push_back(hits[i]);
         index.push_back(uint32_t(i));
         break;
       }
-  const LobeRays rays = cast(surface_, near, lobe_);
+  const LobeRays others = cast(surface_, near, others_);
   std::vector<Hit> met;
   std::vector<uint32_t> owner;
-  for (size_t k = 0; k < rays.far.size(); ++k) {
-    if (rays.far[k].t < 0) continue;
-    met.push_back(met_by(rays.origins[k], rays.directions[k], rays.far[k]));
-    owner.push_back(index[k / lobe_.size()]);
+  const auto add = [&](const LobeRays& rays, size_t ray, uint32_t hit) {
+    if (rays.far[ray].t < 0) return;
+    met.push_back(met_by(rays.origins[ray], rays.directions[ray], rays.far[ray]));
+    owner.push_back(hit);
+  };
+  for (size_t n = 0; n < near.size(); ++n) {
+    for (size_t k = 0; k < probes_.size(); ++k) add(probes, index[n] * probes_.size() + k, index[n]);
+    for (size_t k = 0; k < others_.size(); ++k) add(others, n * others_.size() + k, index[n]);
   }
   const std::vector<Vec3f> radiance = shown(met);
-  const float share = 1.0f / float(lobe_.size());
+  const float share = 1.0f / float(probes_.size() + others_.size());
   for (size_t k = 0; k < met.size(); ++k) {
     out[owner[k]].open -= share;
     out[owner[k]].radiance += radiance[k] * share;

@@ -45,7 +45,7 @@ class SelfReflection {
   float roughness_;  // that shading can take
   const std::vector<Vec2f>& env_table_;
   std::span<const Vec3f> colors_;
-  std::vector<Vec3f> probes_, lobe_;  // directions around +Z
+  std::vector<Vec3f> probes_, others_;  // directions of the reflection lobe around +Z: cast first, then
 };
 
 }  // namespace cei3d
