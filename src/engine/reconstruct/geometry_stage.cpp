@@ -20,7 +20,6 @@ constexpr int kKept = kRays * 32;  // most samples of a chunk that get jets; abo
 constexpr int kKeptPerRay = 64, kCandidates = 320;  // most of a ray: one that grazes the object needs them
 constexpr int kBlock = 512;                         // candidates evaluated at a time,
 constexpr int kGlance = 8;                          // of a ray
-constexpr float kOpaque = 1e-3f;                    // transmittance that counts as none
 constexpr int kFullRefreshEvery = 400;              // steps between looks at all of the occupancy grid
 constexpr float kRefreshMargin = 0.15f;
 constexpr float kAnchorWidth = 0.02f;  // of its loss
@@ -115,6 +114,9 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
                       std::pow(double(options_.sharpness_end) / options_.sharpness_start, p));
   s.step = std::clamp(1 / s.sharpness, options_.step_min, options_.step_max);
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
+  // Until the surface rests it moves and bends between two looks at the grid; less of a margin, or this one
+  // from the start, costs lego400 half a decibel.
+  s.slack = u < options_.rests_from ? 1.0f : 0.25f;
   s.levels = levels_at(u);
   s.views = u >= matte_until_;
   s.anchor = anchor_.n
@@ -174,7 +176,7 @@ struct Candidates {
 void select_samples(const Candidates& c, float keep_weight, bool empty, std::vector<float>& kept) {
   float transmittance = 1;
   const size_t end = std::min(kept.size() + kKeptPerRay, size_t(kKept));
-  for (size_t i = 0; i < c.depths.size() && kept.size() < end && (empty || transmittance > kOpaque); ++i) {
+  for (size_t i = 0; i < c.depths.size() && kept.size() < end && (empty || transmittance > keep_weight); ++i) {
     const float alpha = c.alpha(i), weight = transmittance * alpha;
     if (weight > keep_weight || (empty && c.values[i] < 0)) kept.push_back(c.depths[i]);
     transmittance *= 1 - alpha;
@@ -208,8 +210,8 @@ void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Wor
   if (training)
     for (int r = 0; r < batch.count; ++r) jitter[r] = Rng(seed_ ^ 0x5eed, jitter_key, uint64_t(r)).uniform();
   std::vector<int> counts(batch.count), first{0}, alive;
-  grid_.march({batch.rays.data(), size_t(batch.count)}, s.step, s.band, jitter, kCandidates, w.depths,
-              counts);
+  grid_.march({batch.rays.data(), size_t(batch.count)}, {s.step, s.band, s.slack, kCandidates}, jitter,
+              w.depths, counts);
   for (int r = 0; r < batch.count; ++r) {
     first.push_back(first.back() + counts[r]);
     w.ray_of.resize(first.back(), r);
@@ -239,7 +241,7 @@ void GeometryStage::gather_samples(const Schedule& s, const RayBatch& batch, Wor
       Looked& l = looked[r];
       while (l.passed + 1 < l.count)  // the last one's slope needs the next
         l.transmittance *= 1 - candidates(r).alpha(size_t(l.passed++));
-      return first[r] + l.count == first[r + 1] || (!sees_all(r) && l.transmittance <= kOpaque);
+      return first[r] + l.count == first[r + 1] || (!sees_all(r) && l.transmittance <= options_.keep_weight);
     });
   }
 

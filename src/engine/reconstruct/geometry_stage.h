@@ -37,6 +37,7 @@ struct GeometryOptions {
   float decay_from = 0.3f, decay_to = 0.01f;  // exponential decay of the rate over the rest of the schedule
   int prefit_steps = 300;
   int refresh_every = 25;   // steps between looks at the occupancy grid
+  float rests_from = 0.4f;  // the surface: from here on the grid is trusted more closely
   bool hold_start = false;  // hold every start, not only those that are anchored, and all around its surface
   float anchor_until = 0.2f;  // such a start holds the surface, less and less, until here: colours that know
   float anchor_weight = 0.15f;  // nothing yet would blow it up again. Times the sharpness
@@ -92,6 +93,7 @@ class GeometryStage {
   struct RayBatch;  // its rays and targets
   struct Schedule {
     float sharpness, step, band;
+    float slack;  // of the occupancy grid
     int levels;
     bool views;    // colours depend on the view
     float anchor;  // weight of the start shape

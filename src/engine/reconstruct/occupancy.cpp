@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 
 namespace cei3d {
 
@@ -38,58 +39,110 @@ std::vector<float> OccupancyGrid::values() const {
   return out;
 }
 
+namespace {
+
+float cell_center(size_t k, int n) { return (float(k) + 0.5f) * 2 / float(n) - 1; }
+
+}  // namespace
+
 Vec3f OccupancyGrid::center(int i) const {
-  const auto at = [&](int k) { return (float(k) + 0.5f) * 2 / float(n_) - 1; };
-  return {at(i % n_), at(i / n_ % n_), at(i / n_ / n_)};
+  return {cell_center(size_t(i % n_), n_), cell_center(size_t(i / n_ % n_), n_),
+          cell_center(size_t(i / n_ / n_), n_)};
+}
+
+Vec3f OccupancyGrid::center_of(size_t place) const {
+  const size_t bricks = size_t(n_) / 4, brick = place / 64;
+  return {cell_center(brick % bricks * 4 + place % 4, n_),
+          cell_center(brick / bricks % bricks * 4 + place / 4 % 4, n_),
+          cell_center(brick / bricks / bricks * 4 + place / 16 % 4, n_)};
 }
 
 void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin) {
-  std::vector<int> cells;
-  std::vector<Vec3f> points;
-  for (int i = 0; i < int(value_.size()); ++i) {
-    if (std::abs(distance(place(i))) > margin) continue;
-    const Vec3f p = center(i);
-    if (dot(p, p) > 1.1f) continue;
-    cells.push_back(i);
-    points.push_back(p);
-  }
+  constexpr int kChunk = 1 << 14;
+  const int all = int(value_.size()), chunks = (all + kChunk - 1) / kChunk;
+  std::vector<std::vector<uint32_t>> near(chunks);
+  parallel_for(chunks, [&](int c) {
+    for (int i = c * kChunk; i < std::min(all, (c + 1) * kChunk); ++i) {
+      if (std::abs(distance(size_t(i))) > margin) continue;
+      const Vec3f p = center_of(size_t(i));
+      if (dot(p, p) <= 1.1f) near[c].push_back(uint32_t(i));
+    }
+  });
+  std::vector<uint32_t> places;
+  for (const auto& n : near) places.insert(places.end(), n.begin(), n.end());
+  std::vector<Vec3f> points(places.size());
+  parallel_ranges(int(places.size()), kChunk, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) points[k] = center_of(places[k]);
+  });
   const std::vector<float> out = first_output(device, sdf, points);
-  for (size_t k = 0; k < cells.size(); ++k) set_distance(place(cells[k]), out[k]);
+  parallel_ranges(int(places.size()), kChunk, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) set_distance(places[k], out[k]);
+  });
 }
 
-// Looks at one cell; false at the walk's end.
-bool OccupancyGrid::advance(const Ray& ray, float step, float band, int most, Walk& walk,
-                            float* depths) const {
-  if (walk.t >= walk.far || walk.found >= most) return false;
-  const float reach = band + half_diagonal(), d = at(ray.origin + ray.direction * walk.t);
+float OccupancyGrid::between(Vec3f p) const {
+  const size_t bricks = size_t(n_) / 4;
+  const size_t brick_stride[3] = {64, 64 * bricks, 64 * bricks * bricks}, stride[3] = {1, 4, 16};
+  size_t low[3], high[3];  // parts of places
+  float f[3];
+  for (int c = 0; c < 3; ++c) {
+    const float g = clamp((p[c] + 1) * 0.5f * float(n_) - 0.5f, 0.0f, float(n_) - 1.001f);
+    const unsigned i = unsigned(g), j = i + 1;
+    f[c] = g - float(i);
+    low[c] = i / 4 * brick_stride[c] + i % 4 * stride[c];
+    high[c] = j / 4 * brick_stride[c] + j % 4 * stride[c];
+  }
+  const auto row = [&](size_t yz) {
+    const float a = value_[yz + low[0]], b = value_[yz + high[0]];
+    return a + f[0] * (b - a);
+  };
+  const auto layer = [&](size_t z) {
+    const float a = row(z + low[1]), b = row(z + high[1]);
+    return a + f[1] * (b - a);
+  };
+  const float a = layer(low[2]), b = layer(high[2]);
+  return kUnit * (a + f[2] * (b - a));
+}
+
+// Looks at one place; false at the walk's end.
+bool OccupancyGrid::advance(const Ray& ray, const March& m, Walk& walk, float* depths) const {
+  if (walk.t >= walk.far || walk.found >= m.most) return false;
+  const Vec3f p = ray.origin + ray.direction * walk.t;
+  // A cell's distance is off by half its diagonal at most; between cells it can be known better.
+  float reach = m.band + half_diagonal(), d = at(p);
+  if (std::abs(d) <= reach) {
+    d = between(p);
+    reach = m.band + m.slack * half_diagonal();
+  }
   if (d < -reach) {
     walk.far = walk.t;
     return false;
   }
-  // A cell's distance is off by half its diagonal at most. Away from the surface nothing holds the field's
-  // slope at one: a leap of all of it would land behind the surface, and the ray find nothing.
+  // Away from the surface nothing holds the field's slope at one: a leap of all of the distance would land
+  // behind the surface, and the ray find nothing.
   const bool leap = d > reach;
   if (!leap) depths[walk.found++] = walk.t;
-  walk.t += leap ? std::max(0.5f * (d - reach), step) : step;
+  walk.t += leap ? std::max(0.5f * (d - reach), m.step) : m.step;
   return true;
 }
 
-void OccupancyGrid::march(std::span<const Ray> rays, float step, float band, std::span<const float> jitter,
-                          int most, std::vector<float>& depths, std::span<int> counts) const {
+void OccupancyGrid::march(std::span<const Ray> rays, const March& m, std::span<const float> jitter,
+                          std::vector<float>& depths, std::span<int> counts) const {
   constexpr size_t kTogether = 8;  // walks take turns: one's cells come from memory while others go on
-  std::vector<float> found(kTogether * size_t(most));
+  std::vector<float> found(kTogether * size_t(m.most));
   for (size_t first = 0; first < rays.size(); first += kTogether) {
     const size_t n = std::min(kTogether, rays.size() - first);
     Walk walks[kTogether];
     for (size_t k = 0; k < n; ++k)
-      if (unit_sphere_span(rays[first + k], walks[k].t, walks[k].far)) walks[k].t += jitter[first + k] * step;
+      if (unit_sphere_span(rays[first + k], walks[k].t, walks[k].far))
+        walks[k].t += jitter[first + k] * m.step;
     for (bool going = true; going;) {
       going = false;
       for (size_t k = 0; k < n; ++k)
-        going |= advance(rays[first + k], step, band, most, walks[k], &found[k * size_t(most)]);
+        going |= advance(rays[first + k], m, walks[k], &found[k * size_t(m.most)]);
     }
     for (size_t k = 0; k < n; ++k) {
-      const float* own = &found[k * size_t(most)];
+      const float* own = &found[k * size_t(m.most)];
       depths.insert(depths.end(), own, own + walks[k].found);
       counts[first + k] = walks[k].found;
     }

@@ -31,10 +31,15 @@ class OccupancyGrid {
     return distance(place(cell(p.x), cell(p.y), cell(p.z)));
   }
 
+  struct March {
+    float step, band;  // along rays; about the surface
+    float slack = 1;   // how far off the distance between cells may be, in half diagonals of a cell
+    int most = 320;    // depths of a ray
+  };
   // Depths along each ray, `step` apart, that lie within `band` of the surface, front to back, from the unit
-  // sphere's entry to its exit or until the ray is deeper than `band` inside; at most `most` of a ray.
-  // jitter: [0, 1) of each ray, shifts its first one. depths: ray after ray, appended to; counts: #rays.
-  void march(std::span<const Ray> rays, float step, float band, std::span<const float> jitter, int most,
+  // sphere's entry to its exit or until the ray is deeper than `band` inside. jitter: [0, 1) of each ray,
+  // shifts its first one. depths: ray after ray, appended to; counts: #rays.
+  void march(std::span<const Ray> rays, const March&, std::span<const float> jitter,
              std::vector<float>& depths, std::span<int> counts) const;
 
  private:
@@ -43,7 +48,8 @@ class OccupancyGrid {
     float t = 0, far = 0;  // at, until
     int found = 0;
   };
-  bool advance(const Ray& ray, float step, float band, int most, Walk& walk, float* depths) const;
+  bool advance(const Ray& ray, const March&, Walk& walk, float* depths) const;
+  float between(Vec3f p) const;  // interpolated between cell centres
   float distance(size_t place) const { return kUnit * float(value_[place]); }
   void set_distance(size_t place, float d);
   int cell(float x) const { return min(max(int((x + 1) * 0.5f * float(n_)), 0), n_ - 1); }
@@ -51,6 +57,7 @@ class OccupancyGrid {
     const size_t bricks = size_t(n_) / 4, brick = ((z / 4) * bricks + y / 4) * bricks + x / 4;
     return brick * 64 + size_t((z % 4) * 16 + (y % 4) * 4 + x % 4);
   }
+  Vec3f center_of(size_t place) const;
   size_t place(int i) const { return place(i % n_, i / n_ % n_, i / n_ / n_); }  // of cell i of [z][y][x]
   int n_;
   std::vector<int16_t> value_;  // [brick][cell]

@@ -40,7 +40,7 @@ TEST(OccupancyGrid, EveryRayThatMeetsTheSurfaceIsSampledOnBothSidesOfIt) {
   }
   std::vector<float> all;
   std::vector<int> counts(rays.size());
-  grid.march(rays, kStep, kBand, jitter, 320, all, counts);
+  grid.march(rays, {kStep, kBand}, jitter, all, counts);
   size_t first = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     const std::span depths(&all[first], size_t(counts[i]));
@@ -61,7 +61,7 @@ TEST(OccupancyGrid, RaysThatPassFarFromTheSurfaceAreNotSampled) {
   int count = -1;
   const Ray ray{{0.8f, 0, -3}, {0, 0, 1}};
   const float jitter = 0.5f;
-  grid_of_ball().march({&ray, 1}, 0.004f, 0.006f, {&jitter, 1}, 320, depths, {&count, 1});
+  grid_of_ball().march({&ray, 1}, {0.004f, 0.006f}, {&jitter, 1}, depths, {&count, 1});
   EXPECT_TRUE(depths.empty());
   EXPECT_EQ(count, 0);
 }
