@@ -20,9 +20,7 @@ constexpr int kKept = kRays * 32;  // most samples of a chunk that get jets; abo
 constexpr int kKeptPerRay = 64, kCandidates = 320;  // most of a ray: one that grazes the object needs them
 constexpr int kBlock = 512;                         // candidates evaluated at a time,
 constexpr int kGlance = 8;                          // of a ray
-constexpr int kFullRefreshEvery = 400;              // steps between looks at all of the occupancy grid
-constexpr float kRefreshMargin = 0.15f;
-constexpr float kAnchorWidth = 0.02f;  // of its loss
+constexpr float kAnchorWidth = 0.02f;               // of its loss
 const Vec3f kWhite{1, 1, 1};
 
 }  // namespace
@@ -114,9 +112,9 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
                       std::pow(double(options_.sharpness_end) / options_.sharpness_start, p));
   s.step = std::clamp(1 / s.sharpness, options_.step_min, options_.step_max);
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
-  // Until the surface rests it moves and bends between two looks at the grid; less of a margin, or this one
-  // from the start, costs lego400 half a decibel.
-  s.slack = u < options_.rests_from ? 1.0f : 0.25f;
+  // Before, the surface moves and bends between two looks at the grid: as little slack from the start costs
+  // lego400 half a decibel (decisions/0012).
+  s.slack = rests_at(u) ? 0.25f : 1;
   s.levels = levels_at(u);
   s.views = u >= matte_until_;
   s.anchor = anchor_.n
@@ -176,7 +174,8 @@ struct Candidates {
 void select_samples(const Candidates& c, float keep_weight, bool empty, std::vector<float>& kept) {
   float transmittance = 1;
   const size_t end = std::min(kept.size() + kKeptPerRay, size_t(kKept));
-  for (size_t i = 0; i < c.depths.size() && kept.size() < end && (empty || transmittance > keep_weight); ++i) {
+  for (size_t i = 0; i < c.depths.size() && kept.size() < end && (empty || transmittance > keep_weight);
+       ++i) {
     const float alpha = c.alpha(i), weight = transmittance * alpha;
     if (weight > keep_weight || (empty && c.values[i] < 0)) kept.push_back(c.depths[i]);
     transmittance *= 1 - alpha;
@@ -414,12 +413,21 @@ void GeometryStage::hold_start(const Schedule& s, int64_t step, Work& w, ChunkGr
       g);
 }
 
+// Cells that rays reach change what they sample, the others only how far they leap.
+void GeometryStage::refresh_grid(const Schedule& s, int64_t step, double u) {
+  constexpr int kFull = 40;  // one look in so many
+  const int wide = rests_at(u) ? 10 : 3;
+  const int64_t look = step / options_.refresh_every;
+  grid_.refresh(device_, sdf_,
+                look % kFull == 0  ? 1e9f
+                : look % wide == 0 ? 0.15f
+                                   : s.band + grid_.half_diagonal());
+}
+
 GeometryStats GeometryStage::step(int64_t step, double u, const ValueSlopes& more) {
   const Schedule s = schedule_at(u);
   if (step % options_.refresh_every == 0)
-    StepTimes::process(times_, StepPart::occupancy, [&] {
-      grid_.refresh(device_, sdf_, step % kFullRefreshEvery == 0 ? 1e9f : kRefreshMargin);
-    });
+    StepTimes::process(times_, StepPart::occupancy, [&] { refresh_grid(s, step, u); });
   sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
   radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
   const int chunks = options_.rays / kRays;

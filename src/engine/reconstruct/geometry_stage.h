@@ -36,7 +36,7 @@ struct GeometryOptions {
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
   float decay_from = 0.3f, decay_to = 0.01f;  // exponential decay of the rate over the rest of the schedule
   int prefit_steps = 300;
-  int refresh_every = 25;   // steps between looks at the occupancy grid
+  int refresh_every = 10;   // steps between looks at the occupancy grid
   float rests_from = 0.4f;  // the surface: from here on the grid is trusted more closely
   bool hold_start = false;  // hold every start, not only those that are anchored, and all around its surface
   float anchor_until = 0.2f;  // such a start holds the surface, less and less, until here: colours that know
@@ -109,6 +109,8 @@ class GeometryStage {
   template <class SlopeOf>
   void add_slopes(const Schedule&, std::span<const Vec3f> x, const SlopeOf& slope_of, Work&,
                   ChunkGradients&) const;
+  bool rests_at(double u) const { return u >= options_.rests_from; }
+  void refresh_grid(const Schedule&, int64_t step, double u);
   void hold_start(const Schedule&, int64_t step, Work&, ChunkGradients&) const;
   void composite(const Schedule&, const RayBatch&, Work&) const;
 

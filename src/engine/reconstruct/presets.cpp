@@ -50,7 +50,7 @@ Preset paper() {
   // The paper's 2048 pixels are of the whole picture and two of three miss the object; ours are all near it,
   // and a smaller batch makes more of a processor's hours.
   p.geometry.rays = 256;
-  p.geometry.refresh_every = 100;
+  p.geometry.refresh_every = 40;
   p.geometry.anchor_until = 0.4f;
   p.geometry.hold_start = true;  // one network for all of space: what it does not hold, it forgets at once
   p.appearance.albedo.encoding.frequencies = 10;
