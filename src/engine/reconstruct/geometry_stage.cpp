@@ -110,7 +110,7 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   Schedule s;
   s.sharpness = float(options_.sharpness_start *
                       std::pow(double(options_.sharpness_end) / options_.sharpness_start, p));
-  s.step = std::clamp(1 / s.sharpness, options_.step_min, options_.step_max);
+  s.step = std::clamp(options_.step_width / s.sharpness, options_.step_min, options_.step_max);
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
   // Before, the surface moves and bends between two looks at the grid: as little slack from the start costs
   // lego400 half a decibel (decisions/0012).

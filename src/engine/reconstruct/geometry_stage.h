@@ -29,8 +29,10 @@ struct GeometryOptions {
   float sharpness_until = 0.6f;  // fractions of the schedule
   float unlock_until = 0.3f;     // hash levels open, coarse to fine, until here
   int first_levels = 5;
-  float step_min = 0.004f, step_max = 0.02f;  // along rays, unit-sphere units; in between: 1 / sharpness
-  float keep_weight = 0.003f;                 // samples below it get no jet and no radiance
+  // Along rays, unit-sphere units; in between step_width / sharpness. The opacity of a step is exact for any
+  // length, and jitter sees to what colours a longer one misses.
+  float step_min = 0.006f, step_max = 0.02f, step_width = 2.5f;
+  float keep_weight = 0.003f;  // samples below it get no jet and no radiance
   float huber_width = 0.05f, eikonal_weight = 0.3f;
   float empty_weight = 0.1f;                     // of empty_push(), times the sharpness
   float table_rate = 3e-3f, layer_rate = 2e-3f;  // Adam
