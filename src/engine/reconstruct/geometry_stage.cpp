@@ -16,7 +16,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kRays = 64;          // a chunk
-constexpr int kKept = kRays * 32;  // most samples of a chunk that get jets; about ten a ray are usual
+constexpr int kKept = kRays * 32;  // most samples of a chunk that get jets; about five a ray are usual
 constexpr int kKeptPerRay = 64, kCandidates = 320;  // most of a ray: one that grazes the object needs them
 constexpr int kBlock = 512;                         // candidates evaluated at a time,
 constexpr int kGlance = 8;                          // of a ray
@@ -113,7 +113,7 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   s.step = std::clamp(options_.step_width / s.sharpness, options_.step_min, options_.step_max);
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
   // Before, the surface moves and bends between two looks at the grid: as little slack from the start costs
-  // lego400 half a decibel (decisions/0012).
+  // lego400 half a decibel (decisions/0013).
   s.slack = rests_at(u) ? 0.25f : 1;
   s.levels = levels_at(u);
   s.views = u >= matte_until_;
