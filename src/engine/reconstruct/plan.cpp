@@ -13,13 +13,13 @@ constexpr double kRefinement = 36;                             // seconds of one
 constexpr double kMostPolish = 60;                             // seconds a round; more brings nothing
 constexpr double kBetweenRounds = 7;                           // Plan::between
 constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;   // a round, at most
-constexpr double kMostResidual = 45;                           // seconds of training, or
-constexpr int kResidualSteps = 4500;                           // steps,
-constexpr double kResidualHitsASecond = 4500;                  // on so many hits for each second of the run,
-constexpr size_t kResidualHitsUntimed = 1000000;               // or so many; shading
-constexpr double kHitSeconds = 1e-5;                           // one takes so long
-constexpr double kSaving = 8, kSavingShare = 0.03;             // seconds; of the run: what is left at the end
-constexpr double kResidualRun = 120;  // seconds; shorter runs spend them on the surface
+constexpr double kMostResidual = 90;                           // seconds of training, or
+constexpr int kResidualSteps = 9000, kResidualStepsUntimed = 4500;  // steps,
+constexpr double kResidualHitsASecond = 4500;       // on so many hits for each second of the run,
+constexpr size_t kResidualHitsUntimed = 1000000;    // or so many; shading
+constexpr double kHitSeconds = 4e-6;                // one takes so long
+constexpr double kSaving = 8, kSavingShare = 0.03;  // seconds; of the run: what is left at the end
+constexpr double kResidualRun = 120;                // seconds; shorter runs spend them on the surface
 
 }  // namespace
 
@@ -33,7 +33,7 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
     p.appearance = t > 0 ? std::min(appearance, 0.2 * t) : 0;
     p.rounds = p.iterations >= 1000 ? 2 : 0;
     p.polish_steps = kPolishStepsUntimed;
-    p.residual_steps = std::min(kResidualSteps, p.iterations / 2);
+    p.residual_steps = std::min(kResidualStepsUntimed, p.iterations / 2);
     p.residual_hits = std::min(preset.residual_hits, kResidualHitsUntimed);
     return p;
   }
@@ -46,7 +46,7 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   p.appearance = std::min(appearance, 0.2 * t);
   p.residual_hits = std::min({preset.residual_hits, size_t(kResidualHitsASecond * t), pixels});
   if (t >= kResidualRun)
-    p.residual = std::min(kMostResidual, 0.05 * t) + kHitSeconds * preset.stretch * double(p.residual_hits);
+    p.residual = std::min(kMostResidual, 0.1 * t) + kHitSeconds * preset.stretch * double(p.residual_hits);
   p.saving = std::max(kSaving, kSavingShare * t);
   const double wanted = double(pixels) / kPixelsASecond - kMostAppearance,
                affordable = 0.1 * t / preset.stretch;
