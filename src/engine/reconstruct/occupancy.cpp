@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/math/trilinear.h"
 
 namespace cei3d {
 
@@ -39,22 +40,15 @@ std::vector<float> OccupancyGrid::values() const {
   return out;
 }
 
-namespace {
-
-float cell_center(size_t k, int n) { return (float(k) + 0.5f) * 2 / float(n) - 1; }
-
-}  // namespace
-
-Vec3f OccupancyGrid::center(int i) const {
-  return {cell_center(size_t(i % n_), n_), cell_center(size_t(i / n_ % n_), n_),
-          cell_center(size_t(i / n_ / n_), n_)};
-}
+Vec3f OccupancyGrid::center(int i) const { return center_of(place(i)); }
 
 Vec3f OccupancyGrid::center_of(size_t place) const {
   const size_t bricks = size_t(n_) / 4, brick = place / 64;
-  return {cell_center(brick % bricks * 4 + place % 4, n_),
-          cell_center(brick / bricks % bricks * 4 + place / 4 % 4, n_),
-          cell_center(brick / bricks / bricks * 4 + place / 16 % 4, n_)};
+  const auto at = [&](size_t brick_at, size_t in_brick) {
+    return (float(4 * brick_at + in_brick % 4) + 0.5f) * 2 / float(n_) - 1;
+  };
+  return {at(brick % bricks, place), at(brick / bricks % bricks, place / 4),
+          at(brick / bricks / bricks, place / 16)};
 }
 
 void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin) {
@@ -81,27 +75,7 @@ void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin
 }
 
 float OccupancyGrid::between(Vec3f p) const {
-  const size_t bricks = size_t(n_) / 4;
-  const size_t brick_stride[3] = {64, 64 * bricks, 64 * bricks * bricks}, stride[3] = {1, 4, 16};
-  size_t low[3], high[3];  // parts of places
-  float f[3];
-  for (int c = 0; c < 3; ++c) {
-    const float g = clamp((p[c] + 1) * 0.5f * float(n_) - 0.5f, 0.0f, float(n_) - 1.001f);
-    const unsigned i = unsigned(g), j = i + 1;
-    f[c] = g - float(i);
-    low[c] = i / 4 * brick_stride[c] + i % 4 * stride[c];
-    high[c] = j / 4 * brick_stride[c] + j % 4 * stride[c];
-  }
-  const auto row = [&](size_t yz) {
-    const float a = value_[yz + low[0]], b = value_[yz + high[0]];
-    return a + f[0] * (b - a);
-  };
-  const auto layer = [&](size_t z) {
-    const float a = row(z + low[1]), b = row(z + high[1]);
-    return a + f[1] * (b - a);
-  };
-  const float a = layer(low[2]), b = layer(high[2]);
-  return kUnit * (a + f[2] * (b - a));
+  return kUnit * trilinear(p, n_, [&](int x, int y, int z) { return float(value_[place(x, y, z)]); });
 }
 
 // Looks at one place; false at the walk's end.

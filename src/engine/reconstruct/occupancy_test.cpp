@@ -78,6 +78,27 @@ TEST(OccupancyGrid, RaysThatPassFarFromTheSurfaceAreNotSampled) {
   EXPECT_EQ(count, 0);
 }
 
+TEST(OccupancyGrid, ARefreshPutsTheFieldsDistanceIntoEveryCellWithinTheMargin) {
+  FieldConfig config;
+  config.outputs = 1;
+  config.sphere_radius = 0.5f;
+  const Field sdf(config, 3);
+  const Device device = make_device("cpu");
+  OccupancyGrid grid(32);
+  const float before = grid.at({0, 0, 0});
+  grid.refresh(device, sdf, 0.1f);
+  EXPECT_EQ(grid.at({0, 0, 0}), before) << "far from the surface as last asked";
+  grid.refresh(device, sdf, 1e9f);
+  const std::vector<float> values = grid.values();
+  std::vector<Vec3f> centers;
+  for (int i = 0; i < int(values.size()); ++i) centers.push_back(grid.center(i));
+  const std::vector<float> truth = first_output(device, sdf, centers);
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (dot(centers[i], centers[i]) > 1.1f) continue;  // beyond the unit sphere nothing is asked
+    ASSERT_NEAR(values[i], truth[i], 1e-4f) << "cell " << i;
+  }
+}
+
 TEST(OccupancyGrid, ValuesComeBackInTheirOrder) {
   OccupancyGrid grid(8);
   std::vector<float> values(8 * 8 * 8);

@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/math/loss.h"
 #include "core/math/rng.h"
+#include "core/math/trilinear.h"
 
 namespace cei3d {
 
@@ -73,21 +74,7 @@ std::vector<float> signed_distance(const VisualHull& hull) {
 }
 
 float DistanceGrid::at(Vec3f p) const {
-  float fraction[3];
-  size_t base[3];
-  for (int c = 0; c < 3; ++c) {
-    const float t = clamp((p[c] + 1) * 0.5f * float(n) - 0.5f, 0.0f, float(n) - 1.001f);
-    base[c] = size_t(t);
-    fraction[c] = t - float(base[c]);
-  }
-  float sum = 0;
-  for (int k = 0; k < 8; ++k) {
-    const size_t corner[3] = {size_t(k & 1), size_t(k >> 1 & 1), size_t(k >> 2)};
-    float weight = 1;
-    for (int c = 0; c < 3; ++c) weight *= corner[c] ? fraction[c] : 1 - fraction[c];
-    sum += weight * values[((base[2] + corner[2]) * n + base[1] + corner[1]) * n + base[0] + corner[0]];
-  }
-  return sum;
+  return trilinear(p, n, [&](int x, int y, int z) { return values[(size_t(z) * n + y) * n + x]; });
 }
 
 void prefit(const Device& device, Field& sdf, const DistanceGrid& grid, int steps, float layer_rate,
