@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/start.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -20,6 +21,9 @@ constexpr float kMatteUntil = 0.25f;
 // dB by which another start has to beat the visual hull, which nothing deceives: where the hull is wrong they
 // differ by one and a half and more.
 constexpr double kClearly = 0.3;
+// Views that must have a place in their frame before matter may start there. With fewer it can hang anywhere
+// along their rays and look right to them: a blob before the real surface, to everybody else.
+constexpr int kLeastViews = 3;
 
 // Cells that may hold matter: masks are grown by half a cell, as the cameras see it at the object's centre,
 // or rods thinner than a cell would be lost, and descent makes no matter where there is none. It does take
@@ -34,7 +38,8 @@ VisualHull hull_of(const PixelStore& pixels, int cells) {
     areas.push_back(dilated(pixels.masks()[v], c.width, c.height, half_cell));
     masks.push_back({c, areas.back()});
   }
-  return visual_hull(masks, cells);
+  const int least_views = std::min(kLeastViews, int(masks.size() + 1) / 2);
+  return visual_hull(masks, cells, {-1, -1, -1}, {1, 1, 1}, 0, least_views);
 }
 
 StartShape shape_of(const VisualHull& hull, bool anchored, float matte_until) {

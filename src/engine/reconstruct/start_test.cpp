@@ -22,10 +22,14 @@ bool on_object(const Ray& ray) {
   return std::abs(p.z) < kRodHeight && std::hypot(p.x, p.y) < kRodRadius;
 }
 
-PixelStore photographs() {
+// 24 views; all but the first `wide` do not have the rod in their frames.
+PixelStore photographs(int wide = 24) {
   PixelStore store;
   for (int v = 0; v < 24; ++v) {
-    const Camera camera = box_camera(-0.5 + v / 23.0, 2.4 * v, 400);
+    const bool narrow = v >= wide;
+    // Those do not look along the line from ball to rod.
+    Camera camera = box_camera(-0.5 + v / 23.0, narrow ? 1.2 + 0.03 * v : 2.4 * v, 400);
+    if (narrow) camera.width = 200, camera.cx = 100;
     Image image(camera.width, camera.height, 4);
     for (int y = 0; y < camera.height; ++y)
       for (int x = 0; x < camera.width; ++x)
@@ -41,6 +45,16 @@ TEST(Start, HullKeepsARodThinnerThanItsCells) {
   for (float z = -0.38f; z < 0.38f; z += 0.01f) EXPECT_LT(start.distance.at({kRodX, 0, z}), 0) << z;
   EXPECT_GT(start.distance.at({kRodX + 0.04f, 0, 0}), 0);
   EXPECT_GT(start.distance.at({0.46f, 0, 0}), 0.1f);
+}
+
+TEST(Start, NoMatterWhereTooFewViewsLook) {
+  const Vec3f rod{kRodX, 0, 0}, ball{0, 0, 0};
+  const StartShape two = start_shape(photographs(2), Start::hull, 1),
+                   three = start_shape(photographs(3), Start::hull, 1);
+  EXPECT_GT(two.distance.at(rod), 0);
+  EXPECT_LT(two.distance.at(ball), -0.2f);
+  EXPECT_LT(three.distance.at(rod), 0);
+  EXPECT_LT(three.distance.at(ball), -0.2f);
 }
 
 }  // namespace
