@@ -69,7 +69,8 @@ void add_eval(Commands& commands) {
           },
           "Write the scores to this file as JSON; without a file: print them")
       ->expected(0, 1);
-  verb->add_option("--samples", o->request.samples, "Sub-pixel samples per axis")
+  verb->add_option("--samples", o->request.samples,
+                   "Sub-pixel samples per axis, twice as many where the silhouette passes")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   add_residual_switch(verb, o->request.residual);

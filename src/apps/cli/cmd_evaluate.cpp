@@ -165,7 +165,8 @@ void add_evaluate(Commands& commands) {
   add_object(verb, *o);
   add_edits(verb, *o);
   verb->add_option("--only", o->sections, "Beside novel views only these sections: paint,part,views,sizes");
-  verb->add_option("--samples", o->request.samples, "Sub-pixel samples per axis")
+  verb->add_option("--samples", o->request.samples,
+                   "Sub-pixel samples per axis, twice as many where the silhouette passes")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   add_networks(verb, o->request.networks);

@@ -45,7 +45,8 @@ void add_parts(Commands& commands) {
   CLI::Option* out = verb->add_option(
       "-o,--output", o->out, "Folder for the masks: DIR/VIEW.png, grey, how much of a pixel is part");
   CLI::Option* part = verb->add_option("--part", o->part, "Name of the part");
-  verb->add_option("--samples", o->samples, "Sub-pixel samples per axis")
+  verb->add_option("--samples", o->samples,
+                   "Sub-pixel samples per axis, twice as many where the silhouette passes")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   masks_option->needs(out)->needs(part);

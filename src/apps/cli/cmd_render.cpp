@@ -68,7 +68,8 @@ void add_render(Commands& commands) {
       ->capture_default_str();
   verb->add_option("--size", o->size,
                    "Size in pixels, WxH; the field of view stays (default: the cameras' own)");
-  verb->add_option("--samples", o->samples, "Sub-pixel samples per axis")
+  verb->add_option("--samples", o->samples,
+                   "Sub-pixel samples per axis, twice as many where the silhouette passes")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   CLI::Option* env =

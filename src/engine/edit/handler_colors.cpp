@@ -38,7 +38,7 @@ Image base_color_picture(const Device& device, const Scene& scene, const Camera&
     Vec3f sum{0, 0, 0};
     for (uint32_t h = begin; h < end; ++h) sum += albedo[h];
     for (int c = 0; c < 3; ++c) picture.data[4 * pixel + c] = sum[c] / float(end - begin);
-    picture.data[4 * pixel + 3] = float(end - begin) / float(traced.samples * traced.samples);
+    picture.data[4 * pixel + 3] = float(end - begin) / float(traced.samples_of(pixel));
   }
   return picture;
 }

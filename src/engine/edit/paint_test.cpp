@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/math/color.h"
 #include "core/math/rng.h"
+#include "core/math/sub_pixel.h"
 #include "engine/edit/relearn.h"
 #include "engine/edit/stroke.h"
 #include "engine/render/scene_light.h"
@@ -132,11 +133,8 @@ bool touches(const GBuffer& g, size_t p, const Region& region) {
     for (int qx = std::max(0, x - 1); qx <= std::min(g.width - 1, x + 1); ++qx) {
       const size_t q = size_t(qy) * g.width + qx;
       for (uint32_t h = g.pixel_start[q]; h < g.pixel_start[q + 1]; ++h) {
-        const auto away = [&](int offset, int k) {
-          return std::abs(float(offset) + (float(k) + 0.5f) / float(g.samples) - 0.5f);
-        };
-        const int k = g.sub_pixels[h];
-        if (away(qx - x, k % g.samples) < 1 && away(qy - y, k / g.samples) < 1 &&
+        const Vec2f at = sub_pixel(g.sub_pixels[h], g.samples[q]);
+        if (std::abs(float(qx - x) + at.x - 0.5f) < 1 && std::abs(float(qy - y) + at.y - 0.5f) < 1 &&
             region.contains(g.hits[h].position, g.hits[h].normal))
           return true;
       }

@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/math/loss.h"
 #include "core/math/rng.h"
+#include "core/math/sub_pixel.h"
 #include "core/math/volume.h"
 
 namespace cei3d {
@@ -514,9 +515,10 @@ Image GeometryStage::render_radiance(const Camera& camera, int samples) {
   parallel_for((all + pixels - 1) / pixels, [&](int c) {
     RayBatch batch;
     for (int i = c * pixels; i < std::min(all, (c + 1) * pixels); ++i)
-      for (int k = 0; k < per_pixel; ++k)
-        batch.rays.push_back(camera.ray(i % camera.width + (k % samples + 0.5) / samples,
-                                        i / camera.width + (k / samples + 0.5) / samples));
+      for (int k = 0; k < per_pixel; ++k) {
+        const Vec2f at = tent_point(k, samples);
+        batch.rays.push_back(camera.ray(i % camera.width + at.x, i / camera.width + at.y));
+      }
     batch.count = int(batch.rays.size());
     batch.backgrounds.assign(batch.count, kWhite);
     work_.with([&](Work& w) {

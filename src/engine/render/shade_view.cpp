@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
+#include <array>
+#include <vector>
 
 #include "core/base/parallel.h"
+#include "core/math/sub_pixel.h"
 #include "engine/render/render.h"
 #include "engine/render/scene_light.h"
 #include "model/scene/appearance.h"
@@ -20,36 +22,52 @@ Frame empty_frame(int width, int height) {
   return f;
 }
 
-float tent(float distance) { return std::max(0.0f, 1 - std::abs(distance)); }
+// What the samples of a pixel and of its eight neighbours count for in it.
+class PixelFilter {
+ public:
+  explicit PixelFilter(const GBuffer& g) : g_(g) {
+    for (const uint8_t samples : g.samples)
+      if (grids_[samples].empty()) grids_[samples] = weights(samples);
+  }
 
-// Weight of sample `k` (of `samples` along an axis) of the pixel `offset` pixels away.
-float axis_weight(int offset, int k, int samples) {
-  return tent(float(offset) + (float(k) + 0.5f) / float(samples) - 0.5f);
-}
-
-// Sum of the weights along an axis that has `size` pixels: less than in the middle at the frame's border.
-float axis_total(int at, int size, int samples) {
-  float sum = 0;
-  for (int offset = -1; offset <= 1; ++offset)
-    if (at + offset >= 0 && at + offset < size)
-      for (int k = 0; k < samples; ++k) sum += axis_weight(offset, k, samples);
-  return sum;
-}
-
-// Calls visit(hit, weight) for the hits around pixel (x, y), in a fixed order.
-template <class F>
-void for_hits_around(const GBuffer& g, int x, int y, F visit) {
-  for (int qy = std::max(0, y - 1); qy <= std::min(g.height - 1, y + 1); ++qy)
-    for (int qx = std::max(0, x - 1); qx <= std::min(g.width - 1, x + 1); ++qx) {
-      const size_t q = size_t(qy) * g.width + qx;
-      for (uint32_t i = g.pixel_start[q]; i < g.pixel_start[q + 1]; ++i) {
-        const int sub = g.sub_pixels[i];
-        const float w =
-            axis_weight(qx - x, sub % g.samples, g.samples) * axis_weight(qy - y, sub / g.samples, g.samples);
-        if (w > 0) visit(i, w);
+  // Calls visit(hit, weight) for the hits around pixel (x, y), in a fixed order. Returns the weight of all
+  // samples there, also those that missed.
+  template <class F>
+  float visit_hits(int x, int y, F visit) const {
+    float total = 0;
+    for (int qy = std::max(0, y - 1); qy <= std::min(g_.height - 1, y + 1); ++qy)
+      for (int qx = std::max(0, x - 1); qx <= std::min(g_.width - 1, x + 1); ++qx) {
+        const size_t q = size_t(qy) * g_.width + qx;
+        const Grid& grid = grids_[g_.samples[q]][size_t(3 * (qy - y + 1) + qx - x + 1)];
+        total += grid.sum;
+        for (uint32_t i = g_.pixel_start[q]; i < g_.pixel_start[q + 1]; ++i)
+          if (const float w = grid.weight[g_.sub_pixels[i]]; w > 0) visit(i, w);
       }
-    }
-}
+    return total;
+  }
+
+ private:
+  struct Grid {
+    std::vector<float> weight;  // #samples of a pixel
+    float sum = 0;
+  };
+
+  // Of the samples of the nine pixels, row by row; each pixel's share of the picture is the same.
+  static std::vector<Grid> weights(int samples) {
+    std::vector<Grid> out(9);
+    for (int q = 0; q < 9; ++q)
+      for (int k = 0; k < samples * samples; ++k) {
+        const Vec2f p = sub_pixel(k, samples);
+        const float w = tent_weight({float(q % 3) + p.x - 1.5f, float(q / 3) + p.y - 1.5f});
+        out[q].weight.push_back(w / float(samples * samples));
+        out[q].sum += out[q].weight.back();
+      }
+    return out;
+  }
+
+  const GBuffer& g_;
+  std::array<std::vector<Grid>, 256> grids_;  // by samples along an axis; empty: none has so many
+};
 
 void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverage) {
   const Vec3f mean = sum / weight;
@@ -85,13 +103,14 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
   const Appearance look = appearance_at(device, scene, g.hits);
   const Shading shading = light.shade(g.hits, look);
   const std::vector<Vec3f> residual = residuals(device, scene, look, g.hits);
+  const PixelFilter filter(g);
   Frame f = empty_frame(g.width, g.height);
   parallel_for(g.height, [&](int y) {
     for (int x = 0; x < g.width; ++x) {
       const size_t p = size_t(y) * g.width + x;
       Vec3f albedo{0, 0, 0}, diffuse{0, 0, 0}, specular{0, 0, 0}, normal{0, 0, 0}, rgb{0, 0, 0};
       float depth = 0, roughness = 0, weight = 0;
-      for_hits_around(g, x, y, [&](uint32_t i, float w) {
+      const float total = filter.visit_hits(x, y, [&](uint32_t i, float w) {
         albedo += w * look.albedo[i];
         diffuse += w * shading.diffuse[i];
         specular += w * shading.specular[i];
@@ -103,8 +122,7 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
         f.edited[p] |= look.layer[i] >= 0;
       });
       if (weight == 0) continue;
-      const float coverage =
-          std::min(1.0f, weight / (axis_total(x, g.width, g.samples) * axis_total(y, g.height, g.samples)));
+      const float coverage = std::min(1.0f, weight / total);
       put_mean(f.albedo, p, albedo, weight, coverage);
       put_mean(f.diffuse, p, diffuse, weight, coverage);
       put_mean(f.specular, p, specular, weight, coverage);

@@ -3,35 +3,13 @@
 // evaluations a sample and silhouettes are those of the mesh.
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
+#include "core/math/sub_pixel.h"
 #include "engine/render/render.h"
 #include "model/geometry/sdf_normals.h"
 
 namespace cei3d {
-
-namespace {
-
-struct Samples {
-  std::vector<Ray> rays;
-  std::vector<uint32_t> pixels;
-};
-
-// All sub-pixel rays of a view, pixel after pixel.
-Samples camera_samples(const Camera& camera, int samples) {
-  Samples s;
-  const size_t n = size_t(camera.width) * camera.height * samples * samples;
-  s.rays.reserve(n);
-  s.pixels.reserve(n);
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x)
-      for (int k = 0; k < samples * samples; ++k) {
-        s.rays.push_back(camera.ray(x + (k % samples + 0.5) / samples, y + (k / samples + 0.5) / samples));
-        s.pixels.push_back(uint32_t(y * camera.width + x));
-      }
-  return s;
-}
-
-}  // namespace
 
 void refine_hits(const Device& device, const Field& sdf, std::span<const Vec3f> directions,
                  std::span<Hit> hits, std::span<float> edges) {
@@ -147,19 +125,95 @@ std::vector<Hit> trace_rays(const Device& device, const Scene& scene, std::span<
   return hits;
 }
 
-GBuffer trace_view(const Device& device, const Scene& scene, const Camera& camera, int samples) {
-  const Samples s = camera_samples(camera, samples);
-  GBuffer g{camera.width, camera.height, samples, {}, {}, {}, {}};
+namespace {
+
+// The hits of some pixels' rays, pixel after pixel.
+struct PixelHits {
+  std::vector<Hit> hits;
+  std::vector<uint16_t> sub_pixels;  // #hits
+  std::vector<uint32_t> start;       // #pixels + 1
+};
+
+PixelHits trace_pixels(const Device& device, const Scene& scene, const Camera& camera,
+                       std::span<const uint32_t> pixels, int samples) {
+  const uint32_t each = uint32_t(samples * samples);
+  std::vector<Ray> rays;
+  rays.reserve(pixels.size() * each);
+  for (const uint32_t p : pixels)
+    for (uint32_t k = 0; k < each; ++k) {
+      const Vec2f at = sub_pixel(int(k), samples);
+      rays.push_back(
+          camera.ray(double(p % uint32_t(camera.width)) + at.x, double(p / uint32_t(camera.width)) + at.y));
+    }
+  PixelHits out;
   std::vector<uint32_t> ray_of_hit;
-  g.hits = trace_rays(device, scene, s.rays, ray_of_hit);
-  g.pixel_start.assign(size_t(camera.width) * camera.height + 1, 0);
-  const Vec3f forward = camera.forward(), center = to_float(camera.center);
-  for (size_t i = 0; i < g.hits.size(); ++i) {
-    ++g.pixel_start[s.pixels[ray_of_hit[i]] + 1];
-    g.sub_pixels.push_back(uint16_t(ray_of_hit[i] % uint32_t(samples * samples)));
-    g.depths.push_back(dot(g.hits[i].position - center, forward));
+  out.hits = trace_rays(device, scene, rays, ray_of_hit);
+  out.start.assign(pixels.size() + 1, 0);
+  for (const uint32_t ray : ray_of_hit) {
+    out.sub_pixels.push_back(uint16_t(ray % each));
+    ++out.start[ray / each + 1];
   }
-  for (size_t p = 1; p < g.pixel_start.size(); ++p) g.pixel_start[p] += g.pixel_start[p - 1];
+  for (size_t p = 0; p < pixels.size(); ++p) out.start[p + 1] += out.start[p];
+  return out;
+}
+
+// Pixels that the silhouette may pass through: not all of their own and their neighbours' samples meet the
+// surface, nor do all miss it.
+std::vector<uint32_t> on_silhouette(const PixelHits& view, int width, int height, int samples) {
+  const uint32_t all = uint32_t(samples * samples);
+  std::vector<uint32_t> out;
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x) {
+      bool hit = false, missed = false;
+      for (int v = std::max(0, y - 1); v <= std::min(height - 1, y + 1); ++v)
+        for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u) {
+          const size_t p = size_t(v) * width + u;
+          const uint32_t hits = view.start[p + 1] - view.start[p];
+          hit |= hits > 0;
+          missed |= hits < all;
+        }
+      if (hit && missed) out.push_back(uint32_t(y * width + x));
+    }
+  return out;
+}
+
+// Pixel after pixel, those of `pixels` (ascending) as `finer` has them.
+PixelHits replaced(const PixelHits& view, std::span<const uint32_t> pixels, const PixelHits& finer) {
+  PixelHits out;
+  out.hits.reserve(view.hits.size() + finer.hits.size());
+  out.start.push_back(0);
+  size_t next = 0;
+  for (size_t p = 0; p + 1 < view.start.size(); ++p) {
+    const bool is_finer = next < pixels.size() && pixels[next] == p;
+    const PixelHits& from = is_finer ? finer : view;
+    const size_t at = is_finer ? next++ : p;
+    out.hits.insert(out.hits.end(), from.hits.begin() + from.start[at],
+                    from.hits.begin() + from.start[at + 1]);
+    out.sub_pixels.insert(out.sub_pixels.end(), from.sub_pixels.begin() + from.start[at],
+                          from.sub_pixels.begin() + from.start[at + 1]);
+    out.start.push_back(uint32_t(out.hits.size()));
+  }
+  return out;
+}
+
+}  // namespace
+
+GBuffer trace_view(const Device& device, const Scene& scene, const Camera& camera, int samples) {
+  std::vector<uint32_t> pixels(size_t(camera.width) * camera.height);
+  std::iota(pixels.begin(), pixels.end(), 0u);
+  GBuffer g{
+      camera.width, camera.height, std::vector<uint8_t>(pixels.size(), uint8_t(samples)), {}, {}, {}, {}};
+  PixelHits view = trace_pixels(device, scene, camera, pixels, samples);
+  if (samples > 1) {
+    const std::vector<uint32_t> rim = on_silhouette(view, camera.width, camera.height, samples);
+    view = replaced(view, rim, trace_pixels(device, scene, camera, rim, 2 * samples));
+    for (const uint32_t p : rim) g.samples[p] = uint8_t(2 * samples);
+  }
+  const Vec3f forward = camera.forward(), center = to_float(camera.center);
+  for (const Hit& h : view.hits) g.depths.push_back(dot(h.position - center, forward));
+  g.hits = std::move(view.hits);
+  g.sub_pixels = std::move(view.sub_pixels);
+  g.pixel_start = std::move(view.start);
   return g;
 }
 

@@ -43,9 +43,9 @@ fs::path picture_like(const fs::path& folder, const View& view) {
 
 EditedArea edited_area(const Scene& scene, const EditLayer& layer, const GBuffer& g, const EditPictures& p) {
   const std::vector<uint8_t> inside = inside_layer(scene, layer, g.hits);
-  const uint32_t samples = uint32_t(g.samples * g.samples);
   EditedArea area;
   for (size_t i = 0; i + 1 < g.pixel_start.size(); ++i) {
+    const uint32_t samples = uint32_t(g.samples_of(i));
     uint32_t hits = layer.everywhere || layer.light ? samples : 0;
     for (uint32_t h = g.pixel_start[i]; h < g.pixel_start[i + 1]; ++h) hits += inside[h];
     if (layer.reshape && !same_pixel(p.before, p.after, i)) hits = samples;

@@ -44,11 +44,10 @@ void put_combination(const PartCommand& c, Json& params) {
 Image part_mask(const Scene& scene, const EditLayer& part, const GBuffer& g) {
   const std::vector<uint8_t> inside = inside_layer(scene, part, g.hits);
   Image mask(g.width, g.height, 1);
-  const float all = float(g.samples * g.samples);
   for (size_t p = 0; p < mask.data.size(); ++p) {
     int hits = 0;
     for (uint32_t i = g.pixel_start[p]; i < g.pixel_start[p + 1]; ++i) hits += inside[i];
-    mask.data[p] = float(hits) / all;
+    mask.data[p] = float(hits) / float(g.samples_of(p));
   }
   return mask;
 }
