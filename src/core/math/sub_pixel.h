@@ -20,12 +20,4 @@ inline float tent_weight(Vec2f away) {
   return tent(away.x) * tent(away.y);
 }
 
-// Sample k of samples^2 that count the same and spread about their pixel's middle as the tent does (variance
-// 1/6 along an axis; a single one is in the middle): for pictures whose pixels share no samples.
-inline Vec2f tent_point(int k, int samples) {
-  const Vec2f p = sub_pixel(k, samples);
-  const float stretch = samples > 1 ? std::sqrt(2 / (1 - 1 / float(samples * samples))) : 1;
-  return {0.5f + stretch * (p.x - 0.5f), 0.5f + stretch * (p.y - 0.5f)};
-}
-
 }  // namespace cei3d

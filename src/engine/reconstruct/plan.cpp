@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/math/scalar.h"
+
 namespace cei3d {
 
 namespace {
@@ -19,7 +21,8 @@ constexpr double kResidualHitsASecond = 4500;       // on so many hits for each 
 constexpr size_t kResidualHitsUntimed = 1000000;    // or so many; shading
 constexpr double kHitSeconds = 4e-6;                // one takes so long
 constexpr double kSaving = 8, kSavingShare = 0.03;  // seconds; of the run: what is left at the end
-constexpr double kResidualRun = 120;                // seconds; shorter runs spend them on the surface
+constexpr double kFinishing = 15;  // seconds of a mesh of 384 cells, with what its vertices see
+constexpr double kLongRun = 120;   // seconds; shorter runs spend them on the surface
 
 }  // namespace
 
@@ -27,11 +30,13 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   Plan p;
   p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
   const double t = options.seconds;
+  const bool has_finer = preset.finished.resolution > preset.meshing.resolution;
   const double appearance =
       preset.stretch * std::clamp(double(pixels) / kPixelsASecond, kLeastAppearance, kMostAppearance);
   if (t <= 0 || options.iterations > 0) {
     p.appearance = t > 0 ? std::min(appearance, 0.2 * t) : 0;
     p.rounds = p.iterations >= 1000 ? 2 : 0;
+    p.finish = has_finer && p.rounds > 0;
     p.polish_steps = kPolishStepsUntimed;
     p.residual_steps = std::min(kResidualStepsUntimed, p.iterations / 2);
     p.residual_hits = std::min(preset.residual_hits, kResidualHitsUntimed);
@@ -40,12 +45,14 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   p.between = kBetweenRounds * preset.stretch;
   p.rounds = t >= 180 ? 2 : t >= 45 ? 1 : 0;
   p.polish_steps = kPolishSteps;
-  p.residual_steps = t >= kResidualRun ? kResidualSteps : 0;
+  p.residual_steps = t >= kLongRun ? kResidualSteps : 0;
   p.polish = std::min(kMostPolish * preset.stretch, 0.1 * t);
   while (p.rounds * (p.polish + p.between) > 0.3 * t) --p.rounds;
   p.appearance = std::min(appearance, 0.2 * t);
   p.residual_hits = std::min({preset.residual_hits, size_t(kResidualHitsASecond * t), pixels});
-  if (t >= kResidualRun)
+  p.finish = has_finer && t >= kLongRun;
+  if (p.finish) p.finishing = kFinishing * square(preset.finished.resolution / 384.0) * preset.stretch;
+  if (t >= kLongRun)
     p.residual = std::min(kMostResidual, 0.1 * t) + kHitSeconds * preset.stretch * double(p.residual_hits);
   p.saving = std::max(kSaving, kSavingShare * t);
   const double wanted = double(pixels) / kPixelsASecond - kMostAppearance,
@@ -53,7 +60,7 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   p.refinements = std::max(0, int(std::min(wanted, affordable) / kRefinement));
   p.refinement = kRefinement * preset.stretch;
   const double polishing = p.rounds * (p.polish + p.between);
-  const double last = p.appearance + p.refinements * p.refinement + p.residual + p.saving;
+  const double last = p.appearance + p.refinements * p.refinement + p.finishing + p.residual + p.saving;
   p.geometry = std::max(0.35 * t, t - polishing - last);
   return p;
 }

@@ -14,7 +14,7 @@ TEST(Plan, SpendsNoMoreThanWasAskedFor) {
         options.seconds = seconds;
         const Plan p = plan_of(options, preset_by_name(name), pixels);
         const double sum = p.geometry + p.rounds * (p.polish + p.between) + p.appearance +
-                           p.refinements * p.refinement + p.residual + p.saving;
+                           p.refinements * p.refinement + p.finishing + p.residual + p.saving;
         EXPECT_LE(sum, seconds) << name << " " << pixels;
         EXPECT_GE(p.geometry, 0.35 * seconds) << name << " " << pixels;
       }

@@ -62,7 +62,7 @@ Preset paper() {
   p.appearance.batch = 1024;
   p.appearance.network_rate = 5e-4f;
   p.polish.batch = 1024;
-  p.meshing.resolution = 128;
+  p.meshing.resolution = p.finished.resolution = 128;
   p.iterations = 200000;
   p.resolution_from_views = false;
   p.most_hits = p.residual_hits = 200000;
@@ -91,6 +91,7 @@ void fit_to_footprint(Preset& p, double footprint) {
   sdf.log2_table = finest > 330 ? 17 : 15;
   albedo.log2_table = finest > 330 ? 19 : 16;
   p.meshing.resolution = finest > 330 ? 256 : finest > 140 ? 192 : 96;
+  p.finished.resolution = p.meshing.resolution * 3 / 2;
 }
 
 }  // namespace cei3d

@@ -15,7 +15,8 @@ struct Preset {
   GeometryOptions geometry;
   AppearanceOptions appearance;
   PolishOptions polish;
-  MeshingOptions meshing;
+  MeshingOptions meshing;          // of what is fitted: light and material have unknowns by vertex
+  MeshingOptions finished;         // of the object in the end: its silhouettes are those of its mesh
   int iterations;                  // of the geometry stage when neither a time nor a number is asked for
   bool resolution_from_views;      // grids as fine as the pixels: finest_resolution and log2_table follow the
                                    // capture

@@ -278,7 +278,7 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   AppearanceResult result = fit_appearance(device, standing.input(), appearance, progress);
   stop_if_cancelled(progress);
   for (int round = 1; round <= plan.refinements; ++round) {
-    if (progress.left() < plan.refinement + plan.residual) break;
+    if (progress.left() < plan.refinement + plan.finishing + plan.residual) break;
     standing.hits = {};  // not both at a time
     standing.hits =
         object_hits(device, *scene.sdf, *standing.surface, views.train, preset.most_hits, uint64_t(round));
@@ -288,6 +288,13 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
   scene.light = std::move(result.light);
   scene.material = result.material;
   scene.albedo = std::move(result.albedo);
+  standing.hits = {};  // no two meshes' at a time
+  if (plan.finish) {
+    progress.report({"finer mesh", 0.98, -1, ""});
+    scene.surface = std::make_shared<const Surface>(extract_mesh(device, *scene.sdf, preset.finished));
+    standing.surface = scene.surface;
+    stop_if_cancelled(progress);
+  }
   if (plan.residual_steps > 0) {
     ResidualOptions residual;
     // Late: half of it, which the training of residuals needs to be worth anything.
@@ -295,9 +302,8 @@ Scene reconstruct(const Device& device, const Capture& capture, const ImageSourc
     residual.seconds = plan.residual > 0 ? std::clamp(left, 0.5 * plan.residual, plan.residual) : 0;
     residual.steps = plan.residual_steps;
     residual.seed = options.seed;
-    standing.hits = {};  // not both at a time
     standing.hits =
-        object_hits(device, *scene.sdf, *standing.surface, views.train, plan.residual_hits, kResidualSubset);
+        object_hits(device, *scene.sdf, *scene.surface, views.train, plan.residual_hits, kResidualSubset);
     if (auto fitted =
             fit_residual(device, scene, standing.input().samples, standing.hits.views, residual, progress))
       scene.residual = std::make_shared<const Residual>(std::move(*fitted));

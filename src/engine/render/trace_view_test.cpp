@@ -67,19 +67,5 @@ TEST(TraceView, OnlyTheSilhouetteHasMoreSamplesThanAskedFor) {
   EXPECT_LT(finer, 0.2 * 48 * 48);
 }
 
-TEST(TentPoint, HasTheTentsMeanAndVariance) {
-  for (const int samples : {2, 3, 4}) {
-    double mean = 0, square_sum = 0;
-    const int n = samples * samples;
-    for (int k = 0; k < n; ++k) {
-      const Vec2f p = tent_point(k, samples);
-      mean += (p.x + p.y) / (2 * n);
-      square_sum += (square(p.x - 0.5) + square(p.y - 0.5)) / (2 * n);
-    }
-    EXPECT_NEAR(mean, 0.5, 1e-6);
-    EXPECT_NEAR(square_sum, 1 / 6.0, 1e-6);
-  }
-}
-
 }  // namespace
 }  // namespace cei3d

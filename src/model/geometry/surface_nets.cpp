@@ -2,6 +2,7 @@
 #include "model/geometry/surface_nets.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -12,62 +13,76 @@ namespace cei3d {
 
 namespace {
 
-// Signed distances at the corners of a grid, exact near the surface, of the right sign elsewhere.
-struct CornerGrid {
-  int n;  // corners along an axis
-  std::vector<float> value;
-  size_t index(int x, int y, int z) const { return (size_t(z) * n + y) * n + x; }
-  Vec3f position(int x, int y, int z) const {
+// Signed distances at the corners of a grid over [-1, 1]^3, exact near the surface, of the right sign
+// elsewhere. Made a layer at a time: the whole of a fine grid would be the largest thing in memory.
+class Corners {
+ public:
+  Corners(const Device& device, const Field& sdf, int resolution)
+      : device_(device), sdf_(sdf), n_(resolution + 1), coarse_n_(resolution / kFactor + 1) {
+    std::vector<Vec3f> points;
+    for (int z = 0; z < coarse_n_; ++z)
+      for (int y = 0; y < coarse_n_; ++y)
+        for (int x = 0; x < coarse_n_; ++x) points.push_back(position(x, y, z, coarse_n_));
+    coarse_ = first_output(device, sdf, points);
+  }
+  int cells() const { return n_ - 1; }
+  Vec3f position(int x, int y, int z) const { return position(x, y, z, n_); }
+
+  std::vector<float> layer(int z) const {  // [y][x]
+    // Two coarse diagonals: fields are not quite 1-Lipschitz.
+    const float reach = 2.0f * 3.4641f / float(coarse_n_ - 1);
+    std::vector<float> values(size_t(n_) * n_);
+    std::vector<size_t> wanted;
+    std::vector<Vec3f> points;
+    for (int y = 0; y < n_; ++y)
+      for (int x = 0; x < n_; ++x) {
+        const size_t i = size_t(y) * n_ + x;
+        values[i] = coarse_near(x, y, z);
+        if (std::abs(values[i]) > reach) continue;
+        wanted.push_back(i);
+        points.push_back(position(x, y, z));
+      }
+    const std::vector<float> exact = first_output(device_, sdf_, points);
+    for (size_t k = 0; k < wanted.size(); ++k) values[wanted[k]] = exact[k];
+    // Outside the unit sphere there is nothing, whatever the untrained field says.
+    for (int y = 0; y < n_; ++y)
+      for (int x = 0; x < n_; ++x) {
+        float& v = values[size_t(y) * n_ + x];
+        v = std::max(v, length(position(x, y, z)) - 1);
+      }
+    return values;
+  }
+
+ private:
+  static constexpr int kFactor = 4;
+
+  static Vec3f position(int x, int y, int z, int n) {
     const float s = 2.0f / float(n - 1);
     return {float(x) * s - 1, float(y) * s - 1, float(z) * s - 1};
   }
+  float coarse_near(int x, int y, int z) const {
+    const auto near = [](int k) { return size_t(k + kFactor / 2) / kFactor; };
+    return coarse_[(near(z) * coarse_n_ + near(y)) * coarse_n_ + near(x)];
+  }
+
+  const Device& device_;
+  const Field& sdf_;
+  int n_, coarse_n_;  // corners along an axis
+  std::vector<float> coarse_;
 };
 
-CornerGrid sample_corners(const Device& device, const Field& sdf, int resolution) {
-  constexpr int kFactor = 4;
-  CornerGrid coarse{resolution / kFactor + 1, {}}, fine{resolution + 1, {}};
-  std::vector<Vec3f> points;
-  for (int z = 0; z < coarse.n; ++z)
-    for (int y = 0; y < coarse.n; ++y)
-      for (int x = 0; x < coarse.n; ++x) points.push_back(coarse.position(x, y, z));
-  coarse.value = first_output(device, sdf, points);
-
-  const float reach =
-      2.0f * 3.4641f / float(coarse.n - 1);  // two coarse half-diagonals: fields are not quite 1-Lipschitz
-  fine.value.assign(size_t(fine.n) * fine.n * fine.n, 0);
-  std::vector<size_t> wanted;
-  points.clear();
-  for (int z = 0; z < fine.n; ++z)
-    for (int y = 0; y < fine.n; ++y)
-      for (int x = 0; x < fine.n; ++x) {
-        const auto near = [](int k) { return (k + kFactor / 2) / kFactor; };
-        const float c = coarse.value[coarse.index(near(x), near(y), near(z))];
-        fine.value[fine.index(x, y, z)] = c;
-        if (std::abs(c) > reach) continue;
-        wanted.push_back(fine.index(x, y, z));
-        points.push_back(fine.position(x, y, z));
-      }
-  const std::vector<float> exact = first_output(device, sdf, points);
-  for (size_t i = 0; i < wanted.size(); ++i) fine.value[wanted[i]] = exact[i];
-  // Outside the unit sphere there is nothing, whatever the untrained field says.
-  for (int z = 0; z < fine.n; ++z)
-    for (int y = 0; y < fine.n; ++y)
-      for (int x = 0; x < fine.n; ++x) {
-        const float outside = length(fine.position(x, y, z)) - 1;
-        float& v = fine.value[fine.index(x, y, z)];
-        v = std::max(v, outside);
-      }
-  return fine;
+// The values at a cell's corners; bit 0 of the index is x, bit 1 y, bit 2 z.
+std::array<float, 8> cell_values(const std::vector<float>& bottom, const std::vector<float>& top, int x,
+                                 int y, int n) {
+  std::array<float, 8> f;
+  for (int k = 0; k < 8; ++k) f[k] = (k & 4 ? top : bottom)[size_t(y + (k >> 1 & 1)) * n + x + (k & 1)];
+  return f;
 }
 
-// Mean of the zero crossings on the cell's edges; false when the surface does not pass.
-bool cell_vertex(const CornerGrid& g, int x, int y, int z, Vec3f& out) {
-  float f[8];
-  int inside = 0;
-  for (int k = 0; k < 8; ++k) {
-    f[k] = g.value[g.index(x + (k & 1), y + (k >> 1 & 1), z + (k >> 2))];
-    inside += f[k] < 0;
-  }
+// Mean of the zero crossings on the cell's edges, in cells from its low corner; false when the surface does
+// not pass.
+bool cell_vertex(const std::array<float, 8>& f, Vec3f& out) {
+  const auto inside = std::count_if(f.begin(), f.end(), [](float v) { return v < 0; });
   if (inside == 0 || inside == 8) return false;
   Vec3f sum{0, 0, 0};
   int count = 0;
@@ -80,47 +95,64 @@ bool cell_vertex(const CornerGrid& g, int x, int y, int z, Vec3f& out) {
       sum += p;
       ++count;
     }
-  const Vec3f lo = g.position(x, y, z);
-  out = lo + sum * (2.0f / float(g.n - 1) / float(count));
+  out = sum * (1 / float(count));
   return true;
 }
 
-Mesh net_of(const CornerGrid& g) {
+// Vertices by cell of two layers: the one below a layer of corners and the one above it.
+struct VertexLayers {
+  std::vector<uint32_t> below, above;  // [y][x]
+};
+
+// Every grid edge that crosses the surface joins the four cells around it. Edges: those of the corners
+// `bottom`, and from there up to `top`.
+void join_cells(const VertexLayers& vertices, const std::vector<float>& bottom, const std::vector<float>& top,
+                int cells, Mesh& mesh) {
+  const int n = cells + 1;
+  for (int y = 1; y < cells; ++y)
+    for (int x = 1; x < cells; ++x)
+      for (int axis = 0; axis < 3; ++axis) {
+        const size_t corner = size_t(y) * n + x;
+        const bool here = bottom[corner] < 0;
+        const bool there = (axis == 0   ? bottom[corner + 1]
+                            : axis == 1 ? bottom[corner + n]
+                                        : top[corner]) < 0;
+        if (here == there) continue;
+        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+        uint32_t q[4];
+        for (int k = 0; k < 4; ++k) {
+          int back[3] = {0, 0, 0};
+          back[u] = k == 0 || k == 3;
+          back[v] = k == 0 || k == 1;
+          const std::vector<uint32_t>& layer = back[2] ? vertices.below : vertices.above;
+          q[k] = layer[size_t(y - back[1]) * cells + size_t(x - back[0])];
+        }
+        if (!here) std::swap(q[1], q[3]);
+        mesh.triangles.push_back({q[0], q[1], q[2]});
+        mesh.triangles.push_back({q[0], q[2], q[3]});
+      }
+}
+
+Mesh net_of(const Corners& corners) {
   Mesh mesh;
-  constexpr uint32_t kNone = ~0u;
-  const int cells = g.n - 1;
-  std::vector<uint32_t> vertex(size_t(cells) * cells * cells, kNone);
-  const auto cell = [&](int x, int y, int z) -> uint32_t& {
-    return vertex[(size_t(z) * cells + y) * cells + x];
-  };
-  for (int z = 0; z < cells; ++z)
+  const int cells = corners.cells();
+  const float size = 2.0f / float(cells);
+  VertexLayers vertices;
+  std::vector<float> bottom = corners.layer(0);
+  for (int z = 0; z < cells; ++z) {
+    std::vector<float> top = corners.layer(z + 1);
+    vertices.above.assign(size_t(cells) * cells, ~0u);
     for (int y = 0; y < cells; ++y)
       for (int x = 0; x < cells; ++x) {
-        Vec3f p;
-        if (!cell_vertex(g, x, y, z, p)) continue;
-        cell(x, y, z) = uint32_t(mesh.positions.size());
-        mesh.positions.push_back(p);
+        Vec3f in_cell;
+        if (!cell_vertex(cell_values(bottom, top, x, y, cells + 1), in_cell)) continue;
+        vertices.above[size_t(y) * cells + x] = uint32_t(mesh.positions.size());
+        mesh.positions.push_back(corners.position(x, y, z) + in_cell * size);
       }
-  // Every grid edge that crosses the surface joins the four cells around it.
-  for (int z = 1; z < cells; ++z)
-    for (int y = 1; y < cells; ++y)
-      for (int x = 1; x < cells; ++x)
-        for (int axis = 0; axis < 3; ++axis) {
-          const bool here = g.value[g.index(x, y, z)] < 0;
-          const bool there = g.value[g.index(x + (axis == 0), y + (axis == 1), z + (axis == 2))] < 0;
-          if (here == there) continue;
-          const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-          uint32_t q[4];
-          for (int k = 0; k < 4; ++k) {
-            int c[3] = {x, y, z};
-            c[u] -= k == 0 || k == 3;
-            c[v] -= k == 0 || k == 1;
-            q[k] = cell(c[0], c[1], c[2]);
-          }
-          if (!here) std::swap(q[1], q[3]);
-          mesh.triangles.push_back({q[0], q[1], q[2]});
-          mesh.triangles.push_back({q[0], q[2], q[3]});
-        }
+    if (z > 0) join_cells(vertices, bottom, top, cells, mesh);
+    std::swap(vertices.below, vertices.above);
+    bottom = std::move(top);
+  }
   return mesh;
 }
 
@@ -154,7 +186,7 @@ void drop_small_parts(Mesh& mesh, float smallest_share) {
 }  // namespace
 
 Mesh extract_mesh(const Device& device, const Field& sdf, const MeshingOptions& options) {
-  Mesh mesh = net_of(sample_corners(device, sdf, options.resolution));
+  Mesh mesh = net_of(Corners(device, sdf, options.resolution));
   if (mesh.triangles.empty())
     fail("the reconstructed field has no surface: the object was lost during training");
   drop_small_parts(mesh, options.smallest_part);
