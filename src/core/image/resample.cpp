@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/base/error.h"
-#include "core/math/sub_pixel.h"
 
 namespace cei3d {
 namespace {
@@ -34,23 +33,6 @@ Image downscale(const Image& image, int n) {
   Image out(image.width / n, image.height / n, image.channels);
   for (int y = 0; y < out.height; ++y)
     for (int x = 0; x < out.width; ++x) mean_of_block(image, x * n, y * n, n, out.at(x, y));
-  return out;
-}
-
-Image tent_downscale(const Image& image, int n) {
-  Image out(image.width / n, image.height / n, image.channels);
-  for (int y = 0; y < out.height; ++y)
-    for (int x = 0; x < out.width; ++x) {
-      float total = 0;
-      for (int v = std::max(0, (y - 1) * n); v < std::min(image.height, (y + 2) * n); ++v)
-        for (int u = std::max(0, (x - 1) * n); u < std::min(image.width, (x + 2) * n); ++u) {
-          const float w = tent_weight({(float(u) + 0.5f) / float(n) - float(x) - 0.5f,
-                                       (float(v) + 0.5f) / float(n) - float(y) - 0.5f});
-          for (int c = 0; c < image.channels; ++c) out.at(x, y)[c] += w * image.at(u, v)[c];
-          total += w;
-        }
-      for (int c = 0; c < image.channels; ++c) out.at(x, y)[c] /= total;
-    }
   return out;
 }
 

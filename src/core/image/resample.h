@@ -10,8 +10,4 @@ namespace cei3d {
 // Values must be linear. With 4 channels, colour is weighted by alpha (straight alpha in and out).
 Image downscale(const Image& image, int n);
 
-// ... by a tent that reaches from the middle of a pixel to those of its neighbours, as pictures of the object
-// are made (core/math/sub_pixel.h). Without alpha; both sizes multiples of n.
-Image tent_downscale(const Image& image, int n);
-
 }  // namespace cei3d

@@ -33,21 +33,5 @@ TEST(Downscale, ImpossibleFactorIsAnError) {
   EXPECT_THROW(downscale(Image(4, 4, 3), 5), Error);
 }
 
-TEST(TentDownscale, SharesAPixelWithTheNeighbourItIsNearTo) {
-  Image image(8, 2, 1);
-  image.at(3, 0)[0] = image.at(3, 1)[0] = 1;  // a quarter of a pixel beside the middle of the second
-  const Image small = tent_downscale(image, 2);
-  EXPECT_EQ(small.data, (std::vector<float>{0, 0.375f, 0.125f, 0}));
-}
-
-TEST(TentDownscale, KeepsARamp) {
-  Image image(12, 3, 1);
-  for (int y = 0; y < 3; ++y)
-    for (int x = 0; x < 12; ++x) image.at(x, y)[0] = float(x);
-  const Image small = tent_downscale(image, 3);
-  EXPECT_FLOAT_EQ(small.at(1, 0)[0], 4);
-  EXPECT_FLOAT_EQ(small.at(2, 0)[0], 7);
-}
-
 }  // namespace
 }  // namespace cei3d

@@ -7,9 +7,9 @@
 #include "core/base/aligned.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/image/resample.h"
 #include "core/math/loss.h"
 #include "core/math/rng.h"
+#include "core/math/sub_pixel.h"
 #include "core/math/volume.h"
 
 namespace cei3d {
@@ -509,22 +509,28 @@ Image GeometryStage::render_radiance(const Camera& camera, int samples) {
   const Schedule s = schedule_at(1);
   sdf_weights_ = std::make_unique<MlpWeights>(mlp_config(options_.sdf), sdf_.params());
   radiance_weights_ = std::make_unique<MlpWeights>(radiance_config_, radiance_);
-  Image fine(camera.width * samples, camera.height * samples, 3);
-  const int all = fine.width * fine.height;
-  parallel_for((all + kRays - 1) / kRays, [&](int c) {
+  Image out(camera.width, camera.height, 3);
+  const int per_pixel = samples * samples, pixels = kRays / per_pixel, all = camera.width * camera.height;
+  if (pixels < 1) fail("render_radiance: at most 8 samples a pixel and axis");
+  parallel_for((all + pixels - 1) / pixels, [&](int c) {
     RayBatch batch;
-    for (int i = c * kRays; i < std::min(all, (c + 1) * kRays); ++i)
-      batch.rays.push_back(camera.ray((i % fine.width + 0.5) / samples, (i / fine.width + 0.5) / samples));
+    for (int i = c * pixels; i < std::min(all, (c + 1) * pixels); ++i)
+      for (int k = 0; k < per_pixel; ++k) {
+        const Vec2f at = sub_pixel(k, samples);
+        batch.rays.push_back(camera.ray(i % camera.width + at.x, i / camera.width + at.y));
+      }
     batch.count = int(batch.rays.size());
     batch.backgrounds.assign(batch.count, kWhite);
     work_.with([&](Work& w) {
       gather_samples(s, batch, w, 0, false);
       forward(s, batch, w);
-      for (int r = 0; r < batch.count; ++r)
-        for (int k = 0; k < 3; ++k) fine.data[(size_t(c) * kRays + r) * 3 + k] = w.pixel[r][k];
+      for (int r = 0; r < batch.count; ++r) {
+        const int i = c * pixels + r / per_pixel;
+        for (int k = 0; k < 3; ++k) out.data[size_t(i) * 3 + k] += w.pixel[r][k] / float(per_pixel);
+      }
     });
   });
-  return tent_downscale(fine, samples);
+  return out;
 }
 
 void GeometryStage::save(Tensors& out) const {

@@ -81,8 +81,7 @@ class GeometryStage {
   GeometryStats step(int64_t step, double u, const ValueSlopes& more = {});
   // Loss statistics of random pixels of another store (held-out views), no training.
   GeometryStats evaluate(const PixelStore& held_out, int rays, double u);
-  // The whole view by the radiance field, over white, display-encoded RGB; pixels are those of Frame
-  // (engine/render/render.h). samples: a pixel and axis.
+  // The whole view by the radiance field, over white, display-encoded RGB. samples: a pixel and axis.
   Image render_radiance(const Camera& unit_camera, int samples);
 
   const Field& sdf() const { return sdf_; }

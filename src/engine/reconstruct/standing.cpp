@@ -45,7 +45,8 @@ ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& su
   for (const Pixel& p : pixels.pixels()) inner += inside(p);
   const double keep = std::min(1.0, double(most) / double(std::max<size_t>(inner, 1)));
   ObjectHits out;
-  out.hits.reserve(std::min(most, inner));
+  const auto reserve = [n = std::min(most, inner)](auto&... lists) { (lists.reserve(n), ...); };
+  reserve(out.hits, out.colors, out.clipped, out.views, out.footprints);
   std::vector<Pixel> slab;
   size_t i = 0;
   for (const Pixel& p : pixels.pixels()) {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/render/transport.h"
 
+#include <algorithm>
+#include <numeric>
+
 #include "core/base/parallel.h"
 
 namespace cei3d {
@@ -9,6 +12,7 @@ namespace {
 constexpr float kSolidAngle = 4 * kPi / kSkyDirections;
 constexpr float kStart = 2e-3f;  // as far above the surface as visibility rays start
 constexpr int kGrain = 1024;     // vertices a chunk
+constexpr uint32_t kNone = ~0u;  // a blocker that the longer ray misses
 
 uint32_t nearest_corner(const Mesh& mesh, const Surface::RayHit& h) {
   const auto& t = mesh.triangles[h.triangle];
@@ -27,38 +31,42 @@ std::vector<Vec3f> Transport::per_vertex(F value) const {
   return out;
 }
 
+// Calls visit(direction, its cosine) for those above the vertex's horizon that are not free.
+template <class F>
+void Transport::for_blocked(uint32_t vertex, F visit) const {
+  if (!covers(vertex)) return;
+  const auto& sky = sky_directions();
+  for (int k = 0; k < kSkyDirections; ++k) {
+    const float c = dot(surface_.mesh().normals[vertex], sky[k]);
+    if (c > 0.02f && !surface_.sees(vertex, k)) visit(k, c);
+  }
+}
+
 Transport::Transport(const Surface& surface, std::vector<uint8_t> which)
     : surface_(surface), which_(std::move(which)) {
   const Mesh& mesh = surface.mesh();
-  const auto& sky = sky_directions();
   const int n = int(mesh.positions.size());
   start_.assign(n + 1, 0);
+  parallel_ranges(n, kGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) for_blocked(v, [&](int, float) { ++start_[v + 1]; });
+  });
+  std::partial_sum(start_.begin(), start_.end(), start_.begin());
+  blockers_.resize(start_.back());
   std::vector<Vec3f> origins, directions;
   std::vector<Surface::RayHit> hits;
   for (int begin = 0; begin < n; begin += 16 * kGrain) {
     const int end = std::min(n, begin + 16 * kGrain);
     origins.clear();
     directions.clear();
-    const size_t first = blockers_.size();
-    for (int v = begin; v < end; ++v) {
-      for (int k = 0; k < kSkyDirections && covers(v); ++k) {
-        const float c = dot(mesh.normals[v], sky[k]);
-        if (c <= 0.02f || surface.sees(v, k)) continue;
+    for (int v = begin; v < end; ++v)
+      for_blocked(v, [&](int k, float) {
         origins.push_back(mesh.positions[v] + mesh.normals[v] * kStart);
-        directions.push_back(sky[k]);
-        blockers_.push_back({0, c * kSolidAngle});
-      }
-      start_[v + 1] = uint32_t(blockers_.size());
-    }
+        directions.push_back(sky_directions()[k]);
+      });
     hits.resize(origins.size());
     surface.intersect(origins, directions, 0, hits);
-    for (size_t i = 0; i < hits.size(); ++i) {
-      Blocker& b = blockers_[first + i];
-      if (hits[i].t < 0)
-        b.weight = 0;
-      else
-        b.vertex = nearest_corner(mesh, hits[i]);
-    }
+    for (size_t i = 0; i < hits.size(); ++i)
+      blockers_[start_[begin] + i] = hits[i].t < 0 ? kNone : nearest_corner(mesh, hits[i]);
   }
 }
 
@@ -91,8 +99,10 @@ std::vector<Vec3f> Transport::open_sky(const SkyRadiance& radiance) const {
 std::vector<Vec3f> Transport::bounce(std::span<const Vec3f> radiance) const {
   return per_vertex([&](int v) {
     Vec3f sum{0, 0, 0};
-    for (uint32_t i = start_[v]; i < start_[v + 1]; ++i)
-      sum += radiance[blockers_[i].vertex] * blockers_[i].weight;
+    uint32_t i = start_[v];
+    for_blocked(v, [&](int, float cosine) {
+      if (const uint32_t from = blockers_[i++]; from != kNone) sum += radiance[from] * (cosine * kSolidAngle);
+    });
     return sum;
   });
 }

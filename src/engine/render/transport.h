@@ -33,15 +33,14 @@ class Transport {
  private:
   template <class F>
   std::vector<Vec3f> per_vertex(F value) const;
+  template <class F>
+  void for_blocked(uint32_t vertex, F visit) const;
 
   const Surface& surface_;
   std::vector<uint8_t> which_;
-  struct Blocker {
-    uint32_t vertex;  // nearest to the point that blocks the direction
-    float weight;     // cosine times the direction's solid angle
-  };
   std::vector<uint32_t> start_;  // #V + 1
-  std::vector<Blocker> blockers_;
+  std::vector<uint32_t>
+      blockers_;  // vertices nearest to what blocks each vertex's directions, in their order
 };
 
 }  // namespace cei3d
