@@ -21,8 +21,9 @@ constexpr double kResidualHitsASecond = 4500;       // on so many hits for each 
 constexpr size_t kResidualHitsUntimed = 1000000;    // or so many; shading
 constexpr double kHitSeconds = 4e-6;                // one takes so long
 constexpr double kSaving = 8, kSavingShare = 0.03;  // seconds; of the run: what is left at the end
-constexpr double kFinishing = 15;  // seconds of a mesh of 384 cells, with what its vertices see
-constexpr double kLongRun = 120;   // seconds; shorter runs spend them on the surface
+constexpr double kResidualRun = 120;                // seconds; shorter runs spend them on the surface
+constexpr double kFinishing = 15;     // seconds of a mesh of 384 cells, with what its vertices see,
+constexpr double kFinishedRun = 300;  // in runs of so many
 
 }  // namespace
 
@@ -45,14 +46,14 @@ Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pix
   p.between = kBetweenRounds * preset.stretch;
   p.rounds = t >= 180 ? 2 : t >= 45 ? 1 : 0;
   p.polish_steps = kPolishSteps;
-  p.residual_steps = t >= kLongRun ? kResidualSteps : 0;
+  p.residual_steps = t >= kResidualRun ? kResidualSteps : 0;
   p.polish = std::min(kMostPolish * preset.stretch, 0.1 * t);
   while (p.rounds * (p.polish + p.between) > 0.3 * t) --p.rounds;
   p.appearance = std::min(appearance, 0.2 * t);
   p.residual_hits = std::min({preset.residual_hits, size_t(kResidualHitsASecond * t), pixels});
-  p.finish = has_finer && t >= kLongRun;
+  p.finish = has_finer && t >= kFinishedRun;
   if (p.finish) p.finishing = kFinishing * square(preset.finished.resolution / 384.0) * preset.stretch;
-  if (t >= kLongRun)
+  if (t >= kResidualRun)
     p.residual = std::min(kMostResidual, 0.1 * t) + kHitSeconds * preset.stretch * double(p.residual_hits);
   p.saving = std::max(kSaving, kSavingShare * t);
   const double wanted = double(pixels) / kPixelsASecond - kMostAppearance,

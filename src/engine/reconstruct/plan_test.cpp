@@ -12,9 +12,13 @@ TEST(Plan, SpendsNoMoreThanWasAskedFor) {
       for (const size_t pixels : {300000u, 3000000u, 13000000u}) {
         ReconstructOptions options;
         options.seconds = seconds;
-        const Plan p = plan_of(options, preset_by_name(name), pixels);
+        Preset preset = preset_by_name(name);
+        fit_to_footprint(preset, 0.004);
+        const Plan p = plan_of(options, preset, pixels);
         const double sum = p.geometry + p.rounds * (p.polish + p.between) + p.appearance +
                            p.refinements * p.refinement + p.finishing + p.residual + p.saving;
+        EXPECT_EQ(p.finish, seconds >= 300 && preset.resolution_from_views);  // "paper" has one mesh
+        EXPECT_EQ(p.finishing > 0, p.finish);
         EXPECT_LE(sum, seconds) << name << " " << pixels;
         EXPECT_GE(p.geometry, 0.35 * seconds) << name << " " << pixels;
       }

@@ -38,8 +38,8 @@ std::vector<Hit> trace_rays(const Device&, const Scene&, std::span<const Ray> ra
                             std::vector<uint32_t>& ray_of_hit);
 
 // camera: unit-sphere frame. samples: a pixel and axis, at most 16; where the silhouette passes twice as
-// many, unless a single one is asked for: half of a picture's error is there, in a few per cent of its
-// pixels.
+// many, unless a single one is asked for: those are few pixels, and coverage shows every missing step
+// (decisions/0015).
 GBuffer trace_view(const Device&, const Scene&, const Camera& camera, int samples = 2);
 
 // A pixel is the tent-weighted mean of the samples within one pixel of its centre, which is close to the
