@@ -43,13 +43,14 @@ void Lighting::set_lobes(const SgMixture& light) {
                          l.mu.x,   l.mu.y,   l.mu.z};
     for (int j = 0; j < 7; ++j) lobe_planes_[size_t(j) * padded_ + k] = row[j];
   }
+  irradiance_ = IrradianceMap(device_, {lobe_planes_.data(), n_lobes_, padded_});
 }
 
 // Planes of one chunk of hits.
 struct Lighting::Block {
-  std::vector<float> normals, mirrors, irradiance, reflected;
+  std::vector<float> mirrors, reflected;
   Block() {
-    for (auto* v : {&normals, &mirrors, &irradiance, &reflected}) v->assign(size_t(3) * kBlock, 0);
+    for (auto* v : {&mirrors, &reflected}) v->assign(size_t(3) * kBlock, 0);
   }
 };
 
@@ -73,16 +74,10 @@ HitLight Lighting::light_at(std::span<const Hit> hits, const Material& material,
   parallel_ranges(int(hits.size()), kBlock, [&](int begin, int end) {
     Block b;
     for (int i = begin; i < end; ++i) {
-      const Hit& h = hits[i];
-      const Vec3f r = mirror_direction(h);
-      const Vec3f soft = normalize(at_corners(mesh.normals, mesh.triangles[h.triangle], h.b1, h.b2));
-      for (int c = 0; c < 3; ++c) {
-        b.normals[size_t(c) * kBlock + i - begin] = soft[c];
-        b.mirrors[size_t(c) * kBlock + i - begin] = r[c];
-      }
+      const Vec3f r = mirror_direction(hits[i]);
+      for (int c = 0; c < 3; ++c) b.mirrors[size_t(c) * kBlock + i - begin] = r[c];
     }
     const int n = (end - begin + kPanel - 1) / kPanel * kPanel;
-    device_.launch<SgIrradiance>({lobes, kBlock, b.normals.data(), b.irradiance.data()}, n);
     SgReflection::Args reflection{lobes, {}, {}, kBlock, b.mirrors.data(), b.reflected.data()};
     set_reflection_lobe(roughness, reflection);
     device_.launch<SgReflection>(reflection, n);
@@ -90,13 +85,14 @@ HitLight Lighting::light_at(std::span<const Hit> hits, const Material& material,
     for (int i = begin; i < end; ++i) {
       const Hit& h = hits[i];
       const auto& t = mesh.triangles[h.triangle];
-      const auto plane = [&](const std::vector<float>& p) {
-        return Vec3f{p[i - begin], p[kBlock + i - begin], p[2 * kBlock + i - begin]};
-      };
+      const Vec3f soft = normalize(at_corners(mesh.normals, t, h.b1, h.b2));
+      const Vec3f sky{b.reflected[i - begin], b.reflected[kBlock + i - begin],
+                      b.reflected[2 * kBlock + i - begin]};
       out.openness[i] = at_corners(vertices_.openness, t, h.b1, h.b2);
-      out.irradiance[i] = plane(b.irradiance) * out.openness[i] + at_corners(vertices_.bounce, t, h.b1, h.b2);
+      out.irradiance[i] =
+          irradiance_.at(soft) * out.openness[i] + at_corners(vertices_.bounce, t, h.b1, h.b2);
       out.open_mirror[i] = max(way[i - begin].open, 0.0f);
-      out.reflected[i] = plane(b.reflected) * out.open_mirror[i] + way[i - begin].radiance;
+      out.reflected[i] = sky * out.open_mirror[i] + way[i - begin].radiance;
       const float nv = dot(h.normal, h.to_camera);
       out.env[i] = env_brdf_at(env_table, nv);
       out.diffuse_view[i] = diffuse_view(clamp(nv, 0.0f, 1.0f), roughness);

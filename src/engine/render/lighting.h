@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/compute/device.h"
+#include "engine/render/irradiance_map.h"
 #include "engine/render/self_reflection.h"
 #include "engine/render/vertex_light.h"
 #include "model/light/sg_mixture.h"
@@ -75,6 +76,7 @@ class Lighting {
   Material material_;
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
+  IrradianceMap irradiance_;
   VertexLight vertices_;
   std::vector<Vec2f> env_table_;  // scale and bias of the reflectance by the viewer's cosine
 };

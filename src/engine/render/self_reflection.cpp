@@ -12,10 +12,18 @@ namespace cei3d {
 namespace {
 
 constexpr float kLift = 2e-3f;  // rays start this far above the surface
-// Rays of the reflection lobe, fewer for a dielectric, which shows little of it. Every so many of them is a
-// probe: the others are cast only where one of the probes meets something.
-constexpr int kMetalRays = 24, kDielectricRays = 10, kMetalProbe = 3, kDielectricProbe = 2;
+// Rays of the reflection lobe of a material: the wider it is, the more. Metals show more of it than
+// dielectrics, which have as few as there can be where they reflect less than kFaint.
+constexpr float kMetalRays = 80, kDielectricRays = 28;  // by roughness
+constexpr int kMostMetalRays = 24, kMostDielectricRays = 10, kLeastRays = 4;
+constexpr float kFaint = 0.02f;
 constexpr float kGrazing = 0.02f;  // least cosine of a reflection that another reflection sees
+
+int lobe_rays(const Material& material) {
+  const bool metal = material.metalness > 0;
+  const float rays = material.roughness * (metal ? kMetalRays : kDielectricRays);
+  return std::clamp(int(rays + 0.5f), kLeastRays, metal ? kMostMetalRays : kMostDielectricRays);
+}
 
 // Directions of equal weight that stand for the reflection lobe of a roughness around +Z: one ring at the
 // radius that splits each equal share of its energy. 1 / (1 + x)^2 has the cumulative share x / (1 + x).
@@ -36,30 +44,6 @@ Vec3f turned(Vec3f z, Vec3f d) {  // d in a frame whose third axis is z
   return x * d.x + y * d.y + z * d.z;
 }
 
-// Ray k of hit i is at [i * #lobe + k].
-struct LobeRays {
-  std::vector<Vec3f> origins, directions;
-  std::vector<Surface::RayHit> far;
-};
-
-LobeRays cast(const Surface& surface, std::span<const Hit> hits, std::span<const Vec3f> lobe) {
-  LobeRays rays;
-  rays.origins.reserve(hits.size() * lobe.size());
-  rays.directions.reserve(hits.size() * lobe.size());
-  for (const Hit& h : hits) {
-    const Vec3f r = mirror_direction(h);
-    for (const Vec3f& d : lobe) {
-      const Vec3f ray =
-          turned(r, d);  // below the horizon: folded up, since masking is in the reflectance already
-      rays.origins.push_back(h.position + h.normal * kLift);
-      rays.directions.push_back(ray - h.normal * (2 * min(dot(ray, h.normal), 0.0f)));
-    }
-  }
-  rays.far.resize(rays.origins.size());
-  surface.intersect(rays.origins, rays.directions, 0, rays.far);
-  return rays;
-}
-
 }  // namespace
 
 SelfReflection::SelfReflection(const Device& device, const Surface& surface, const VertexLight& vertices,
@@ -72,12 +56,9 @@ SelfReflection::SelfReflection(const Device& device, const Surface& surface, con
       material_(material),
       roughness_(max(material.roughness, kLeastRoughness)),
       env_table_(env_table),
-      colors_(colors) {
-  const bool metal = material.metalness > 0;
-  const std::vector<Vec3f> lobe = lobe_directions(roughness_, metal ? kMetalRays : kDielectricRays);
-  const size_t probe = metal ? kMetalProbe : kDielectricProbe;
-  for (size_t k = 0; k < lobe.size(); ++k) (k % probe == 1 ? probes_ : others_).push_back(lobe[k]);
-}
+      colors_(colors),
+      lobe_(lobe_directions(roughness_, lobe_rays(material))),
+      faint_lobe_(lobe_directions(roughness_, kLeastRays)) {}
 
 // A point that a ray met, looked at from where the ray began.
 Hit SelfReflection::met_by(Vec3f origin, Vec3f direction, const Surface::RayHit& r) const {
@@ -125,35 +106,60 @@ std::vector<Vec3f> SelfReflection::shown(std::span<const Hit> met) const {
   return out;
 }
 
-std::vector<SelfReflection::Seen> SelfReflection::seen_by(std::span<const Hit> hits) const {
-  std::vector<Seen> out(hits.size());
-  const LobeRays probes = cast(surface_, hits, probes_);
-  std::vector<Hit> near;
-  std::vector<uint32_t> index;
-  for (size_t i = 0; i < hits.size(); ++i)
-    for (size_t k = 0; k < probes_.size(); ++k)
-      if (probes.far[i * probes_.size() + k].t >= 0) {
-        near.push_back(hits[i]);
-        index.push_back(uint32_t(i));
-        break;
-      }
-  const LobeRays others = cast(surface_, near, others_);
-  std::vector<Hit> met;
-  std::vector<uint32_t> owner;
-  const auto add = [&](const LobeRays& rays, size_t ray, uint32_t hit) {
-    if (rays.far[ray].t < 0) return;
-    met.push_back(met_by(rays.origins[ray], rays.directions[ray], rays.far[ray]));
-    owner.push_back(hit);
-  };
-  for (size_t n = 0; n < near.size(); ++n) {
-    for (size_t k = 0; k < probes_.size(); ++k) add(probes, index[n] * probes_.size() + k, index[n]);
-    for (size_t k = 0; k < others_.size(); ++k) add(others, n * others_.size() + k, index[n]);
+// Rays of reflection lobes, but those that nothing can be in the way of.
+struct SelfReflection::Rays {
+  std::vector<uint32_t> owner;  // the hit that each is of
+  std::vector<float> share;     // of its lobe
+  std::vector<Vec3f> origins, directions;
+
+  void reserve(size_t n) {
+    owner.reserve(n);
+    share.reserve(n);
+    origins.reserve(n);
+    directions.reserve(n);
   }
+};
+
+bool SelfReflection::faint(const Hit& h) const {
+  if (material_.metalness > 0) return false;
+  const Vec2f env = env_brdf_at(env_table_, dot(h.normal, h.to_camera));
+  return kDielectricF0 * material_.specular * env.x + env.y < kFaint;
+}
+
+void SelfReflection::add_lobe(const Hit& h, uint32_t owner, Rays& rays) const {
+  const std::vector<Vec3f>& lobe = faint(h) ? faint_lobe_ : lobe_;
+  const Vec3f r = mirror_direction(h);
+  for (const Vec3f& d : lobe) {
+    Vec3f ray = turned(r, d);
+    // Below the horizon: folded up, since masking is in the reflectance already.
+    ray = ray - h.normal * (2 * min(dot(ray, h.normal), 0.0f));
+    if (surface_.open(h.triangle, ray)) continue;
+    rays.owner.push_back(owner);
+    rays.share.push_back(1 / float(lobe.size()));
+    rays.origins.push_back(h.position + h.normal * kLift);
+    rays.directions.push_back(ray);
+  }
+}
+
+std::vector<SelfReflection::Seen> SelfReflection::seen_by(std::span<const Hit> hits) const {
+  Rays rays;
+  rays.reserve(hits.size() * lobe_.size());
+  for (size_t i = 0; i < hits.size(); ++i) add_lobe(hits[i], uint32_t(i), rays);
+  std::vector<Surface::RayHit> far(rays.origins.size());
+  surface_.intersect(rays.origins, rays.directions, 0, far);
+  std::vector<Hit> met;
+  std::vector<size_t> along;  // which ray each was met by
+  for (size_t k = 0; k < far.size(); ++k)
+    if (far[k].t >= 0) {
+      met.push_back(met_by(rays.origins[k], rays.directions[k], far[k]));
+      along.push_back(k);
+    }
   const std::vector<Vec3f> radiance = shown(met);
-  const float share = 1.0f / float(probes_.size() + others_.size());
+  std::vector<Seen> out(hits.size());
   for (size_t k = 0; k < met.size(); ++k) {
-    out[owner[k]].open -= share;
-    out[owner[k]].radiance += radiance[k] * share;
+    Seen& seen = out[rays.owner[along[k]]];
+    seen.open -= rays.share[along[k]];
+    seen.radiance += radiance[k] * rays.share[along[k]];
   }
   return out;
 }

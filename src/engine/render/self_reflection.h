@@ -29,6 +29,9 @@ class SelfReflection {
   std::vector<Seen> seen_by(std::span<const Hit> hits) const;
 
  private:
+  struct Rays;
+  bool faint(const Hit&) const;  // shows next to nothing of what is mirrored there
+  void add_lobe(const Hit&, uint32_t owner, Rays&) const;
   Hit met_by(Vec3f origin, Vec3f direction, const Surface::RayHit&) const;
   std::vector<Vec3f> mirrored(std::span<const Hit> met) const;
   std::vector<Vec3f> shown(std::span<const Hit> met) const;
@@ -45,7 +48,7 @@ class SelfReflection {
   float roughness_;  // that shading can take
   const std::vector<Vec2f>& env_table_;
   std::span<const Vec3f> colors_;
-  std::vector<Vec3f> probes_, others_;  // directions of the reflection lobe around +Z: cast first, then
+  std::vector<Vec3f> lobe_, faint_lobe_;  // directions of the reflection lobe around +Z; where it is faint
 };
 
 }  // namespace cei3d

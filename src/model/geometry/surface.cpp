@@ -21,16 +21,6 @@ namespace {
 constexpr int kRowBytes = kSkyDirections / 8;
 constexpr float kLift = 2e-3f;  // visibility rays start this far above the surface, unit-sphere units
 
-std::vector<Vec3f> fibonacci_sphere(int n) {
-  std::vector<Vec3f> d(n);
-  const double golden = kPi * (3 - std::sqrt(5.0));
-  for (int i = 0; i < n; ++i) {
-    const double z = 1 - (2 * i + 1.0) / n, r = std::sqrt(1 - z * z), a = golden * i;
-    d[i] = {float(r * std::cos(a)), float(r * std::sin(a)), float(z)};
-  }
-  return d;
-}
-
 // Normals of a mesh that brought none: face normals weighted by their angle at the vertex. [Thuermer and
 // Wuethrich 1998]
 std::vector<Vec3f> angle_weighted_normals(const Mesh& mesh) {
@@ -68,11 +58,6 @@ RTCRay make_ray(Vec3f o, Vec3f d, float t_min) {
 }
 
 }  // namespace
-
-const std::vector<Vec3f>& sky_directions() {
-  static const std::vector<Vec3f> directions = fibonacci_sphere(kSkyDirections);
-  return directions;
-}
 
 struct Surface::Bvh {
   RTCDevice device = nullptr;
@@ -181,6 +166,13 @@ Surface::Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> look
 }
 
 Surface::~Surface() = default;
+
+bool Surface::open(uint32_t triangle, Vec3f direction) const {
+  for (const uint16_t k : sky_around(direction))
+    for (const uint32_t corner : mesh_.triangles[triangle])
+      if (!sees(corner, k)) return false;
+  return true;
+}
 
 void Surface::intersect(std::span<const Vec3f> origins, std::span<const Vec3f> directions, float t_min,
                         std::span<RayHit> out) const {

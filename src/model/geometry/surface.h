@@ -9,13 +9,9 @@
 
 #include "model/geometry/hit.h"
 #include "model/geometry/mesh.h"
+#include "model/geometry/sky.h"
 
 namespace cei3d {
-
-inline constexpr int kSkyDirections = 512;  // directions a visibility row has bits for
-
-// Fixed set of near-uniform directions (spherical Fibonacci), the columns of a visibility table.
-const std::vector<Vec3f>& sky_directions();
 
 class Surface {
  public:
@@ -34,6 +30,9 @@ class Surface {
   bool sees(uint32_t vertex, int direction) const {
     return visibility_[size_t(vertex) * (kSkyDirections / 8) + direction / 8] >> (direction % 8) & 1;
   }
+  // Nothing is in the way from this triangle along a direction (unit), as far as the table knows: its three
+  // corners see the sky in all of sky_around().
+  bool open(uint32_t triangle, Vec3f direction) const;
 
   struct RayHit {
     float t = -1;  // negative: nothing hit

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/math/rng.h"
 
 namespace cei3d {
 namespace {
@@ -61,6 +62,27 @@ TEST(Surface, ANeighbourHidesItsSolidAngle) {
     if (d.z < 0.1f || std::abs(angle - edge) < 0.03f) continue;
     EXPECT_EQ(s.sees(top, k), angle > edge) << d.x << ' ' << d.y << ' ' << d.z;
   }
+}
+
+TEST(Surface, NothingIsInTheWayWhereItSaysOpen) {
+  const Surface s(join(sphere({0, 0, -0.35f}, 0.5f), sphere({0, 0, 0.5f}, 0.3f)));
+  int open = 0, open_but_met = 0, free = 0;
+  for (uint64_t i = 0; i < 20000; ++i) {
+    Rng rng(4, 0, i);
+    const uint32_t f = rng.below(uint32_t(s.mesh().triangles.size()));
+    const auto& t = s.mesh().triangles[f];
+    const Vec3f normal = at_corners(s.mesh().normals, t, 1.0f / 3, 1.0f / 3);
+    const Vec3f from = at_corners(s.mesh().positions, t, 1.0f / 3, 1.0f / 3) + normalize(normal) * 2e-3f;
+    const Vec3f to = normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()});
+    Surface::RayHit met;
+    s.intersect(std::span(&from, 1), std::span(&to, 1), 0, std::span(&met, 1));
+    free += met.t < 0;
+    if (!s.open(f, to)) continue;
+    ++open;
+    open_but_met += met.t >= 0;
+  }
+  EXPECT_GT(open, free * 2 / 3);  // the rest is near an edge
+  EXPECT_LT(open_but_met, open / 500);
 }
 
 TEST(Surface, ClosestHitsOnASphereAreAnalytic) {
