@@ -136,13 +136,11 @@ void GeometryStage::sample_rays(const PixelStore& store, int64_t step, int first
     Rng rng(seed_, uint64_t(step), uint64_t(first + r));
     batch.pixels[r] = training ? errors_.choose(rng) : rng.below(uint32_t(store.pixels().size()));
     const Pixel& p = store.pixels()[batch.pixels[r]];
-    const FilteredRay filtered = store.filtered_ray(p, rng);
-    batch.rays[r] = filtered.ray;
+    // Not spread over the pixel: each ray is compared with the whole pixel, so that would blur it once more.
+    batch.rays[r] = store.ray(p);
     batch.targets[r] = target_of(p);
     if (!training) continue;
-    // Within the pixel's own square: its rim belongs as much to a neighbour that may show the object.
-    batch.empty[r] =
-        batch.targets[r].alpha == 0 && std::abs(filtered.dx) <= 0.5f && std::abs(filtered.dy) <= 0.5f;
+    batch.empty[r] = batch.targets[r].alpha == 0;
     // Each ray before a colour of its own: only matter that covers it looks right before all of them.
     const Vec3f background{rng.uniform(), rng.uniform(), rng.uniform()};
     batch.backgrounds[r] = background;

@@ -37,9 +37,4 @@ void PixelStore::add_view(const Camera& unit_camera, const Image& image, int rim
   masks_.push_back(std::move(mask));
 }
 
-FilteredRay PixelStore::filtered_ray(const Pixel& p, Rng& rng) const {
-  const float u = rng.uniform() + rng.uniform() - 0.5f, v = rng.uniform() + rng.uniform() - 0.5f;
-  return {cameras_[p.view].ray(p.x + u, p.y + v), u - 0.5f, v - 0.5f};
-}
-
 }  // namespace cei3d

@@ -10,18 +10,12 @@
 
 #include "core/image/image.h"
 #include "core/math/camera.h"
-#include "core/math/rng.h"
 
 namespace cei3d {
 
 struct Pixel {
   uint16_t view, x, y;
   std::array<uint8_t, 4> srgba;  // display-encoded colour, straight alpha
-};
-
-struct FilteredRay {
-  Ray ray;
-  float dx, dy;  // from the pixel's centre, pixels
 };
 
 class PixelStore {
@@ -33,9 +27,10 @@ class PixelStore {
   const std::vector<Pixel>& pixels() const { return pixels_; }
   // The view's alpha > 0.5, row-major.
   const std::vector<std::vector<uint8_t>>& masks() const { return masks_; }
-  // A random ray of one of its pixels, spread like the pixel's own filter: a tent of radius one pixel
-  // (engine/render/render.h).
-  FilteredRay filtered_ray(const Pixel&, Rng&) const;
+  // Through the middle of one of its pixels, or as far away from it as is said, in pixels.
+  Ray ray(const Pixel& p, Vec2f away = {0, 0}) const {
+    return cameras_[p.view].ray(float(p.x) + 0.5f + away.x, float(p.y) + 0.5f + away.y);
+  }
 
  private:
   std::vector<Camera> cameras_;

@@ -85,7 +85,9 @@ float silhouette_level(const Device& device, const Field& sdf, const PixelStore&
   for (size_t i = 0; i < kRays; ++i) {
     Rng rng(seed ^ 0x51f0, 0, i);
     const Pixel& p = pixels[rng.below(uint32_t(pixels.size()))];
-    rays.push_back(store.filtered_ray(p, rng).ray);
+    // Spread like the pixel's own filter, a tent of radius one pixel (core/math/sub_pixel.h).
+    const float u = rng.uniform() + rng.uniform() - 1, v = rng.uniform() + rng.uniform() - 1;
+    rays.push_back(store.ray(p, {u, v}));
     coverage += double(p.srgba[3]) / 255 / double(kRays);
   }
   std::vector<float> values;
