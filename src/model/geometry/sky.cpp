@@ -10,8 +10,8 @@
 namespace cei3d {
 namespace {
 
-constexpr int kCells =
-    64;  // along a side of the octahedron's square: a third as wide as directions are apart
+// Along a side of the octahedron's square: cells at most a third as wide as directions are apart.
+constexpr int kCells = 64;
 
 std::vector<Vec3f> fibonacci_sphere(int n) {
   std::vector<Vec3f> d(n);
