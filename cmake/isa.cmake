@@ -1,11 +1,7 @@
 # core/compute/cpu/run.cpp is compiled once per instruction set, each in its own namespace; the device picks by cpuid.
-function(cei3d_compute path)
+function(cei3d_instruction_sets path)
   cei3d_target_name(${path} target)
-  cei3d_module(${ARGV})
   set(source ${CMAKE_SOURCE_DIR}/src/${path}/cpu/run.cpp)
-  if(NOT EXISTS ${source})
-    return()
-  endif()
   set(isas scalar)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
     list(APPEND isas avx2 avx512)

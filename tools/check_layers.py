@@ -16,7 +16,10 @@ def read_rules(path):
         if not line:
             continue
         name, _, rest = line.partition(':')
-        (third_parties if name.startswith('<') else modules)[name] = rest.split()
+        if name.startswith('<'):
+            third_parties[name] = rest.partition(': ')[2].split()
+        else:
+            modules[name] = rest.split()
     return modules, third_parties
 
 

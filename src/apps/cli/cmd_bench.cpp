@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/command.h"
 #include "apps/cli/parse.h"
-#include "engine/session/bench.h"
+#include "engine/bench/bench.h"
 
 namespace cei3d {
 namespace {

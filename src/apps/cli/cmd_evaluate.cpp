@@ -4,7 +4,7 @@
 #include "apps/cli/command.h"
 #include "apps/cli/parse.h"
 #include "core/base/error.h"
-#include "engine/session/evaluation.h"
+#include "engine/evaluate/evaluation.h"
 
 namespace cei3d {
 namespace {

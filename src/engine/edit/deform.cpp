@@ -7,9 +7,9 @@
 
 #include "core/base/error.h"
 #include "engine/edit/part_vertices.h"
-#include "model/geometry/arap.h"
-#include "model/geometry/geodesic.h"
-#include "model/geometry/surface_gradient.h"
+#include "model/geometry/mesh/arap.h"
+#include "model/geometry/mesh/geodesic.h"
+#include "model/geometry/mesh/surface_gradient.h"
 
 namespace cei3d {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "core/base/error.h"
 #include "engine/edit/part_vertices.h"
-#include "model/geometry/cut.h"
+#include "model/geometry/mesh/cut.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {

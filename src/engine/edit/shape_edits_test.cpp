@@ -11,7 +11,7 @@
 #include "engine/edit/deform.h"
 #include "engine/edit/part_vertices.h"
 #include "engine/edit/remove.h"
-#include "model/geometry/test_meshes.h"
+#include "model/geometry/mesh/test_meshes.h"
 
 namespace cei3d {
 namespace {

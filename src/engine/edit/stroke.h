@@ -7,7 +7,7 @@
 #include "core/image/image.h"
 #include "engine/edit/routing.h"
 #include "engine/render/render.h"
-#include "model/geometry/region.h"
+#include "model/geometry/shape/region.h"
 
 namespace cei3d {
 

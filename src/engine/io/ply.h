@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <string>
 
-#include "model/geometry/mesh.h"
+#include "model/geometry/mesh/mesh.h"
 
 namespace cei3d {
 

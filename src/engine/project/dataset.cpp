@@ -3,7 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
-#include "engine/io/capture.h"
+#include "engine/capture/capture.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;

@@ -4,10 +4,10 @@
 
 #include <string>
 
-#include "engine/reconstruct/appearance_stage.h"
-#include "engine/reconstruct/geometry_stage.h"
-#include "engine/reconstruct/surface_polish.h"
-#include "model/geometry/surface_nets.h"
+#include "engine/reconstruct/appearance/appearance_stage.h"
+#include "engine/reconstruct/appearance/surface_polish.h"
+#include "engine/reconstruct/geometry/geometry_stage.h"
+#include "model/geometry/mesh/surface_nets.h"
 
 namespace cei3d {
 

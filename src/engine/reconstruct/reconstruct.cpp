@@ -7,15 +7,15 @@
 
 #include "core/base/error.h"
 #include "core/math/color.h"
-#include "engine/reconstruct/appearance_stage.h"
-#include "engine/reconstruct/geometry_stage.h"
+#include "engine/reconstruct/appearance/appearance_stage.h"
+#include "engine/reconstruct/appearance/residual_fit.h"
+#include "engine/reconstruct/appearance/surface_polish.h"
+#include "engine/reconstruct/geometry/geometry_stage.h"
+#include "engine/reconstruct/geometry/silhouette_level.h"
 #include "engine/reconstruct/plan.h"
-#include "engine/reconstruct/residual_fit.h"
 #include "engine/reconstruct/run_clock.h"
-#include "engine/reconstruct/silhouette_level.h"
 #include "engine/reconstruct/standing.h"
-#include "engine/reconstruct/start.h"
-#include "engine/reconstruct/surface_polish.h"
+#include "engine/reconstruct/start/start.h"
 
 namespace cei3d {
 

@@ -17,7 +17,7 @@ struct ReconstructOptions {
   uint64_t seed = 1;
   int downscale = 1;   // use images at 1/N of their size
   int test_every = 8;  // hold out every Nth view when the capture has no split; 0: none
-  int views = 0;       // train on so many, spread evenly (engine/io/spread.h); 0: on all
+  int views = 0;       // train on so many, spread evenly (engine/capture/spread.h); 0: on all
 };
 
 // Where the trainer puts its state. Both files of a checkpoint appear or neither.

@@ -7,7 +7,7 @@
 #include "core/math/color.h"
 #include "core/math/rng.h"
 #include "engine/render/render.h"
-#include "model/geometry/surface_nets.h"
+#include "model/geometry/mesh/surface_nets.h"
 
 namespace cei3d {
 

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "engine/reconstruct/appearance_stage.h"
+#include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/pixels.h"
 #include "engine/reconstruct/presets.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/reconstruct/pixels.h"
-#include "model/geometry/visual_hull.h"
+#include "model/geometry/shape/visual_hull.h"
 
 namespace cei3d {
 

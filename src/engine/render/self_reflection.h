@@ -9,7 +9,7 @@
 #include "core/compute/device.h"
 #include "core/compute/kernels/light.h"
 #include "engine/render/vertex_light.h"
-#include "model/geometry/surface.h"
+#include "model/geometry/shape/surface.h"
 #include "model/material/material.h"
 
 namespace cei3d {

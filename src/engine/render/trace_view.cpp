@@ -7,7 +7,7 @@
 
 #include "core/math/sub_pixel.h"
 #include "engine/render/render.h"
-#include "model/geometry/sdf_normals.h"
+#include "model/geometry/shape/sdf_normals.h"
 
 namespace cei3d {
 

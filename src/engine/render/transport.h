@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "model/geometry/surface.h"
+#include "model/geometry/shape/surface.h"
 
 namespace cei3d {
 

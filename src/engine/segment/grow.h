@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "engine/segment/compete.h"
-#include "model/geometry/handlers.h"
-#include "model/geometry/pose.h"
+#include "model/geometry/shape/handlers.h"
+#include "model/geometry/shape/pose.h"
 
 namespace cei3d {
 

@@ -5,7 +5,7 @@
 
 #include "core/base/parallel.h"
 #include "core/math/color.h"
-#include "model/geometry/point_index.h"
+#include "model/geometry/shape/point_index.h"
 
 namespace cei3d {
 namespace {

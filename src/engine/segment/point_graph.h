@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "model/geometry/handlers.h"
+#include "model/geometry/shape/handlers.h"
 
 namespace cei3d {
 

@@ -6,7 +6,7 @@
 
 #include "core/base/error.h"
 #include "engine/segment/seen_points.h"
-#include "model/geometry/point_index.h"
+#include "model/geometry/shape/point_index.h"
 
 namespace cei3d {
 namespace {

@@ -11,8 +11,8 @@
 #include "core/math/camera.h"
 #include "engine/segment/prompts.h"
 #include "engine/segment/view_segmenter.h"
-#include "model/geometry/handlers.h"
-#include "model/geometry/surface.h"
+#include "model/geometry/shape/handlers.h"
+#include "model/geometry/shape/surface.h"
 
 namespace cei3d {
 

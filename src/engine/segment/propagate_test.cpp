@@ -9,7 +9,7 @@
 
 #include "core/base/error.h"
 #include "engine/segment/seen_points.h"
-#include "model/geometry/test_meshes.h"
+#include "model/geometry/mesh/test_meshes.h"
 
 namespace cei3d {
 namespace {

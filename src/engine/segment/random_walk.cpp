@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/geometry/sparse.h"
+#include "model/geometry/mesh/sparse.h"
 
 namespace cei3d {
 namespace {

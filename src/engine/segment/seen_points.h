@@ -8,7 +8,7 @@
 
 #include "core/image/image.h"
 #include "core/math/camera.h"
-#include "model/geometry/surface.h"
+#include "model/geometry/shape/surface.h"
 
 namespace cei3d {
 

@@ -2,9 +2,9 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "engine/capture/capture.h"
 #include "engine/edit/paint.h"
 #include "engine/edit/stroke.h"
-#include "engine/io/capture.h"
 #include "engine/io/image_file.h"
 #include "engine/io/png_file.h"
 #include "engine/render/scene_light.h"

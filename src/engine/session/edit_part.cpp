@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
+#include "engine/capture/capture.h"
 #include "engine/edit/part.h"
 #include "engine/edit/sam_part.h"
-#include "engine/io/capture.h"
 #include "engine/io/image_file.h"
 #include "engine/io/png_file.h"
 #include "engine/segment/sam.h"

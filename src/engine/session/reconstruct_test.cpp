@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/base/temp_folder.h"
-#include "engine/io/test_capture.h"
+#include "engine/capture/test_capture.h"
 #include "engine/project/project.h"
 #include "engine/session/session.h"
 

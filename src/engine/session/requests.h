@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "core/base/json.h"
+#include "engine/capture/capture.h"
+#include "engine/capture/check.h"
 #include "engine/edit/routing.h"
-#include "engine/io/capture.h"
-#include "engine/io/check.h"
 #include "engine/reconstruct/reconstruct.h"
 
 namespace cei3d {

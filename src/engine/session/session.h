@@ -11,7 +11,7 @@
 
 #include "core/base/json.h"
 #include "core/base/progress.h"
-#include "engine/io/capture.h"
+#include "engine/capture/capture.h"
 #include "engine/reconstruct/reconstruct.h"
 #include "engine/session/requests.h"
 

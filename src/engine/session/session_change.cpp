@@ -3,8 +3,8 @@
 
 #include "core/base/error.h"
 #include "core/compute/device.h"
+#include "engine/capture/capture.h"
 #include "engine/edit/change_report.h"
-#include "engine/io/capture.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
 #include "engine/session/frame_files.h"

@@ -4,7 +4,7 @@
 
 #include "core/base/error.h"
 #include "core/compute/device.h"
-#include "engine/io/capture_images.h"
+#include "engine/capture/capture_images.h"
 #include "engine/io/image_file.h"
 #include "engine/metrics/psnr.h"
 #include "engine/metrics/ssim.h"

@@ -3,8 +3,8 @@
 
 #include "core/base/error.h"
 #include "core/compute/device.h"
-#include "engine/io/capture_images.h"
-#include "engine/io/check.h"
+#include "engine/capture/capture_images.h"
+#include "engine/capture/check.h"
 #include "engine/project/dataset.h"
 #include "engine/project/project.h"
 #include "engine/session/run_log.h"

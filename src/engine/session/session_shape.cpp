@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
-#include "engine/io/capture.h"
+#include "engine/capture/capture.h"
 #include "engine/project/project.h"
 #include "engine/render/render.h"
 #include "engine/session/session.h"

@@ -11,8 +11,8 @@
 #include "core/base/json.h"
 #include "core/base/tensors.h"
 #include "model/field/field.h"
-#include "model/geometry/region.h"
-#include "model/geometry/reshape.h"
+#include "model/geometry/shape/region.h"
+#include "model/geometry/shape/reshape.h"
 #include "model/light/sg_mixture.h"
 #include "model/material/change.h"
 

@@ -12,7 +12,7 @@
 #include "model/field/field.h"
 #include "model/field/field_pass.h"
 #include "model/field/gradients.h"
-#include "model/geometry/hit.h"
+#include "model/geometry/shape/hit.h"
 
 namespace cei3d {
 

@@ -2,8 +2,8 @@
 #include "model/scene/scene.h"
 
 #include "core/base/error.h"
-#include "model/geometry/carry.h"
-#include "model/geometry/vec_tensors.h"
+#include "model/geometry/shape/carry.h"
+#include "model/geometry/shape/vec_tensors.h"
 #include "model/scene/stored.h"
 
 namespace cei3d {

@@ -3,7 +3,7 @@
 
 #include <cstring>
 
-#include "model/geometry/vec_tensors.h"
+#include "model/geometry/shape/vec_tensors.h"
 
 namespace cei3d {
 

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/base/temp_folder.h"
+#include "engine/bench/bench.h"
+#include "engine/io/image_file.h"
+#include "engine/project/project.h"
+#include "engine/render/render.h"
+#include "engine/render/scene_light.h"
+#include "engine/session/cameras.h"
+#include "engine/session/session.h"
+#include "engine/session/stopwatch.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int kSize = 512;  // of the frame, pixels
+
+BenchFigure seconds_figure(const std::string& subject, std::string name, std::vector<double> seconds) {
+  return {"object", subject, std::move(name), "s", false, spread_of(std::move(seconds), false), {}};
+}
+
+void add_frames(const Device& device, const Project& project, const std::string& subject, int repeats,
+                std::vector<BenchFigure>& figures) {
+  const Scene scene = project.scene();
+  const SceneLight light(device, scene, scene_transports(scene));
+  const Camera camera = scene.normalization.unit_from_input(
+      choose_cameras(project, ProjectViews{}, kSize, kSize).front().camera);
+  for (const int samples : {1, 2}) {
+    std::vector<double> traced, shaded;
+    for (int k = 0; k <= repeats; ++k) {
+      Stopwatch watch;
+      const GBuffer buffer = trace_view(device, scene, camera, samples);
+      const double trace = watch.lap();
+      shade_view(device, scene, light, buffer);
+      const double shade = watch.lap();
+      if (k == 0) continue;  // warms up
+      traced.push_back(trace);
+      shaded.push_back(shade);
+    }
+    const std::string what =
+        fmt::format("512 x 512, {} sample{} a pixel, ", samples * samples, samples > 1 ? "s" : "");
+    figures.push_back(seconds_figure(subject, what + "traced", traced));
+    figures.push_back(seconds_figure(subject, what + "shaded", shaded));
+  }
+}
+
+// A disc of a third of the object's size about its middle, as the view shows it.
+Image disc_scribble(const Device& device, const Scene& scene, const Camera& camera) {
+  const GBuffer buffer = trace_view(device, scene, camera, 1);
+  double x = 0, y = 0, n = 0;
+  for (size_t p = 0; p + 1 < buffer.pixel_start.size(); ++p)
+    if (buffer.pixel_start[p + 1] > buffer.pixel_start[p])
+      x += double(p % size_t(camera.width)), y += double(p / size_t(camera.width)), ++n;
+  if (n == 0) fail("The project's first view does not show the object.");
+  const double radius = std::sqrt(n / 3.14159265) / 3;
+  Image scribble(camera.width, camera.height, 4);
+  for (int v = 0; v < camera.height; ++v)
+    for (int u = 0; u < camera.width; ++u) {
+      if (std::hypot(u - x / n, v - y / n) > radius) continue;
+      const float color[4] = {0.8f, 0.2f, (u / 4 + v / 4) % 2 ? 0.7f : 0.1f, 1};
+      std::copy(color, color + 4, scribble.at(u, v));
+    }
+  return scribble;
+}
+
+// What `edit paint` does between its start and its end, on a fresh copy of the project each time.
+BenchFigure paint_figure(Session& session, const fs::path& folder, const std::string& subject, int repeats,
+                         Progress& progress) {
+  const TempFolder temp;
+  const fs::path copy = temp.path() / "project", scribble = temp.path() / "scribble.png";
+  PaintCommand command;
+  {
+    const Project project = Project::open(folder, Project::Mode::read);
+    const Scene scene = project.scene();
+    const View& view = project.capture().views.front();
+    write_png(scribble,
+              disc_scribble(session.device(), scene, scene.normalization.unit_from_input(view.camera)));
+    command.strokes = {{view.name, scribble}};
+  }
+  std::vector<double> seconds;
+  for (int k = 0; k < repeats; ++k) {
+    fs::copy(folder, copy, fs::copy_options::recursive);
+    Stopwatch watch;
+    session.open(copy, Session::Access::write);
+    session.paint(command, progress);
+    session.close();
+    seconds.push_back(watch.lap());
+    fs::remove_all(copy);
+  }
+  return seconds_figure(subject, "paint edit, a disc of a ninth of the object", std::move(seconds));
+}
+
+}  // namespace
+
+std::vector<BenchFigure> bench_object(Session& session, const fs::path& folder, int repeats,
+                                      Progress& progress) {
+  std::vector<BenchFigure> figures;
+  std::string subject;
+  {
+    const Project project = Project::open(folder, Project::Mode::read);
+    if (!project.has_base()) fail("{} has no object yet; finish its reconstruction first.", folder.string());
+    subject = fmt::format("{}, {} triangles", fs::path(folder / "").parent_path().filename().string(),
+                          project.base().surface->mesh().triangles.size());
+    progress.report({"frame", 0.7, -1, ""});
+    add_frames(session.device(), project, subject, repeats, figures);
+  }
+  progress.report({"edit", 0.9, -1, ""});
+  figures.push_back(paint_figure(session, folder, subject, repeats, progress));
+  return figures;
+}
+
+}  // namespace cei3d

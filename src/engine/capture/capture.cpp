@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/capture/capture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "core/base/error.h"
+#include "engine/capture/capture_format.h"
+#include "engine/capture/spread.h"
+#include "engine/io/image_file.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr Split kSplits[] = {Split::train, Split::val, Split::test};
+
+std::string known_formats() {
+  std::string text;
+  for (const CaptureFormat& f : capture_formats()) text += (text.empty() ? "" : ", ") + f.name;
+  return text;
+}
+
+const CaptureFormat& format_of(const fs::path& path, const std::string& wanted) {
+  for (const CaptureFormat& f : capture_formats())
+    if (wanted.empty() ? f.detect(path) : f.name == wanted) {
+      if (!f.detect(path)) fail("{} is not a {} capture.", path.string(), wanted);
+      return f;
+    }
+  if (!wanted.empty()) fail_usage("There is no capture format '{}'. Known: {}.", wanted, known_formats());
+  fail(
+      "{} is not a capture: it has neither transforms_train.json (NeRF-synthetic), transforms.json "
+      "(nerfstudio), "
+      "cam_dict_norm.json (PhySG) nor cameras_sphere.npz (IDR, NeuS).",
+      path.string());
+}
+
+Vec3d camera_right(const Camera& c) {
+  return {c.world_from_cam.row[0].x, c.world_from_cam.row[1].x, c.world_from_cam.row[2].x};
+}
+Vec3d camera_up(const Camera& c) {
+  return -Vec3d{c.world_from_cam.row[0].y, c.world_from_cam.row[1].y, c.world_from_cam.row[2].y};
+}
+
+// The axis that is nearest to a direction, where it is near.
+std::optional<Vec3d> near_axis(Vec3d direction, double cosine) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(direction[axis]) > cosine) {
+      Vec3d up{0, 0, 0};
+      up[axis] = direction[axis] > 0 ? 1 : -1;
+      return up;
+    }
+  return std::nullopt;
+}
+
+// The direction that the cameras' horizontal axes are most at right angles to: cameras are seldom rolled, but
+// often tilted, all of them the same way where the object was seen from one side. The least eigenvector of
+// A = sum of x x^T is the greatest of (trace A) I - A: power iteration. near: where it starts, and its sign.
+Vec3d across_horizontals(const std::vector<Vec3d>& horizontals, Vec3d near) {
+  Vec3d up = near;
+  for (int k = 0; k < 500; ++k) {
+    Vec3d sum{0, 0, 0};
+    for (const Vec3d x : horizontals) sum += up - x * dot(x, up);
+    up = normalize(sum);
+  }
+  return dot(up, near) < 0 ? -up : up;
+}
+
+// Most photographers hold the camera upright: the mean of the cameras' own "up" points to the sky. Snapped to
+// the nearest axis; the format's convention where the cameras don't say. Formats whose worlds stand anyhow
+// (IDR: that of the first camera, often) have no convention: there it stays as the cameras say.
+Vec3d up_axis(const Capture& capture) {
+  const bool any_world = capture.format == "idr";
+  const Vec3d convention = capture.format == "physg" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  Vec3d sum{0, 0, 0};
+  std::vector<Vec3d> horizontals;
+  for (const View& v : capture.views) {
+    const Vec3d up = camera_up(v.camera), right = camera_right(v.camera);
+    if (!std::isfinite(dot(up, up) + dot(right, right))) continue;
+    sum += up;
+    horizontals.push_back(right);
+  }
+  const size_t n = horizontals.size();
+  if (n < 5 || length(sum) < 0.3 * double(n)) return convention;
+  const Vec3d mean = normalize(sum);
+  if (!any_world) return near_axis(mean, 0.9).value_or(convention);
+  const Vec3d up = across_horizontals(horizontals, mean);
+  return near_axis(up, 0.995).value_or(up);
+}
+
+void hold_out(Capture& capture, int every) {
+  if (every < 0 || every == 1) fail_usage("--test-every should be 2 or more (or 0 for none), not {}.", every);
+  const bool has_split = std::any_of(capture.views.begin(), capture.views.end(),
+                                     [](const View& v) { return v.split != Split::train; });
+  if (every == 0 || has_split) return;
+  int i = 0;
+  for (View& view : capture.views)
+    if (view.split == Split::train && i++ % every == 0) view.split = Split::test;
+}
+
+void make_names_unique(Capture& capture) {
+  std::set<std::string> taken;
+  for (View& view : capture.views) {
+    std::string name = view.name;
+    if (taken.count(name))
+      name = fmt::format("{}/{}", split_name(view.split), fs::path(view.name).filename().string());
+    for (int n = 2; taken.count(name); ++n) name = fmt::format("{}-{}", view.name, n);
+    taken.insert(view.name = name);
+  }
+}
+
+std::string normalized(const std::string& name) {
+  fs::path path = fs::path(name).lexically_normal();
+  if (has_image_suffix(path)) path.replace_extension();
+  return path.generic_string();
+}
+
+size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), size_t(0));
+  for (size_t i = 1; i <= a.size(); ++i) {
+    size_t diagonal = std::exchange(row[0], i);
+    for (size_t j = 1; j <= b.size(); ++j) {
+      const size_t change = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, change});
+    }
+  }
+  return row.back();
+}
+
+std::string near_names(const Capture& capture, const std::string& name) {
+  std::vector<std::pair<size_t, std::string>> all;
+  for (const View& v : capture.views)
+    all.push_back(
+        {std::min(edit_distance(name, v.name), edit_distance(name, fs::path(v.name).filename().string())),
+         v.name});
+  const size_t n = std::min<size_t>(3, all.size());
+  std::partial_sort(all.begin(), all.begin() + std::ptrdiff_t(n), all.end());
+  std::string text;
+  for (size_t i = 0; i < n; ++i) text += (i ? ", " : "") + all[i].second;
+  return text;
+}
+
+}  // namespace
+
+const char* split_name(Split split) {
+  return split == Split::train ? "train" : split == Split::val ? "val" : "test";
+}
+
+std::optional<Split> split_from_name(const std::string& name) {
+  for (const Split split : kSplits)
+    if (name == split_name(split)) return split;
+  return std::nullopt;
+}
+
+std::vector<View> views_of(const Capture& capture, Split split) {
+  std::vector<View> views;
+  for (const View& v : capture.views)
+    if (v.split == split) views.push_back(v);
+  return views;
+}
+
+Capture load_capture(const fs::path& path, const CaptureOptions& options) {
+  if (!fs::exists(path)) fail("There is no capture at {}; check the path.", path.string());
+  Capture capture = format_of(path, options.format).load(path);
+  if (capture.views.empty()) fail("{} lists no views.", path.string());
+  hold_out(capture, options.test_every);
+  keep_training_views(capture, options.views);
+  std::stable_sort(capture.views.begin(), capture.views.end(),
+                   [](const View& a, const View& b) { return a.split < b.split; });
+  make_names_unique(capture);
+  capture.up = up_axis(capture);
+  return capture;
+}
+
+const View& find_view(const Capture& capture, const std::string& name) {
+  const std::string wanted = normalized(name);
+  const View* by_stem = nullptr;
+  for (const View& v : capture.views) {  // training views come first
+    if (v.name == wanted || v.name == name) return v;
+    if (!by_stem && fs::path(v.name).filename().generic_string() == wanted) by_stem = &v;
+  }
+  if (by_stem) return *by_stem;
+  fail_usage("The capture has no view '{}'. Near names: {}.", name, near_names(capture, wanted));
+}
+
+CaptureSpec parse_capture_spec(const std::string& spec) {
+  const size_t colon = spec.rfind(':');
+  if (colon == std::string::npos || fs::exists(spec)) return {spec, std::nullopt};
+  const std::string word = spec.substr(colon + 1);
+  if (const auto split = split_from_name(word)) return {spec.substr(0, colon), split};
+  if (fs::exists(spec.substr(0, colon)))
+    fail_usage("'{}' is not a split of a capture: use train, val or test.", word);
+  return {spec, std::nullopt};
+}
+
+}  // namespace cei3d

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/capture/capture_format.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "engine/io/image_file.h"
+
+namespace cei3d {
+namespace {
+
+// Python writes NaN and Infinity bare, which is not JSON; outside strings they become null.
+std::string without_nan(const std::string& text) {
+  std::string out;
+  bool in_string = false;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (in_string && text[i] == '\\' && i + 1 < text.size()) {
+      out += text[i++];
+    } else if (text[i] == '"') {
+      in_string = !in_string;
+    } else if (!in_string) {
+      size_t n = 0;
+      for (const char* word : {"-NaN", "NaN", "-nan", "nan", "-Infinity", "Infinity"})
+        if (n == 0 && text.compare(i, std::string_view(word).size(), word) == 0)
+          n = std::string_view(word).size();
+      if (n > 0) {
+        out += "null";
+        i += n - 1;
+        continue;
+      }
+    }
+    out += text[i];
+  }
+  return out;
+}
+
+}  // namespace
+
+const std::vector<CaptureFormat>& capture_formats() {
+  static const std::vector<CaptureFormat> formats{{"nerf-synthetic", detect_nerf, load_nerf},
+                                                  {"physg", detect_physg, load_physg},
+                                                  {"idr", detect_idr, load_idr}};
+  return formats;
+}
+
+Json read_json_file(const std::filesystem::path& path) {
+  const std::string text = read_file(path);
+  const auto limit_depth = [&](int depth, Json::parse_event_t, Json&) {
+    if (depth > 32) fail("{} is nested too deep to be a capture.", path.string());
+    return true;
+  };
+  try {
+    return Json::parse(without_nan(text), limit_depth);
+  } catch (const Json::parse_error& e) {
+    fail("{} is not valid JSON (near byte {}). It may be truncated; write it again.", path.string(), e.byte);
+  }
+}
+
+double number_of(const Json& j, const std::string& where) {
+  if (j.is_null()) return std::numeric_limits<double>::quiet_NaN();
+  if (!j.is_number()) fail("{} should be a number.", where);
+  return j.get<double>();
+}
+
+Matrix34 matrix_of(const Json& j, const std::string& where) {
+  const bool nested = j.is_array() && !j.empty() && j[0].is_array();
+  const size_t rows = nested ? j.size() : (j.is_array() && j.size() % 4 == 0 ? j.size() / 4 : 0);
+  if (rows != 3 && rows != 4) fail("{} should be a 4 x 4 matrix.", where);
+  Matrix34 m;
+  for (size_t r = 0; r < 3; ++r) {
+    if (nested && (!j[r].is_array() || j[r].size() != 4)) fail("{} should be a 4 x 4 matrix.", where);
+    for (size_t c = 0; c < 4; ++c) m.m[r][c] = number_of(nested ? j[r][c] : j[4 * r + c], where);
+  }
+  return m;
+}
+
+std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    if (has_image_suffix(entry.path())) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+ImageSize size_of_picture(const std::filesystem::path& path) {
+  if (path.empty() || !std::filesystem::exists(path)) return {};
+  try {
+    return read_image_size(path);
+  } catch (const Error&) {
+    return {};  // a broken picture among good ones: check() reports it with all the others
+  }
+}
+
+}  // namespace cei3d

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/capture/check.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "engine/capture/capture.h"
+#include "engine/capture/capture_images.h"
+#include "engine/capture/normalize.h"
+
+namespace cei3d {
+namespace {
+
+// What can be wrong with a single view, in the order of reporting.
+enum Problem { kNoFile, kBroken, kBadPose, kEmptyMask, kNoMask, kFullMask, kCut, kAway, kProblems };
+
+struct ProblemText {
+  Severity severity;
+  const char *what, *fix;
+};
+constexpr std::array<ProblemText, kProblems> kTexts{{
+    {Severity::error, "pictures are missing",
+     "Copy them to where the cameras say they are, or remove these views from the camera file."},
+    {Severity::error, "pictures or masks cannot be used",
+     "Copy or render them again; all pictures of a split need one size."},
+    {Severity::error, "poses are not a rotation and a finite position",
+     "Estimate the poses again, or remove these views."},
+    {Severity::error, "masks are empty", "Remove these views, or correct their masks or alpha."},
+    {Severity::error, "pictures have neither an alpha channel nor a mask file",
+     "Add mask files, or save PNGs with alpha."},
+    {Severity::error, "masks cover the whole picture",
+     "Check that the masks mean the object: bright or opaque is object."},
+    {Severity::warning, "views show the object cut by the frame border",
+     "Step back or widen the frame; what is never seen whole is guessed."},
+    {Severity::warning, "cameras look away from the object", "Check the poses of these views."},
+}};
+
+struct ViewResult {
+  std::array<bool, kProblems> has{};
+  std::string detail;  // sentence about a broken file
+  ImageSize size;
+  double coverage = 0;
+  Mask mask;
+};
+
+bool pose_is_sound(const Camera& c) {
+  const Mat3d& r = c.world_from_cam;
+  double worst = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) worst = std::max(worst, std::abs(dot(r.row[i], r.row[j]) - (i == j)));
+  const double det = dot(r.row[0], cross(r.row[1], r.row[2]));
+  return std::isfinite(dot(c.center, c.center)) && std::isfinite(det) && worst < 2e-3 && det > 0;
+}
+
+int border_pixels(const Mask& m) {
+  int n = 0;
+  for (int x = 0; x < m.width; ++x) n += m.object[x] + m.object[size_t(m.height - 1) * m.width + x];
+  for (int y = 0; y < m.height; ++y)
+    n += m.object[size_t(y) * m.width] + m.object[size_t(y) * m.width + m.width - 1];
+  return n;
+}
+
+void look_at_picture(const View& view, ViewResult& out) {
+  load_linear_rgba(view);  // decodes all of it, and refuses NaN
+  out.mask = load_mask(view);
+  const size_t n = out.mask.object.size(),
+               set = size_t(std::count(out.mask.object.begin(), out.mask.object.end(), 1));
+  out.size = {out.mask.width, out.mask.height};
+  out.coverage = double(set) / double(n);
+  out.has[kNoMask] = !out.mask.stated;
+  out.has[kEmptyMask] = out.mask.stated && set == 0;
+  out.has[kFullMask] = out.mask.stated && set == n;
+  out.has[kCut] = out.mask.stated && set < n && border_pixels(out.mask) >= 2;
+}
+
+ViewResult look_at(const View& view) {
+  ViewResult out;
+  out.has[kBadPose] = !pose_is_sound(view.camera);
+  const bool camera_only = view.image_path.empty() && view.split != Split::train;
+  out.has[kNoFile] = (view.image_path.empty() && !camera_only) ||
+                     (!view.image_path.empty() && !std::filesystem::exists(view.image_path)) ||
+                     (!view.mask_path.empty() && !std::filesystem::exists(view.mask_path));
+  if (out.has[kNoFile] || camera_only) return out;
+  try {
+    look_at_picture(view, out);
+  } catch (const Error& e) {
+    out.has[kBroken] = true;
+    out.detail = e.what();
+  }
+  return out;
+}
+
+bool looks_away(const Camera& c, const Normalization& n) {
+  const Vec3d p = c.project(n.center);
+  const double margin =
+      kObjectRadius / n.scale / std::max(p.z, 1e-12) * c.fx;  // the object's radius in pixels
+  return p.z <= 0 || p.x < -margin || p.y < -margin || p.x > c.width + margin || p.y > c.height + margin;
+}
+
+struct Checked {
+  const View* view;
+  ViewResult result;
+};
+
+void report_problems(const std::vector<Checked>& all, CaptureReport& report) {
+  for (int problem = 0; problem < kProblems; ++problem) {
+    std::string names, detail;
+    int n = 0;
+    for (const Checked& c : all) {
+      if (!c.result.has[problem]) continue;
+      if (n < 5) names += (n ? ", " : "") + c.view->name;
+      if (problem == kBroken && detail.empty()) detail = " First: " + c.result.detail;
+      ++n;
+    }
+    if (n == 0) continue;
+    if (n > 5) names += fmt::format(" and {} more", n - 5);
+    const ProblemText& text = kTexts[problem];
+    report.findings.push_back({text.severity,
+                               fmt::format("{} of {} {}: {}.{}", n, all.size(), text.what, names, detail),
+                               text.fix});
+  }
+}
+
+void report_splits(const std::vector<Checked>& all, CaptureReport& report) {
+  for (const Split split : {Split::train, Split::val, Split::test}) {
+    SplitReport s{split, 0, {}, 0, 1, 0};
+    int with_mask = 0;
+    for (const auto& [view, result] : all) {
+      if (view->split != split) continue;
+      ++s.views;
+      if (s.size.width == 0) s.size = {view->camera.width, view->camera.height};
+      if (!(s.size == ImageSize{view->camera.width, view->camera.height}))
+        report.findings.push_back(
+            {Severity::error,
+             fmt::format("View {} is {} x {} pixels, others of its split {} x {}.", view->name,
+                         view->camera.width, view->camera.height, s.size.width, s.size.height),
+             "Give all pictures of a split one size."});
+      if (result.mask.object.empty()) continue;
+      ++with_mask;
+      s.coverage += result.coverage;
+      s.coverage_min = std::min(s.coverage_min, result.coverage);
+      s.coverage_max = std::max(s.coverage_max, result.coverage);
+    }
+    if (with_mask > 0)
+      s.coverage /= with_mask;
+    else
+      s.coverage_min = 0;
+    if (s.views > 0) report.splits.push_back(s);
+  }
+}
+
+void report_normalization(const std::vector<Checked>& all, const std::optional<ObjectBall>& region,
+                          CaptureReport& report) {
+  std::vector<HullMask> masks;
+  for (const auto& [view, result] : all)
+    if (view->split == Split::train && result.mask.stated && !result.mask.object.empty() &&
+        !result.has[kBadPose])
+      masks.push_back({view->camera, result.mask.object});
+  if (masks.size() < 2) return;  // said by the views' own findings
+  std::vector<std::string> warnings;
+  try {
+    report.normalization = normalization_from_masks(masks, &warnings, region);
+  } catch (const Error& e) {
+    report.findings.push_back({Severity::error, e.what(), ""});
+  }
+  for (const std::string& w : warnings) report.findings.push_back({Severity::warning, w, ""});
+}
+
+void report_distances(const Capture& capture, CaptureReport& report) {
+  int n = 0;
+  report.distance_min = 1e300;
+  for (const View& v : capture.views) {
+    if (v.split != Split::train) continue;
+    const double d = length(v.camera.center - report.normalization->center);
+    if (!std::isfinite(d)) continue;
+    report.distance_min = std::min(report.distance_min, d);
+    report.distance_max = std::max(report.distance_max, d);
+    report.distance += d;
+    ++n;
+  }
+  if (n > 0) report.distance /= n;
+  if (n > 0 && report.distance_min < kObjectRadius / report.normalization->scale)
+    report.findings.push_back({Severity::warning, "Some cameras are inside the object's bounding sphere.",
+                               "Check the poses, or photograph from farther away."});
+}
+
+void report_counts(const Capture& capture, CaptureReport& report) {
+  const size_t train = views_of(capture, Split::train).size();
+  if (train < 3)
+    report.findings.push_back({Severity::error, fmt::format("There are only {} training views.", train),
+                               "Take at least 20 photographs from all around; 50 to 100 are good."});
+  else if (train < 20)
+    report.findings.push_back({Severity::warning, fmt::format("There are only {} training views.", train),
+                               "Expect gaps in shape and light; 50 to 100 views are good."});
+  if (views_of(capture, Split::test).empty() && views_of(capture, Split::val).empty())
+    report.findings.push_back({Severity::note, "There is no test split, so quality cannot be measured.",
+                               "Hold views out with --test-every 8."});
+}
+
+}  // namespace
+
+bool CaptureReport::usable() const {
+  return std::none_of(findings.begin(), findings.end(),
+                      [](const Finding& f) { return f.severity == Severity::error; });
+}
+
+CaptureReport check(const Capture& capture, std::optional<Split> only) {
+  std::vector<Checked> all;
+  for (const View& v : capture.views)
+    if (!only || v.split == *only) all.push_back({&v, {}});
+  parallel_for(int(all.size()), [&](int i) { all[i].result = look_at(*all[i].view); });
+
+  CaptureReport report;
+  report.format = capture.format;
+  report.up = capture.up;
+  report_splits(all, report);
+  report_normalization(all, capture.region, report);
+  if (report.normalization) {
+    for (Checked& c : all)
+      c.result.has[kAway] = !c.result.has[kBadPose] && looks_away(c.view->camera, *report.normalization);
+    report_distances(capture, report);
+  }
+  report_problems(all, report);
+  report_counts(capture, report);
+  for (const std::string& w : capture.warnings) report.findings.push_back({Severity::warning, w, ""});
+  std::stable_sort(report.findings.begin(), report.findings.end(),
+                   [](const Finding& a, const Finding& b) { return a.severity > b.severity; });
+  return report;
+}
+
+void require_usable(const CaptureReport& report) {
+  std::string text;
+  int n = 0;
+  for (const Finding& f : report.findings)
+    if (f.severity == Severity::error && ++n <= 4)
+      text += (text.empty() ? "" : " ") + f.what + (f.fix.empty() ? "" : " " + f.fix);
+  if (n > 4) text += fmt::format(" And {} more problems; `cei3d check` lists them.", n - 4);
+  if (n > 0) fail("The capture cannot be used. {}", text);
+}
+
+void require_usable(const Capture& capture) { require_usable(check(capture, Split::train)); }
+
+}  // namespace cei3d

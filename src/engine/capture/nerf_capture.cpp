@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <cmath>
+#include <map>
+#include <optional>
+
+#include "core/base/error.h"
+#include "engine/capture/capture.h"
+#include "engine/capture/capture_format.h"
+#include "engine/io/image_file.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+struct CameraFile {
+  fs::path path;
+  Split split;
+};
+
+std::vector<CameraFile> camera_files(const fs::path& path) {
+  if (fs::is_regular_file(path)) {
+    const std::string stem = path.stem().string();
+    const Split split = stem == "transforms_test"  ? Split::test
+                        : stem == "transforms_val" ? Split::val
+                                                   : Split::train;
+    return {{path, split}};
+  }
+  std::vector<CameraFile> files;
+  for (const Split split : {Split::train, Split::val, Split::test}) {
+    const fs::path file = path / fmt::format("transforms_{}.json", split_name(split));
+    if (fs::exists(file)) files.push_back({file, split});
+  }
+  if (files.empty() && fs::exists(path / "transforms.json"))
+    files.push_back({path / "transforms.json", Split::train});
+  return files;
+}
+
+// The picture that file_path means: as it stands, or with a suffix; the first guess when there is none.
+fs::path picture_path(const fs::path& folder, const std::string& file_path) {
+  const fs::path base = folder / fs::path(file_path).lexically_normal();
+  if (has_image_suffix(base)) return base;
+  for (const char* suffix : {".png", ".jpg", ".jpeg", ".exr", ".PNG", ".JPG", ".JPEG", ".EXR"})
+    if (fs::exists(base.string() + suffix)) return base.string() + suffix;
+  return base.string() + ".png";
+}
+
+// Names become paths below an output folder, so they never lead out of it.
+std::string view_name(const std::string& file_path, Split split) {
+  fs::path name = fs::path(file_path).lexically_normal();
+  if (has_image_suffix(name)) name.replace_extension();
+  const bool inside = name.is_relative() && !name.empty() && *name.begin() != "..";
+  return inside ? name.generic_string() : fmt::format("{}/{}", split_name(split), name.filename().string());
+}
+
+// A value of the frame, else of the file, under any of these keys.
+std::optional<double> lookup(const Json& frame, const Json& file, std::initializer_list<const char*> keys,
+                             const std::string& where) {
+  for (const Json* j : {&frame, &file})
+    for (const char* key : keys)
+      if (j->contains(key)) return number_of((*j)[key], fmt::format("'{}' of {}", key, where));
+  return std::nullopt;
+}
+
+double focal_from_angle(double angle, int pixels, const std::string& where) {
+  if (!(angle > 0 && angle < 3.1415))
+    fail("The field of view of {} should lie between 0 and pi radians.", where);
+  return 0.5 * pixels / std::tan(0.5 * angle);
+}
+
+// Lists of file_path in nerfstudio's transforms.json; a frame that is on none of them is a training view.
+std::map<std::string, Split> listed_splits(const Json& file, const std::string& name) {
+  std::map<std::string, Split> splits;
+  for (const Split split : {Split::train, Split::val, Split::test}) {
+    const std::string key = fmt::format("{}_filenames", split_name(split));
+    if (!file.contains(key)) continue;
+    if (!file[key].is_array()) fail("'{}' of {} should be a list of file names.", key, name);
+    for (const Json& path : file[key]) {
+      if (!path.is_string()) fail("'{}' of {} should be a list of file names.", key, name);
+      splits[path.get<std::string>()] = split;
+    }
+  }
+  return splits;
+}
+
+void require_pinhole(const Json& frame, const Json& file, const std::string& where) {
+  for (const Json* j : {&frame, &file}) {
+    if (!j->contains("camera_model")) continue;
+    const Json& model = (*j)["camera_model"];
+    for (const char* pinhole :
+         {"OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "perspective"})
+      if (model == pinhole) return;
+    fail(
+        "{} has the camera model {}, of which only the pinhole kinds are supported. Undistort the "
+        "photographs "
+        "first, for example with colmap image_undistorter.",
+        where, model.dump());
+  }
+}
+
+void require_no_distortion(const Json& frame, const Json& file, const std::string& where) {
+  for (const char* key : {"k1", "k2", "k3", "k4", "p1", "p2"}) {
+    const auto value = lookup(frame, file, {key}, where);
+    if (value && std::abs(*value) > 1e-9)
+      fail(
+          "{} has lens distortion ({} = {:g}), which is not supported yet. Undistort the photographs first, "
+          "for example with "
+          "colmap image_undistorter.",
+          where, key, *value);
+  }
+}
+
+void set_pose(Camera& camera, const Matrix34& opengl) {
+  for (int r = 0; r < 3; ++r) {
+    const double* m = opengl.m[r];
+    camera.world_from_cam.row[r] = {m[0], -m[1], -m[2]};  // OpenGL y up, z back -> OpenCV y down, z forward
+    camera.center[r] = m[3];
+  }
+}
+
+int pixels_of(double v, const std::string& where) {
+  if (!(v >= 1 && v <= 65535)) fail("{} gives an impossible picture size.", where);
+  return int(std::lround(v));
+}
+
+void set_intrinsics(Camera& c, const Json& frame, const Json& file, ImageSize known,
+                    const std::string& where) {
+  const auto w = lookup(frame, file, {"w"}, where), h = lookup(frame, file, {"h"}, where);
+  c.width = w ? pixels_of(*w, where) : known.width;
+  c.height = h ? pixels_of(*h, where) : known.height;
+  if (c.width == 0 || c.height == 0)
+    fail("{}: neither the cameras nor any picture tells the picture size. Are the pictures missing?", where);
+  const auto focal = lookup(frame, file, {"fl_x", "focal"}, where);
+  const auto angle = lookup(frame, file, {"camera_angle_x"}, where);
+  if (!focal && !angle) fail("{} has no focal length: neither fl_x nor camera_angle_x.", where);
+  c.fx = focal ? *focal : focal_from_angle(*angle, c.width, where);
+  c.fy = lookup(frame, file, {"fl_y"}, where).value_or(c.fx);
+  c.cx = lookup(frame, file, {"cx"}, where).value_or(c.width / 2.0);
+  c.cy = lookup(frame, file, {"cy"}, where).value_or(c.height / 2.0);
+  if (!(c.fx > 0 && c.fy > 0) || !std::isfinite(c.fx * c.fy * c.cx * c.cy))
+    fail("The intrinsics of {} are impossible.", where);
+}
+
+View read_frame(const Json& frame, Split split, const fs::path& folder, const std::string& where) {
+  if (!frame.is_object() || !frame.contains("file_path") || !frame["file_path"].is_string() ||
+      !frame.contains("transform_matrix"))
+    fail("{} lacks file_path or transform_matrix.", where);
+  const std::string file_path = frame["file_path"];
+  if (fs::path(file_path).lexically_normal().stem().empty() || fs::path(file_path).filename() == "..")
+    fail("The file_path of {} names no picture.", where);
+  View view;
+  view.split = split;
+  view.name = view_name(file_path, split);
+  view.image_path = picture_path(folder, file_path);
+  if (frame.contains("mask_path") && frame["mask_path"].is_string())
+    view.mask_path = folder / fs::path(frame["mask_path"].get<std::string>()).lexically_normal();
+  set_pose(view.camera, matrix_of(frame["transform_matrix"], fmt::format("transform_matrix of {}", where)));
+  return view;
+}
+
+std::vector<View> read_split(const CameraFile& file) {
+  const Json j = read_json_file(file.path);
+  if (!j.is_object() || !j.contains("frames") || !j["frames"].is_array())
+    fail("{} has no list of frames.", file.path.string());
+  const std::map<std::string, Split> listed = listed_splits(j, file.path.string());
+  std::vector<View> views;
+  for (const Json& frame : j["frames"]) {
+    views.push_back(read_frame(frame, file.split, file.path.parent_path(),
+                               fmt::format("frame {} of {}", views.size(), file.path.string())));
+    const auto it = listed.find(frame["file_path"].get<std::string>());
+    if (it != listed.end()) views.back().split = it->second;
+  }
+  ImageSize known;
+  if (!j.contains("w") || !j.contains("h"))
+    for (size_t i = 0; i < views.size() && known.width == 0; ++i)
+      known = size_of_picture(views[i].image_path);
+  for (size_t i = 0; i < views.size(); ++i) {
+    const std::string where = fmt::format("frame {} of {}", i, file.path.string());
+    require_pinhole(j["frames"][i], j, where);
+    require_no_distortion(j["frames"][i], j, where);
+    set_intrinsics(views[i].camera, j["frames"][i], j, known, where);
+  }
+  return views;
+}
+
+}  // namespace
+
+bool detect_nerf(const fs::path& path) {
+  if (fs::is_regular_file(path))
+    return path.extension() == ".json" && path.filename().string().rfind("transforms", 0) == 0;
+  return !camera_files(path).empty();
+}
+
+Capture load_nerf(const fs::path& path) {
+  Capture capture;
+  capture.root = fs::is_regular_file(path) ? path.parent_path() : path;
+  capture.format = "nerf-synthetic";
+  for (const CameraFile& file : camera_files(path))
+    for (View& view : read_split(file)) capture.views.push_back(std::move(view));
+  return capture;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/capture/spread.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/base/error.h"
+
+namespace cei3d {
+
+void keep_training_views(Capture& capture, int count) {
+  if (count == 0) return;
+  std::vector<View*> train;
+  for (View& v : capture.views)
+    if (v.split == Split::train) train.push_back(&v);
+  if (count < 2) fail_usage("--views should be 2 or more (or 0 for all), not {}.", count);
+  if (size_t(count) > train.size())
+    fail_usage("--views {}: the capture has {} training views.", count, train.size());
+  constexpr double kFar = std::numeric_limits<double>::max();
+  std::vector<double> distance(train.size(), kFar);  // squared, to the nearest chosen one
+  size_t chosen = 0;
+  for (View* v : train) v->split = Split::val;
+  for (int n = 0; n < count; ++n) {
+    train[chosen]->split = Split::train;
+    distance[chosen] = -1;
+    for (size_t i = 0; i < train.size(); ++i) {
+      const Vec3d d = train[i]->camera.center - train[chosen]->camera.center;
+      distance[i] = std::min(distance[i], dot(d, d));
+    }
+    chosen = size_t(std::max_element(distance.begin(), distance.end()) - distance.begin());
+  }
+}
+
+}  // namespace cei3d

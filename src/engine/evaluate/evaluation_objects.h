@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// The objects that an evaluation looks at, in OUT/objects: made there, gone on with there, or copied there.
+#pragma once
+
+#include <string>
+
+#include "engine/evaluate/evaluation.h"
+#include "engine/evaluate/kept_values.h"
+
+namespace cei3d {
+
+std::string full_path(const std::filesystem::path&);  // "" for none
+
+struct EvaluationObject {
+  std::string name;  // of its folder
+  ReconstructOptions options;
+  bool given = false;  // it is a copy of the request's project
+};
+
+class EvaluationObjects {
+ public:
+  // Errors: no such capture, view or finished object, an object of another capture, OUT is a project.
+  EvaluationObjects(Session&, const EvaluationRequest&);
+
+  int training_views() const { return training_views_; }
+  EvaluationObject whole() const;                          // from all photographs
+  EvaluationObject with(const ReconstructOptions&) const;  // those that are made alike are one
+  Json settings(const EvaluationObject&) const;            // all that it depends on
+  // Opens it in the session, without edits. Returns the seconds that its making took; 0 where it was given.
+  double open(const EvaluationObject&, Progress&);
+
+ private:
+  Json describe_given(const Capture&);
+  double make(const EvaluationObject&, const std::filesystem::path& folder, Progress&);
+
+  Session& session_;
+  const EvaluationRequest& r_;
+  KeptValues kept_;
+  std::string capture_, fingerprint_;
+  int training_views_ = 0;
+  Json given_;
+};
+
+}  // namespace cei3d

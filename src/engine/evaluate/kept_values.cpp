@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/evaluate/kept_values.h"
+
+#include "core/base/file.h"
+
+namespace cei3d {
+
+Json KeptValues::find(const std::string& name, const Json& settings) const {
+  if (!std::filesystem::exists(file(name))) return nullptr;
+  const Json kept = Json::parse(read_file(file(name)), nullptr, false);
+  if (!kept.is_object() || !kept.contains("settings") || !kept.contains("value")) return nullptr;
+  return kept.at("settings") == settings ? kept.at("value") : Json();
+}
+
+void KeptValues::put(const std::string& name, const Json& settings, const Json& value) const {
+  write_file_atomic(file(name), Json{{"settings", settings}, {"value", value}}.dump(1) + "\n");
+}
+
+}  // namespace cei3d

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The object as a mesh or a point cloud that other programs can read, in the capture's frame and units.
+#pragma once
+
+#include "core/compute/device.h"
+#include "engine/export/gltf.h"
+#include "model/scene/scene.h"
+
+namespace cei3d {
+
+struct ColoredMesh {
+  Mesh mesh;
+  MeshMaterials materials;
+};
+
+// The surface with all edits; vertex colors are the linear base color. Error: the scene has no surface.
+ColoredMesh colored_mesh(const Device&, const Scene&);
+
+// The handler points and their normals, without triangles. Error: the scene has none.
+Mesh handler_point_cloud(const Scene&);
+
+}  // namespace cei3d

@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/appearance/appearance_stage.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/math/brdf.h"
+#include "core/math/rng.h"
+#include "engine/reconstruct/appearance/display_loss.h"
+#include "engine/reconstruct/appearance/light_descent.h"
+#include "engine/reconstruct/appearance/pixel_points.h"
+#include "engine/render/lighting.h"
+#include "model/light/fit.h"
+
+namespace cei3d {
+
+namespace {
+
+constexpr double kFullEffort = 10;  // seconds on two cores that all of it needs; with less, half the work
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+LinearSplitOptions split_options(const AppearanceOptions& o) {
+  LinearSplitOptions s;
+  s.seed = o.seed;
+  s.fixed_roughness = o.roughness;
+  if (o.seconds > 0 && o.seconds < kFullEffort) {
+    s.most_hits = 200000;
+    s.search_hits = 120000;
+    s.refinements = 2;
+    s.light_height = 32;
+  }
+  return s;
+}
+
+// Metals gain half a decibel: their pictures are nothing but light. Dielectrics hardly anything.
+int joint_steps_for(const Material& m, bool brief) {
+  return m.metalness > 0 ? (brief ? 120 : 400) : (brief ? 30 : 100);
+}
+
+std::vector<Vec3f> colors_at(const Device& device, const Field& field, std::span<const Vec3f> x) {
+  std::vector<float> values(3 * x.size());
+  field.eval(device, x, values);
+  std::vector<Vec3f> out(x.size());
+  for (size_t i = 0; i < x.size(); ++i) out[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return out;
+}
+
+// Descent on the albedo field under a light, and then on both. bouncing: base colours of the mesh's vertices
+// to begin with.
+class Descent {
+ public:
+  Descent(const Device& device, const AppearanceInput& input, std::shared_ptr<const Transport> transport,
+          const AppearanceOptions& options, Field field, const std::vector<Vec3f>& bouncing,
+          AppearanceResult& result, Progress& progress)
+      : device_(device),
+        input_(input),
+        transport_(std::move(transport)),
+        options_(options),
+        result_(result),
+        progress_(progress),
+        field_(std::move(field)),
+        trainer_(field_, {.network_rate = options.network_rate}) {
+    relight(bouncing);
+  }
+
+  // The field alone, `rate` times the full rates, falling to a tenth: every sample's radiance is linear in
+  // its base colour, dark + a gain.
+  void fit_albedo(int steps, float rate) {
+    const SurfaceSamples& samples = input_.samples;
+    const HitLight light = lighting_->light_at(samples.hits);
+    for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
+      choose_batch();
+      const auto loss = [&](int begin, int end, const float* out, float* d_out) {
+        for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
+          color_gradient(batch_[i], light.at(batch_[i], result_.material), a, d_a);
+        });
+      };
+      trainer_.step(device_, positions_, loss, rate * std::pow(0.1f, float(step) / float(steps)));
+      if (step % 50 == 0) progress_.report({"albedo", 0.92 + 0.03 * step / steps, -1, ""});
+    }
+  }
+
+  // Field and light together; openness and bounce follow every kRefresh steps.
+  void fit_jointly(int steps) {
+    LightDescent light(result_.light, result_.material.roughness, result_.material.metalness == 0);
+    for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
+      if (step % kRefresh == 0)
+        relight(colors_at(device_, field_, input_.surface.mesh().positions));
+      else
+        lighting_->set_lobes(result_.light);
+      joint_step(light, std::pow(0.1f, float(step) / float(steps)));
+      if (step % 50 == 0) progress_.report({"light and albedo", 0.95 + 0.04 * step / steps, -1, ""});
+    }
+  }
+
+  Field take_field() { return std::move(field_); }
+
+ private:
+  static constexpr int kRefresh = 25;
+
+  void relight(const std::vector<Vec3f>& base_color) {
+    lighting_ = std::make_unique<Lighting>(device_, input_.surface, result_.light, base_color,
+                                           result_.material, transport_);
+  }
+
+  void choose_batch() {
+    batch_.resize(options_.batch);
+    positions_.clear();
+    for (int i = 0; i < options_.batch; ++i) {
+      batch_[i] =
+          Rng(options_.seed, uint64_t(epoch_), uint64_t(i)).below(uint32_t(input_.samples.hits.size()));
+      const SurfaceSamples& s = input_.samples;
+      const float footprint = s.footprints.empty() ? 0 : s.footprints[batch_[i]];
+      for (const Vec3f p : pixel_points(s.hits[batch_[i]], footprint)) positions_.push_back(p);
+    }
+    ++epoch_;
+  }
+
+  // Calls use(pixel of the batch, its mean base colour, dL/d(that) to set) for the field's outputs [begin,
+  // end).
+  template <class Use>
+  static void for_each_pixel(int begin, int end, const float* out, float* d_out, const Use& use) {
+    for (int first = begin; first < end; first += kPixelPoints) {
+      Vec3f mean{0, 0, 0}, d_mean{0, 0, 0};
+      const float* points = out + 3 * (first - begin);
+      for (int k = 0; k < kPixelPoints; ++k)
+        for (int c = 0; c < 3; ++c) mean[c] += points[3 * k + c] / kPixelPoints;
+      use(first / kPixelPoints, mean, d_mean);
+      for (int k = 0; k < kPixelPoints; ++k)
+        for (int c = 0; c < 3; ++c) d_out[3 * (first - begin + k) + c] = d_mean[c] / kPixelPoints;
+    }
+  }
+
+  // dL/d(radiance) of one pixel with mean base colour `a`, and dL/da. The radiance is linear in the base
+  // colour, whose light is taken as the same all over the pixel.
+  Vec3f color_gradient(uint32_t sample, const HitLight::Terms& t, Vec3f a, Vec3f& d_a) const {
+    const SurfaceSamples& s = input_.samples;
+    Vec3f g{0, 0, 0};
+    for (int c = 0; c < 3; ++c) {
+      const float gain = t.diffuse_gain[c] + t.specular_gain[c], got = t.specular_floor[c] + a[c] * gain;
+      g[c] = display_loss_slope(got, s.colors[sample][c], s.is_clipped(sample, c)) / float(options_.batch);
+      d_a[c] = g[c] * gain;
+    }
+    return g;
+  }
+
+  void joint_step(LightDescent& descent, float rate) {
+    choose_batch();
+    std::vector<Hit> hits(options_.batch);
+    for (int i = 0; i < options_.batch; ++i) hits[i] = input_.samples.hits[batch_[i]];
+    const HitLight light = lighting_->light_at(hits);
+    const Material& m = result_.material;
+    std::vector<Vec3f> d_irradiance(options_.batch), d_reflected(options_.batch);
+    const auto loss = [&](int begin, int end, const float* out, float* d_out) {
+      for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
+        const Vec3f g = color_gradient(batch_[i], light.at(i, m), a, d_a);
+        const float floor = (1 - m.metalness) * kDielectricF0 * m.specular * light.env[i].x + light.env[i].y;
+        for (int c = 0; c < 3; ++c) {
+          d_irradiance[i][c] =
+              g[c] * a[c] * (1 - m.metalness) / kPi * light.diffuse_view[i] * light.openness[i][c];
+          d_reflected[i][c] = g[c] * (m.metalness * a[c] * light.env[i].x + floor) * light.open_mirror[i];
+        }
+      });
+    };
+    trainer_.step(device_, positions_, loss, 0.1f * rate);
+    descent.step(device_, hits, d_irradiance, d_reflected, rate);
+    result_.light = descent.light();
+  }
+
+  const Device& device_;
+  const AppearanceInput& input_;
+  std::shared_ptr<const Transport> transport_;
+  AppearanceOptions options_;
+  AppearanceResult& result_;
+  Progress& progress_;
+  Field field_;
+  FieldTrainer trainer_;
+  std::unique_ptr<Lighting> lighting_;
+  int epoch_ = 0;
+  std::vector<uint32_t> batch_;
+  std::vector<Vec3f> positions_;  // kPixelPoints of each pixel
+};
+
+}  // namespace
+
+AppearanceResult fit_appearance(const Device& device, const AppearanceInput& input,
+                                const AppearanceOptions& options, Progress& progress) {
+  const double start = now();
+  AppearanceResult result;
+  progress.report({"light", 0.8, options.seconds, ""});
+  const auto transport = std::make_shared<const Transport>(input.surface);
+  result.split = linear_split(*transport, input.samples, split_options(options), progress);
+  result.material = result.split.material;
+  progress.log(Json{{"stage", "linear split"},
+                    {"seconds", now() - start},
+                    {"roughness", result.material.roughness},
+                    {"metalness", result.material.metalness}}
+                   .dump());
+  progress.report({"lobes", 0.9, -1, ""});
+  LobeFitOptions lobes;
+  lobes.height = result.split.light.height;
+  lobes.seen_through = 0.5f * reflection_scale(result.material.roughness);
+  result.light = fit_lobes(device, result.split.light, lobes);
+  const bool brief = options.seconds > 0 && options.seconds < kFullEffort;
+  Descent descent(device, input, transport, options, Field(options.albedo, options.seed + 100),
+                  result.split.albedo, result, progress);
+  descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800, 1);
+  descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps
+                                               : joint_steps_for(result.material, brief));
+  result.albedo = std::make_shared<const Field>(descent.take_field());
+  progress.log(Json{{"stage", "appearance"}, {"seconds", now() - start}}.dump());
+  return result;
+}
+
+void refine_albedo(const Device& device, const AppearanceInput& input, const AppearanceOptions& options,
+                   AppearanceResult& result, Progress& progress, int steps) {
+  Descent descent(device, input, std::make_shared<const Transport>(input.surface), options, *result.albedo,
+                  colors_at(device, *result.albedo, input.surface.mesh().positions), result, progress);
+  descent.fit_albedo(steps, 0.2f);
+  result.albedo = std::make_shared<const Field>(descent.take_field());
+}
+
+}  // namespace cei3d

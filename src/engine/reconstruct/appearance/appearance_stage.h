@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+// The appearance stage (PPD): light and material of a standing surface, started by the linear split.
+// [architecture 1.2]
+#pragma once
+
+#include <memory>
+
+#include "core/base/progress.h"
+#include "engine/reconstruct/appearance/linear_split.h"
+#include "model/field/field.h"
+#include "model/light/sg_mixture.h"
+
+namespace cei3d {
+
+struct AppearanceInput {
+  const Surface& surface;
+  SurfaceSamples samples;  // pixels wholly on the object
+};
+
+struct AppearanceOptions {
+  double seconds =
+      0;  // what there is for all of it; full effort (0) takes about 12 on two cores, the least half
+  int albedo_steps = -1;  // of the field under the split's light; -1: as `seconds` allow
+  int joint_steps = -1;   // of field and light together; -1: as `seconds` allow
+  float roughness = 0;    // > 0: known, not searched
+  uint64_t seed = 1;
+  FieldConfig albedo;          // 3 outputs, sigmoid
+  int batch = 4096;            // pixels a step, of kPixelPoints each
+  float network_rate = 2e-3f;  // Adam's, of the field's layers
+};
+
+struct AppearanceResult {
+  SgMixture light;
+  Material material;
+  std::shared_ptr<const Field> albedo;
+  LinearSplit split;  // what it started from, for the record
+};
+
+AppearanceResult fit_appearance(const Device&, const AppearanceInput&, const AppearanceOptions&, Progress&);
+
+// The albedo again, gently, on other samples: of a large capture, one random subset leaves a few samples to a
+// texel, whose noise the field learns. result: of the same surface. About 30 seconds on two cores.
+void refine_albedo(const Device&, const AppearanceInput&, const AppearanceOptions&, AppearanceResult& result,
+                   Progress&, int steps = 600);
+
+}  // namespace cei3d

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/appearance/residual_fit.h"
+
+#include <array>
+#include <chrono>
+#include <cmath>
+
+#include "core/base/json.h"
+#include "core/base/parallel.h"
+#include "core/base/pool.h"
+#include "core/math/rng.h"
+#include "engine/reconstruct/appearance/display_loss.h"
+#include "engine/reconstruct/appearance/pixel_points.h"
+#include "engine/render/scene_light.h"
+#include "model/field/gradients.h"
+#include "model/field/optimizer.h"
+#include "model/scene/appearance.h"
+
+namespace cei3d {
+
+namespace {
+
+constexpr int kChunks = 16, kBatch = kChunks * ResidualPass::kMost;  // pixels a step
+constexpr int kApart = 8;                                            // every so many views one to judge by,
+constexpr size_t kJudged = 100000;                                   // at most so many of its pixels
+constexpr double kLeastGain = 0.03;                                  // of the squared error there
+constexpr double kJudging = 0.2;                                     // of the steps come before that,
+constexpr double kWarmUp = 0.05;  // and so many at rising rates: large first ones leave no unit alive
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+// Mean base colour of each pixel: at its centre alone the texture is sharper than the picture, and the
+// residual would learn to blur it.
+std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::span<const Hit> hits,
+                                std::span<const float> footprints) {
+  std::vector<Vec3f> points, out(hits.size(), Vec3f{0, 0, 0});
+  for (size_t i = 0; i < hits.size(); ++i)
+    for (const Vec3f p : pixel_points(hits[i], footprints.empty() ? 0 : footprints[i])) points.push_back(p);
+  std::vector<float> values(3 * points.size());
+  albedo.eval(device, points, values);
+  for (size_t k = 0; k < points.size(); ++k)
+    out[k / kPixelPoints] += Vec3f{values[3 * k], values[3 * k + 1], values[3 * k + 2]} / float(kPixelPoints);
+  return out;
+}
+
+// What the physical model sends out.
+std::vector<Vec3f> physical(const Device& device, const Scene& scene, const SurfaceSamples& samples) {
+  constexpr size_t kSlab = 1 << 17;  // hits at a time: shading takes more memory than they do
+  const SceneLight light(device, scene, scene_transports(scene));
+  std::vector<Vec3f> out;
+  out.reserve(samples.hits.size());
+  for (size_t begin = 0; begin < samples.hits.size(); begin += kSlab) {
+    const size_t n = std::min(kSlab, samples.hits.size() - begin);
+    const std::span<const Hit> hits = samples.hits.subspan(begin, n);
+    Appearance look = appearance_at(device, scene, hits);
+    look.albedo =
+        pixel_colors(device, *scene.albedo, hits,
+                     samples.footprints.empty() ? samples.footprints : samples.footprints.subspan(begin, n));
+    const Shading shading = light.shade(hits, look);
+    for (size_t i = 0; i < n; ++i) out.push_back(shading.diffuse[i] + shading.specular[i]);
+  }
+  return out;
+}
+
+class Trainer {
+ public:
+  Trainer(const Device& device, const Scene& scene, const SurfaceSamples& samples,
+          std::span<const uint16_t> views, const ResidualOptions& options)
+      : device_(device),
+        samples_(samples),
+        seed_(options.seed),
+        warm_up_(kWarmUp * options.steps),
+        sent_(physical(device, scene, samples)),
+        features_(std::make_shared<Field>(*scene.sdf)),
+        features_learn_(features_->config().encoding.levels > 0),
+        residual_(make_residual(features_learn_ ? features_ : scene.sdf, options.seed)),
+        passes_([this] { return std::make_unique<ResidualPass>(features_->config(), residual_.network); }) {
+    optimizer_.add(residual_.params, "", {options.rate});
+    if (features_learn_) {
+      Optimizer::Group tables{options.table_rate};
+      tables.skip_zero = true;
+      optimizer_.add(features_->params(), "encoding/", tables);
+      optimizer_.add(features_->params(), "layer", {options.feature_rate});
+    }
+    for (uint32_t i = 0; i < views.size(); ++i)
+      (views[i] % kApart == kApart - 1 ? apart_ : taught_).push_back(i);
+  }
+  bool can_judge() const { return !apart_.empty() && !taught_.empty(); }
+  void teach_all() { taught_.insert(taught_.end(), apart_.begin(), apart_.end()); }
+
+  // Share of the squared error, as displayed, that the residual takes off views it has not seen.
+  double gain() const {
+    std::vector<uint32_t> judged;
+    std::vector<Hit> hits;
+    for (size_t i = 0; i < apart_.size(); i += 1 + apart_.size() / kJudged) {
+      judged.push_back(apart_[i]);
+      hits.push_back(samples_.hits[apart_[i]]);
+    }
+    const std::vector<Vec3f> values = residual_at(device_, residual_, hits);
+    double with = 0, without = 1e-12;
+    for (size_t i = 0; i < judged.size(); ++i) {
+      with += squared_error(judged[i], sent_[judged[i]] + values[i]);
+      without += squared_error(judged[i], sent_[judged[i]]);
+    }
+    return 1 - with / without;
+  }
+
+  void step(double rate) {
+    const MlpWeights weights(residual_.network, residual_.params),
+        feature_weights(mlp_config(features_->config()), features_->params());
+    std::array<std::vector<float>, kChunks> gradients;
+    std::vector<ChunkGradients> feature_gradients(features_learn_ ? kChunks : 0);
+    parallel_for(kChunks, [&](int chunk) {
+      gradients[chunk].assign(weights.gradient_size(), 0.0f);
+      passes_.with([&](ResidualPass& pass) {
+        const int n = learn(pass, feature_weights, weights, choose(chunk), gradients[chunk].data());
+        if (features_learn_) pass.backward_features(device_, feature_weights, n, feature_gradients[chunk]);
+      });
+    });
+    std::vector<const std::vector<float>*> all;
+    for (const auto& g : gradients) all.push_back(&g);
+    accumulate_layers(residual_.params, all, optimizer_);
+    if (features_learn_)
+      accumulate_gradients(device_, *features_, feature_gradients, features_->config().encoding.levels,
+                           optimizer_);
+    ++steps_;
+    optimizer_.step(device_, float(rate * std::min(1.0, steps_ / warm_up_)));
+  }
+
+  Residual take() { return std::move(residual_); }
+
+ private:
+  std::vector<uint32_t> choose(int chunk) const {
+    std::vector<uint32_t> out(ResidualPass::kMost);
+    for (size_t i = 0; i < out.size(); ++i)
+      out[i] = Rng(seed_, uint64_t(steps_), uint64_t(chunk) * out.size() + i).below(uint32_t(taught_.size()));
+    for (uint32_t& i : out) i = taught_[i];
+    return out;
+  }
+
+  // Returns the pass's samples.
+  int learn(ResidualPass& pass, const MlpWeights& feature_weights, const MlpWeights& weights,
+            const std::vector<uint32_t>& chosen, float* gradient) {
+    std::vector<Hit> hits;
+    for (const uint32_t s : chosen) hits.push_back(samples_.hits[s]);
+    const int n = pass.forward(device_, *features_, feature_weights, weights, hits);
+    for (int i = 0; i < n; ++i) pass.set_slope(i, slope(chosen[i], pass.output(i)));
+    pass.backward(device_, weights, n, gradient);
+    return n;
+  }
+
+  double squared_error(uint32_t sample, Vec3f got) const {
+    double sum = 0;
+    for (int c = 0; c < 3; ++c)
+      sum +=
+          square(srgb_from_linear(clamp(got[c], 0.0f, 1.0f)) - srgb_from_linear(samples_.colors[sample][c]));
+    return sum;
+  }
+
+  // Of the loss by the residual.
+  Vec3f slope(uint32_t sample, Vec3f residual) const {
+    Vec3f out;
+    for (int c = 0; c < 3; ++c)
+      out[c] = display_loss_slope(sent_[sample][c] + residual[c], samples_.colors[sample][c],
+                                  samples_.is_clipped(sample, c)) /
+               float(kBatch);
+    return out;
+  }
+
+  const Device& device_;
+  const SurfaceSamples& samples_;
+  std::vector<uint32_t> taught_, apart_;  // samples
+  uint64_t seed_;
+  double warm_up_;  // steps
+  std::vector<Vec3f> sent_;
+  std::shared_ptr<Field> features_;
+  bool features_learn_;
+  Residual residual_;
+  Pool<ResidualPass> passes_;
+  Optimizer optimizer_;
+  int steps_ = 0;
+};
+
+// The rates falling from all to a hundredth. seconds: at most; 0: no limit.
+void train(Trainer& trainer, int steps, double seconds, Progress& progress) {
+  const double start = now();
+  for (int step = 0; step < steps && !progress.cancelled(); ++step) {
+    const double by_clock = seconds > 0 ? (now() - start) / seconds : 0;
+    const double u = std::max(double(step) / steps, by_clock);
+    if (u >= 1) break;
+    trainer.step(std::pow(0.01, u));
+    if (step % 50 == 0) progress.report({"residual", 0.99, -1, ""});
+  }
+}
+
+}  // namespace
+
+std::optional<Residual> fit_residual(const Device& device, const Scene& scene, const SurfaceSamples& samples,
+                                     std::span<const uint16_t> views, const ResidualOptions& options,
+                                     Progress& progress) {
+  const double start = now();
+  progress.report({"residual", 0.99, -1, ""});
+  Trainer trainer(device, scene, samples, views, options);
+  if (!trainer.can_judge()) return {};
+  const double shading = now() - start;
+  const double seconds = options.seconds > 0 ? std::max(options.seconds - shading, 0.5 * options.seconds) : 0;
+  const int judging = std::max(1, int(kJudging * options.steps));
+  train(trainer, judging, kJudging * seconds, progress);
+  const double gain = trainer.gain();
+  progress.log(Json{{"stage", "residual"}, {"shading", shading}, {"gain_on_views_kept_apart", gain}}.dump());
+  if (gain < kLeastGain) return {};
+  trainer.teach_all();
+  train(trainer, options.steps - judging, (1 - kJudging) * seconds, progress);
+  return trainer.take();
+}
+
+}  // namespace cei3d

@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: Apache-2.0
+// A metal ball, drawn exactly: whether normals come nearer to its own when they learn from what it mirrors.
+#include "engine/reconstruct/appearance/surface_polish.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/math/color.h"
+#include "engine/reconstruct/start/start.h"
+#include "engine/render/lighting.h"
+#include "engine/render/render.h"
+#include "engine/render/sphere_scene.h"
+#include "model/geometry/mesh/surface_nets.h"
+
+namespace cei3d {
+namespace {
+
+constexpr int kSize = 64, kViews = 16;
+const Material kMetal{0.2f, 0.5f, 1};
+
+// Base colour 0.5 everywhere: a network without weights.
+std::shared_ptr<const Field> grey_field() {
+  FieldConfig c;
+  c.encoding.levels = 4;
+  c.output_activation = Activation::sigmoid;
+  auto field = std::make_shared<Field>(c, 1);
+  for (Param& p : field->params().all()) std::fill(p.value.begin(), p.value.end(), 0.0f);
+  return field;
+}
+
+SgMixture room() {
+  return {{{normalize(Vec3f{1, 0.4f, 1}), 60, {1.5f, 1, 0.5f}},
+           {normalize(Vec3f{-1, 1, 0.3f}), 40, {0.3f, 0.6f, 1.2f}},
+           {normalize(Vec3f{0.2f, -1, -0.5f}), 60, {0.5f, 1, 0.5f}},
+           {{0, 0, 1}, 1.5f, {0.4f, 0.4f, 0.4f}}}};
+}
+
+Camera camera_of(int view) {
+  const double z = 1 - (2 * view + 1.0) / kViews, r = std::sqrt(1 - z * z), a = 2.39996 * view;
+  return camera_towards_origin({3 * r * std::cos(a), 3 * r * std::sin(a), 3 * z}, kSize);
+}
+
+bool meets_ball(const Ray& ray, Hit& hit) {
+  const float b = dot(ray.origin, ray.direction),
+              d = b * b - dot(ray.origin, ray.origin) + kSphereRadius * kSphereRadius;
+  if (d <= 0) return false;
+  hit.position = ray.origin + ray.direction * (-b - std::sqrt(d));
+  hit.normal = normalize(hit.position);
+  hit.to_camera = -ray.direction;
+  hit.triangle = 0;
+  hit.b1 = hit.b2 = 0;
+  return true;
+}
+
+PixelStore pictures(const Device& device) {
+  const Scene ball = sphere_scene();
+  const std::vector<Vec3f> grey(ball.surface->mesh().positions.size(), Vec3f{0.5f, 0.5f, 0.5f});
+  const Lighting lighting(device, *ball.surface, room(), grey, kMetal);
+  PixelStore store;
+  for (int view = 0; view < kViews; ++view) {
+    const Camera camera = camera_of(view);
+    Image image(kSize, kSize, 4);
+    for (int y = 0; y < kSize; ++y)
+      for (int x = 0; x < kSize; ++x) {
+        std::vector<Hit> hits;
+        for (int k = 0; k < 16; ++k) {
+          Hit hit;
+          if (meets_ball(camera.ray(x + (k % 4 + 0.5) / 4, y + (k / 4 + 0.5) / 4), hit)) hits.push_back(hit);
+        }
+        if (hits.empty()) continue;
+        Vec3f sum{0, 0, 0};
+        for (const Vec3f& s : lighting.shade(hits, std::vector<Vec3f>(hits.size(), grey[0])).specular)
+          sum += s;
+        for (int c = 0; c < 3; ++c) image.at(x, y)[c] = sum[c] / float(hits.size());
+        image.at(x, y)[3] = float(hits.size()) / 16;
+      }
+    store.add_view(camera, image, 3);
+  }
+  return store;
+}
+
+GeometryOptions small_geometry() {
+  GeometryOptions o;
+  o.sdf.encoding = {0, 6, 8, 64, 12};
+  o.sdf.hidden_layers = 1;
+  o.sdf.width = 32;
+  o.sdf.activation = Activation::softplus;
+  o.sdf.outputs = 9;
+  o.sdf.sphere_radius = 0.5f;
+  o.radiance_width = 32;
+  o.rays = 512;
+  return o;
+}
+
+struct Seen {
+  std::unique_ptr<Surface> surface;
+  std::vector<Hit> hits;
+  std::vector<Vec3f> colors;
+};
+
+Seen seen_of(const Device& device, const Field& sdf, const PixelStore& pixels) {
+  Seen s{std::make_unique<Surface>(extract_mesh(device, sdf, {64})), {}, {}};
+  std::vector<Ray> rays;
+  std::vector<Vec3f> colors;
+  for (const Pixel& p : pixels.pixels()) {
+    if (p.srgba[3] < 255) continue;
+    rays.push_back(pixels.cameras()[p.view].ray(p.x + 0.5, p.y + 0.5));
+    colors.push_back({linear_from_srgb(float(p.srgba[0]) / 255), linear_from_srgb(float(p.srgba[1]) / 255),
+                      linear_from_srgb(float(p.srgba[2]) / 255)});
+  }
+  std::vector<uint32_t> ray_of_hit;
+  s.hits = trace_rays(device, sdf, *s.surface, rays, ray_of_hit);
+  for (const uint32_t r : ray_of_hit) s.colors.push_back(colors[r]);
+  return s;
+}
+
+// Mean angle between the hits' normals and the ball's own, degrees.
+double normal_error(const Device& device, const Field& sdf, const PixelStore& pixels) {
+  const Seen s = seen_of(device, sdf, pixels);
+  double sum = 0;
+  for (const Hit& h : s.hits) sum += std::acos(std::min(dot(h.normal, normalize(h.position)), 1.0f));
+  return sum / double(s.hits.size()) * 180 / M_PI;
+}
+
+TEST(SurfacePolish, BringsNormalsNearerToTheTruthThanTheSameStepsWithoutIt) {
+  const Device device = make_device("cpu");
+  const PixelStore pixels = pictures(device);
+  GeometryStage stage(device, pixels, small_geometry(), 1);
+  stage.prefit(start_shape(pixels, Start::hull, 1));
+  for (int step = 0; step < 150; ++step) stage.step(step, 0.66 * step / 150);
+  Tensors before;
+  stage.save(before);
+
+  const Seen seen = seen_of(device, stage.sdf(), pixels);
+  const AppearanceInput input{*seen.surface, {seen.hits, seen.colors, {}}};
+  AppearanceResult look;
+  look.light = room();
+  look.material = kMetal;
+  look.albedo = grey_field();
+  PolishOptions options;
+  options.steps = 80;
+  options.batch = 2048;
+  Progress silent;
+  double error[2];
+  for (const bool polished : {false, true}) {
+    stage.load(before);
+    options.weight = polished ? 1 : 0;
+    polish_surface(device, stage, input, look, options, silent);
+    error[polished] = normal_error(device, stage.sdf(), pixels);
+  }
+  EXPECT_LT(error[1], 0.93 * error[0]) << "without: " << error[0] << " degrees";
+}
+
+}  // namespace
+}  // namespace cei3d

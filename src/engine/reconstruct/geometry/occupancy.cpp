@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/geometry/occupancy.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "core/base/parallel.h"
+#include "core/math/trilinear.h"
+
+namespace cei3d {
+
+bool unit_sphere_span(const Ray& ray, float& near, float& far) {
+  const float b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - 1, disc = b * b - c;
+  if (disc <= 0) return false;
+  const float root = std::sqrt(disc);
+  near = std::max(0.0f, -b - root);
+  far = -b + root;
+  return far > near;
+}
+
+OccupancyGrid::OccupancyGrid(int resolution)
+    : n_(resolution), value_(size_t(n_) * n_ * n_, std::numeric_limits<int16_t>::max()) {
+  if (n_ % 4 != 0) fail("an occupancy grid of {} cells an axis: bricks have 4", n_);
+}
+
+void OccupancyGrid::set_distance(size_t place, float d) {
+  constexpr float kMost = 3.9f;
+  value_[place] = int16_t(std::lround(std::clamp(d, -kMost, kMost) / kUnit));
+}
+
+void OccupancyGrid::set(std::span<const float> values) {
+  for (size_t i = 0; i < values.size(); ++i) set_distance(place(int(i)), values[i]);
+}
+
+std::vector<float> OccupancyGrid::values() const {
+  std::vector<float> out(value_.size());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = distance(place(int(i)));
+  return out;
+}
+
+Vec3f OccupancyGrid::center(int i) const { return center_of(place(i)); }
+
+Vec3f OccupancyGrid::center_of(size_t place) const {
+  const size_t bricks = size_t(n_) / 4, brick = place / 64;
+  const auto at = [&](size_t brick_at, size_t in_brick) {
+    return (float(4 * brick_at + in_brick % 4) + 0.5f) * 2 / float(n_) - 1;
+  };
+  return {at(brick % bricks, place), at(brick / bricks % bricks, place / 4),
+          at(brick / bricks / bricks, place / 16)};
+}
+
+void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin) {
+  constexpr int kChunk = 1 << 14;
+  const int all = int(value_.size()), chunks = (all + kChunk - 1) / kChunk;
+  std::vector<std::vector<uint32_t>> near(chunks);
+  parallel_for(chunks, [&](int c) {
+    for (int i = c * kChunk; i < std::min(all, (c + 1) * kChunk); ++i) {
+      if (std::abs(distance(size_t(i))) > margin) continue;
+      const Vec3f p = center_of(size_t(i));
+      if (dot(p, p) <= 1.1f) near[c].push_back(uint32_t(i));
+    }
+  });
+  std::vector<uint32_t> places;
+  for (const auto& n : near) places.insert(places.end(), n.begin(), n.end());
+  std::vector<Vec3f> points(places.size());
+  parallel_ranges(int(places.size()), kChunk, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) points[k] = center_of(places[k]);
+  });
+  const std::vector<float> out = first_output(device, sdf, points);
+  parallel_ranges(int(places.size()), kChunk, [&](int begin, int end) {
+    for (int k = begin; k < end; ++k) set_distance(places[k], out[k]);
+  });
+}
+
+float OccupancyGrid::between(Vec3f p) const {
+  return kUnit * trilinear(p, n_, [&](int x, int y, int z) { return float(value_[place(x, y, z)]); });
+}
+
+// Looks at one place; false at the walk's end.
+bool OccupancyGrid::advance(const Ray& ray, const March& m, Walk& walk, float* depths) const {
+  if (walk.t >= walk.far || walk.found >= m.most) return false;
+  const Vec3f p = ray.origin + ray.direction * walk.t;
+  // A cell's distance is off by half its diagonal at most; between cells it can be known better.
+  float reach = m.band + half_diagonal(), d = at(p);
+  if (std::abs(d) <= reach) {
+    d = between(p);
+    reach = m.band + m.slack * half_diagonal();
+  }
+  if (d < -reach) {
+    walk.far = walk.t;
+    return false;
+  }
+  // Away from the surface nothing holds the field's slope at one: a leap of all of the distance would land
+  // behind the surface, and the ray find nothing.
+  const bool leap = d > reach;
+  if (!leap) depths[walk.found++] = walk.t;
+  walk.t += leap ? std::max(0.5f * (d - reach), m.step) : m.step;
+  return true;
+}
+
+void OccupancyGrid::march(std::span<const Ray> rays, const March& m, std::span<const float> jitter,
+                          std::vector<float>& depths, std::span<int> counts) const {
+  constexpr size_t kTogether = 8;  // walks take turns: one's cells come from memory while others go on
+  std::vector<float> found(kTogether * size_t(m.most));
+  for (size_t first = 0; first < rays.size(); first += kTogether) {
+    const size_t n = std::min(kTogether, rays.size() - first);
+    Walk walks[kTogether];
+    for (size_t k = 0; k < n; ++k)
+      if (unit_sphere_span(rays[first + k], walks[k].t, walks[k].far))
+        walks[k].t += jitter[first + k] * m.step;
+    for (bool going = true; going;) {
+      going = false;
+      for (size_t k = 0; k < n; ++k)
+        going |= advance(rays[first + k], m, walks[k], &found[k * size_t(m.most)]);
+    }
+    for (size_t k = 0; k < n; ++k) {
+      const float* own = &found[k * size_t(m.most)];
+      depths.insert(depths.end(), own, own + walks[k].found);
+      counts[first + k] = walks[k].found;
+    }
+  }
+}
+
+}  // namespace cei3d

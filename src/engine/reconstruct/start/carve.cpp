@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/start/carve.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/math/rng.h"
+#include "engine/reconstruct/geometry/occupancy.h"
+
+namespace cei3d {
+
+namespace {
+
+constexpr int kRaysPerChunk = 128;
+constexpr uint32_t kNone = ~0u;
+constexpr float kDark = 0.01f;  // a ray ends where less light is left
+
+using Cell = std::array<float, 4>;  // density, display-encoded colour
+
+struct Slope {
+  uint32_t cell;
+  float light;  // that was left when the ray got there
+  Cell d;       // of the loss
+};
+
+class Fog {
+ public:
+  Fog(const PixelStore& pixels, const VisualHull& hull, const CarveOptions& options)
+      : pixels_(pixels),
+        hull_(hull),
+        options_(options),
+        size_((hull.hi.x - hull.lo.x) / float(hull.n)),
+        id_(hull.inside.size(), kNone),
+        chunks_(options.rays / kRaysPerChunk) {
+    for (size_t i = 0; i < hull.inside.size(); ++i)
+      if (hull.inside[i]) {
+        id_[i] = uint32_t(place_.size());
+        place_.push_back(uint32_t(i));
+      }
+    cells_.assign(place_.size(), {options.density, 0.5f, 0.5f, 0.5f});
+    for (auto* v : {&slope_, &mean_, &square_}) v->assign(place_.size(), {});
+    lit_.assign(place_.size(), 0);
+  }
+
+  void step(int step) {
+    parallel_for(int(chunks_.size()), [&](int c) {
+      chunks_[c].clear();
+      for (int r = 0; r < kRaysPerChunk; ++r)
+        trace(Rng(options_.seed, uint64_t(step), uint64_t(c * kRaysPerChunk + r)), chunks_[c]);
+    });
+    const bool settled = step > options_.steps * 3 / 4;
+    std::vector<uint32_t> touched;
+    for (const auto& slopes : chunks_)
+      for (const Slope& s : slopes) {
+        Cell& sum = slope_[s.cell];
+        if (sum == Cell{}) touched.push_back(s.cell);
+        for (int k = 0; k < 4; ++k) sum[k] += s.d[k];
+        if (settled) lit_[s.cell] = std::max(lit_[s.cell], s.light);
+      }
+    const float decay = std::pow(0.2f, float(step) / float(options_.steps));
+    for (const uint32_t i : touched) update(i, decay);
+  }
+
+  // The hull's grid without cells that are empty.
+  std::vector<uint8_t> solid() const {
+    std::vector<uint8_t> inside = hull_.inside;
+    for (size_t i = 0; i < cells_.size(); ++i)
+      if (lit_[i] > options_.lit && opacity(cells_[i]) < options_.empty_opacity) inside[place_[i]] = 0;
+    return inside;
+  }
+
+ private:
+  float opacity(const Cell& c) const { return 1 - std::exp(-c[0] * size_); }
+
+  uint32_t id_at(Vec3f p) const {
+    const Vec3f q = (p - hull_.lo) / size_;
+    const int n = hull_.n, x = int(q.x), y = int(q.y), z = int(q.z);
+    if (min(q.x, min(q.y, q.z)) < 0 || std::max({x, y, z}) >= n) return kNone;
+    return id_[(size_t(z) * n + y) * n + x];
+  }
+
+  // One pixel's ray: its loss is |colour - picture|^2 / 2 over white, and the same of the opacity.
+  void trace(Rng rng, std::vector<Slope>& out) const {
+    const Pixel& p = pixels_.pixels()[rng.below(uint32_t(pixels_.pixels().size()))];
+    const float u = rng.uniform(), v = rng.uniform();
+    const Ray ray = pixels_.cameras()[p.view].ray(p.x + u, p.y + v);
+    float near, far;
+    if (!unit_sphere_span(ray, near, far)) return;
+    const size_t first = out.size();
+    float light = 1;
+    Vec3f color{0, 0, 0};
+    for (float t = near + size_ * rng.uniform(); t < far && light > kDark; t += size_) {
+      const uint32_t i = id_at(ray.origin + ray.direction * t);
+      if (i == kNone) continue;
+      const Cell& c = cells_[i];
+      const float weight = light * opacity(c);
+      out.push_back({i, light, {0, weight, weight, weight}});
+      color += Vec3f{c[1], c[2], c[3]} * weight;
+      light -= weight;
+    }
+    const Target target = target_of(p);
+    const Vec3f error = color + Vec3f{light, light, light} - target.srgb;
+    const float error_opacity = options_.opacity_weight * (1 - light - target.alpha);
+    Vec3f behind{light, light, light};  // what the rest of the ray adds to the colour
+    for (size_t k = out.size(); k-- > first;) {
+      Slope& s = out[k];
+      const Cell& c = cells_[s.cell];
+      const float weight = s.d[1], through = s.light - weight;
+      s.d[0] = error_opacity * size_ * light;
+      for (int j = 0; j < 3; ++j) {
+        s.d[0] += error[j] * size_ * (through * c[1 + j] - behind[j]);
+        s.d[1 + j] = error[j] * weight;
+        behind[j] += weight * c[1 + j];
+      }
+    }
+  }
+
+  // Adam without bias correction.
+  void update(uint32_t i, float decay) {
+    const float most[] = {options_.density_rate / size_, options_.color_rate, options_.color_rate,
+                          options_.color_rate};
+    const float high[] = {3 / size_, 1, 1, 1};
+    for (int k = 0; k < 4; ++k) {
+      const float d = slope_[i][k];
+      float &m = mean_[i][k], &v = square_[i][k];
+      m = 0.8f * m + 0.2f * d;
+      v = 0.95f * v + 0.05f * d * d;
+      cells_[i][k] = std::clamp(cells_[i][k] - decay * most[k] * m / (std::sqrt(v) + 1e-7f), 0.0f, high[k]);
+    }
+    slope_[i] = {};
+  }
+
+  const PixelStore& pixels_;
+  const VisualHull& hull_;
+  CarveOptions options_;
+  float size_;                   // of a cell
+  std::vector<uint32_t> id_;     // of the hull's cells among those inside, or kNone
+  std::vector<uint32_t> place_;  // and back
+  std::vector<Cell> cells_, slope_, mean_, square_;
+  std::vector<float> lit_;  // the most light that reached the cell once the fog had settled
+  std::vector<std::vector<Slope>> chunks_;
+};
+
+// Cells next to one that has `value` (edges and corners count) take it.
+std::vector<uint8_t> spread(const std::vector<uint8_t>& grid, int n, uint8_t value) {
+  std::vector<uint8_t> out = grid;
+  parallel_for(n, [&](int z) {
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x)
+        for (int k = 0; k < 27; ++k) {
+          const int X = x + k % 3 - 1, Y = y + k / 3 % 3 - 1, Z = z + k / 9 - 1;
+          if (std::min({X, Y, Z}) < 0 || std::max({X, Y, Z}) >= n) continue;
+          if (grid[(size_t(Z) * n + Y) * n + X] == value) out[(size_t(z) * n + y) * n + x] = value;
+        }
+  });
+  return out;
+}
+
+}  // namespace
+
+VisualHull carve(const PixelStore& pixels, const VisualHull& hull, const CarveOptions& options) {
+  Fog fog(pixels, hull, options);
+  for (int step = 0; step < options.steps; ++step) fog.step(step);
+  VisualHull out = hull;
+  out.inside = fog.solid();
+  for (int k = 0; k < options.opening; ++k) out.inside = spread(out.inside, hull.n, 1);
+  for (int k = 0; k < options.opening; ++k) out.inside = spread(out.inside, hull.n, 0);
+  for (size_t i = 0; i < out.inside.size(); ++i) out.inside[i] &= hull.inside[i];
+  return out;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/geometry/mesh/adjacency.h"
+
+#include <algorithm>
+
+namespace cei3d {
+namespace {
+
+constexpr double kLeastWeight = 0.05, kMostWeight = 5;  // an edge between equilateral triangles has 0.58
+
+// Index of v among the neighbours of u.
+size_t slot(const VertexLists& neighbours, uint32_t u, uint32_t v) {
+  const auto begin = neighbours.items.begin() + neighbours.start[u];
+  const auto end = neighbours.items.begin() + neighbours.start[u + 1];
+  return size_t(std::lower_bound(begin, end, v) - neighbours.items.begin());
+}
+
+}  // namespace
+
+VertexLists triangles_around(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles) {
+  VertexLists lists;
+  lists.start.assign(vertices + 1, 0);
+  for (const auto& t : triangles)
+    for (const uint32_t v : t) ++lists.start[v + 1];
+  for (size_t v = 0; v < vertices; ++v) lists.start[v + 1] += lists.start[v];
+  lists.items.resize(3 * triangles.size());
+  std::vector<uint32_t> next(lists.start.begin(), lists.start.end() - 1);
+  for (size_t i = 0; i < triangles.size(); ++i)
+    for (const uint32_t v : triangles[i]) lists.items[next[v]++] = uint32_t(i);
+  return lists;
+}
+
+VertexLists neighbours_of(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles) {
+  const VertexLists around = triangles_around(vertices, triangles);
+  VertexLists lists;
+  lists.start.assign(vertices + 1, 0);
+  std::vector<uint32_t> ring;
+  for (uint32_t v = 0; v < vertices; ++v) {
+    ring.clear();
+    for (const uint32_t i : around.of(v))
+      for (const uint32_t u : triangles[i])
+        if (u != v) ring.push_back(u);
+    std::sort(ring.begin(), ring.end());
+    lists.items.insert(lists.items.end(), ring.begin(), std::unique(ring.begin(), ring.end()));
+    lists.start[v + 1] = uint32_t(lists.items.size());
+  }
+  return lists;
+}
+
+LaplaceWeights laplace_weights(std::span<const Vec3f> positions,
+                               std::span<const std::array<uint32_t, 3>> triangles,
+                               const VertexLists& neighbours) {
+  const size_t n = positions.size();
+  LaplaceWeights w{std::vector<double>(neighbours.items.size(), 0.0), std::vector<double>(n, 0.0),
+                   std::vector<double>(n, 0.0)};
+  double total_area = 0;
+  for (const auto& t : triangles)
+    for (int k = 0; k < 3; ++k) {
+      const uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
+      const Vec3d u = to_double(positions[b] - positions[a]), v = to_double(positions[c] - positions[a]);
+      const double twice_area = length(cross(u, v)), cotangent = dot(u, v) / max(twice_area, 1e-12);
+      w.edge[slot(neighbours, b, c)] += 0.5 * cotangent;
+      w.edge[slot(neighbours, c, b)] += 0.5 * cotangent;
+      w.area[a] += twice_area / 6;
+      total_area += twice_area / 6;
+    }
+  for (double& e : w.edge) e = std::clamp(e, kLeastWeight, kMostWeight);
+  for (uint32_t v = 0; v < n; ++v) {
+    w.area[v] = max(w.area[v], 0.1 * total_area / double(n));
+    for (uint32_t i = neighbours.start[v]; i < neighbours.start[v + 1]; ++i) w.vertex[v] += w.edge[i];
+  }
+  return w;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// Handler points: the explicit half of the representation. Sampled at the ray hits of the training views,
+// thinned to a known spacing. [paper sec. 3.1; reference-facts 4.2]
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/math/vec.h"
+#include "model/geometry/shape/hit.h"
+
+namespace cei3d {
+
+struct HandlerPoints {
+  std::vector<Vec3f> positions;  // #N, unit-sphere frame
+  std::vector<Vec3f> normals;    // #N, unit
+  std::vector<float>
+      footprints;     // #N, distance between neighbouring pixels' hits where the point was seen best
+  float spacing = 0;  // no two points are nearer than this; every hit has one within it
+};
+
+// Keeps, in a fixed order, every hit that has no kept point within `spacing` on its own side of the surface.
+// footprints: #hits.
+HandlerPoints thin_hits(std::span<const Hit> hits, std::span<const float> footprints, float spacing);
+
+}  // namespace cei3d

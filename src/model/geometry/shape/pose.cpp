@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/geometry/shape/pose.h"
+
+#include <algorithm>
+
+namespace cei3d {
+namespace {
+
+using Corners = std::array<uint32_t, 3>;
+
+// 1 at vertices that the change moved or made. #V afterwards.
+std::vector<uint8_t> changed_vertices(const Mesh& before, const Reshape& change) {
+  std::vector<uint8_t> mask(before.positions.size() + change.added_positions.size(), 0);
+  for (const uint32_t v : change.moved) mask[v] = 1;
+  std::fill(mask.begin() + before.positions.size(), mask.end(), uint8_t(1));
+  return mask;
+}
+
+std::vector<Mat3f> next_gradients(const Pose& before, size_t vertices, const Reshape& change) {
+  std::vector<Mat3f> f = before.gradients;
+  f.resize(vertices, Mat3f::identity());
+  for (size_t i = 0; i < change.moved.size(); ++i) {
+    Mat3f& m = f[change.moved[i]];
+    m = change.gradient(i) * m;
+  }
+  return f;
+}
+
+std::vector<Vec3f> next_colors(const Pose& before, size_t vertices, const Reshape& change) {
+  std::vector<Vec3f> colors = before.colors;
+  colors.resize(vertices, {0, 0, 0});
+  for (size_t i = 0; i < change.rim.size(); ++i) colors[change.rim[i]] = change.rim_colors[i];
+  std::copy(change.added_colors.begin(), change.added_colors.end(),
+            colors.end() - change.added_colors.size());
+  return colors;
+}
+
+// Which triangles are which, and since when.
+void follow_triangles(const Pose& before, int index, const Reshape& change, std::span<const uint8_t> moved,
+                      Pose& pose) {
+  const auto& triangles = pose.surface->mesh().triangles;
+  pose.before = kept_triangles(before.surface->mesh(), change);
+  for (size_t t = 0; t < pose.before.size(); ++t) {
+    const Corners& c = triangles[t];
+    pose.born.push_back(before.born_in(pose.before[t]));
+    pose.shaped.push_back(moved[c[0]] || moved[c[1]] || moved[c[2]] ? index
+                                                                    : before.shaped_in(pose.before[t]));
+  }
+  pose.born.resize(triangles.size(), index);
+  pose.shaped.resize(triangles.size(), index);
+  pose.before.resize(triangles.size(), 0);
+}
+
+template <class T>
+T blend(const std::vector<T>& v, const Corners& c, const Hit& hit) {
+  return v[c[0]] * (1 - hit.b1 - hit.b2) + v[c[1]] * hit.b1 + v[c[2]] * hit.b2;
+}
+
+}  // namespace
+
+Poses with_pose(Poses poses, std::shared_ptr<const Surface> surface, const Reshape& change) {
+  if (poses.empty()) poses.push_back(std::make_shared<const Pose>(Pose{surface, {}, {}, {}, {}, {}}));
+  const Pose& before = *poses.back();
+  Mesh mesh = apply(surface->mesh(), change);
+  const size_t vertices = mesh.positions.size();
+  const std::vector<uint8_t> changed = changed_vertices(surface->mesh(), change);
+  auto pose = std::make_shared<Pose>();
+  pose->surface = std::make_shared<const Surface>(std::move(mesh), *surface, changed);
+  pose->gradients = next_gradients(before, vertices, change);
+  pose->colors = next_colors(before, vertices, change);
+  follow_triangles(before, int(poses.size()), change, changed, *pose);
+  poses.push_back(std::move(pose));
+  return poses;
+}
+
+Mat3f gradient_at(const Pose& pose, const Corners& corners, const Hit& hit) {
+  if (pose.gradients.empty()) return Mat3f::identity();
+  Mat3f m{};
+  const float weight[3] = {1 - hit.b1 - hit.b2, hit.b1, hit.b2};
+  for (int c = 0; c < 3; ++c)
+    for (int i = 0; i < 3; ++i) m.row[i] += pose.gradients[corners[c]].row[i] * weight[c];
+  constexpr float kFlat =
+      0.05f;  // the surface is folded or crushed: what lies beside the mesh stays as it was
+  return determinant(m) > kFlat ? m : Mat3f::identity();
+}
+
+Vec3f mesh_point(const Pose& pose, const Corners& corners, const Hit& hit) {
+  return blend(pose.surface->mesh().positions, corners, hit);
+}
+
+// What lies beside the mesh is carried by the gradients: x_k = m_k + F_k F^-1 (x - m), and the normal by
+// their inverse transposes.
+SurfacePoint in_pose(const Poses& poses, const Hit& hit, int k) {
+  if (poses.empty() || poses.back()->shaped_in(hit.triangle) <= k) return {hit.position, hit.normal};
+  const Pose &now = *poses.back(), &then = *poses[k];
+  const Corners& corners = now.surface->mesh().triangles[hit.triangle];
+  const Mat3f f = gradient_at(now, corners, hit), g = gradient_at(then, corners, hit);
+  const Vec3f offset = inverse(f) * (hit.position - mesh_point(now, corners, hit));
+  const Vec3f normal = transpose(f) * hit.normal;
+  return {mesh_point(then, corners, hit) + g * offset, normalize(inverse_transpose(g) * normal)};
+}
+
+}  // namespace cei3d

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/geometry/shape/projector.h"
+
+#include <cmath>
+
+#include "core/base/error.h"
+
+namespace cei3d {
+namespace {
+
+// The four texels around a pixel position and the weights of the right and lower ones.
+struct Texels {
+  int x, y;
+  float tx, ty;
+
+  Texels(const Image& image, const Camera& camera, double u, double v) {
+    const double s = u * image.width / camera.width - 0.5, t = v * image.height / camera.height - 0.5;
+    x = int(std::floor(s));
+    y = int(std::floor(t));
+    tx = float(s - x);
+    ty = float(t - y);
+  }
+};
+
+// Beyond the border of the picture its outermost texels go on.
+float texel(const Image& image, int x, int y) {
+  return *image.at(min(max(x, 0), image.width - 1), min(max(y, 0), image.height - 1));
+}
+
+bool in_picture(const Camera& c, double u, double v) {
+  return u >= 0 && v >= 0 && u < c.width && v < c.height;
+}
+
+Image image_of(const Tensors& tensors, const std::string& name) {
+  const auto it = tensors.find(name);
+  if (it == tensors.end())
+    fail("the edit's data lack '{}'; the project is damaged, undo or repeat the edit", name);
+  const Tensor& t = it->second;
+  if (t.shape.size() != 2 || t.shape[0] < 1 || t.shape[1] < 1 ||
+      size_t(t.shape[0] * t.shape[1]) != t.f32.size())
+    fail("'{}' is not a picture; the project is damaged, undo or repeat the edit", name);
+  Image image(int(t.shape[1]), int(t.shape[0]), 1);
+  image.data = t.f32;
+  return image;
+}
+
+Json camera_json(const Camera& c) {
+  Json j{{"width", c.width}, {"height", c.height},
+         {"fx", c.fx},       {"fy", c.fy},
+         {"cx", c.cx},       {"cy", c.cy},
+         {"skew", c.skew},   {"center", {c.center.x, c.center.y, c.center.z}}};
+  for (const Vec3d& r : c.world_from_cam.row) j["world_from_cam"].push_back({r.x, r.y, r.z});
+  return j;
+}
+
+Vec3d vector_from(const Json& j) {
+  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+}
+
+Camera camera_from(const Json& j) {
+  Camera c;
+  c.width = j.at("width");
+  c.height = j.at("height");
+  c.fx = j.at("fx");
+  c.fy = j.at("fy");
+  c.cx = j.at("cx");
+  c.cy = j.at("cy");
+  c.skew = j.at("skew");
+  c.center = vector_from(j.at("center"));
+  for (int i = 0; i < 3; ++i) c.world_from_cam.row[i] = vector_from(j.at("world_from_cam").at(i));
+  if (c.width < 1 || c.height < 1)
+    fail("the edit's camera has no pixels; the project is damaged, undo or repeat the edit");
+  return c;
+}
+
+}  // namespace
+
+float Projector::alpha_at(double u, double v) const {
+  if (!in_picture(camera, u, v)) return 0;
+  const Texels k(alpha, camera, u, v);
+  const float top = texel(alpha, k.x, k.y) * (1 - k.tx) + texel(alpha, k.x + 1, k.y) * k.tx;
+  const float bottom = texel(alpha, k.x, k.y + 1) * (1 - k.tx) + texel(alpha, k.x + 1, k.y + 1) * k.tx;
+  return top * (1 - k.ty) + bottom * k.ty;
+}
+
+// The deepest of the four neighbours counts: on a slope the texels differ by more than the tolerance.
+bool Projector::sees(double u, double v, double z) const {
+  const Texels k(depth, camera, u, v);
+  const float far = max(max(texel(depth, k.x, k.y), texel(depth, k.x + 1, k.y)),
+                        max(texel(depth, k.x, k.y + 1), texel(depth, k.x + 1, k.y + 1)));
+  return z <= far + tolerance;
+}
+
+bool Projector::covers(Vec3f position, Vec3f normal) const {
+  const Vec3f to_camera = to_float(camera.center) - position;
+  if (!(dot(normal, to_camera) > min_facing * length(to_camera))) return false;
+  const Vec3d p = camera.project(to_double(position));
+  if (!(p.z > 0) || !in_picture(camera, p.x, p.y)) return false;
+  return alpha_at(p.x, p.y) >= least_alpha && sees(p.x, p.y, p.z);
+}
+
+void save_projector(const Projector& p, Tensors& tensors, Json& head, const std::string& prefix) {
+  head["camera"] = camera_json(p.camera);
+  head["tolerance"] = p.tolerance;
+  head["min_facing"] = p.min_facing;
+  if (p.soft()) head["least_alpha"] = p.least_alpha;
+  tensors[prefix + "alpha"] = {{p.alpha.height, p.alpha.width}, p.alpha.data, {}};
+  tensors[prefix + "depth"] = {{p.depth.height, p.depth.width}, p.depth.data, {}};
+}
+
+Projector load_projector(const Tensors& tensors, const Json& head, const std::string& prefix) {
+  Projector p;
+  p.camera = camera_from(head.at("camera"));
+  p.tolerance = head.at("tolerance");
+  p.min_facing = head.at("min_facing");
+  p.least_alpha = head.value("least_alpha", 0.5f);
+  p.alpha = image_of(tensors, prefix + "alpha");
+  p.depth = image_of(tensors, prefix + "depth");
+  return p;
+}
+
+}  // namespace cei3d
