@@ -29,9 +29,11 @@ struct LobeScene {
                      mirrors = directions(kPoints, 3);
   std::vector<float> y1 = noise(3 * kPoints, 4),
                      y2 = noise(3 * kPoints, 5);  // weights of the outputs in the loss
+  std::vector<float> roughness;
   LobeScene() {
     for (int k = 0; k < kLobes; ++k) lobes.push_back(0.5f + 80 * square(Rng(6, 0, k).uniform()));
     for (int k = 0; k < 3 * kLobes; ++k) lobes.push_back(Rng(7, 0, k).uniform());
+    for (int i = 0; i < kPoints; ++i) roughness.push_back(0.2f + 0.7f * Rng(8, 0, i).uniform());
   }
   static std::vector<float> noise(int n, uint64_t seed) {
     std::vector<float> v(n);
@@ -47,24 +49,41 @@ struct LobeScene {
   }
   std::vector<float> reflection(const Device& d) const {
     std::vector<float> out(3 * kPoints);
-    SgReflection::Args a{planes(), {}, {}, kPoints, mirrors.data(), out.data()};
-    set_reflection_lobe(0.4f, a);
-    d.launch<SgReflection>(a, kPoints);
+    d.launch<SgReflection>({planes(), kPoints, mirrors.data(), roughness.data(), out.data()}, kPoints);
+    return out;
+  }
+  std::vector<float> reflection_lobes(const Device& d) const {
+    std::vector<float> out(ReflectionLobes::kRows * kPoints);
+    d.launch<ReflectionLobes>({kPoints, roughness.data(), out.data()}, kPoints);
     return out;
   }
   std::vector<float> gradient(const Device& d) const {
     std::vector<float> out(7 * kLobes);
-    SgShadeGrad::Args a{planes(),       {},        {},        kPoints,   0, kPoints, normals.data(),
-                        mirrors.data(), y1.data(), y2.data(), out.data()};
-    set_reflection_lobe(0.4f, a);
-    d.launch<SgShadeGrad>(a, kLobes);
+    const std::vector<float> reflection = reflection_lobes(d);
+    d.launch<SgLobesGrad>({.lobes = planes(),
+                           .stride = kPoints,
+                           .begin = 0,
+                           .end = kPoints,
+                           .normals = normals.data(),
+                           .mirrors = mirrors.data(),
+                           .reflection_lobes = reflection.data(),
+                           .d_irradiance = y1.data(),
+                           .d_reflected = y2.data(),
+                           .d_lobes = out.data()},
+                          kLobes);
     return out;
   }
-  std::vector<float> mirror_gradient(const Device& d) const {
-    std::vector<float> out(3 * kPoints);
-    SgReflectionSlope::Args a{planes(), {}, {}, kPoints, mirrors.data(), y2.data(), out.data()};
-    set_reflection_lobe(0.4f, a);
-    d.launch<SgReflectionSlope>(a, kPoints);
+  // [4][kPoints]: by the mirrored direction and by the roughness.
+  std::vector<float> point_gradient(const Device& d) const {
+    std::vector<float> out(4 * kPoints);
+    d.launch<SgReflectionGrad>({.lobes = planes(),
+                                .stride = kPoints,
+                                .mirrors = mirrors.data(),
+                                .roughness = roughness.data(),
+                                .d_reflected = y2.data(),
+                                .d_mirrors = out.data(),
+                                .d_roughness = out.data() + 3 * kPoints},
+                               kPoints);
     return out;
   }
   double loss(const Device& d) const {
@@ -86,12 +105,34 @@ std::vector<float> fit_case(const Device& d, bool gather) {
   return gather ? d_lobes : d_radiance;
 }
 
+std::vector<float> shading_points() {
+  std::vector<float> p = LobeScene::noise(ShadingRows::kRows * kPoints, 10);
+  for (float& x : p) x = 0.5f + 0.49f * x;
+  return p;
+}
+std::vector<float> shade_case(const Device& d) {
+  const std::vector<float> points = shading_points();
+  std::vector<float> out(Shade::kOutputs * kPoints);
+  d.launch<Shade>({split_sum_table(), kPoints, points.data(), out.data()}, kPoints);
+  return out;
+}
+std::vector<float> shade_grad_case(const Device& d) {
+  const std::vector<float> points = shading_points(), y1 = LobeScene::noise(3 * kPoints, 11),
+                           y2 = LobeScene::noise(3 * kPoints, 12);
+  std::vector<float> out(points.size());
+  d.launch<ShadeGrad>({split_sum_table(), kPoints, points.data(), y1.data(), y2.data(), out.data()}, kPoints);
+  return out;
+}
+
 TEST(ShadeKernels, EveryDeviceAgreesWithTheScalarOne) {
   const std::pair<const char*, std::function<std::vector<float>(const Device&)>> cases[] = {
       {"irradiance", [](const Device& d) { return LobeScene().irradiance(d); }},
       {"reflection", [](const Device& d) { return LobeScene().reflection(d); }},
       {"gradient", [](const Device& d) { return LobeScene().gradient(d); }},
-      {"gradient of mirrors", [](const Device& d) { return LobeScene().mirror_gradient(d); }},
+      {"reflection lobes", [](const Device& d) { return LobeScene().reflection_lobes(d); }},
+      {"gradient of points", [](const Device& d) { return LobeScene().point_gradient(d); }},
+      {"shade", [](const Device& d) { return shade_case(d); }},
+      {"shade gradient", [](const Device& d) { return shade_grad_case(d); }},
       {"fit residual", [](const Device& d) { return fit_case(d, false); }},
       {"fit gather", [](const Device& d) { return fit_case(d, true); }},
   };
@@ -158,7 +199,7 @@ TEST(ShadeKernels, AdjointOfAnAxisEqualsDifferencesAlongTheSphere) {
 TEST(ShadeKernels, AdjointOfAMirrorDirectionEqualsDifferencesAlongTheSphere) {
   const Device device = make_device("cpu/scalar");
   const LobeScene s;
-  const std::vector<float> g = s.mirror_gradient(device);
+  const std::vector<float> g = s.point_gradient(device);
   const auto at = [](const std::vector<float>& p, int i) {
     return Vec3f{p[i], p[kPoints + i], p[2 * kPoints + i]};
   };
@@ -172,6 +213,21 @@ TEST(ShadeKernels, AdjointOfAMirrorDirectionEqualsDifferencesAlongTheSphere) {
     };
     const double slope = (loss_at(0.005f) - loss_at(-0.005f)) / 0.01;
     EXPECT_NEAR(dot(at(g, i), t), slope, 0.02 * std::abs(slope) + 0.005) << i;
+  }
+}
+
+TEST(ShadeKernels, AdjointOfTheRoughnessEqualsDifferences) {
+  const Device device = make_device("cpu/scalar");
+  const LobeScene s;
+  const std::vector<float> g = s.point_gradient(device);
+  for (const int i : {0, 9, 31, 63}) {
+    const auto loss_at = [&](float h) {
+      LobeScene moved = s;
+      moved.roughness[i] += h;
+      return moved.loss(device);
+    };
+    const double slope = (loss_at(0.004f) - loss_at(-0.004f)) / 0.008;
+    EXPECT_NEAR(g[3 * kPoints + i], slope, 0.02 * std::abs(slope) + 0.01) << i;
   }
 }
 

@@ -64,26 +64,19 @@ void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
   }
 }
 
-// The base colours that show the targets in the light, and the share of them that is out of reach.
-float solve_for_base_color(const Device& device, const Scene& scene, const SceneLight& light, Paint& paint) {
-  Appearance look = appearance_at(device, scene, paint.hits);
-  std::fill(look.albedo.begin(), look.albedo.end(), Vec3f{0, 0, 0});
-  const Shading black = light.shade(paint.hits, look);
-  std::fill(look.albedo.begin(), look.albedo.end(), Vec3f{1, 1, 1});
-  const Shading white = light.shade(paint.hits, look);
+// Replaces the targets by the albedos that show them in the light; returns the fraction of the targets that
+// no albedo reaches.
+float solve_for_albedo(const Device& device, const Scene& scene, const SceneLight& light, Paint& paint) {
   constexpr float kVisible = 0.02f;  // linear radiance
+  const std::vector<ShadingTerms<float>> terms =
+      light.terms(paint.hits, appearance_at(device, scene, paint.hits));
   size_t outside = 0;
   for (size_t i = 0; i < paint.hits.size(); ++i) {
-    const Vec3f floor = black.diffuse[i] + black.specular[i],
-                gain = white.diffuse[i] + white.specular[i] - floor;
-    bool reached = true;
-    for (int c = 0; c < 3; ++c) {
-      const float wanted = paint.targets[i][c];
-      const float base = clamp((wanted - floor[c]) / max(gain[c], 1e-4f), 0.0f, 1.0f);
-      reached = reached && abs(floor[c] + gain[c] * base - wanted) < kVisible;
-      paint.targets[i][c] = base;
-    }
-    outside += !reached;
+    const Vec3f target = paint.targets[i], gain = terms[i].gain(), offset = terms[i].specular_offset;
+    for (int c = 0; c < 3; ++c)
+      paint.targets[i][c] = clamp((target[c] - offset[c]) / max(gain[c], 1e-4f), 0.0f, 1.0f);
+    const Vec3f error = terms[i].radiance(paint.targets[i]) - target;
+    outside += std::max({abs(error.x), abs(error.y), abs(error.z)}) >= kVisible;
   }
   return float(outside) / float(std::max<size_t>(paint.hits.size(), 1));
 }
@@ -214,7 +207,7 @@ PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& 
   Paint paint;
   for (size_t i = 0; i < strokes.size(); ++i)
     add_stroke(strokes[i], std::span(regions).subspan(i + 1), paint);
-  if (request.seen_in) report.out_of_reach = solve_for_base_color(device, scene, *request.seen_in, paint);
+  if (request.seen_in) report.out_of_reach = solve_for_albedo(device, scene, *request.seen_in, paint);
   const double traced = now();
   progress.report({"paint", 0.2, -1, ""});
   result.layer.id = request.id;

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/export/object_mesh.h"
 
+#include <map>
+#include <tuple>
+
 #include "core/base/error.h"
 #include "model/scene/appearance.h"
 
@@ -31,27 +34,18 @@ Mesh compact(const Mesh& mesh) {
   return out;
 }
 
-// That of two corners of a triangle counts, else that of the first.
-std::vector<uint32_t> by_triangle(const Mesh& mesh, const std::vector<uint32_t>& of_vertex) {
-  std::vector<uint32_t> out;
-  for (const auto& t : mesh.triangles) {
-    const uint32_t a = of_vertex[t[0]], b = of_vertex[t[1]], c = of_vertex[t[2]];
-    out.push_back(b == c ? b : a);
-  }
-  return out;
-}
-
-// Without materials that no triangle has.
-MeshMaterials used(const MeshMaterials& all) {
-  constexpr uint32_t kUnused = ~0u;
-  std::vector<uint32_t> id(all.list.size(), kUnused);
+// The materials that occur among the vertices. A triangle gets the one that two of its corners have, else its
+// first corner's.
+MeshMaterials mesh_materials(const Mesh& mesh, const std::vector<Material>& of_vertex) {
+  std::map<std::tuple<float, float, float>, uint32_t> ids;
   MeshMaterials out;
-  for (const uint32_t m : all.of_triangle) {
-    if (id[m] == kUnused) {
-      id[m] = uint32_t(out.list.size());
-      out.list.push_back(all.list[m]);
-    }
-    out.of_triangle.push_back(id[m]);
+  for (const auto& t : mesh.triangles) {
+    const Material &a = of_vertex[t[0]], &b = of_vertex[t[1]], &c = of_vertex[t[2]];
+    const Material& m = b == c ? b : a;
+    const auto [id, is_new] =
+        ids.emplace(std::tuple(m.roughness, m.specular, m.metalness), uint32_t(ids.size()));
+    if (is_new) out.list.push_back(m);
+    out.of_triangle.push_back(id->second);
   }
   return out;
 }
@@ -63,10 +57,10 @@ ColoredMesh colored_mesh(const Device& device, const Scene& scene) {
   Mesh mesh = scene.surface->mesh();
   Appearance look = appearance_at(device, scene, vertex_hits(mesh));
   mesh.colors = std::move(look.albedo);
-  const MeshMaterials materials = used({std::move(look.materials), by_triangle(mesh, look.material)});
+  MeshMaterials materials = mesh_materials(mesh, look.material);
   if (!scene.poses.empty()) mesh = compact(mesh);
   mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);
-  return {std::move(mesh), materials};
+  return {std::move(mesh), std::move(materials)};
 }
 
 Mesh handler_point_cloud(const Scene& scene) {

@@ -72,7 +72,7 @@ Scene small_scene() {
   s.sdf = small_field(1, 1);
   s.albedo = small_field(3, 2);
   s.light.lobes = {{{0, 0, 1}, 3.5f, {1, 2, 3}}, {{1, 0, 0}, 20, {0.5f, 0, 0.25f}}};
-  s.material = {0.21f, 0.4f, 1};
+  s.material = Material{0.21f, 0.4f, 1};
   auto points = std::make_shared<HandlerPoints>();
   points->positions = {{0, 0, 0.5f}, {0.5f, 0, 0}};
   points->normals = {{0, 0, 1}, {1, 0, 0}};

@@ -26,9 +26,7 @@ ObjectHits object_hits(const Device&, const Field& sdf, const Surface&, const Pi
 struct Standing {
   std::shared_ptr<const Surface> surface;
   ObjectHits hits;
-  AppearanceInput input() const {
-    return {*surface, {hits.hits, hits.colors, hits.clipped, hits.footprints}};
-  }
+  AppearanceInput input() const { return {surface, {hits.hits, hits.colors, hits.clipped, hits.footprints}}; }
 };
 
 // Error: no picture shows the surface.

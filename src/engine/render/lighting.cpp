@@ -2,40 +2,114 @@
 #include "engine/render/lighting.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 
-#include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/math/brdf.h"
-#include "core/math/sg.h"
-#include "engine/render/env_table.h"
-#include "engine/render/self_reflection.h"
+#include "core/compute/kernels/all.h"
 
 namespace cei3d {
 namespace {
 
-constexpr int kBlock = 2048;  // hits a chunk: what it needs stays in the second-level cache
+constexpr int kBlock = 2048;  // hits a chunk: its planes stay in the second-level cache
+
+// Planes of one chunk of hits.
+template <int kRows>
+struct Planes {
+  std::vector<float> data = std::vector<float>(size_t(kRows) * kBlock, 0.0f);
+  float* row(int r) { return data.data() + size_t(r) * kBlock; }
+  void put(int r, size_t i, Vec3f v) { store_planes(row(r), kBlock, int(i), v); }
+  Vec3f get(int r, size_t i) { return load_planes<float>(row(r), kBlock, int(i)); }
+};
+
+int padded(size_t n) { return int((n + kPanel - 1) / kPanel * kPanel); }
+
+struct ReflectionPlanes {
+  Planes<3> mirrors;
+  Planes<1> roughness;
+
+  explicit ReflectionPlanes(const HitBatch& batch) {
+    for (size_t i = 0; i < batch.size(); ++i) {
+      mirrors.put(0, i, mirror_direction(batch.hits[i]));
+      roughness.row(0)[i] = batch.materials[i].roughness;
+    }
+  }
+};
+
+// albedo: empty where it is not needed.
+Planes<ShadingRows::kRows> shading_points(const HitBatch& batch, std::span<const IncidentLight<float>> light,
+                                          std::span<const Vec3f> albedo) {
+  Planes<ShadingRows::kRows> p;
+  for (size_t i = 0; i < batch.size(); ++i) {
+    const Material& m = batch.materials[i];
+    const ShadingPoint<float> point{albedo.empty() ? Vec3f{0, 0, 0} : albedo[i],
+                                    m.roughness,
+                                    m.specular,
+                                    m.metalness,
+                                    dot(batch.hits[i].normal, batch.hits[i].to_camera),
+                                    light[i].irradiance(),
+                                    light[i].reflected()};
+    ShadingRows::store_point(p.row(0), kBlock, int(i), point);
+  }
+  return p;
+}
+
+// dL/d(the points' members); batch: at most kBlock hits.
+Planes<ShadingRows::kRows> shade_grad(const Device& device, const HitBatch& batch,
+                                      std::span<const IncidentLight<float>> light,
+                                      std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) {
+  Planes<ShadingRows::kRows> points = shading_points(batch, light, albedo), d_points;
+  Planes<3> d_out;
+  for (size_t i = 0; i < batch.size(); ++i) d_out.put(0, i, d_radiance[i]);
+  device.launch<ShadeGrad>({.split_sum = split_sum_table(),
+                            .stride = kBlock,
+                            .points = points.row(0),
+                            .d_diffuse = d_out.row(0),
+                            .d_specular = d_out.row(0),
+                            .d_points = d_points.row(0)},
+                           padded(batch.size()));
+  return d_points;
+}
+
+template <class T>
+void put(const std::vector<T>& part, size_t first, std::vector<T>& out) {
+  std::copy(part.begin(), part.end(), out.begin() + std::ptrdiff_t(first));
+}
+void put(const ShadingSlopes& part, size_t first, ShadingSlopes& out) {
+  put(part.d_albedo, first, out.d_albedo);
+  put(part.d_normal, first, out.d_normal);
+  put(part.d_view, first, out.d_view);
+  put(part.d_material, first, out.d_material);
+  put(part.d_sky_irradiance, first, out.d_sky_irradiance);
+  put(part.d_sky_reflection, first, out.d_sky_reflection);
+}
+
+std::shared_ptr<const Transport> or_new(std::shared_ptr<const Transport> transport,
+                                        const std::shared_ptr<const Surface>& surface) {
+  return transport ? transport : std::make_shared<const Transport>(*surface);
+}
+
+VertexMaterials uniform_materials(std::span<const Vec3f> albedo, const Material& material) {
+  return {{albedo.begin(), albedo.end()}, std::vector<Material>(albedo.size(), material)};
+}
 
 }  // namespace
 
-Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture& light,
-                   const Material& material, VertexLight vertices)
-    : device_(device), surface_(surface), material_(material), vertices_(std::move(vertices)) {
+Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface, const SgMixture& light,
+                   VertexLight vertices)
+    : device_(device), surface_(std::move(surface)), vertices_(std::move(vertices)) {
   set_lobes(light);
-  env_table_ = env_brdf_table(max(material.roughness, kLeastRoughness));
 }
 
-Lighting::Lighting(const Device& device, const Surface& surface, const SgMixture& light,
-                   std::span<const Vec3f> base_color, const Material& material,
+Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface, const SgMixture& light,
+                   std::span<const Vec3f> albedo, const Material& material,
                    std::shared_ptr<const Transport> transport)
-    : Lighting(device, surface, light, material,
-               vertex_light(transport ? *transport : Transport(surface), light, base_color)) {}
-
-Lighting::~Lighting() = default;
+    : Lighting(
+          device, surface, light,
+          vertex_light(*or_new(std::move(transport), surface), light, uniform_materials(albedo, material))) {}
 
 void Lighting::set_lobes(const SgMixture& light) {
   n_lobes_ = int(light.lobes.size());
-  padded_ = (n_lobes_ + kPanel - 1) / kPanel * kPanel;
+  padded_ = padded(light.lobes.size());
   lobe_planes_.assign(size_t(7) * padded_, 0);
   for (int k = 0; k < n_lobes_; ++k) {
     const SgLobe& l = light.lobes[k];
@@ -43,165 +117,148 @@ void Lighting::set_lobes(const SgMixture& light) {
                          l.mu.x,   l.mu.y,   l.mu.z};
     for (int j = 0; j < 7; ++j) lobe_planes_[size_t(j) * padded_ + k] = row[j];
   }
-  irradiance_ = IrradianceMap(device_, {lobe_planes_.data(), n_lobes_, padded_});
+  irradiance_ = IrradianceMap(device_, lobes());
 }
 
-// Planes of one chunk of hits.
-struct Lighting::Block {
-  std::vector<float> mirrors, reflected;
-  Block() {
-    for (auto* v : {&mirrors, &reflected}) v->assign(size_t(3) * kBlock, 0);
-  }
-};
+// batch: at most kBlock hits.
+std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
+  ReflectionPlanes in(batch);
+  Planes<3> out;
+  device_.launch<SgReflection>({.lobes = lobes(),
+                                .stride = kBlock,
+                                .mirrors = in.mirrors.row(0),
+                                .roughness = in.roughness.row(0),
+                                .out = out.row(0)},
+                               padded(batch.size()));
+  std::vector<Vec3f> radiance(batch.size());
+  for (size_t i = 0; i < radiance.size(); ++i) radiance[i] = out.get(0, i);
+  return radiance;
+}
 
-HitLight Lighting::light_at(std::span<const Hit> hits, const Material& material,
-                            std::span<const Vec3f> seen) const {
-  const Mesh& mesh = surface_.mesh();
-  const float roughness = max(material.roughness, kLeastRoughness);
-  const bool own = roughness == max(material_.roughness, kLeastRoughness);
-  const std::vector<Vec2f> other_table = own ? std::vector<Vec2f>() : env_brdf_table(roughness);
-  const std::vector<Vec2f>& env_table = own ? env_table_ : other_table;
-  HitLight out;
-  out.irradiance.resize(hits.size());
-  out.reflected.resize(hits.size());
-  out.openness.resize(hits.size());
-  out.open_mirror.resize(hits.size());
-  out.env.resize(hits.size());
-  out.diffuse_view.resize(hits.size());
-  const LobePlanes lobes{lobe_planes_.data(), n_lobes_, padded_};
-  const SelfReflection own_image(device_, surface_, vertices_, lobes, material, env_table,
-                                 seen.empty() ? std::span<const Vec3f>(vertices_.base_color) : seen);
-  parallel_ranges(int(hits.size()), kBlock, [&](int begin, int end) {
-    Block b;
-    for (int i = begin; i < end; ++i) {
-      const Vec3f r = mirror_direction(hits[i]);
-      for (int c = 0; c < 3; ++c) b.mirrors[size_t(c) * kBlock + i - begin] = r[c];
-    }
-    const int n = (end - begin + kPanel - 1) / kPanel * kPanel;
-    SgReflection::Args reflection{lobes, {}, {}, kBlock, b.mirrors.data(), b.reflected.data()};
-    set_reflection_lobe(roughness, reflection);
-    device_.launch<SgReflection>(reflection, n);
-    const std::vector<SelfReflection::Seen> way = own_image.seen_by(hits.subspan(begin, end - begin));
-    for (int i = begin; i < end; ++i) {
-      const Hit& h = hits[i];
-      const auto& t = mesh.triangles[h.triangle];
-      const Vec3f soft = normalize(at_corners(mesh.normals, t, h.b1, h.b2));
-      const Vec3f sky{b.reflected[i - begin], b.reflected[kBlock + i - begin],
-                      b.reflected[2 * kBlock + i - begin]};
-      out.openness[i] = at_corners(vertices_.openness, t, h.b1, h.b2);
-      out.irradiance[i] =
-          irradiance_.at(soft) * out.openness[i] + at_corners(vertices_.bounce, t, h.b1, h.b2);
-      out.open_mirror[i] = max(way[i - begin].open, 0.0f);
-      out.reflected[i] = sky * out.open_mirror[i] + way[i - begin].radiance;
-      const float nv = dot(h.normal, h.to_camera);
-      out.env[i] = env_brdf_at(env_table, nv);
-      out.diffuse_view[i] = diffuse_view(clamp(nv, 0.0f, 1.0f), roughness);
-    }
+IncidentLight<float> Lighting::incident_at(const Hit& h, Vec3f sky_reflection,
+                                           const SelfReflection::Seen& seen) const {
+  const Mesh& mesh = surface_->mesh();
+  const auto& t = mesh.triangles[h.triangle];
+  return {.sky_irradiance = irradiance_.at(normalize(at_corners(mesh.normals, t, h.b1, h.b2))),
+          .visibility = at_corners(vertices_.visibility, t, h.b1, h.b2),
+          .bounce = at_corners(vertices_.bounce, t, h.b1, h.b2),
+          .sky_reflection = sky_reflection,
+          .mirror_visibility = max(seen.visibility, 0.0f),
+          .object_reflection = seen.radiance};
+}
+
+std::vector<IncidentLight<float>> Lighting::incident_light(const HitBatch& batch,
+                                                           const VertexMaterials& seen) const {
+  std::vector<IncidentLight<float>> out(batch.size());
+  const SelfReflection own(device_, *surface_, vertices_, lobes(), seen.empty() ? vertices_.made_of : seen);
+  parallel_ranges(int(batch.size()), kBlock, [&](int begin, int end) {
+    const HitBatch part = batch.part(begin, end);
+    const std::vector<Vec3f> sky = sky_reflection(part);
+    const std::vector<SelfReflection::Seen> object = own.seen_by(part.hits, part.materials);
+    for (size_t i = 0; i < part.size(); ++i)
+      out[size_t(begin) + i] = incident_at(part.hits[i], sky[i], object[i]);
   });
   return out;
 }
 
-// Adjoint of the free sky's reflection: dL/d(mirror direction) from dL/d(radiance along it).
-std::vector<Vec3f> Lighting::mirror_slopes(std::span<const Hit> hits,
-                                           std::span<const Vec3f> d_reflected) const {
-  std::vector<Vec3f> out(hits.size());
-  parallel_ranges(int(hits.size()), kBlock, [&](int begin, int end) {
-    std::vector<float> mirrors(size_t(3) * kBlock), up(mirrors.size()), down(mirrors.size());
-    for (int i = begin; i < end; ++i) {
-      const Vec3f r = mirror_direction(hits[i]);
-      for (int c = 0; c < 3; ++c) {
-        mirrors[size_t(c) * kBlock + i - begin] = r[c];
-        up[size_t(c) * kBlock + i - begin] = d_reflected[i][c];
-      }
-    }
-    SgReflectionSlope::Args a{
-        {lobe_planes_.data(), n_lobes_, padded_}, {}, {}, kBlock, mirrors.data(), up.data(), down.data()};
-    set_reflection_lobe(max(material_.roughness, kLeastRoughness), a);
-    device_.launch<SgReflectionSlope>(a, (end - begin + kPanel - 1) / kPanel * kPanel);
-    for (int i = begin; i < end; ++i)
-      out[i] = {down[i - begin], down[kBlock + i - begin], down[2 * kBlock + i - begin]};
+std::vector<ShadingTerms<float>> Lighting::terms(const HitBatch& batch,
+                                                 std::span<const IncidentLight<float>> light) const {
+  std::vector<ShadingTerms<float>> out(batch.size());
+  parallel_ranges(int(batch.size()), kBlock, [&](int begin, int end) {
+    const HitBatch part = batch.part(begin, end);
+    Planes<ShadingRows::kRows> points = shading_points(part, light.subspan(size_t(begin), part.size()), {});
+    Planes<Shade::kOutputs> terms;
+    device_.launch<Shade>({split_sum_table(), kBlock, points.row(0), terms.row(0)}, padded(part.size()));
+    for (size_t i = 0; i < part.size(); ++i)
+      out[size_t(begin) + i] = {terms.get(0, i), terms.get(3, i), terms.get(6, i)};
   });
   return out;
 }
 
-std::vector<Vec3f> Lighting::normal_slopes(std::span<const Hit> hits, const HitLight& light,
-                                           std::span<const Vec3f> albedo,
-                                           std::span<const Vec3f> d_radiance) const {
-  constexpr float kStep = 0.01f;  // of the tabulated reflectance
-  const float roughness = max(material_.roughness, kLeastRoughness);
-  const auto seen_at = [&](float nv) { return diffuse_view(clamp(nv, 0.0f, 1.0f), roughness); };
-  const float dielectric = (1 - material_.metalness) * kDielectricF0 * material_.specular;
-  std::vector<Vec3f> d_reflected(hits.size()), out(hits.size());
-  for (size_t i = 0; i < hits.size(); ++i) {
-    const float nv = dot(hits[i].normal, hits[i].to_camera);
-    const Vec2f above = env_brdf_at(env_table_, nv + kStep), below = env_brdf_at(env_table_, nv - kStep);
-    const float d_diffuse =
-        (1 - material_.metalness) / kPi * (seen_at(nv + kStep) - seen_at(nv - kStep)) / (2 * kStep);
-    float d_nv = 0;
-    for (int c = 0; c < 3; ++c) {
-      d_nv += d_radiance[i][c] * albedo[i][c] * light.irradiance[i][c] * d_diffuse;
-      const float f0 = material_.metalness * albedo[i][c] + dielectric;
-      d_reflected[i][c] = d_radiance[i][c] * (f0 * light.env[i].x + light.env[i].y) * light.open_mirror[i];
-      d_nv += d_radiance[i][c] * light.reflected[i][c] * (f0 * (above.x - below.x) + above.y - below.y) /
-              (2 * kStep);
-    }
-    out[i] = hits[i].to_camera * d_nv;
-  }
-  const std::vector<Vec3f> d_mirror = mirror_slopes(hits, d_reflected);
-  for (size_t i = 0; i < hits.size(); ++i) {
-    const Vec3f &n = hits[i].normal, &v = hits[i].to_camera, &d = d_mirror[i];
-    out[i] += (v * dot(d, n) + d * dot(n, v)) * 2.0f;
-    out[i] = out[i] - n * dot(out[i], n);
+std::vector<ShadingTerms<float>> Lighting::terms(const HitBatch& batch, const VertexMaterials& seen) const {
+  constexpr int kSlab = 64 * kBlock;  // bounds the memory that incident light takes
+  std::vector<ShadingTerms<float>> out;
+  out.reserve(batch.size());
+  for (int begin = 0; begin < int(batch.size()); begin += kSlab) {
+    const HitBatch part = batch.part(begin, std::min(begin + kSlab, int(batch.size())));
+    const std::vector<ShadingTerms<float>> some = terms(part, incident_light(part, seen));
+    out.insert(out.end(), some.begin(), some.end());
   }
   return out;
 }
 
-HitLight::Terms HitLight::at(size_t hit, const Material& material) const {
-  const float m = material.metalness, dielectric = (1 - m) * kDielectricF0 * material.specular;
-  return {irradiance[hit] * ((1 - m) / kPi * diffuse_view[hit]), reflected[hit] * (m * env[hit].x),
-          reflected[hit] * (dielectric * env[hit].x + env[hit].y)};
-}
-
-// The hits of one material, as a batch of their own.
-struct Lighting::Group {
-  std::vector<uint32_t> index;  // in the whole batch
-  std::vector<Hit> hits;
-};
-
-void Lighting::shade_group(const Group& group, std::span<const Vec3f> albedo, const Material& material,
-                           std::span<const Vec3f> seen, Shading& out) const {
-  const HitLight light = light_at(group.hits, material, seen);
-  for (size_t k = 0; k < group.index.size(); ++k) {
-    const uint32_t i = group.index[k];
-    const HitLight::Terms t = light.at(k, material);
-    out.diffuse[i] = albedo[i] * t.diffuse_gain;
-    out.specular[i] = albedo[i] * t.specular_gain + t.specular_floor;
+Shading shading_of(std::span<const ShadingTerms<float>> terms, std::span<const Vec3f> albedo) {
+  Shading out{std::vector<Vec3f>(terms.size()), std::vector<Vec3f>(terms.size())};
+  for (size_t i = 0; i < terms.size(); ++i) {
+    out.diffuse[i] = terms[i].diffuse(albedo[i]);
+    out.specular[i] = terms[i].specular(albedo[i]);
   }
-}
-
-Shading Lighting::shade(std::span<const Hit> hits, const Appearance& appearance,
-                        std::span<const Vec3f> seen) const {
-  std::vector<Group> groups(appearance.materials.size());
-  for (Group& group : groups) {
-    group.index.reserve(hits.size() / groups.size());
-    group.hits.reserve(hits.size() / groups.size());
-  }
-  for (size_t i = 0; i < hits.size(); ++i) {
-    Group& group = groups[appearance.material[i]];
-    group.index.push_back(uint32_t(i));
-    group.hits.push_back(hits[i]);
-  }
-  Shading out{std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())};
-  for (size_t m = 0; m < groups.size(); ++m)
-    if (!groups[m].hits.empty())
-      shade_group(groups[m], appearance.albedo, appearance.materials[m], seen, out);
   return out;
 }
 
-Shading Lighting::shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const {
-  return shade(
-      hits,
-      Appearance{{albedo.begin(), albedo.end()}, std::vector<uint32_t>(hits.size(), 0), {material_}, {}});
+Shading Lighting::shade(const HitBatch& batch, std::span<const Vec3f> albedo,
+                        const VertexMaterials& seen) const {
+  return shading_of(terms(batch, seen), albedo);
+}
+
+Lighting::ReflectionGrad Lighting::reflection_grad(const HitBatch& batch,
+                                                   std::span<const Vec3f> d_reflection) const {
+  ReflectionPlanes in(batch);
+  Planes<3> d_reflected, d_mirrors;
+  Planes<1> d_roughness;
+  for (size_t i = 0; i < batch.size(); ++i) d_reflected.put(0, i, d_reflection[i]);
+  device_.launch<SgReflectionGrad>({.lobes = lobes(),
+                                    .stride = kBlock,
+                                    .mirrors = in.mirrors.row(0),
+                                    .roughness = in.roughness.row(0),
+                                    .d_reflected = d_reflected.row(0),
+                                    .d_mirrors = d_mirrors.row(0),
+                                    .d_roughness = d_roughness.row(0)},
+                                   padded(batch.size()));
+  ReflectionGrad out;
+  for (size_t i = 0; i < batch.size(); ++i) {
+    out.d_mirror.push_back(d_mirrors.get(0, i));
+    out.d_roughness.push_back(d_roughness.row(0)[i]);
+  }
+  return out;
+}
+
+ShadingSlopes Lighting::block_grad(const HitBatch& batch, std::span<const IncidentLight<float>> light,
+                                   std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const {
+  using Rows = ShadingRows;
+  Planes<Rows::kRows> d_points = shade_grad(device_, batch, light, albedo, d_radiance);
+  ShadingSlopes out(batch.size());
+  for (size_t i = 0; i < batch.size(); ++i) {
+    const IncidentLight<float> d =
+        incident_light_grad(light[i], d_points.get(Rows::kIrradiance, i), d_points.get(Rows::kReflected, i));
+    out.d_albedo[i] = d_points.get(Rows::kAlbedo, i);
+    out.d_sky_irradiance[i] = d.sky_irradiance;
+    out.d_sky_reflection[i] = d.sky_reflection;
+  }
+  const ReflectionGrad reflection = reflection_grad(batch, out.d_sky_reflection);
+  for (size_t i = 0; i < batch.size(); ++i) {
+    const Vec3f n = batch.hits[i].normal, v = batch.hits[i].to_camera;
+    const float d_nv = d_points.row(Rows::kNv)[i], nv = dot(n, v);
+    Vec3f &d_n = out.d_normal[i], &d_v = out.d_view[i];
+    d_n = (v - n * nv) * d_nv;
+    d_v = (n - v * nv) * d_nv;
+    mirrored_direction_grad(n, v, reflection.d_mirror[i], d_n, d_v);
+    out.d_material[i] = {d_points.row(Rows::kRoughness)[i] + reflection.d_roughness[i],
+                         d_points.row(Rows::kSpecular)[i], d_points.row(Rows::kMetalness)[i]};
+  }
+  return out;
+}
+
+ShadingSlopes Lighting::grad(const HitBatch& batch, std::span<const IncidentLight<float>> light,
+                             std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const {
+  ShadingSlopes out(batch.size());
+  parallel_ranges(int(batch.size()), kBlock, [&](int begin, int end) {
+    const HitBatch part = batch.part(begin, end);
+    const size_t first = size_t(begin), n = part.size();
+    put(block_grad(part, light.subspan(first, n), albedo.subspan(first, n), d_radiance.subspan(first, n)),
+        first, out);
+  });
+  return out;
 }
 
 }  // namespace cei3d

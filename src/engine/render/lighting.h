@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shading model: what a surface point sends to the camera under a light of lobes. Direct light in closed
-// form, dimmed by what the vertices around the point see of the sky, plus one diffuse bounce; reflections in
-// closed form, replaced by what the surface itself shows where rays of the reflection lobe meet it: its
-// diffuse radiance and one more reflection.
+// Shading of hits under a light of lobes: core/math/shading.h with the light that arrives at each hit. Direct
+// light in closed form, dimmed by the visibility of the environment from the vertices around the hit, plus
+// diffuse bounces; reflections in closed form, replaced by the surface itself where rays of the reflection
+// lobe meet it.
 #pragma once
 
 #include <memory>
@@ -14,7 +14,6 @@
 #include "engine/render/self_reflection.h"
 #include "engine/render/vertex_light.h"
 #include "model/light/sg_mixture.h"
-#include "model/material/material.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {
@@ -23,62 +22,87 @@ struct Shading {
   std::vector<Vec3f> diffuse, specular;  // #hits, linear radiance
 };
 
-// What reaches a hit: irradiance = openness * (of the free sky) + bounce, reflected = open_mirror * (of the
-// free sky) + what the surface shows. The colour is linear in the base colour: see at().
-struct HitLight {
-  std::vector<Vec3f> irradiance, reflected;  // #hits
-  std::vector<Vec3f> openness;               // #hits, per channel
-  std::vector<float> open_mirror;            // #hits, share of the reflection lobe that sees the sky
-  std::vector<Vec2f> env;                    // #hits, scale and bias of the reflectance
-  std::vector<float> diffuse_view;           // #hits, of the diffuse light, see core/math/brdf.h
+Shading shading_of(std::span<const ShadingTerms<float>>, std::span<const Vec3f> albedo);
 
-  struct Terms {
-    Vec3f diffuse_gain, specular_gain, specular_floor;  // times base colour, times base colour, plain
-  };
-  Terms at(size_t hit, const Material& material) const;
+// dL/d(everything that the radiance of a batch of hits depends on), #hits each.
+struct ShadingSlopes {
+  explicit ShadingSlopes(size_t hits)
+      : d_albedo(hits),
+        d_normal(hits),
+        d_view(hits),
+        d_material(hits),
+        d_sky_irradiance(hits),
+        d_sky_reflection(hits) {}
+  std::vector<Vec3f> d_albedo;
+  std::vector<Vec3f> d_normal;       // tangent to the unit sphere at the hit's normal
+  std::vector<Vec3f> d_view;         // tangent at the direction to the camera
+  std::vector<Material> d_material;  // derivatives by the three numbers
+  std::vector<Vec3f>
+      d_sky_irradiance;  // by the unoccluded light of the environment, for a descent on its lobes
+  std::vector<Vec3f> d_sky_reflection;
+};
+
+// Hits and the material of each.
+struct HitBatch {
+  std::span<const Hit> hits;
+  std::span<const Material> materials;  // #hits
+  size_t size() const { return hits.size(); }
+  HitBatch part(int begin, int end) const {
+    return {hits.subspan(size_t(begin), size_t(end - begin)),
+            materials.subspan(size_t(begin), size_t(end - begin))};
+  }
+};
+
+// Hits that all have the same material.
+struct UniformBatch {
+  UniformBatch(std::span<const Hit> h, const Material& m) : hits(h), materials(h.size(), m) {}
+  operator HitBatch() const { return {hits, materials}; }  // NOLINT: it is one
+  std::span<const Hit> hits;
+  std::vector<Material> materials;
 };
 
 class Lighting {
  public:
-  // base_color: #V, of the unedited object: what bounces and what reflections see. material: the object's
-  // own. The transport can be shared by lights; without one it is computed (a second).
-  Lighting(const Device&, const Surface&, const SgMixture&, std::span<const Vec3f> base_color,
+  Lighting(const Device&, std::shared_ptr<const Surface>, const SgMixture&, VertexLight);
+  // With the vertices' light computed: albedo (#V) and material are those of the unedited object, as bounces
+  // and reflections see it. The transport can be shared by lights; without one it is computed (a second).
+  Lighting(const Device&, std::shared_ptr<const Surface>, const SgMixture&, std::span<const Vec3f> albedo,
            const Material&, std::shared_ptr<const Transport> transport = nullptr);
-  Lighting(const Device&, const Surface&, const SgMixture&, const Material&, VertexLight);
-  ~Lighting();
 
-  // A hit's result depends on nothing but that hit, its base colour and its material. seen: #V, what
-  // reflections see in place of the base colours above; empty: those.
-  Shading shade(std::span<const Hit> hits, const Appearance&, std::span<const Vec3f> seen = {}) const;
-  // ... all of the object's own material. albedo: #hits base colour.
-  Shading shade(std::span<const Hit> hits, std::span<const Vec3f> albedo) const;
-  // As if the object were of that material.
-  HitLight light_at(std::span<const Hit> hits, const Material&, std::span<const Vec3f> seen = {}) const;
-  HitLight light_at(std::span<const Hit> hits) const { return light_at(hits, material_); }
-  // dL/d(normal) of each hit, tangent to the sphere, from dL/d(radiance that it sends out), for the object's
-  // own material: through the mirror direction and the reflectance. Irradiance is taken at the mesh's normals
-  // and does not enter; nor does what blocks the reflection. light: light_at(hits); albedo: #hits base
-  // colour.
-  std::vector<Vec3f> normal_slopes(std::span<const Hit> hits, const HitLight& light,
-                                   std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const;
-  // Another light close to the first: bounce and openness stay. For descent on the light.
+  // The result of a hit depends on nothing but that hit, its albedo and its material. seen: what reflections
+  // see in place of the vertices' own materials; empty: these.
+  Shading shade(const HitBatch&, std::span<const Vec3f> albedo, const VertexMaterials& seen = {}) const;
+
+  std::vector<IncidentLight<float>> incident_light(const HitBatch&, const VertexMaterials& seen = {}) const;
+  // The radiance of every hit as a linear function of its albedo.
+  std::vector<ShadingTerms<float>> terms(const HitBatch&, std::span<const IncidentLight<float>>) const;
+  std::vector<ShadingTerms<float>> terms(const HitBatch&, const VertexMaterials& seen = {}) const;
+  // The adjoint. Irradiance is taken at the mesh's normals, so that only reflection and reflectance depend on
+  // the hit's; visibility, bounces and what the object shows of itself count as fixed.
+  ShadingSlopes grad(const HitBatch&, std::span<const IncidentLight<float>>, std::span<const Vec3f> albedo,
+                     std::span<const Vec3f> d_radiance) const;
+
+  // Another light close to the first one: bounces and visibility stay. For a descent on the light.
   void set_lobes(const SgMixture&);
 
  private:
-  struct Block;
-  struct Group;
-  void shade_group(const Group&, std::span<const Vec3f> albedo, const Material&, std::span<const Vec3f> seen,
-                   Shading& out) const;
-  std::vector<Vec3f> mirror_slopes(std::span<const Hit> hits, std::span<const Vec3f> d_reflected) const;
+  struct ReflectionGrad {
+    std::vector<Vec3f> d_mirror;  // by the mirrored directions
+    std::vector<float> d_roughness;
+  };
+  LobePlanes lobes() const { return {lobe_planes_.data(), n_lobes_, padded_}; }
+  std::vector<Vec3f> sky_reflection(const HitBatch&) const;
+  ReflectionGrad reflection_grad(const HitBatch&, std::span<const Vec3f> d_reflection) const;
+  ShadingSlopes block_grad(const HitBatch&, std::span<const IncidentLight<float>>,
+                           std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const;
+  IncidentLight<float> incident_at(const Hit&, Vec3f sky_reflection, const SelfReflection::Seen&) const;
 
   const Device& device_;
-  const Surface& surface_;
-  Material material_;
+  std::shared_ptr<const Surface> surface_;
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
   IrradianceMap irradiance_;
   VertexLight vertices_;
-  std::vector<Vec2f> env_table_;  // scale and bias of the reflectance by the viewer's cosine
 };
 
 }  // namespace cei3d

@@ -8,14 +8,17 @@
 namespace cei3d {
 namespace {
 
-std::vector<Vec3f> base_colors(const Device& device, const Scene& scene, const Surface& rest) {
+// As reconstructed, in the first shape.
+VertexMaterials rest_materials(const Device& device, const Scene& scene, const Surface& rest) {
   const auto& positions = rest.mesh().positions;
-  std::vector<float> values(positions.size() * 3);
-  scene.albedo->eval(device, positions, values);
-  std::vector<Vec3f> colors(positions.size());
-  for (size_t v = 0; v < colors.size(); ++v)
-    colors[v] = {values[3 * v], values[3 * v + 1], values[3 * v + 2]};
-  return colors;
+  return {scene.albedo->eval3(device, positions), scene.material.at(positions)};
+}
+
+// With the vertices that an edit has added.
+VertexMaterials with_added(VertexMaterials m, const std::vector<Vec3f>& colors, const Material& material) {
+  m.albedo.insert(m.albedo.end(), colors.begin() + std::ptrdiff_t(m.albedo.size()), colors.end());
+  m.material.resize(m.albedo.size(), material);
+  return m;
 }
 
 // Vertices that a pose moved or made. #V of the pose.
@@ -39,15 +42,14 @@ std::vector<std::vector<uint32_t>> triangle_ids(const Poses& poses) {
   return ids;
 }
 
-// What shows its own colour in every light.
-Shading with_unlit(Shading lit, const Appearance& look) {
+// Unlit albedo shows its own color in every light.
+void add_unlit(const Appearance& look, std::vector<ShadingTerms<float>>& terms) {
   for (size_t i = 0; i < look.unlit.size(); ++i) {
-    const float share = look.unlit[i];
+    const float share = look.unlit[i], lit = 1 - share;
     if (share <= 0) continue;
-    lit.diffuse[i] = lit.diffuse[i] * (1 - share) + look.albedo[i] * share;
-    lit.specular[i] = lit.specular[i] * (1 - share);
+    terms[i] = {terms[i].diffuse_gain * lit + Vec3f{share, share, share}, terms[i].specular_gain * lit,
+                terms[i].specular_offset * lit};
   }
-  return lit;
 }
 
 // The scene as it was when that layer had been put on, as far as it has to do with that pose.
@@ -60,11 +62,11 @@ Scene as_of(Scene scene, int layer, int pose) {
   return scene;
 }
 
-// Hits that one pose lights, with its own triangles, and what they look like.
+// Hits that one shape lights, with that shape's triangles.
 struct Group {
-  std::vector<uint32_t> index;
+  std::vector<uint32_t> index;  // in the whole batch
   std::vector<Hit> hits;
-  Appearance look;
+  std::vector<Material> materials;
 };
 
 }  // namespace
@@ -81,55 +83,56 @@ SceneLight::SceneLight(const Device& device, const Scene& scene,
                        const std::vector<std::shared_ptr<const Transport>>& transports)
     : device_(device), scene_(scene) {
   const Poses& poses = scene_.poses;
-  const Surface& rest = poses.empty() ? *scene_.surface : *poses.front()->surface;
-  std::vector<Vec3f> colors = base_colors(device, scene, rest);
-  VertexLight light = vertex_light(*transports.at(0), scene.light, colors);
-  lights_.push_back(std::make_shared<const Lighting>(device, rest, scene.light, scene.material, light));
+  const std::shared_ptr<const Surface> rest = poses.empty() ? scene_.surface : poses.front()->surface;
+  VertexMaterials made_of = rest_materials(device, scene, *rest);
+  VertexLight light = vertex_light(*transports.at(0), scene.light, made_of);
+  lights_.push_back(std::make_shared<const Lighting>(device, rest, scene.light, light));
   for (size_t k = 1; k < poses.size(); ++k) {
-    const Pose& pose = *poses[k];
-    colors.insert(colors.end(), pose.colors.begin() + colors.size(), pose.colors.end());
-    light = vertex_light_after(std::move(light), *transports.at(k), scene.light, colors);
-    lights_.push_back(
-        std::make_shared<const Lighting>(device, *pose.surface, scene.light, scene.material, light));
+    made_of = with_added(std::move(made_of), poses[k]->colors, scene.material.mean());
+    light = vertex_light_after(std::move(light), *transports.at(k), scene.light, made_of);
+    lights_.push_back(std::make_shared<const Lighting>(device, poses[k]->surface, scene.light, light));
   }
   if (!poses.empty()) triangles_ = triangle_ids(poses);
   for (size_t l = 0; l < scene.layers.size(); ++l)
     if (scene.layers[l].everywhere) everywhere_ = int(l);
 }
 
-// Of the pose's vertices; empty: as they were reconstructed.
-std::vector<Vec3f> SceneLight::colors_as_of(int layer, int pose) const {
+// Of the vertices of that pose; empty: as they were reconstructed.
+VertexMaterials SceneLight::materials_as_of(int layer, int pose) const {
   if (layer < 0) return {};
   const Scene then = as_of(scene_, layer, pose);
-  const bool colored = std::any_of(then.layers.begin(), then.layers.end(),
-                                   [](const EditLayer& l) { return l.albedo || l.erase || l.tint; });
-  if (!colored) return {};
+  const bool changed = std::any_of(then.layers.begin(), then.layers.end(), [](const EditLayer& l) {
+    return l.albedo || l.erase || l.tint || !l.material.empty();
+  });
+  if (!changed) return {};
   const Surface& surface = scene_.poses.empty() ? *scene_.surface : *scene_.poses[size_t(pose)]->surface;
-  return appearance_at(device_, then, vertex_hits(surface.mesh())).albedo;
+  Appearance look = appearance_at(device_, then, vertex_hits(surface.mesh()));
+  return {std::move(look.albedo), std::move(look.material)};
 }
 
-Shading SceneLight::shade(std::span<const Hit> hits, const Appearance& look) const {
-  std::map<std::pair<int, int>, Group> groups;  // by pose and by the last layer that has to do with them
+std::vector<ShadingTerms<float>> SceneLight::terms(std::span<const Hit> hits, const Appearance& look) const {
+  std::map<std::pair<int, int>, Group> groups;  // by shape and by the last layer that applies to them
   for (uint32_t i = 0; i < hits.size(); ++i) {
     const int pose = scene_.poses.empty() ? 0 : scene_.poses.back()->shaped_in(hits[i].triangle);
     Group& g = groups[{pose, max(look.layer[i], everywhere_)}];
     g.index.push_back(i);
     g.hits.push_back(hits[i]);
     if (!triangles_.empty()) g.hits.back().triangle = triangles_[pose][hits[i].triangle];
-    g.look.albedo.push_back(look.albedo[i]);
-    g.look.material.push_back(look.material[i]);
+    g.materials.push_back(look.material[i]);
   }
-  Shading out{std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())};
-  for (auto& [key, group] : groups) {
+  std::vector<ShadingTerms<float>> out(hits.size());
+  for (const auto& [key, group] : groups) {
     const auto [pose, layer] = key;
-    group.look.materials = look.materials;
-    const Shading part = lights_[pose]->shade(group.hits, group.look, colors_as_of(layer, pose));
-    for (size_t j = 0; j < group.index.size(); ++j) {
-      out.diffuse[group.index[j]] = part.diffuse[j];
-      out.specular[group.index[j]] = part.specular[j];
-    }
+    const std::vector<ShadingTerms<float>> part =
+        lights_[pose]->terms({group.hits, group.materials}, materials_as_of(layer, pose));
+    for (size_t j = 0; j < group.index.size(); ++j) out[group.index[j]] = part[j];
   }
-  return with_unlit(std::move(out), look);
+  add_unlit(look, out);
+  return out;
+}
+
+Shading SceneLight::shade(std::span<const Hit> hits, const Appearance& look) const {
+  return shading_of(terms(hits, look), look.albedo);
 }
 
 }  // namespace cei3d

@@ -19,9 +19,11 @@ class SceneLight {
   SceneLight(const Device&, const Scene&, const std::vector<std::shared_ptr<const Transport>>& transports);
 
   Shading shade(std::span<const Hit> hits, const Appearance&) const;
+  // The radiance of every hit as a linear function of its albedo.
+  std::vector<ShadingTerms<float>> terms(std::span<const Hit> hits, const Appearance&) const;
 
  private:
-  std::vector<Vec3f> colors_as_of(int layer, int pose) const;
+  VertexMaterials materials_as_of(int layer, int pose) const;
 
   const Device& device_;
   Scene scene_;

@@ -29,7 +29,7 @@ Mesh two_spheres() {
 Scene metal_scene() {
   Scene s = sphere_scene();
   s.surface = std::make_shared<Surface>(two_spheres());
-  s.material = {0.2f, 0.5f, 1};
+  s.material = Material{0.2f, 0.5f, 1};
   s.light.lobes = {{{0, 0, 1}, kBroadestLobe, {1, 1, 1}}, {{0, 0, -1}, kBroadestLobe, {1, 1, 1}}};
   auto orange = std::make_shared<Field>(s.albedo->config(), 2);
   for (Param& p : orange->params().all()) std::fill(p.value.begin(), p.value.end(), 0.0f);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an object shows of itself in the reflections of its points: its diffuse radiance and one more
-// reflection.
+// What an object shows of itself in its reflections: rays of the reflection lobe that meet the surface again
+// see it shaded with its own material there; reflections seen in reflections end after one more.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -10,45 +11,45 @@
 #include "core/compute/kernels/light.h"
 #include "engine/render/vertex_light.h"
 #include "model/geometry/shape/surface.h"
-#include "model/material/material.h"
 
 namespace cei3d {
 
-// Keeps references to all that it is made of.
 class SelfReflection {
  public:
-  // env_table: env_brdf_table() of the material's roughness. colors: #V base colours of what is mirrored.
-  SelfReflection(const Device&, const Surface&, const VertexLight&, LobePlanes light, const Material&,
-                 const std::vector<Vec2f>& env_table, std::span<const Vec3f> colors);
+  // vertices, light and seen must outlive the object. seen: what reflections see in place of
+  // vertices.made_of; may be it.
+  SelfReflection(const Device&, const Surface&, const VertexLight& vertices, LobePlanes light,
+                 const VertexMaterials& seen);
 
   struct Seen {
-    float open = 1;           // share of the reflection lobe that sees the sky
-    Vec3f radiance{0, 0, 0};  // from the rest, times its share
+    float visibility = 1;  // fraction of the reflection lobe that sees the environment
+    Vec3f radiance{
+        0, 0, 0};  // mean radiance over the lobe of the surface seen in the rest of it, times that fraction
   };
-  // #hits; each depends on its hit alone.
-  std::vector<Seen> seen_by(std::span<const Hit> hits) const;
+  // #hits. Each depends on its own hit and material alone. materials: #hits
+  std::vector<Seen> seen_by(std::span<const Hit> hits, std::span<const Material> materials) const;
 
  private:
   struct Rays;
-  bool faint(const Hit&) const;  // shows next to nothing of what is mirrored there
-  void add_lobe(const Hit&, uint32_t owner, Rays&) const;
-  Hit met_by(Vec3f origin, Vec3f direction, const Surface::RayHit&) const;
-  std::vector<Vec3f> mirrored(std::span<const Hit> met) const;
-  std::vector<Vec3f> shown(std::span<const Hit> met) const;
+  class Lobes;
+  struct Met;
+  void add_rays(const Hit&, uint32_t owner, const std::vector<Vec3f>& lobe, Rays&) const;
+  Met met_by(const Rays&) const;
+  std::vector<Vec3f> mirrored(std::span<const Hit>, std::span<const Material>) const;
+  std::vector<Vec3f> reflected_at(const Met&) const;
+  std::vector<Vec3f> radiance_of(const Met&) const;
+  Vec3f diffuse_radiance(const Surface::RayHit&) const;
   template <class Where>  // a Hit or a Surface::RayHit
   Vec3f at(std::span<const Vec3f> of_vertices, const Where& w) const {
     return at_corners(of_vertices, surface_.mesh().triangles[w.triangle], w.b1, w.b2);
   }
+  Material material_at(const Surface::RayHit&) const;
 
   const Device& device_;
   const Surface& surface_;
   const VertexLight& vertices_;
   LobePlanes light_;
-  Material material_;
-  float roughness_;  // that shading can take
-  const std::vector<Vec2f>& env_table_;
-  std::span<const Vec3f> colors_;
-  std::vector<Vec3f> lobe_, faint_lobe_;  // directions of the reflection lobe around +Z; where it is faint
+  const VertexMaterials& seen_;
 };
 
 }  // namespace cei3d

@@ -117,7 +117,7 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
         rgb += w * sent(shading, residual, i);
         normal += w * g.hits[i].normal;
         depth += w * g.depths[i];
-        roughness += w * look.materials[look.material[i]].roughness;
+        roughness += w * look.material[i].roughness;
         weight += w;
         f.edited[p] |= look.layer[i] >= 0;
       });

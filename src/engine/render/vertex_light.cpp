@@ -9,38 +9,44 @@ namespace {
 
 constexpr float kSkyLobe = 256;  // sharpness of a lobe as wide as the spacing of sky_directions()
 
-Vec3f share(Vec3f seen, Vec3f open) {
-  Vec3f s;
-  for (int c = 0; c < 3; ++c) s[c] = open[c] > 1e-6f ? min(seen[c] / open[c], 1.0f) : 1.0f;
-  return s;
+Vec3f fraction(Vec3f part, Vec3f whole) {
+  Vec3f f;
+  for (int c = 0; c < 3; ++c) f[c] = whole[c] > 1e-6f ? min(part[c] / whole[c], 1.0f) : 1.0f;
+  return f;
 }
 
-// Lights the transport's vertices.
-void relight(const Transport& transport, const SgMixture& light, std::span<const Vec3f> base_color,
-             VertexLight& v) {
+// Lights the vertices that the transport covers, by two diffuse bounces. A metal, which has no diffuse term,
+// scatters about as much of the light on average: its albedo is its reflectance.
+void relight(const Transport& transport, const SgMixture& light, VertexLight& v) {
   const SkyRadiance sky = sky_radiance(light);
-  const std::vector<Vec3f> seen = transport.sky(sky), open = transport.open_sky(sky);
-  const size_t n = seen.size();
+  const std::vector<Vec3f> visible = transport.sky(sky), open = transport.open_sky(sky);
+  const size_t n = visible.size();
   for (size_t i = 0; i < n; ++i) {
     if (!transport.covers(i)) continue;
-    v.base_color[i] = base_color[i];
-    v.openness[i] = share(seen[i], open[i]);
+    v.visibility[i] = fraction(visible[i], open[i]);
     v.bounce[i] = {0, 0, 0};
   }
-  std::vector<Vec3f> leaving(n);
+  std::vector<Vec3f> radiance(n);
   for (int round = 0; round < 2; ++round) {
     for (size_t i = 0; i < n; ++i) {
-      if (transport.covers(i)) v.arriving[i] = (seen[i] + v.bounce[i]) / kPi;
-      leaving[i] = v.base_color[i] * v.arriving[i];
+      if (transport.covers(i)) v.irradiance[i] = visible[i] + v.bounce[i];
+      radiance[i] = v.made_of.albedo[i] * v.irradiance[i] / kPi;
     }
-    const std::vector<Vec3f> bounce = transport.bounce(leaving);
+    const std::vector<Vec3f> bounce = transport.bounce(radiance);
     for (size_t i = 0; i < n; ++i)
       if (transport.covers(i)) v.bounce[i] = bounce[i];
   }
 }
 
-void resize(VertexLight& v, size_t n) {
-  for (auto* a : {&v.base_color, &v.openness, &v.bounce, &v.arriving}) a->resize(n, {0, 0, 0});
+void take_materials(const Transport& transport, VertexMaterials&& made_of, VertexLight& v) {
+  const size_t old = v.made_of.albedo.size();
+  v.made_of.albedo.resize(made_of.albedo.size());
+  v.made_of.material.resize(made_of.material.size());
+  for (size_t i = 0; i < made_of.albedo.size(); ++i) {
+    if (i < old && !transport.covers(i)) continue;
+    v.made_of.albedo[i] = made_of.albedo[i];
+    v.made_of.material[i] = made_of.material[i];
+  }
 }
 
 }  // namespace
@@ -59,17 +65,19 @@ SkyRadiance sky_radiance(const SgMixture& light) {
   return out;
 }
 
-VertexLight vertex_light(const Transport& transport, const SgMixture& light,
-                         std::span<const Vec3f> base_color) {
-  return vertex_light_after({}, transport, light, base_color);
+VertexLight vertex_light(const Transport& transport, const SgMixture& light, VertexMaterials made_of) {
+  return vertex_light_after({}, transport, light, std::move(made_of));
 }
 
 VertexLight vertex_light_after(VertexLight before, const Transport& transport, const SgMixture& light,
-                               std::span<const Vec3f> base_color) {
+                               VertexMaterials made_of) {
   const size_t n = transport.surface().mesh().positions.size();
-  if (base_color.size() != n) fail("lighting: {} colours for {} vertices", base_color.size(), n);
-  resize(before, n);
-  relight(transport, light, base_color, before);
+  if (made_of.albedo.size() != n || made_of.material.size() != n)
+    fail("lighting: {} albedos and {} materials for {} vertices", made_of.albedo.size(),
+         made_of.material.size(), n);
+  take_materials(transport, std::move(made_of), before);
+  for (auto* a : {&before.visibility, &before.bounce, &before.irradiance}) a->resize(n, {0, 0, 0});
+  relight(transport, light, before);
   return before;
 }
 

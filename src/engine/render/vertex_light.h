@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What reaches the vertices of a surface: how much of the sky's light, what the surface itself adds by one
-// bounce, and what it therefore sends out to whoever sees it in a reflection.
+// The light that reaches the vertices of a surface, and what the surface looks like there in reflections of
+// itself.
 #pragma once
 
 #include <span>
@@ -8,26 +8,32 @@
 
 #include "engine/render/transport.h"
 #include "model/light/sg_mixture.h"
+#include "model/material/material.h"
 
 namespace cei3d {
 
+// What the surface is made of at its vertices, as far as reflections and bounces see it.
+struct VertexMaterials {
+  std::vector<Vec3f> albedo;       // #V linear
+  std::vector<Material> material;  // #V
+  bool empty() const { return albedo.empty(); }
+};
+
 struct VertexLight {
-  std::vector<Vec3f> base_color;  // #V linear
-  std::vector<Vec3f> openness;    // #V share of the open sky's irradiance that arrives, per channel
-  std::vector<Vec3f> bounce;      // #V irradiance from the surface itself
+  VertexMaterials made_of;
   std::vector<Vec3f>
-      arriving;  // #V irradiance of both over pi: times the base colour, what a diffuse surface sends out
+      visibility;  // #V fraction of the environment's unoccluded irradiance that arrives, per channel
+  std::vector<Vec3f> bounce;      // #V irradiance from the surface itself
+  std::vector<Vec3f> irradiance;  // #V of both together
 };
 
 // Mean radiance of a light around each of sky_directions().
 SkyRadiance sky_radiance(const SgMixture& light);
 
-// base_color: #V, linear.
-VertexLight vertex_light(const Transport&, const SgMixture&, std::span<const Vec3f> base_color);
+VertexLight vertex_light(const Transport&, const SgMixture&, VertexMaterials);
 
-// After a change of geometry. transport: of the changed surface, for its changed vertices. Those alone are
-// lit anew: the others keep what they had, so that what did not change looks as before.
-VertexLight vertex_light_after(VertexLight before, const Transport&, const SgMixture&,
-                               std::span<const Vec3f> base_color);
+// After a change of geometry. transport: of the changed surface, for its changed vertices. Only those are lit
+// anew: the others keep their light, so that what did not change looks as before.
+VertexLight vertex_light_after(VertexLight before, const Transport&, const SgMixture&, VertexMaterials);
 
 }  // namespace cei3d

@@ -122,7 +122,7 @@ TEST_F(EditTest, MaterialOfTheWholeObject) {
   const Appearance a = appearance_at(session_.device(), after, hits);
   Vec3f mean{0, 0, 0};
   for (size_t i = 0; i < hits.size(); ++i) {
-    EXPECT_EQ(a.materials[a.material[i]].roughness, 0.6f);
+    EXPECT_EQ(a.material[i].roughness, 0.6f);
     EXPECT_EQ(a.layer[i], -1);         // everywhere is not local
     const Vec3f p = hits[i].position;  // rows of a sphere's mesh: by area
     mean += a.albedo[i] * std::sqrt(max(0.0f, 1 - square(p.z / kSphereRadius)));

@@ -41,7 +41,7 @@ uintmax_t bytes_below(const fs::path& folder) {
 }
 
 void describe_scene(const Scene& scene, ProjectInfo& info) {
-  info.material = scene.material;
+  info.material = scene.material.mean();
   info.lobes = scene.light.lobes.size();
   if (scene.surface) {
     info.vertices = scene.surface->mesh().positions.size();

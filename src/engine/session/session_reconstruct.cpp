@@ -75,7 +75,7 @@ ReconstructReport report_of(const Project& project, const Scene& scene, double s
   r.views = views_of(project.capture(), Split::train).size();
   r.handler_points = scene.handlers ? scene.handlers->positions.size() : 0;
   r.vertices = scene.surface ? scene.surface->mesh().positions.size() : 0;
-  r.material = scene.material;
+  r.material = scene.material.mean();
   return r;
 }
 

@@ -91,6 +91,14 @@ void Field::eval(const Device& device, std::span<const Vec3f> x, std::span<float
   });
 }
 
+std::vector<Vec3f> Field::eval3(const Device& device, std::span<const Vec3f> x) const {
+  std::vector<float> values(3 * x.size());
+  eval(device, x, values);
+  std::vector<Vec3f> out(x.size());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
+  return out;
+}
+
 namespace {
 
 const std::pair<Activation, const char*> kActivations[] = {{Activation::none, "none"},

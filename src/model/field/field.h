@@ -58,6 +58,8 @@ class Field {
   // Values at points in [-1, 1]^3. x: #N, out: #N x the first so many outputs as there is room for,
   // row-major. Runs on all threads.
   void eval(const Device& device, std::span<const Vec3f> x, std::span<float> out) const;
+  // A field of three outputs at every point.
+  std::vector<Vec3f> eval3(const Device& device, std::span<const Vec3f> x) const;
 
  private:
   FieldConfig config_;

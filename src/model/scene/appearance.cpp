@@ -2,8 +2,6 @@
 #include "model/scene/appearance.h"
 
 #include <algorithm>
-#include <map>
-#include <tuple>
 
 #include "core/base/parallel.h"
 
@@ -126,15 +124,6 @@ struct Routes {
   }
 };
 
-std::vector<Vec3f> eval_colors(const Device& device, const Field& field, const std::vector<Vec3f>& x) {
-  std::vector<Vec3f> out(x.size());
-  if (x.empty()) return out;
-  std::vector<float> value(3 * x.size());
-  field.eval(device, x, value);
-  for (size_t i = 0; i < x.size(); ++i) out[i] = {value[3 * i], value[3 * i + 1], value[3 * i + 2]};
-  return out;
-}
-
 // The fields' colours, each field evaluated at its own hits only.
 void eval_fields(const Device& device, const Scene& scene, Routes& routes) {
   std::vector<std::vector<Op*>> ops(scene.layers.size() + 1);  // by branch; the base last
@@ -147,7 +136,7 @@ void eval_fields(const Device& device, const Scene& scene, Routes& routes) {
     std::vector<Vec3f> x;
     for (const Op* op : ops[l]) x.push_back(op->position);
     const std::vector<Vec3f> color =
-        eval_colors(device, l < scene.layers.size() ? *scene.layers[l].albedo : *scene.albedo, x);
+        (l < scene.layers.size() ? *scene.layers[l].albedo : *scene.albedo).eval3(device, x);
     for (size_t i = 0; i < x.size(); ++i) ops[l][i]->color = color[i];
   }
 }
@@ -161,7 +150,7 @@ std::vector<Vec3f> base_colors(const Device& device, const Scene& scene, std::sp
     x.push_back(in_pose(scene.poses, hits[i], 0).position);
     of.push_back(uint32_t(i));
   }
-  const std::vector<Vec3f> color = eval_colors(device, *scene.albedo, x);
+  const std::vector<Vec3f> color = scene.albedo->eval3(device, x);
   for (size_t k = 0; k < of.size(); ++k) albedo[of[k]] = color[k];
   return albedo;
 }
@@ -199,21 +188,19 @@ std::vector<float> original_shares(const Scene& scene, std::span<const Hit> hits
   return share;
 }
 
-// The list of distinct materials, in the order of their first hit.
-class Materials {
- public:
-  explicit Materials(const Material& own) { index_of(own); }
-  uint32_t index_of(const Material& m) {
-    const auto [it, is_new] =
-        index_.emplace(std::tuple(m.roughness, m.specular, m.metalness), uint32_t(list.size()));
-    if (is_new) list.push_back(m);
-    return it->second;
+// The materials below all layers. Surface that an edit added is not in the field's domain: it gets the mean.
+std::vector<Material> base_materials(const Scene& scene, std::span<const Hit> hits) {
+  std::vector<Vec3f> points(hits.size(), Vec3f{0, 0, 0});
+  std::vector<uint8_t> added(hits.size(), 0);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    added[i] = !scene.poses.empty() && scene.poses.back()->born_in(hits[i].triangle) > 0;
+    if (!added[i]) points[i] = in_pose(scene.poses, hits[i], 0).position;
   }
-  std::vector<Material> list;
-
- private:
-  std::map<std::tuple<float, float, float>, uint32_t> index_;
-};
+  std::vector<Material> materials = scene.material.at(points);
+  for (size_t i = 0; i < hits.size(); ++i)
+    if (added[i]) materials[i] = scene.material.mean();
+  return materials;
+}
 
 }  // namespace
 
@@ -221,15 +208,13 @@ Appearance appearance_at(const Device& device, const Scene& scene, std::span<con
   Routes routes(scene, hits);
   Appearance out;
   put_colors(device, scene, hits, routes, out);
-  out.material.assign(hits.size(), 0);
+  out.material = base_materials(scene, hits);
   out.layer.resize(hits.size());
-  Materials materials(scene.material);
   for (size_t i = 0; i < hits.size(); ++i) {
     const Route& r = routes.at[i];
     out.layer[i] = r.layer;
-    if (!r.material.empty()) out.material[i] = materials.index_of(changed(scene.material, r.material));
+    if (!r.material.empty()) out.material[i] = changed(out.material[i], r.material);
   }
-  out.materials = std::move(materials.list);
   if (scene.residual) out.original = original_shares(scene, hits, routes);
   return out;
 }

@@ -12,11 +12,9 @@
 namespace cei3d {
 
 struct Appearance {
-  std::vector<Vec3f> albedo;       // #hits, linear base colour
-  std::vector<uint32_t> material;  // #hits, index of the hit's material
-  std::vector<Material>
-      materials;               // those that occur; the first is the object's own, whether it occurs or not
-  std::vector<int> layer;      // #hits, the last layer that is local and has to do with the hit; -1: none
+  std::vector<Vec3f> albedo;       // #hits, linear
+  std::vector<Material> material;  // #hits
+  std::vector<int> layer;          // #hits, the last layer that is local and has to do with the hit; -1: none
   std::vector<float> unlit{};  // #hits, share of the base colour that shows whatever the light; empty: none
   // #hits, how much of it is as it was photographed: neither colour nor material nor shape edited, or erased
   // again. Empty where the scene has no residual, which this is for.

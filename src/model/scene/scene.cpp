@@ -116,9 +116,8 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   head["center"] = vector_json(scene.normalization.center);
   head["scale"] = scene.normalization.scale;
   head["up"] = vector_json(scene.up);
-  head["material"] = {{"roughness", scene.material.roughness},
-                      {"specular", scene.material.specular},
-                      {"metalness", scene.material.metalness}};
+  const Material& own = scene.material.mean();
+  head["material"] = {{"roughness", own.roughness}, {"specular", own.specular}, {"metalness", own.metalness}};
   save_field(scene.sdf, "sdf", tensors, head);
   save_field(scene.albedo, "albedo", tensors, head);
   if (scene.surface) save_surface(*scene.surface, tensors, head);
@@ -134,8 +133,8 @@ Scene load_scene(const Tensors& tensors, const Json& head) {
     scene.normalization.scale = head.at("scale").get<double>();
     scene.up = vector_from(head.at("up"));
     const Json& material = head.at("material");
-    scene.material = {material.at("roughness").get<float>(), material.at("specular").get<float>(),
-                      material.at("metalness").get<float>()};
+    scene.material = Material{material.at("roughness").get<float>(), material.at("specular").get<float>(),
+                              material.at("metalness").get<float>()};
     scene.sdf = load_field("sdf", tensors, head);
     scene.albedo = load_field("albedo", tensors, head);
     if (head.contains("surface")) scene.surface = load_surface(tensors, head.at("surface"));

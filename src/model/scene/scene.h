@@ -14,7 +14,7 @@
 #include "model/geometry/shape/pose.h"
 #include "model/geometry/shape/surface.h"
 #include "model/light/sg_mixture.h"
-#include "model/material/material.h"
+#include "model/material/material_field.h"
 #include "model/scene/layer.h"
 #include "model/scene/normalization.h"
 #include "model/scene/residual.h"
@@ -30,7 +30,7 @@ struct Scene {
   // Zero level set as a mesh, with what each point sees of the sky; changed by edits.
   std::shared_ptr<const Surface> surface;
   SgMixture light;  // that of the last edit that has one, when the layers have been put on
-  Material material;
+  MaterialField material;
   // What they cannot explain; null: nothing, or not any more, since the light was changed.
   std::shared_ptr<const Residual> residual;
   std::shared_ptr<const HandlerPoints> handlers;  // of the present shape

@@ -17,6 +17,6 @@ using AllKernels =
                Activate<Relu>, ActivateGrad<Relu>, Activate<Elu>, ActivateGrad<Elu>, Activate<Softplus>,
                ActivateGrad<Softplus>, Activate<Sigmoid>, ActivateGrad<Sigmoid>, Adam, RadianceInput,
                RadianceInputGrad, SgFitResidual, SgFitGather,  //
-               SgIrradiance, SgReflection, SgReflectionSlope, SgShadeGrad>;
+               SgIrradiance, SgReflection, SgReflectionGrad, ReflectionLobes, SgLobesGrad, Shade, ShadeGrad>;
 
 }  // namespace cei3d

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/math/brdf.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/reconstruct/appearance/light_descent.h"
@@ -42,14 +41,6 @@ int joint_steps_for(const Material& m, bool brief) {
   return m.metalness > 0 ? (brief ? 120 : 400) : (brief ? 30 : 100);
 }
 
-std::vector<Vec3f> colors_at(const Device& device, const Field& field, std::span<const Vec3f> x) {
-  std::vector<float> values(3 * x.size());
-  field.eval(device, x, values);
-  std::vector<Vec3f> out(x.size());
-  for (size_t i = 0; i < x.size(); ++i) out[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-  return out;
-}
-
 // Descent on the albedo field under a light, and then on both. bouncing: base colours of the mesh's vertices
 // to begin with.
 class Descent {
@@ -72,12 +63,13 @@ class Descent {
   // its base colour, dark + a gain.
   void fit_albedo(int steps, float rate) {
     const SurfaceSamples& samples = input_.samples;
-    const HitLight light = lighting_->light_at(samples.hits);
+    const std::vector<ShadingTerms<float>> terms =
+        lighting_->terms(UniformBatch(samples.hits, result_.material));
     for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
       choose_batch();
       const auto loss = [&](int begin, int end, const float* out, float* d_out) {
         for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
-          color_gradient(batch_[i], light.at(batch_[i], result_.material), a, d_a);
+          d_a = sample_grad(samples, batch_[i], terms[batch_[i]], a, 1 / float(options_.batch)).d_albedo;
         });
       };
       trainer_.step(device_, positions_, loss, rate * std::pow(0.1f, float(step) / float(steps)));
@@ -87,10 +79,10 @@ class Descent {
 
   // Field and light together; openness and bounce follow every kRefresh steps.
   void fit_jointly(int steps) {
-    LightDescent light(result_.light, result_.material.roughness, result_.material.metalness == 0);
+    LightDescent light(result_.light, result_.material.metalness == 0);
     for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
       if (step % kRefresh == 0)
-        relight(colors_at(device_, field_, input_.surface.mesh().positions));
+        relight(field_.eval3(device_, input_.surface->mesh().positions));
       else
         lighting_->set_lobes(result_.light);
       joint_step(light, std::pow(0.1f, float(step) / float(steps)));
@@ -136,39 +128,25 @@ class Descent {
     }
   }
 
-  // dL/d(radiance) of one pixel with mean base colour `a`, and dL/da. The radiance is linear in the base
-  // colour, whose light is taken as the same all over the pixel.
-  Vec3f color_gradient(uint32_t sample, const HitLight::Terms& t, Vec3f a, Vec3f& d_a) const {
-    const SurfaceSamples& s = input_.samples;
-    Vec3f g{0, 0, 0};
-    for (int c = 0; c < 3; ++c) {
-      const float gain = t.diffuse_gain[c] + t.specular_gain[c], got = t.specular_floor[c] + a[c] * gain;
-      g[c] = display_loss_slope(got, s.colors[sample][c], s.is_clipped(sample, c)) / float(options_.batch);
-      d_a[c] = g[c] * gain;
-    }
-    return g;
-  }
-
   void joint_step(LightDescent& descent, float rate) {
     choose_batch();
     std::vector<Hit> hits(options_.batch);
     for (int i = 0; i < options_.batch; ++i) hits[i] = input_.samples.hits[batch_[i]];
-    const HitLight light = lighting_->light_at(hits);
-    const Material& m = result_.material;
-    std::vector<Vec3f> d_irradiance(options_.batch), d_reflected(options_.batch);
+    const UniformBatch batch(hits, result_.material);
+    const std::vector<IncidentLight<float>> light = lighting_->incident_light(batch);
+    const std::vector<ShadingTerms<float>> terms = lighting_->terms(batch, light);
+    std::vector<Vec3f> albedo(hits.size()), d_radiance(hits.size());
     const auto loss = [&](int begin, int end, const float* out, float* d_out) {
       for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
-        const Vec3f g = color_gradient(batch_[i], light.at(i, m), a, d_a);
-        const float floor = (1 - m.metalness) * kDielectricF0 * m.specular * light.env[i].x + light.env[i].y;
-        for (int c = 0; c < 3; ++c) {
-          d_irradiance[i][c] =
-              g[c] * a[c] * (1 - m.metalness) / kPi * light.diffuse_view[i] * light.openness[i][c];
-          d_reflected[i][c] = g[c] * (m.metalness * a[c] * light.env[i].x + floor) * light.open_mirror[i];
-        }
+        const SampleGrad g = sample_grad(input_.samples, batch_[i], terms[i], a, 1 / float(options_.batch));
+        albedo[i] = a;
+        d_radiance[i] = g.d_radiance;
+        d_a = g.d_albedo;
       });
     };
     trainer_.step(device_, positions_, loss, 0.1f * rate);
-    descent.step(device_, hits, d_irradiance, d_reflected, rate);
+    const ShadingSlopes slopes = lighting_->grad(batch, light, albedo, d_radiance);
+    descent.step(device_, batch, slopes.d_sky_irradiance, slopes.d_sky_reflection, rate);
     result_.light = descent.light();
   }
 
@@ -193,7 +171,7 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   const double start = now();
   AppearanceResult result;
   progress.report({"light", 0.8, options.seconds, ""});
-  const auto transport = std::make_shared<const Transport>(input.surface);
+  const auto transport = std::make_shared<const Transport>(*input.surface);
   result.split = linear_split(*transport, input.samples, split_options(options), progress);
   result.material = result.split.material;
   progress.log(Json{{"stage", "linear split"},
@@ -219,8 +197,8 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
 
 void refine_albedo(const Device& device, const AppearanceInput& input, const AppearanceOptions& options,
                    AppearanceResult& result, Progress& progress, int steps) {
-  Descent descent(device, input, std::make_shared<const Transport>(input.surface), options, *result.albedo,
-                  colors_at(device, *result.albedo, input.surface.mesh().positions), result, progress);
+  Descent descent(device, input, std::make_shared<const Transport>(*input.surface), options, *result.albedo,
+                  result.albedo->eval3(device, input.surface->mesh().positions), result, progress);
   descent.fit_albedo(steps, 0.2f);
   result.albedo = std::make_shared<const Field>(descent.take_field());
 }

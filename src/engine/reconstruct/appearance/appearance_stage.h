@@ -13,7 +13,7 @@
 namespace cei3d {
 
 struct AppearanceInput {
-  const Surface& surface;
+  std::shared_ptr<const Surface> surface;
   SurfaceSamples samples;  // pixels wholly on the object
 };
 

@@ -1,20 +1,37 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the appearance stage minimises: the Huber loss of display-encoded colours.
+// The loss of the appearance stage: Huber's, of display-encoded colors.
 #pragma once
 
 #include <algorithm>
 
 #include "core/math/color.h"
 #include "core/math/loss.h"
+#include "core/math/shading.h"
+#include "engine/reconstruct/appearance/linear_split.h"
 
 namespace cei3d {
 
-// Its slope by `got`; both linear. The display curve is not followed where it is steepest. clipped: the
-// picture shows no more than that it is at least `want`.
-inline float display_loss_slope(float got, float want, bool clipped = false) {
-  if (clipped && got >= want) return 0;
-  const float error = srgb_from_linear(std::max(got, 0.0f)) - srgb_from_linear(want);
-  return huber(error, 0.05f).gradient * srgb_slope(std::max(got, 0.004f));
+// dL/d(radiance); radiance and photo are linear. The slope of the display curve is bounded where it is
+// steepest. clipped: the photograph shows no more than that the radiance is at least `photo`.
+inline float display_loss_grad(float radiance, float photo, bool clipped = false) {
+  constexpr float kWidth = 0.05f, kDarkest = 0.004f;
+  if (clipped && radiance >= photo) return 0;
+  const float error = srgb_from_linear(std::max(radiance, 0.0f)) - srgb_from_linear(photo);
+  return huber(error, kWidth).gradient * srgb_slope(std::max(radiance, kDarkest));
+}
+
+// The same for a surface sample of that albedo, times weight.
+struct SampleGrad {
+  Vec3f d_radiance, d_albedo;
+};
+inline SampleGrad sample_grad(const SurfaceSamples& samples, uint32_t sample,
+                              const ShadingTerms<float>& terms, Vec3f albedo, float weight) {
+  const Vec3f radiance = terms.radiance(albedo), photo = samples.colors[sample];
+  SampleGrad g;
+  for (int c = 0; c < 3; ++c)
+    g.d_radiance[c] = weight * display_loss_grad(radiance[c], photo[c], samples.is_clipped(sample, c));
+  g.d_albedo = g.d_radiance * terms.gain();
+  return g;
 }
 
 }  // namespace cei3d

@@ -9,40 +9,105 @@
 namespace cei3d {
 namespace {
 
-constexpr int kRows = 7;
 constexpr int kGrain = 512;                           // hits a chunk
 constexpr float kLogRate = 1e-2f, kAxisRate = 2e-3f;  // of Adam, on logarithms and on unit vectors
-constexpr float kDarkest = 1e-5f;
-constexpr float kBeta1 = 0.9f, kBeta2 = 0.99f;
+constexpr float kDarkest = 1e-5f;                     // radiance whose logarithm stands for black
 
+int padded_to_panels(size_t n) { return int((n + kPanel - 1) / kPanel * kPanel); }
+
+// [3][stride]
 std::vector<float> planes_of(std::span<const Vec3f> v, int stride) {
   std::vector<float> p(size_t(3) * stride, 0);
-  for (size_t i = 0; i < v.size(); ++i)
-    for (int c = 0; c < 3; ++c) p[size_t(c) * stride + i] = v[i][c];
+  for (size_t i = 0; i < v.size(); ++i) store_planes(p.data(), stride, int(i), v[i]);
   return p;
 }
 
+// What the lobes' gradient needs of the hits, as planes.
+struct HitPlanes {
+  int stride;
+  std::vector<float> normals, mirrors, reflection_lobes;
+
+  HitPlanes(const Device& device, const HitBatch& batch) : stride(padded_to_panels(batch.size())) {
+    std::vector<Vec3f> n, m;
+    std::vector<float> roughness;
+    for (size_t i = 0; i < batch.size(); ++i) {
+      n.push_back(batch.hits[i].normal);
+      m.push_back(mirror_direction(batch.hits[i]));
+      roughness.push_back(batch.materials[i].roughness);
+    }
+    normals = planes_of(n, stride);
+    mirrors = planes_of(m, stride);
+    roughness.resize(size_t(stride), 1.0f);
+    reflection_lobes.resize(size_t(ReflectionLobes::kRows) * stride);
+    device.launch<ReflectionLobes>({stride, roughness.data(), reflection_lobes.data()}, stride);
+  }
+};
+
 }  // namespace
 
-LightDescent::LightDescent(const SgMixture& light, float roughness, bool keep_power)
+std::vector<float> lobes_grad(const Device& device, const LobePlanes& lobes, const HitBatch& batch,
+                              std::span<const Vec3f> d_irradiance, std::span<const Vec3f> d_reflected) {
+  const int n = int(batch.size()), chunks = (n + kGrain - 1) / kGrain;
+  const HitPlanes hits(device, batch);
+  const std::vector<float> d_e = planes_of(d_irradiance, hits.stride),
+                           d_r = planes_of(d_reflected, hits.stride);
+  const std::vector<float> zeros(size_t(7) * lobes.padded, 0.0f);
+  std::vector<std::vector<float>> parts(size_t(chunks), zeros);
+  parallel_for(chunks, [&](int c) {
+    device.launch<SgLobesGrad>({.lobes = lobes,
+                                .stride = hits.stride,
+                                .begin = c * kGrain,
+                                .end = min(n, (c + 1) * kGrain),
+                                .normals = hits.normals.data(),
+                                .mirrors = hits.mirrors.data(),
+                                .reflection_lobes = hits.reflection_lobes.data(),
+                                .d_irradiance = d_e.data(),
+                                .d_reflected = d_r.data(),
+                                .d_lobes = parts[size_t(c)].data()},
+                               lobes.padded);
+  });
+  std::vector<float> sum = zeros;
+  for (const std::vector<float>& part : parts)
+    for (size_t i = 0; i < part.size(); ++i) sum[i] += part[i];
+  return sum;
+}
+
+LightDescent::LightDescent(const SgMixture& light, bool keep_power)
     : count_(int(light.lobes.size())),
-      padded_((count_ + kPanel - 1) / kPanel * kPanel),
-      roughness_(roughness),
+      padded_(padded_to_panels(light.lobes.size())),
       keep_power_(keep_power) {
-  planes_.assign(size_t(kRows) * padded_, 0);
-  gradient_ = m_ = v_ = planes_;
+  params_.add("axes", {3, padded_});
+  params_.add("logs", {4, padded_});
+  axes_ = &params_.get("axes");
+  logs_ = &params_.get("logs");
+  optimizer_.add(params_, "axes", {.rate = kAxisRate, .eps = 1e-12f});
+  optimizer_.add(params_, "logs", {.rate = kLogRate, .eps = 1e-12f});
   for (int k = 0; k < count_; ++k) {
-    const SgLobe& l = light.lobes[k];
-    const float row[kRows] = {l.axis.x,
-                              l.axis.y,
-                              l.axis.z,
-                              std::log(l.lambda),
-                              std::log(max(l.mu.x, kDarkest)),
-                              std::log(max(l.mu.y, kDarkest)),
-                              std::log(max(l.mu.z, kDarkest))};
-    for (int j = 0; j < kRows; ++j) planes_[size_t(j) * padded_ + k] = row[j];
+    const SgLobe& l = light.lobes[size_t(k)];
+    store_planes(axes_->value.data(), padded_, k, l.axis);
+    logs_->value[size_t(k)] = std::log(l.lambda);
+    for (int c = 0; c < 3; ++c) logs_->value[size_t(1 + c) * padded_ + k] = std::log(max(l.mu[c], kDarkest));
   }
   first_power_ = power();
+}
+
+// [7][padded]; the padding's color is black.
+std::vector<float> LightDescent::lobe_planes() const {
+  std::vector<float> p(axes_->value);
+  p.resize(size_t(7) * padded_, 0.0f);
+  for (int row = 0; row < 4; ++row)
+    for (int k = 0; k < count_; ++k)
+      p[size_t(3 + row) * padded_ + k] = std::exp(logs_->value[size_t(row) * padded_ + k]);
+  return p;
+}
+
+SgMixture LightDescent::light() const {
+  const std::vector<float> p = lobe_planes();
+  const LobePlanes lobes{p.data(), count_, padded_};
+  SgMixture out;
+  for (int k = 0; k < count_; ++k)
+    out.lobes.push_back({lobes.axis<float>(k), lobes.lambda<float>(k), lobes.mu<float>(k)});
+  return out;
 }
 
 Vec3f LightDescent::power() const {
@@ -51,83 +116,43 @@ Vec3f LightDescent::power() const {
   return sum;
 }
 
-SgMixture LightDescent::light() const {
-  SgMixture out;
+// Of the logarithms, and of the axes along the sphere.
+void LightDescent::set_gradient(const std::vector<float>& lobes, const std::vector<float>& d_lobes) {
+  const std::span<float> d_axes = optimizer_.gradient(*axes_), d_logs = optimizer_.gradient(*logs_);
   for (int k = 0; k < count_; ++k) {
-    const auto at = [&](int row) { return planes_[size_t(row) * padded_ + k]; };
-    out.lobes.push_back(
-        {{at(0), at(1), at(2)}, std::exp(at(3)), {std::exp(at(4)), std::exp(at(5)), std::exp(at(6))}});
+    const Vec3f axis = load_planes<float>(lobes.data(), padded_, k),
+                d = load_planes<float>(d_lobes.data(), padded_, k);
+    store_planes(d_axes.data(), padded_, k, d - axis * dot(d, axis));
+    for (int row = 0; row < 4; ++row) {
+      const size_t i = size_t(3 + row) * padded_ + k;
+      d_logs[size_t(row) * padded_ + k] = d_lobes[i] * lobes[i];
+    }
   }
-  return out;
 }
 
-void LightDescent::step(const Device& device, std::span<const Hit> hits, std::span<const Vec3f> d_irradiance,
-                        std::span<const Vec3f> d_reflected, float rate) {
-  const int n = int(hits.size());
-  std::vector<Vec3f> normals(n), mirrors(n);
-  for (int i = 0; i < n; ++i) {
-    normals[i] = hits[i].normal;
-    mirrors[i] = mirror_direction(hits[i]);
-  }
-  const std::vector<float> np = planes_of(normals, n), mp = planes_of(mirrors, n),
-                           ep = planes_of(d_irradiance, n), rp = planes_of(d_reflected, n);
-  std::vector<float> lobes(planes_);
-  for (int j = 3; j < kRows; ++j)
-    for (int k = 0; k < padded_; ++k) {
-      float& x = lobes[size_t(j) * padded_ + k];
-      x = k < count_ ? std::exp(x) : 0.0f;
-    }
-  const int chunks = (n + kGrain - 1) / kGrain;
-  std::vector<std::vector<float>> parts(chunks, std::vector<float>(planes_.size()));
-  parallel_for(chunks, [&](int c) {
-    SgShadeGrad::Args a{{lobes.data(), count_, padded_},
-                        {},
-                        {},
-                        n,
-                        c * kGrain,
-                        min(n, (c + 1) * kGrain),
-                        np.data(),
-                        mp.data(),
-                        ep.data(),
-                        rp.data(),
-                        parts[c].data()};
-    set_reflection_lobe(roughness_, a);
-    device.launch<SgShadeGrad>(a, padded_);
-  });
-  gradient_.assign(planes_.size(), 0);
-  for (const auto& part : parts)
-    for (size_t i = 0; i < part.size(); ++i) gradient_[i] += part[i];
+void LightDescent::normalize_lobes() {
   for (int k = 0; k < count_; ++k) {
-    const auto at = [&](std::vector<float>& p, int row) -> float& { return p[size_t(row) * padded_ + k]; };
-    for (int j = 3; j < kRows; ++j) at(gradient_, j) *= at(lobes, j);  // of logarithms
-    const Vec3f axis{at(planes_, 0), at(planes_, 1), at(planes_, 2)};
-    const Vec3f d{at(gradient_, 0), at(gradient_, 1), at(gradient_, 2)}, along = d - axis * dot(d, axis);
-    for (int j = 0; j < 3; ++j) at(gradient_, j) = along[j];
+    store_planes(axes_->value.data(), padded_, k,
+                 normalize(load_planes<float>(axes_->value.data(), padded_, k)));
+    logs_->value[size_t(k)] =
+        clamp(logs_->value[size_t(k)], std::log(kBroadestLobe), std::log(kSharpestLobe));
   }
-  ++steps_;
-  const float correction =
-      std::sqrt(1 - std::pow(kBeta2, float(steps_))) / (1 - std::pow(kBeta1, float(steps_)));
-  for (int j = 0; j < kRows; ++j) {
-    const float r = j < 3 ? kAxisRate : kLogRate;
-    const size_t row = size_t(j) * padded_;
-    device.launch<Adam>({{rate * r * correction, kBeta1, kBeta2, 1e-12f, false},
-                         &planes_[row],
-                         &gradient_[row],
-                         &m_[row],
-                         &v_[row]},
-                        padded_);
-  }
-  for (int k = 0; k < count_; ++k) {
-    const auto at = [&](int row) -> float& { return planes_[size_t(row) * padded_ + k]; };
-    const Vec3f axis = normalize(Vec3f{at(0), at(1), at(2)});
-    for (int j = 0; j < 3; ++j) at(j) = axis[j];
-    at(3) = clamp(at(3), std::log(kBroadestLobe), std::log(kSharpestLobe));
-  }
-  if (!keep_power_) return;
+}
+
+void LightDescent::restore_power() {
   const Vec3f now = power();
   for (int c = 0; c < 3; ++c)
     for (int k = 0; k < count_; ++k)
-      planes_[size_t(4 + c) * padded_ + k] += std::log(first_power_[c] / now[c]);
+      logs_->value[size_t(1 + c) * padded_ + k] += std::log(first_power_[c] / now[c]);
+}
+
+void LightDescent::step(const Device& device, const HitBatch& batch, std::span<const Vec3f> d_irradiance,
+                        std::span<const Vec3f> d_reflected, float rate) {
+  const std::vector<float> lobes = lobe_planes();
+  set_gradient(lobes, lobes_grad(device, {lobes.data(), count_, padded_}, batch, d_irradiance, d_reflected));
+  optimizer_.step(device, rate);
+  normalize_lobes();
+  if (keep_power_) restore_power();
 }
 
 }  // namespace cei3d

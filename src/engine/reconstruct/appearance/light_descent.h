@@ -1,38 +1,44 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gentle descent on the lobes of a light that is already nearly right: logarithms of colour and sharpness,
-// and axes.
+// Descent on the lobes of a light that is already nearly right: on the logarithms of color and sharpness, and
+// on the axes.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "core/compute/device.h"
-#include "model/geometry/shape/hit.h"
-#include "model/light/sg_mixture.h"
+#include "engine/render/lighting.h"
+#include "model/field/optimizer.h"
 
 namespace cei3d {
 
+// dL/d(lobes) as planes [7][lobes.padded] (axis, sharpness, color), from dL/d(the light that the environment
+// sends to each hit where nothing occludes it). Axes as if their length were free.
+std::vector<float> lobes_grad(const Device&, const LobePlanes& lobes, const HitBatch&,
+                              std::span<const Vec3f> d_irradiance, std::span<const Vec3f> d_reflected);
+
 class LightDescent {
  public:
-  // keep_power: the light's total power per channel stays, so that a common factor cannot wander between
-  // light and albedo.
-  LightDescent(const SgMixture& light, float roughness, bool keep_power);
+  // keep_power: the total power per channel stays, so that no common factor wanders between light and albedo.
+  LightDescent(const SgMixture& light, bool keep_power);
 
-  // d_irradiance, d_reflected: gradient for what the free sky sends to each hit. One step, `rate` times the
-  // full rates.
-  void step(const Device&, std::span<const Hit> hits, std::span<const Vec3f> d_irradiance,
+  // One step at `rate` times the full rates. d_irradiance, d_reflected: as in lobes_grad().
+  void step(const Device&, const HitBatch&, std::span<const Vec3f> d_irradiance,
             std::span<const Vec3f> d_reflected, float rate);
   SgMixture light() const;
 
  private:
+  std::vector<float> lobe_planes() const;
+  void set_gradient(const std::vector<float>& lobes, const std::vector<float>& d_lobes);
+  void normalize_lobes();
+  void restore_power();
   Vec3f power() const;  // of all lobes, over the sphere
+
   int count_, padded_;
-  float roughness_;
   bool keep_power_;
-  int steps_ = 0;
   Vec3f first_power_;
-  std::vector<float> planes_;  // [7][padded] axis, log sharpness, log colour
-  std::vector<float> gradient_, m_, v_;
+  ParamSet params_;
+  Param *axes_, *logs_;  // planes [3][padded]; [4][padded]: logarithms of sharpness and color
+  Optimizer optimizer_;
 };
 
 }  // namespace cei3d

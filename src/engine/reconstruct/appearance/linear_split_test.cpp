@@ -54,7 +54,7 @@ SgMixture studio() {
 }
 
 struct Drawn {
-  std::unique_ptr<Surface> surface;
+  std::shared_ptr<const Surface> surface;
   std::shared_ptr<const Transport> transport;
   std::vector<Vec3f> base;
   std::vector<Hit> hits;
@@ -65,7 +65,7 @@ struct Drawn {
 
 Drawn draw(const Material& material, float brightness = 1) {
   Drawn d;
-  d.surface = std::make_unique<Surface>(bumpy_ball());
+  d.surface = std::make_shared<const Surface>(bumpy_ball());
   d.transport = std::make_shared<Transport>(*d.surface);
   const Mesh& m = d.surface->mesh();
   for (const Vec3f& p : m.positions) d.base.push_back(paint(p) * brightness);
@@ -92,8 +92,8 @@ Drawn draw(const Material& material, float brightness = 1) {
     albedo.push_back(d.base[t[0]] * (1 - b1 - b2) + d.base[t[1]] * b1 + d.base[t[2]] * b2);
   }
   const Device device = make_device();
-  const Lighting lighting(device, *d.surface, studio(), d.base, material, d.transport);
-  const Shading s = lighting.shade(d.hits, albedo);
+  const Lighting lighting(device, d.surface, studio(), d.base, material, d.transport);
+  const Shading s = lighting.shade(UniformBatch(d.hits, material), albedo);
   for (size_t i = 0; i < d.hits.size(); ++i) d.colors.push_back(s.diffuse[i] + s.specular[i]);
   return d;
 }
@@ -215,12 +215,8 @@ AppearanceOptions brief(float roughness) {
 std::vector<Vec3f> redrawn(const Device& device, const Drawn& d, const AppearanceResult& a) {
   std::vector<Vec3f> x;
   for (const Hit& h : d.hits) x.push_back(h.position);
-  std::vector<float> v(3 * x.size());
-  a.albedo->eval(device, x, v);
-  std::vector<Vec3f> albedo(x.size());
-  for (size_t i = 0; i < x.size(); ++i) albedo[i] = {v[3 * i], v[3 * i + 1], v[3 * i + 2]};
-  const Shading s =
-      Lighting(device, *d.surface, a.light, a.split.albedo, a.material, d.transport).shade(d.hits, albedo);
+  const Lighting lighting(device, d.surface, a.light, a.split.albedo, a.material, d.transport);
+  const Shading s = lighting.shade(UniformBatch(d.hits, a.material), a.albedo->eval3(device, x));
   std::vector<Vec3f> out(x.size());
   for (size_t i = 0; i < x.size(); ++i) out[i] = s.diffuse[i] + s.specular[i];
   return out;
@@ -231,7 +227,7 @@ TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
   const AppearanceOptions o = brief(0.3f);
   Progress quiet;
   const Device device = make_device();
-  const AppearanceResult a = fit_appearance(device, {*d.surface, d.samples()}, o, quiet);
+  const AppearanceResult a = fit_appearance(device, {d.surface, d.samples()}, o, quiet);
   const std::vector<Vec3f> got = redrawn(device, d, a);
   double error = 0, total = 0;
   for (size_t i = 0; i < got.size(); ++i) {
@@ -240,7 +236,7 @@ TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
     total += dot(d.colors[i], d.colors[i]);
   }
   EXPECT_LT(std::sqrt(error / total), 0.08);
-  const AppearanceResult b = fit_appearance(device, {*d.surface, d.samples()}, o, quiet);
+  const AppearanceResult b = fit_appearance(device, {d.surface, d.samples()}, o, quiet);
   EXPECT_EQ(to_array(a.light), to_array(b.light));
   for (size_t i = 0; i < a.albedo->params().all().size(); ++i)
     EXPECT_EQ(a.albedo->params().all()[i].value, b.albedo->params().all()[i].value);
@@ -268,7 +264,7 @@ TEST(AppearanceStage, TakesClippedChannelsForLowerBounds) {
   const Device device = make_device();
   const auto means = [&] {
     const std::vector<Vec3f> got =
-        redrawn(device, d, fit_appearance(device, {*d.surface, d.samples()}, brief(0.3f), quiet));
+        redrawn(device, d, fit_appearance(device, {d.surface, d.samples()}, brief(0.3f), quiet));
     Vec3f mean{0, 0, 0};
     for (const size_t i : red) mean += got[i] / truth[i] / float(red.size());
     return mean;

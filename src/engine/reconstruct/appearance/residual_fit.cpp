@@ -38,10 +38,8 @@ std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::
   std::vector<Vec3f> points, out(hits.size(), Vec3f{0, 0, 0});
   for (size_t i = 0; i < hits.size(); ++i)
     for (const Vec3f p : pixel_points(hits[i], footprints.empty() ? 0 : footprints[i])) points.push_back(p);
-  std::vector<float> values(3 * points.size());
-  albedo.eval(device, points, values);
-  for (size_t k = 0; k < points.size(); ++k)
-    out[k / kPixelPoints] += Vec3f{values[3 * k], values[3 * k + 1], values[3 * k + 2]} / float(kPixelPoints);
+  const std::vector<Vec3f> values = albedo.eval3(device, points);
+  for (size_t k = 0; k < points.size(); ++k) out[k / kPixelPoints] += values[k] / float(kPixelPoints);
   return out;
 }
 
@@ -163,7 +161,7 @@ class Trainer {
   Vec3f slope(uint32_t sample, Vec3f residual) const {
     Vec3f out;
     for (int c = 0; c < 3; ++c)
-      out[c] = display_loss_slope(sent_[sample][c] + residual[c], samples_.colors[sample][c],
+      out[c] = display_loss_grad(sent_[sample][c] + residual[c], samples_.colors[sample][c],
                                   samples_.is_clipped(sample, c)) /
                float(kBatch);
     return out;

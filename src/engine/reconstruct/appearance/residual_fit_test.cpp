@@ -56,7 +56,7 @@ EditLayer upper_half(const Scene& scene) {
   EditLayer layer;
   layer.id = "0001-material";
   layer.region = Region(points);
-  layer.material.roughness = scene.material.roughness;
+  layer.material.roughness = scene.material.mean().roughness;
   return layer;
 }
 

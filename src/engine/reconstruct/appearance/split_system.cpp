@@ -12,10 +12,9 @@
 namespace cei3d {
 namespace {
 
-constexpr int kChunks = 16;  // of rows; fixed, so that sums are the same on any machine
-constexpr int kEnvTable = 64;
-constexpr float kDielectric = 0.5f * kDielectricF0;
-constexpr float kGrazing = 0.1f;  // samples seen flatter than this are left out: silhouettes and bad normals
+constexpr int kChunks = 16;        // of rows; fixed, so that sums are the same on any machine
+constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
+constexpr float kGrazing = 0.1f;   // samples seen flatter than this are left out: silhouettes and bad normals
 constexpr float kDarkest = 0.003f;  // radiance below which the display curve's slope is not followed further
 
 Vec3f interpolate(const std::vector<Vec3f>& values, const std::array<uint32_t, 3>& v,
@@ -59,7 +58,7 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     row.color = samples.colors[kept[k]];
     for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_slope(max(row.color[c], kDarkest)));
     row.clipped = samples.clipped.empty() ? 0 : samples.clipped[kept[k]];
-    origins[k] = h.position + h.normal * 2e-3f;
+    origins[k] = ray_origin(h);
     directions[k] = mirror_direction(h);
   }
   std::vector<Surface::RayHit> hits(n);
@@ -143,41 +142,36 @@ SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
 void SplitSystem::set_roughness(float roughness) {
   roughness_ = roughness;
   blur_ = std::make_unique<LobeBlur>(roughness, options_.light_height);
-  env_table_.resize(kEnvTable);
-  for (int i = 0; i < kEnvTable; ++i) {
-    const EnvBrdf e = env_brdf(roughness, (i + 0.5) / kEnvTable);
-    env_table_[i] = {e.scale, e.bias};
-  }
+  split_sum_.resize(rows_.size());
+  diffuse_view_.resize(rows_.size());
+  const float* table = split_sum_table();
+  parallel_ranges(int(rows_.size()), 4096, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      split_sum_[i] = split_sum(table, rows_[i].nv, roughness);
+      diffuse_view_[i] = diffuse_view(clamp(rows_[i].nv, 0.0f, 1.0f), roughness);
+    }
+  });
 }
 
 void SplitSystem::set_metal(std::vector<Vec3f> color) { metal_ = std::move(color); }
 
-Vec3f SplitSystem::env_gain(float nv, Vec3f f0) const {
-  const float x = clamp(nv * kEnvTable - 0.5f, 0.0f, float(kEnvTable - 1));
-  const int i = std::min(int(x), kEnvTable - 2);
-  const float f = x - float(i);
-  const float scale = env_table_[i].x * (1 - f) + env_table_[i + 1].x * f;
-  const float bias = env_table_[i].y * (1 - f) + env_table_[i + 1].y * f;
-  return f0 * scale + Vec3f{bias, bias, bias};
+Vec3f SplitSystem::gain(size_t i) const {
+  const SplitRow& row = rows_[i];
+  const Vec3f black{0, 0, 0};
+  const Vec3f f0 = metal_.empty()
+                       ? f0_of(black, kSpecular, 0.0f)
+                       : f0_of(interpolate(metal_, row.vertices, row.barycentric), kSpecular, 1.0f);
+  return reflectance(split_sum_[i], f0);
 }
 
-Vec3f SplitSystem::gain(const SplitRow& row) const {
-  const Vec3f grey{kDielectric, kDielectric, kDielectric};
-  return env_gain(row.nv, metal_.empty() ? grey : interpolate(metal_, row.vertices, row.barycentric));
-}
-
-float SplitSystem::sent(const SplitRow& row) const {
-  return diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness_);
-}
-
-Vec3f SplitSystem::predict(const SplitRow& row, const SplitUnknowns& x,
-                           const std::vector<Vec3f>& blurred) const {
+Vec3f SplitSystem::predict(size_t i, const SplitUnknowns& x, const std::vector<Vec3f>& blurred) const {
+  const SplitRow& row = rows_[i];
   Vec3f seen{0, 0, 0};
   if (row.blocked)
     seen = interpolate(x.diffuse, row.far_vertices, row.far_barycentric);
   else
     for (int k = 0; k < 4; ++k) seen += blurred[row.taps.pixel[k]] * row.taps.weight[k];
-  return interpolate(x.diffuse, row.vertices, row.barycentric) * sent(row) + gain(row) * seen;
+  return interpolate(x.diffuse, row.vertices, row.barycentric) * diffuse_view_[i] + gain(i) * seen;
 }
 
 void SplitSystem::release_bounds(const SplitUnknowns& x) {
@@ -187,7 +181,7 @@ void SplitSystem::release_bounds(const SplitUnknowns& x) {
     for (int i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
       if (!row.clipped) continue;
-      const Vec3f above = predict(row, x, blurred) - row.color;
+      const Vec3f above = predict(size_t(i), x, blurred) - row.color;
       for (int c = 0; c < 3; ++c) weights_[i][c] = (row.clipped >> c & 1) && above[c] > 0 ? 0 : row.weight[c];
     }
   });
@@ -206,9 +200,10 @@ void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
     for (size_t i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
       if (!dielectric && row.blocked) continue;
-      const Vec3f y = row_value(row) * weights_[i], g = y * gain(row);
+      const Vec3f y = row_value(i) * weights_[i], g = y * gain(i);
       if (dielectric)
-        for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += y * (row.barycentric[k] * sent(row));
+        for (int k = 0; k < 3; ++k)
+          sum.diffuse[row.vertices[k]] += y * (row.barycentric[k] * diffuse_view_[i]);
       if (row.blocked)
         for (int k = 0; k < 3; ++k) sum.diffuse[row.far_vertices[k]] += g * row.far_barycentric[k];
       else
@@ -250,12 +245,12 @@ void SplitSystem::smooth(const SplitUnknowns& x, SplitUnknowns& out) const {
 void SplitSystem::normal(const SplitUnknowns& x, SplitUnknowns& out) const {
   std::vector<Vec3f> blurred;
   blur_->apply(x.light, blurred);
-  accumulate([&](const SplitRow& row) { return predict(row, x, blurred); }, out);
+  accumulate([&](size_t row) { return predict(row, x, blurred); }, out);
   smooth(x, out);
 }
 
 void SplitSystem::right_side(SplitUnknowns& out) const {
-  accumulate([](const SplitRow& row) { return row.color; }, out);
+  accumulate([&](size_t row) { return rows_[row].color; }, out);
 }
 
 double SplitSystem::residual(const SplitUnknowns& x) const {
@@ -267,7 +262,7 @@ double SplitSystem::residual(const SplitUnknowns& x) const {
     for (size_t i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
       if (row.blocked) continue;
-      const Vec3f e = predict(row, x, blurred) - row.color;
+      const Vec3f e = predict(i, x, blurred) - row.color;
       count[chunk] += 3;
       for (int c = 0; c < 3; ++c) {
         if ((row.clipped >> c & 1) && e[c] > 0) continue;
@@ -285,11 +280,12 @@ SplitUnknowns SplitSystem::diagonal() const {
   SplitUnknowns d;
   d.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
   std::vector<Vec3f> mass(cells, Vec3f{0, 0, 0});
-  for (const SplitRow& row : rows_) {
+  for (size_t i = 0; i < rows_.size(); ++i) {
+    const SplitRow& row = rows_[i];
     if (!metal_.empty() && row.blocked) continue;
-    const Vec3f g = gain(row), gg = row.weight * g * g;
+    const Vec3f g = gain(i), gg = row.weight * g * g;
     for (int k = 0; k < 3; ++k)
-      d.diffuse[row.vertices[k]] += row.weight * square(row.barycentric[k] * sent(row));
+      d.diffuse[row.vertices[k]] += row.weight * square(row.barycentric[k] * diffuse_view_[i]);
     if (row.blocked)
       for (int k = 0; k < 3; ++k) d.diffuse[row.far_vertices[k]] += gg * square(row.far_barycentric[k]);
     else
@@ -394,8 +390,7 @@ std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) const {
     if (row.blocked) continue;
     Vec3f seen{0, 0, 0};
     for (int k = 0; k < 4; ++k) seen += blurred[row.taps.pixel[k]] * row.taps.weight[k];
-    const Vec3f one = env_gain(row.nv, {1, 1, 1}), bias = env_gain(row.nv, {0, 0, 0});
-    const Vec3f slope = (one - bias) * seen, rest = row.color - bias * seen;
+    const Vec3f slope = seen * split_sum_[i].scale, rest = row.color - seen * split_sum_[i].bias;
     for (int k = 0; k < 3; ++k) {
       above[row.vertices[k]] += weights_[i] * slope * rest * row.barycentric[k];
       below[row.vertices[k]] += weights_[i] * slope * slope * row.barycentric[k];

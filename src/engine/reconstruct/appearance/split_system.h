@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/math/shading.h"
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "model/light/envmap.h"
 
@@ -66,15 +67,12 @@ class SplitSystem {
   std::vector<Vec3f> fit_metal_color(const SplitUnknowns& x) const;
 
  private:
-  Vec3f gain(const SplitRow&) const;  // of the light's taps
-  Vec3f env_gain(float nv, Vec3f f0) const;
-  Vec3f color_at(const std::array<uint32_t, 3>&, const std::array<float, 3>&) const;
-  float sent(const SplitRow&) const;  // of D towards the viewer, see diffuse_view()
-  Vec3f predict(const SplitRow&, const SplitUnknowns&, const std::vector<Vec3f>& blurred) const;
+  Vec3f gain(size_t row) const;  // fraction of the reflected radiance that the viewer gets
+  Vec3f predict(size_t row, const SplitUnknowns&, const std::vector<Vec3f>& blurred) const;
   void smooth(const SplitUnknowns& x, SplitUnknowns& out) const;  // out += gradient of the priors
   void release_bounds(const SplitUnknowns& x);                    // sets weights_
   template <class F>
-  void accumulate(F row_value, SplitUnknowns& out) const;         // out = A^T (weight * row_value)
+  void accumulate(F row_value, SplitUnknowns& out) const;         // out = A^T (weight * row_value(row))
   void normal(const SplitUnknowns& x, SplitUnknowns& out) const;  // out = (A^T W A + priors) x
   void right_side(SplitUnknowns& out) const;                      // out = A^T W c
   SplitUnknowns diagonal() const;
@@ -87,8 +85,9 @@ class SplitSystem {
   std::vector<std::array<uint32_t, 2>> edges_;
   float roughness_ = 0;
   std::unique_ptr<LobeBlur> blur_;
-  std::vector<Vec2f> env_table_;  // scale and bias by nv
-  std::vector<Vec3f> metal_;      // #V or empty
+  std::vector<SplitSum<float>> split_sum_;  // #rows
+  std::vector<float> diffuse_view_;         // #rows, of D towards the viewer
+  std::vector<Vec3f> metal_;                // #V or empty
   float light_smoothness_ = 0, diffuse_smoothness_ = 0;
 };
 

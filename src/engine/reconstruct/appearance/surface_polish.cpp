@@ -28,16 +28,18 @@ class Polish {
         options_(options),
         albedo_(*appearance.albedo),
         trainer_(albedo_, {}),
-        lighting_(device, input.surface, appearance.light, vertex_colors(input.surface),
-                  appearance.material) {}
+        lighting_(device, input.surface, appearance.light,
+                  albedo_.eval3(device, input.surface->mesh().positions), appearance.material),
+        materials_(size_t(options.batch), appearance.material) {}
 
   // share: of the polishing that is done, [0, 1).
   GeometryStats step(int step, double share) {
     choose_batch(step);
     refine_hits(device_, stage_.sdf(), directions_, hits_, edges_);
-    const HitLight light = lighting_.light_at(hits_);
-    fit_albedo(light);
-    std::vector<Vec3f> d_normals = lighting_.normal_slopes(hits_, light, colors_, d_radiance_), positions,
+    const HitBatch batch{hits_, materials_};
+    const std::vector<IncidentLight<float>> light = lighting_.incident_light(batch);
+    fit_albedo(lighting_.terms(batch, light));
+    std::vector<Vec3f> d_normals = lighting_.grad(batch, light, colors_, d_radiance_).d_normal, positions,
                        points;
     std::vector<float> d_values;
     for (Vec3f& d : d_normals) d = d * options_.weight;
@@ -48,15 +50,6 @@ class Polish {
   }
 
  private:
-  std::vector<Vec3f> vertex_colors(const Surface& surface) const {
-    const auto& x = surface.mesh().positions;
-    std::vector<float> values(3 * x.size());
-    albedo_.eval(device_, x, values);
-    std::vector<Vec3f> out(x.size());
-    for (size_t i = 0; i < x.size(); ++i) out[i] = {values[3 * i], values[3 * i + 1], values[3 * i + 2]};
-    return out;
-  }
-
   void choose_batch(int step) {
     const int n = options_.batch;
     batch_.resize(n);
@@ -73,7 +66,7 @@ class Polish {
 
   // One step of the albedo, so that what it had learnt of wrong normals does not hold them. Sets colors_ and
   // d_radiance_.
-  void fit_albedo(const HitLight& light) {
+  void fit_albedo(const std::vector<ShadingTerms<float>>& terms) {
     std::vector<Vec3f> positions(hits_.size());
     for (size_t i = 0; i < hits_.size(); ++i) positions[i] = hits_[i].position;
     colors_.resize(hits_.size());
@@ -81,17 +74,11 @@ class Polish {
     const auto loss = [&](int begin, int end, const float* out, float* d_out) {
       for (int i = begin; i < end; ++i) {
         const float* a = out + 3 * (i - begin);
-        const HitLight::Terms t = light.at(i, appearance_.material);
-        const uint32_t sample = batch_[i];
-        for (int c = 0; c < 3; ++c) {
-          const float gain = t.diffuse_gain[c] + t.specular_gain[c], got = t.specular_floor[c] + a[c] * gain;
-          const float g =
-              display_loss_slope(got, samples_.colors[sample][c], samples_.is_clipped(sample, c)) /
-              float(options_.batch);
-          d_radiance_[i][c] = g;
-          colors_[i][c] = a[c];
-          d_out[3 * (i - begin) + c] = g * gain;
-        }
+        colors_[i] = {a[0], a[1], a[2]};
+        const SampleGrad g =
+            sample_grad(samples_, batch_[i], terms[i], colors_[i], 1 / float(options_.batch));
+        d_radiance_[i] = g.d_radiance;
+        for (int c = 0; c < 3; ++c) d_out[3 * (i - begin) + c] = g.d_albedo[c];
       }
     };
     trainer_.step(device_, positions, loss, 0.1f);
@@ -105,6 +92,7 @@ class Polish {
   Field albedo_;
   FieldTrainer trainer_;
   Lighting lighting_;
+  std::vector<Material> materials_;  // of a batch
   std::vector<uint32_t> batch_;
   std::vector<Hit> hits_;
   std::vector<Vec3f> colors_, d_radiance_;  // base colour of the hits, dL/d(what they send out)

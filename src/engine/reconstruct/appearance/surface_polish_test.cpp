@@ -56,7 +56,7 @@ bool meets_ball(const Ray& ray, Hit& hit) {
 PixelStore pictures(const Device& device) {
   const Scene ball = sphere_scene();
   const std::vector<Vec3f> grey(ball.surface->mesh().positions.size(), Vec3f{0.5f, 0.5f, 0.5f});
-  const Lighting lighting(device, *ball.surface, room(), grey, kMetal);
+  const Lighting lighting(device, ball.surface, room(), grey, kMetal);
   PixelStore store;
   for (int view = 0; view < kViews; ++view) {
     const Camera camera = camera_of(view);
@@ -70,8 +70,8 @@ PixelStore pictures(const Device& device) {
         }
         if (hits.empty()) continue;
         Vec3f sum{0, 0, 0};
-        for (const Vec3f& s : lighting.shade(hits, std::vector<Vec3f>(hits.size(), grey[0])).specular)
-          sum += s;
+        const std::vector<Vec3f> albedo(hits.size(), grey[0]);
+        for (const Vec3f& s : lighting.shade(UniformBatch(hits, kMetal), albedo).specular) sum += s;
         for (int c = 0; c < 3; ++c) image.at(x, y)[c] = sum[c] / float(hits.size());
         image.at(x, y)[3] = float(hits.size()) / 16;
       }
@@ -94,13 +94,13 @@ GeometryOptions small_geometry() {
 }
 
 struct Seen {
-  std::unique_ptr<Surface> surface;
+  std::shared_ptr<const Surface> surface;
   std::vector<Hit> hits;
   std::vector<Vec3f> colors;
 };
 
 Seen seen_of(const Device& device, const Field& sdf, const PixelStore& pixels) {
-  Seen s{std::make_unique<Surface>(extract_mesh(device, sdf, {64})), {}, {}};
+  Seen s{std::make_shared<const Surface>(extract_mesh(device, sdf, {64})), {}, {}};
   std::vector<Ray> rays;
   std::vector<Vec3f> colors;
   for (const Pixel& p : pixels.pixels()) {
@@ -133,7 +133,7 @@ TEST(SurfacePolish, BringsNormalsNearerToTheTruthThanTheSameStepsWithoutIt) {
   stage.save(before);
 
   const Seen seen = seen_of(device, stage.sdf(), pixels);
-  const AppearanceInput input{*seen.surface, {seen.hits, seen.colors, {}}};
+  const AppearanceInput input{seen.surface, {seen.hits, seen.colors, {}}};
   AppearanceResult look;
   look.light = room();
   look.material = kMetal;

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/math/vec.h"
+#include "core/math/shading.h"
 
 namespace cei3d {
 
@@ -16,9 +16,13 @@ struct Hit {
   float b1, b2;       // ... and its barycentrics: p = (1 - b1 - b2) v0 + b1 v1 + b2 v2
 };
 
-// Where the light comes from that the camera sees mirrored there. Unit.
-inline Vec3f mirror_direction(const Hit& h) {
-  return normalize(h.normal * (2 * dot(h.normal, h.to_camera)) - h.to_camera);
-}
+// Rays from a point of the surface start this far above it, unit-sphere units: less, and they would meet the
+// triangle that they leave.
+inline constexpr float kRayLift = 2e-3f;
+
+inline Vec3f ray_origin(const Hit& h) { return h.position + h.normal * kRayLift; }
+
+// Where the light comes from that the camera sees mirrored at the hit. Unit.
+inline Vec3f mirror_direction(const Hit& h) { return mirrored_direction(h.normal, h.to_camera); }
 
 }  // namespace cei3d

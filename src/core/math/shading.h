@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// The shading model: the radiance that a surface point sends to the viewer, and its adjoint. The
+// metallic-roughness model of glTF: the diffuse term is (1 - metalness) albedo / pi, F0 is metalness * albedo
+// + (1 - metalness) * kDielectricF0 * specular; the specular term is the split sum. This is the only place
+// where these formulas are written out. [paper eq. 2-5, 13-15]
+#pragma once
+
+#include "core/math/split_sum.h"
+
+namespace cei3d {
+
+// Direction that a viewer sees mirrored; n, v unit.
+template <class T>
+HD Vec3<T> mirrored_direction(Vec3<T> n, Vec3<T> v) {
+  return normalize(n * (T(2.0f) * dot(n, v)) - v);
+}
+// Adjoint: adds to d_n and d_v, which are tangent to the unit sphere at n and v.
+template <class T>
+HD void mirrored_direction_grad(Vec3<T> n, Vec3<T> v, Vec3<T> d_mirror, Vec3<T>& d_n, Vec3<T>& d_v) {
+  const T two(2.0f), along = dot(d_mirror, n);
+  const Vec3<T> by_n = (v * along + d_mirror * dot(n, v)) * two, by_v = n * (two * along) - d_mirror;
+  d_n += by_n - n * dot(by_n, n);
+  d_v += by_v - v * dot(by_v, v);
+}
+
+// Light that arrives at a point: from the environment as far as the object does not occlude it, and from the
+// object.
+template <class T>
+struct IncidentLight {
+  Vec3<T> sky_irradiance;     // of the environment without occlusion
+  Vec3<T> visibility;         // fraction of it that arrives, per channel
+  Vec3<T> bounce;             // irradiance from the object
+  Vec3<T> sky_reflection;     // mean radiance of the environment over the reflection lobe, without occlusion
+  T mirror_visibility;        // fraction of the reflection lobe that is not occluded
+  Vec3<T> object_reflection;  // mean radiance from the object over the lobe, 0 where it is not occluded
+
+  HD Vec3<T> irradiance() const { return sky_irradiance * visibility + bounce; }
+  HD Vec3<T> reflected() const { return sky_reflection * mirror_visibility + object_reflection; }
+};
+// dL/d(each member) from dL/d(irradiance) and dL/d(reflected radiance).
+template <class T>
+HD IncidentLight<T> incident_light_grad(const IncidentLight<T>& light, Vec3<T> d_irradiance,
+                                        Vec3<T> d_reflected) {
+  return {d_irradiance * light.visibility,       d_irradiance * light.sky_irradiance,    d_irradiance,
+          d_reflected * light.mirror_visibility, dot(d_reflected, light.sky_reflection), d_reflected};
+}
+
+// Everything that the radiance of a point depends on; in an adjoint, the derivatives by it.
+template <class T>
+struct ShadingPoint {
+  Vec3<T> albedo;                    // [0, 1], linear; glTF's base color
+  T roughness, specular, metalness;  // [0, 1]
+  T nv;                              // cosine of normal and direction to the viewer
+  Vec3<T> irradiance;                // all of it
+  Vec3<T> reflected;                 // mean radiance over the reflection lobe
+};
+
+template <class T>
+HD T dielectric_f0(T specular, T metalness) {
+  return (T(1.0f) - metalness) * T(kDielectricF0) * specular;
+}
+// Reflectance at normal incidence.
+template <class T>
+HD Vec3<T> f0_of(Vec3<T> albedo, T specular, T metalness) {
+  const T dielectric = dielectric_f0(specular, metalness);
+  return albedo * metalness + Vec3<T>{dielectric, dielectric, dielectric};
+}
+// Fraction of the reflected radiance that reaches the viewer.
+template <class T>
+HD Vec3<T> reflectance(SplitSum<T> s, Vec3<T> f0) {
+  return f0 * s.scale + Vec3<T>{s.bias, s.bias, s.bias};
+}
+
+// The radiance as a linear function of the albedo: diffuse = diffuse_gain * albedo, specular = specular_gain
+// * albedo + specular_offset.
+template <class T>
+struct ShadingTerms {
+  Vec3<T> diffuse_gain, specular_gain, specular_offset;
+
+  HD Vec3<T> diffuse(Vec3<T> albedo) const { return albedo * diffuse_gain; }
+  HD Vec3<T> specular(Vec3<T> albedo) const { return albedo * specular_gain + specular_offset; }
+  HD Vec3<T> gain() const { return diffuse_gain + specular_gain; }
+  HD Vec3<T> radiance(Vec3<T> albedo) const { return specular_offset + albedo * gain(); }
+};
+
+// table: split_sum_table(). Does not read p.albedo.
+template <class T>
+HD ShadingTerms<T> shading_terms(const float* table, const ShadingPoint<T>& p) {
+  const T zero(0.0f), one(1.0f);
+  const SplitSum<T> s = split_sum(table, p.nv, p.roughness);
+  const T view = diffuse_view(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)));
+  const Vec3<T> white{one, one, one}, black{zero, zero, zero};
+  const Vec3<T> offset = reflectance(s, f0_of(black, p.specular, p.metalness));
+  return {p.irradiance * ((one - p.metalness) * T(1 / kPi) * view),
+          p.reflected * ((white * p.metalness) * s.scale), p.reflected * offset};
+}
+
+// dL/d(every member of the point) from dL/d(diffuse) and dL/d(specular).
+template <class T>
+HD ShadingPoint<T> shading_grad(const float* table, const ShadingPoint<T>& p, Vec3<T> d_diffuse,
+                                Vec3<T> d_specular) {
+  const T zero(0.0f), one(1.0f), k = (one - p.metalness) * T(1 / kPi);
+  const SplitSumGrad<T> s = split_sum_grad(table, p.nv, p.roughness);
+  const DiffuseViewGrad<T> view =
+      diffuse_view_grad(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)));
+  const Vec3<T> f0 = f0_of(p.albedo, p.specular, p.metalness);
+  const T lit = dot(d_diffuse, p.albedo * p.irradiance), mirrored = dot(d_specular, p.reflected),
+          mirrored_f0 = dot(d_specular, p.reflected * f0),
+          mirrored_albedo = dot(d_specular, p.reflected * p.albedo);
+  const auto nv_clamped = (p.nv < zero) | (p.nv > one), roughness_clamped = p.roughness < T(kMinRoughness);
+  ShadingPoint<T> d;
+  d.albedo =
+      d_diffuse * p.irradiance * (k * view.value) + d_specular * p.reflected * (p.metalness * s.value.scale);
+  d.roughness = lit * k * select(roughness_clamped, zero, view.d_roughness) +
+                mirrored_f0 * s.d_roughness.scale + mirrored * s.d_roughness.bias;
+  d.specular = mirrored * s.value.scale * (one - p.metalness) * T(kDielectricF0);
+  d.metalness = (mirrored_albedo - mirrored * T(kDielectricF0) * p.specular) * s.value.scale -
+                lit * T(1 / kPi) * view.value;
+  d.nv = lit * k * select(nv_clamped, zero, view.d_nv) + mirrored_f0 * s.d_nv.scale + mirrored * s.d_nv.bias;
+  d.irradiance = d_diffuse * p.albedo * (k * view.value);
+  d.reflected = d_specular * reflectance(s.value, f0);
+  return d;
+}
+
+}  // namespace cei3d
