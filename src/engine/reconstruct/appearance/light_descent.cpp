@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kGrain = 512;                           // hits a chunk
 constexpr float kLogRate = 1e-2f, kAxisRate = 2e-3f;  // of Adam, on logarithms and on unit vectors
-constexpr float kDarkest = 1e-5f;                     // radiance whose logarithm stands for black
+constexpr float kDarkest = 1e-5f;                     // peak radiance that stands for black
 
 int padded_to_panels(size_t n) { return int((n + kPanel - 1) / kPanel * kPanel); }
 
@@ -86,18 +86,32 @@ LightDescent::LightDescent(const SgMixture& light, bool keep_power)
     const SgLobe& l = light.lobes[size_t(k)];
     store_planes(axes_->value.data(), padded_, k, l.axis);
     logs_->value[size_t(k)] = std::log(l.lambda);
-    for (int c = 0; c < 3; ++c) logs_->value[size_t(1 + c) * padded_ + k] = std::log(max(l.mu[c], kDarkest));
+    for (int c = 0; c < 3; ++c)
+      logs_->value[size_t(1 + c) * padded_ + k] = std::log(max(l.mu[c], kDarkest) * sg_integral(l.lambda));
   }
-  first_power_ = power();
+  first_power_ = total_power();
+}
+
+Vec3f LightDescent::power_of(int k) const {
+  const float* row = logs_->value.data() + padded_ + k;
+  return {std::exp(row[0]), std::exp(row[padded_]), std::exp(row[2 * padded_])};
+}
+
+Vec3f LightDescent::total_power() const {
+  Vec3f sum{0, 0, 0};
+  for (int k = 0; k < count_; ++k) sum += power_of(k);
+  return sum;
 }
 
 // [7][padded]; the padding's color is black.
 std::vector<float> LightDescent::lobe_planes() const {
   std::vector<float> p(axes_->value);
   p.resize(size_t(7) * padded_, 0.0f);
-  for (int row = 0; row < 4; ++row)
-    for (int k = 0; k < count_; ++k)
-      p[size_t(3 + row) * padded_ + k] = std::exp(logs_->value[size_t(row) * padded_ + k]);
+  for (int k = 0; k < count_; ++k) {
+    const float lambda = std::exp(logs_->value[size_t(k)]);
+    p[size_t(3) * padded_ + k] = lambda;
+    store_planes(p.data() + size_t(4) * padded_, padded_, k, power_of(k) / sg_integral(lambda));
+  }
   return p;
 }
 
@@ -110,23 +124,27 @@ SgMixture LightDescent::light() const {
   return out;
 }
 
-Vec3f LightDescent::power() const {
-  Vec3f sum{0, 0, 0};
-  for (const SgLobe& l : light().lobes) sum += l.mu * sg_integral(l.lambda);
-  return sum;
-}
-
-// Of the logarithms, and of the axes along the sphere.
+// Axes: along the sphere. Sharpness: at constant power, so that the peak color follows it.
 void LightDescent::set_gradient(const std::vector<float>& lobes, const std::vector<float>& d_lobes) {
   const std::span<float> d_axes = optimizer_.gradient(*axes_), d_logs = optimizer_.gradient(*logs_);
+  Vec3f d_common{0, 0, 0};  // by a factor that all lobes share
   for (int k = 0; k < count_; ++k) {
-    const Vec3f axis = load_planes<float>(lobes.data(), padded_, k),
-                d = load_planes<float>(d_lobes.data(), padded_, k);
-    store_planes(d_axes.data(), padded_, k, d - axis * dot(d, axis));
-    for (int row = 0; row < 4; ++row) {
-      const size_t i = size_t(3 + row) * padded_ + k;
-      d_logs[size_t(row) * padded_ + k] = d_lobes[i] * lobes[i];
-    }
+    const LobePlanes at{lobes.data(), count_, padded_}, d_at{d_lobes.data(), count_, padded_};
+    const Vec3f axis = at.axis<float>(k), d_axis = d_at.axis<float>(k),
+                d_power = d_at.mu<float>(k) * at.mu<float>(k);
+    const float lambda = at.lambda<float>(k), mean = d_power.x + d_power.y + d_power.z;
+    store_planes(d_axes.data(), padded_, k, d_axis - axis * dot(d_axis, axis));
+    d_logs[size_t(k)] =
+        lambda * (d_at.lambda<float>(k) - mean * sg_integral_slope(lambda) / sg_integral(lambda));
+    store_planes(d_logs.data() + padded_, padded_, k, d_power);
+    d_common += d_power;
+  }
+  if (!keep_power_) return;
+  const Vec3f total = total_power();
+  for (int k = 0; k < count_; ++k) {
+    float* d_power = d_logs.data() + padded_;
+    store_planes(d_power, padded_, k,
+                 load_planes<float>(d_power, padded_, k) - d_common * power_of(k) / total);
   }
 }
 
@@ -140,7 +158,7 @@ void LightDescent::normalize_lobes() {
 }
 
 void LightDescent::restore_power() {
-  const Vec3f now = power();
+  const Vec3f now = total_power();
   for (int c = 0; c < 3; ++c)
     for (int k = 0; k < count_; ++k)
       logs_->value[size_t(1 + c) * padded_ + k] += std::log(first_power_[c] / now[c]);

@@ -18,7 +18,8 @@ std::vector<float> lobes_grad(const Device&, const LobePlanes& lobes, const HitB
 
 class LightDescent {
  public:
-  // keep_power: the total power per channel stays, so that no common factor wanders between light and albedo.
+  // keep_power: the total power per channel stays, so that no common factor wanders between light and albedo;
+  // the gradient is the one along that constraint.
   LightDescent(const SgMixture& light, bool keep_power);
 
   // One step at `rate` times the full rates. d_irradiance, d_reflected: as in lobes_grad().
@@ -31,13 +32,14 @@ class LightDescent {
   void set_gradient(const std::vector<float>& lobes, const std::vector<float>& d_lobes);
   void normalize_lobes();
   void restore_power();
-  Vec3f power() const;  // of all lobes, over the sphere
+  Vec3f power_of(int lobe) const;
+  Vec3f total_power() const;
 
   int count_, padded_;
   bool keep_power_;
   Vec3f first_power_;
   ParamSet params_;
-  Param *axes_, *logs_;  // planes [3][padded]; [4][padded]: logarithms of sharpness and color
+  Param *axes_, *logs_;  // planes [3][padded]; [4][padded]: logarithms of sharpness and power
   Optimizer optimizer_;
 };
 
