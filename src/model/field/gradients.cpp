@@ -4,12 +4,13 @@
 #include <algorithm>
 
 #include "core/base/parallel.h"
+#include "core/compute/kernels/panel.h"
 #include "model/field/field_pass.h"
 
 namespace cei3d {
 
 void ChunkGradients::reset(const FieldConfig& config, size_t network_size, int n, int columns_in) {
-  padded = (n + kPanel - 1) / kPanel * kPanel;
+  padded = padded_to_panels(n);
   columns = columns_in;
   points.resize(size_t(padded) * 3);
   d_encoding.resize(size_t(padded) * columns * encoding_rows(config.encoding));
