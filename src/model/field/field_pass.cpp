@@ -39,14 +39,6 @@ void FieldPass::backward(const Device& device, const MlpWeights& weights, int n,
   mlp_.backward(device, weights, n, active_rows(levels), network_gradient, d_encoding);
 }
 
-void scatter_encoding(const Device& device, const FieldConfig& config, int level, const float* points,
-                      const float* d_encoding, int n, int columns, float* d_table) {
-  const EncodingConfig& e = config.encoding;
-  const int row = 3 + 6 * e.frequencies + 2 * level;
-  device.launch<EncodeGridGrad>(
-      {{points, d_encoding, encoding_rows(e), row, columns}, grid_level(e, level), d_table}, n);
-}
-
 void points_to_panels(const Vec3f* points, int n, float* panels) {
   for (int i = 0; i < padded_to_panels(n); ++i) store_point(panels, i, i < n ? points[i] : Vec3f{0, 0, 0});
 }
