@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The same kernels on every device of this machine against the scalar one, from one list of cases; linear
-// layers against plain loops in double.
+// Every kernel on every device of this machine against the scalar one; linear layers against plain loops in
+// double.
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
+#include <typeinfo>
 
 #include "core/base/error.h"
 #include "core/compute/device.h"
@@ -21,9 +22,9 @@ std::vector<float> noise(size_t n, uint64_t seed, float scale = 1) {
 
 constexpr int kN = 96;  // samples: three panels
 
-// A case runs one kernel and returns all that it wrote.
+// Runs one kernel and returns all that it wrote.
 struct Case {
-  const char* name;
+  std::string name;
   std::function<std::vector<float>(const Device&)> run;
 };
 
@@ -66,24 +67,30 @@ std::vector<float> adam_case(const Device& device, bool skip_zero) {
 constexpr int kFeatures = 4;
 struct RadianceData {
   std::vector<float> points = noise(kN * 3, 10), directions = noise(kN * 3, 11),
-                     sdf = noise(kN * 4 * (1 + kFeatures), 12),
-                     d_sdf = std::vector<float>(kN * 4 * (1 + kFeatures), 0.0f),
-                     input = std::vector<float>(kN * radiance_rows(kFeatures), 0.0f);
-  RadianceArgs forward() {
-    return {points.data(), directions.data(), sdf.data(), nullptr, input.data(), kFeatures};
+                     jets = noise(kN * 4 * (1 + kFeatures), 12),
+                     d_jets = std::vector<float>(kN * 4 * (1 + kFeatures), 0.0f),
+                     input = std::vector<float>(kN * radiance_rows(kFeatures), 0.0f),
+                     d_input = noise(kN * radiance_rows(kFeatures), 13);
+  RadianceInput::Args forward() {
+    return {points.data(), directions.data(), jets.data(), input.data(), kFeatures};
+  }
+  RadianceInputGrad::Args gradient() {
+    return {directions.data(), jets.data(), d_input.data(), d_jets.data(), kFeatures};
   }
 };
 
 std::vector<float> radiance_case(const Device& device, bool gradient) {
   RadianceData d;
-  if (!gradient) {
-    device.launch<RadianceInput>(d.forward(), kN);
-    return d.input;
-  }
-  d.input = noise(d.input.size(), 13);
-  device.launch<RadianceInputGrad>(
-      {d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures}, kN);
-  return d.d_sdf;
+  gradient ? device.launch<RadianceInputGrad>(d.gradient(), kN)
+           : device.launch<RadianceInput>(d.forward(), kN);
+  return gradient ? d.d_jets : d.input;
+}
+
+std::vector<float> point_case(const Device& device, int columns) {
+  const auto points = noise(kN * 3, 14);
+  std::vector<float> out(kN * columns * 5);
+  device.launch<EncodePoint>({points.data(), out.data(), 5, 1, columns}, kN);
+  return out;
 }
 
 std::vector<float> frequency_case(const Device& device, int k) {
@@ -100,52 +107,127 @@ std::vector<float> linear_case(const Device& device, int in, int out) {
   return y;
 }
 
-const std::vector<Case> kCases = {
-    {"relu", [](const Device& d) { return activation_case<Relu>(d, false); }},
-    {"relu gradient", [](const Device& d) { return activation_case<Relu>(d, true); }},
-    {"elu", [](const Device& d) { return activation_case<Elu>(d, false); }},
-    {"elu gradient", [](const Device& d) { return activation_case<Elu>(d, true); }},
-    {"softplus", [](const Device& d) { return activation_case<Softplus>(d, false); }},
-    {"softplus gradient", [](const Device& d) { return activation_case<Softplus>(d, true); }},
-    {"sigmoid", [](const Device& d) { return activation_case<Sigmoid>(d, false); }},
-    {"sigmoid gradient", [](const Device& d) { return activation_case<Sigmoid>(d, true); }},
-    {"dense grid", [](const Device& d) { return grid_case(d, 1, 0); }},
-    {"dense grid jet", [](const Device& d) { return grid_case(d, 4, 0); }},
-    {"hashed grid jet", [](const Device& d) { return grid_case(d, 4, 1023); }},
-    {"dense grid gradient", [](const Device& d) { return grid_grad_case(d, 1, 0); }},
-    {"hashed grid jet gradient", [](const Device& d) { return grid_grad_case(d, 4, 1023); }},
-    {"frequency 0", [](const Device& d) { return frequency_case(d, 0); }},
-    {"frequency 9", [](const Device& d) { return frequency_case(d, 9); }},
-    {"adam", [](const Device& d) { return adam_case(d, false); }},
-    {"adam, zeros skipped", [](const Device& d) { return adam_case(d, true); }},
-    {"radiance input", [](const Device& d) { return radiance_case(d, false); }},
-    {"radiance input gradient", [](const Device& d) { return radiance_case(d, true); }},
-    {"linear 7 to 13", [](const Device& d) { return linear_case(d, 7, 13); }},
-    {"linear 64 to 64", [](const Device& d) { return linear_case(d, 64, 64); }},
+// The cases of kernel K. A kernel without any does not compile: add a specialization.
+template <class K>
+struct Parity;
+
+using Cases = std::vector<Case>;
+template <class A>
+struct Parity<Activate<A>> {
+  static Cases cases() {
+    return {{"forward", [](const Device& d) { return activation_case<A>(d, false); }}};
+  }
+};
+template <class A>
+struct Parity<ActivateGrad<A>> {
+  static Cases cases() {
+    return {{"gradient", [](const Device& d) { return activation_case<A>(d, true); }}};
+  }
+};
+template <>
+struct Parity<EncodePoint> {
+  static Cases cases() {
+    return {{"values", [](const Device& d) { return point_case(d, 1); }},
+            {"jets", [](const Device& d) { return point_case(d, 4); }}};
+  }
+};
+template <>
+struct Parity<EncodeFrequency> {
+  static Cases cases() {
+    return {{"0", [](const Device& d) { return frequency_case(d, 0); }},
+            {"9", [](const Device& d) { return frequency_case(d, 9); }}};
+  }
+};
+template <>
+struct Parity<EncodeGrid> {
+  static Cases cases() {
+    return {{"dense", [](const Device& d) { return grid_case(d, 1, 0); }},
+            {"dense, jets", [](const Device& d) { return grid_case(d, 4, 0); }},
+            {"hashed, jets", [](const Device& d) { return grid_case(d, 4, 1023); }}};
+  }
+};
+template <>
+struct Parity<EncodeGridGrad> {
+  static Cases cases() {
+    return {{"dense", [](const Device& d) { return grid_grad_case(d, 1, 0); }},
+            {"hashed, jets", [](const Device& d) { return grid_grad_case(d, 4, 1023); }}};
+  }
+};
+template <>
+struct Parity<Adam> {
+  static Cases cases() {
+    return {{"all", [](const Device& d) { return adam_case(d, false); }},
+            {"zeros skipped", [](const Device& d) { return adam_case(d, true); }}};
+  }
+};
+template <>
+struct Parity<RadianceInput> {
+  static Cases cases() {
+    return {{"", [](const Device& d) { return radiance_case(d, false); }}};
+  }
+};
+template <>
+struct Parity<RadianceInputGrad> {
+  static Cases cases() {
+    return {{"", [](const Device& d) { return radiance_case(d, true); }}};
+  }
 };
 
-TEST(Kernels, EveryDeviceAgreesWithTheScalarOne) {
+// Kernels whose cases are in shade_kernels_test.cpp.
+using ShadeKernels =
+    KernelList<SgFitResidual, SgFitGather, SgIrradiance, SgReflection, SgReflectionSlope, SgShadeGrad>;
+
+template <class K>
+void append_cases(Cases& out) {
+  if constexpr (ShadeKernels::index_of<K>() < 0)
+    for (Case c : Parity<K>::cases()) out.push_back({typeid(K).name() + (" " + c.name), c.run});
+}
+template <class... K>
+Cases cases_of(KernelList<K...>) {
+  Cases out;
+  (append_cases<K>(out), ...);
+  return out;
+}
+
+void expect_parity(const Case& c) {
   const std::vector<Device> devices = all_devices();
-  for (const Case& c : kCases) {
-    const std::vector<float> want = c.run(devices[0]);
-    double scale = 1e-6;
-    for (float v : want) scale = std::max(scale, double(std::abs(v)));
-    for (const Device& device : devices) {
-      const std::vector<float> got = c.run(device);
-      double worst = 0;
-      for (size_t i = 0; i < want.size(); ++i) worst = std::max(worst, double(std::abs(got[i] - want[i])));
-      EXPECT_LT(worst / scale, 1e-5) << c.name << " on " << device.name();
-    }
+  const std::vector<float> want = c.run(devices[0]);
+  double scale = 1e-6;
+  for (float v : want) scale = std::max(scale, double(std::abs(v)));
+  for (const Device& device : devices) {
+    const std::vector<float> got = c.run(device);
+    double worst = 0;
+    for (size_t i = 0; i < want.size(); ++i) worst = std::max(worst, double(std::abs(got[i] - want[i])));
+    EXPECT_LT(worst / scale, 1e-5) << c.name << " on " << device.name();
   }
+}
+
+TEST(Kernels, EveryDeviceAgreesWithTheScalarOne) {
+  const Cases cases = cases_of(AllKernels{});
+  EXPECT_GT(cases.size(), 15u);
+  for (const Case& c : cases) expect_parity(c);
+}
+
+TEST(Linear, EveryDeviceAgreesWithTheScalarOne) {
+  expect_parity({"7 to 13", [](const Device& d) { return linear_case(d, 7, 13); }});
+  expect_parity({"64 to 64", [](const Device& d) { return linear_case(d, 64, 64); }});
+}
+
+TEST(Kernels, EncodePointWritesThePointAndItsUnitJet) {
+  const auto points = noise(kN * 3, 14);
+  const std::vector<float> out = point_case(make_device("cpu/scalar"), 4);
+  for (int i = 0; i < kN; ++i)
+    for (int r = 0; r < 3; ++r)
+      for (int c = 0; c < 4; ++c)
+        EXPECT_EQ(out[panel_at(i, 4, c, 5, 1 + r)],
+                  c == 0 ? points[panel_at(i, 1, 0, 3, r)] : float(c == 1 + r));
 }
 
 TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
   const Device device = make_device("cpu/scalar");
   RadianceData d;
-  const auto weights = noise(d.input.size(), 20);
-  d.input = weights;
-  device.launch<RadianceInputGrad>(
-      {d.points.data(), d.directions.data(), d.d_sdf.data(), d.sdf.data(), d.input.data(), kFeatures}, kN);
+  const std::vector<float>& weights = d.d_input;
+  device.launch<RadianceInputGrad>(d.gradient(), kN);
   const auto loss = [&](int sample) {
     device.launch<RadianceInput>(d.forward(), kN);
     double sum = 0;
@@ -157,12 +239,12 @@ TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
   };
   int checked = 0;
   for (int i = 0; i < kN; i += 5) {
-    const Vec3f g = load_sdf_gradient<float>(d.sdf.data(), i, 1 + kFeatures);
+    const Vec3f g = load_sdf_gradient<float>(d.jets.data(), i, 1 + kFeatures);
     if (length(g) < 0.4f) continue;  // the normal of a short gradient turns too fast for differences in float
     ++checked;
     const std::pair<int, int> columns[] = {{0, 1}, {0, 4}, {1, 0}, {2, 0}, {3, 0}};  // (jet column, row)
     for (const auto& [column, row] : columns) {
-      float& v = d.sdf[panel_at(i, 4, column, 1 + kFeatures, row)];
+      float& v = d.jets[panel_at(i, 4, column, 1 + kFeatures, row)];
       const float keep = v, h = 2e-3f;
       v = keep + h;
       const double up = loss(i);
@@ -170,7 +252,7 @@ TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
       const double down = loss(i);
       v = keep;
       const double want = (up - down) / (2 * double(h));
-      EXPECT_NEAR(d.d_sdf[panel_at(i, 4, column, 1 + kFeatures, row)], want, 0.01 * (1 + std::abs(want)))
+      EXPECT_NEAR(d.d_jets[panel_at(i, 4, column, 1 + kFeatures, row)], want, 0.01 * (1 + std::abs(want)))
           << i << " " << column;
     }
   }

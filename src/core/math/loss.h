@@ -2,13 +2,15 @@
 // Losses: value and gradient.
 #pragma once
 
+#include "core/math/activation.h"
 #include "core/math/vec.h"
 
 namespace cei3d {
 
-template <class T>
+template <class T, class Gradient = T>
 struct LossValue {
-  T value, gradient;
+  T value;
+  Gradient gradient;
 };
 
 // Quadratic below `width`, slope 1 beyond: e^2 / (2 width), |e| - width / 2. [Huber 1964]
@@ -20,12 +22,27 @@ HD LossValue<T> huber(T e, T width) {
           select(small, e / width, select(e > T(0.0f), T(1.0f), T(-1.0f)))};
 }
 
-// (|g| - 1)^2 and its gradient by g. [Gropp et al. 2020; paper eq. 6]
+// The sum over the channels of a color error.
 template <class T>
-HD T eikonal(Vec3<T> g, Vec3<T>& d_g) {
+HD LossValue<T, Vec3<T>> huber(Vec3<T> e, T width) {
+  const LossValue<T> x = huber(e.x, width), y = huber(e.y, width), z = huber(e.z, width);
+  return {x.value + y.value + z.value, {x.gradient, y.gradient, z.gradient}};
+}
+
+// (|g| - 1)^2: the gradient of a distance has unit length. [Gropp et al. 2020]
+template <class T>
+HD LossValue<T, Vec3<T>> eikonal(Vec3<T> g) {
   const T n = sqrt(dot(g, g) + T(1e-12f));
-  d_g = g * (T(2.0f) * (n - T(1.0f)) / n);
-  return (n - T(1.0f)) * (n - T(1.0f));
+  return {(n - T(1.0f)) * (n - T(1.0f)), g * (T(2.0f) * (n - T(1.0f)) / n)};
+}
+
+// softplus(-sdf): pushes a point outside that lies on a ray through background. The color loss cannot open a
+// gap that has closed: where a ray is opaque its opacity does not change with the distance any more, but this
+// still does. inv_s: of the opacity; the penalty turns over within a distance of 1 / inv_s.
+template <class T>
+HD LossValue<T> empty_push(T sdf, float inv_s) {
+  const ActivationValue<T> inside = Softplus::eval(-sdf, inv_s);
+  return {inside.value, -inside.first};
 }
 
 }  // namespace cei3d

@@ -1,42 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Hand-written gradients of activations, losses and the NeuS opacity against dual numbers.
+// The NeuS opacities against dual numbers and against the volume rendering integral through a plane.
 #include "core/math/volume.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <vector>
+
 #include "core/math/dual.h"
-#include "core/math/loss.h"
 
 namespace cei3d {
 namespace {
 
 using D = Dual<double>;
-using D2 = Dual<D>;
-
-template <class A>
-void check_activation(float beta) {
-  for (double z : {-3.0, -0.4, -0.01, 0.02, 0.3, 2.5}) {
-    const auto v = A::eval(z, beta);
-    const auto d = A::eval(D2(D(z, 1.0), D(1.0, 0.0)), beta).value;
-    EXPECT_NEAR(v.value, d.value.value, 1e-12);
-    EXPECT_NEAR(v.first, d.derivative.value, 1e-9) << z;
-    EXPECT_NEAR(v.second, d.derivative.derivative, 1e-6) << z;
-  }
-}
-
-TEST(Activation, DerivativesEqualDualNumbers) {
-  check_activation<Relu>(1);
-  check_activation<Elu>(1);
-  check_activation<Softplus>(1);
-  check_activation<Softplus>(100);
-  check_activation<Sigmoid>(1);
-}
-
-TEST(Activation, SoftplusNeitherOverflowsNorVanishes) {
-  EXPECT_NEAR(Softplus::eval(50.0f, 100).value, 50.0f, 1e-5);
-  EXPECT_GE(Softplus::eval(-50.0f, 100).value, 0.0f);
-  EXPECT_NEAR(Sigmoid::eval(-200.0f, 1).value, 0.0f, 1e-30);
-}
 
 TEST(NeusAlpha, GradientEqualsDualNumbers) {
   for (double sdf : {-0.01, 0.001, 0.004, 0.02})
@@ -51,7 +27,7 @@ TEST(NeusAlpha, GradientEqualsDualNumbers) {
 }
 
 TEST(NeusAlpha, WeightsOfARayThroughASurfaceAddUpToOne) {
-  // Along a straight ray through a plane at t = 0.5 the opacities accumulate to one, centred at the plane.
+  // Along a straight ray through a plane at t = 0.5 the opacities accumulate to one, centered at the plane.
   const double delta = 0.002, s = 300;
   double transmittance = 1, mean = 0, sum = 0;
   for (double t = 0; t < 1; t += delta) {
@@ -64,18 +40,90 @@ TEST(NeusAlpha, WeightsOfARayThroughASurfaceAddUpToOne) {
   EXPECT_NEAR(mean / sum, 0.5, 1e-3);
 }
 
-TEST(Loss, GradientsEqualDualNumbers) {
-  for (double e : {-0.2, -0.01, 0.03, 0.4}) {
-    EXPECT_NEAR(huber(e, 0.05).gradient, huber(D(e, 1), D(0.05)).value.derivative, 1e-12);
-    const Vec3<double> g{0.3 + e, -0.8, 0.1};
-    Vec3<double> d_g;
-    eikonal(g, d_g);
-    for (int k = 0; k < 3; ++k) {
-      Vec3<D> gd{D(g.x), D(g.y), D(g.z)}, unused;
-      gd[k].derivative = 1;
-      EXPECT_NEAR(d_g[k], eikonal(gd, unused).derivative, 1e-9);
-    }
+// 1 - exp(-integral of the density along a section of length delta), by Simpson's rule, where the distance in
+// the middle is sdf and changes by `cosine` per unit of length. The density is max(0, -d Phi / dt) / Phi.
+// [Wang et al. 2021 (NeuS), eq. 10]
+double integrated_opacity(double sdf, double cosine, double delta, double inv_s) {
+  constexpr int kIntervals = 400;
+  const auto density = [&](double t) {
+    const D phi = Sigmoid::eval(D(inv_s) * (D(sdf) + D(cosine) * (D(t, 1) - D(0.5 * delta))), 1).value;
+    return std::max(0.0, -phi.derivative) / phi.value;
+  };
+  double sum = density(0) + density(delta);
+  for (int i = 1; i < kIntervals; ++i) sum += (i % 2 ? 4 : 2) * density(delta * i / kIntervals);
+  return 1 - std::exp(-sum * delta / kIntervals / 3);
+}
+
+NeusNeighbors<double> plane(double sdf, double cosine, double delta) {
+  return {sdf - cosine * delta, sdf, sdf + cosine * delta, true, true};
+}
+
+struct PlaneCase {
+  double sdf, cosine, delta, inv_s;
+};
+const PlaneCase kPlanes[] = {{0.004, -0.9, 0.01, 120},
+                             {-0.006, -0.5, 0.02, 200},
+                             {0.02, -1, 0.02, 100},
+                             {0.0007, -0.2, 0.03, 300},
+                             {0.003, 0.7, 0.01, 150}};
+
+TEST(NeusAlpha, IsTheIntegralOfTheDensityThroughAPlane) {
+  for (const PlaneCase& p : kPlanes) {
+    const double want = integrated_opacity(p.sdf, p.cosine, p.delta, p.inv_s);
+    // Phi is above 0.2 in all cases, so that the epsilon changes the ratio by 1e-5 / 0.2 at most.
+    EXPECT_NEAR(neus_alpha<double>(p.sdf, p.cosine, p.delta, p.inv_s).alpha, want, 5e-5) << p.sdf;
+    EXPECT_NEAR(neus_alpha_of_neighbors(plane(p.sdf, p.cosine, p.delta), p.delta, p.inv_s), want, 5e-5)
+        << p.sdf;
   }
+}
+
+TEST(NeusAlphaOfNeighbors, OneNeighborIsEnoughForAPlane) {
+  for (const PlaneCase& p : kPlanes) {
+    const NeusNeighbors<double> both = plane(p.sdf, p.cosine, p.delta);
+    NeusNeighbors<double> previous = both, next = both;
+    previous.has_next = next.has_previous = false;
+    previous.next = next.previous = 1e9;  // not read
+    const double want = neus_alpha_of_neighbors(both, p.delta, p.inv_s);
+    EXPECT_NEAR(neus_alpha_of_neighbors(previous, p.delta, p.inv_s), want, 1e-12);
+    EXPECT_NEAR(neus_alpha_of_neighbors(next, p.delta, p.inv_s), want, 1e-12);
+  }
+}
+
+TEST(NeusAlphaOfNeighbors, APointAloneIsTakenForASurfaceMetAt45Degrees) {
+  const NeusNeighbors<double> alone{1e9, 0.002, 1e9, false, false};
+  EXPECT_NEAR(neus_alpha_of_neighbors(alone, 0.01, 150.0), integrated_opacity(0.002, -0.7, 0.01, 150), 5e-5);
+}
+
+// Sections share their ends, so that what passes them all depends on the first and the last alone.
+TEST(NeusAlphaOfNeighbors, SectionsAlongACurvedDescentLetThroughWhatTheirEndsSay) {
+  const double delta = 0.01, inv_s = 90;
+  std::vector<double> f;
+  for (int i = 0; i < 12; ++i) f.push_back(0.03 - 0.004 * i - 0.0002 * i * i);
+  double through = 1;
+  for (size_t i = 1; i + 1 < f.size(); ++i)
+    through *= 1 - neus_alpha_of_neighbors<double>({f[i - 1], f[i], f[i + 1], true, true}, delta, inv_s);
+  const auto phi = [&](double a, double b) { return Sigmoid::eval(inv_s * (a + b) / 2, 1).value; };
+  EXPECT_NEAR(through, phi(f[10], f[11]) / phi(f[0], f[1]), 5e-3 * through);
+}
+
+// The sampler's opacity and the renderer's are the same function of the plane, with the same derivatives.
+TEST(NeusAlphaOfNeighbors, HasTheRenderersDerivativesOnAPlane) {
+  for (const PlaneCase& p : kPlanes) {
+    if (p.cosine > 0) continue;  // leaving: both are clamped to zero
+    const auto alpha_of = [&](D sdf, D cosine) {
+      const D step = cosine * D(p.delta);
+      return neus_alpha_of_neighbors<D>({sdf - step, sdf, sdf + step, true, true}, D(p.delta), D(p.inv_s));
+    };
+    const NeusSample<double> v = neus_alpha<double>(p.sdf, p.cosine, p.delta, p.inv_s);
+    EXPECT_NEAR(alpha_of(D(p.sdf, 1), D(p.cosine)).derivative, v.d_sdf, 1e-4 * std::abs(v.d_sdf) + 1e-3);
+    EXPECT_NEAR(alpha_of(D(p.sdf), D(p.cosine, 1)).derivative, v.d_cosine,
+                1e-4 * std::abs(v.d_cosine) + 1e-5);
+  }
+}
+
+TEST(NeusAlpha, DeepInsideTheRendererIsOpaqueAndTheSamplerTransparent) {
+  EXPECT_NEAR(neus_alpha<double>(-1, -1, 0.01, 400).alpha, 1, 1e-9);
+  EXPECT_NEAR(neus_alpha_of_neighbors(plane(-1, -1, 0.01), 0.01, 400.0), 0, 1e-9);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ void FieldPass::forward(const Device& device, const Field& field, const MlpWeigh
 }
 
 void FieldPass::add_sphere(const float* points, int n) {
-  float* y = const_cast<float*>(mlp_.output());
+  float* y = mlp_.mutable_output();
   for (int i = 0; i < n; ++i) {
     const Vec3f p = load_point<float>(points, i);
     const float r = length(p);
@@ -39,22 +39,8 @@ void FieldPass::backward(const Device& device, const MlpWeights& weights, int n,
   mlp_.backward(device, weights, n, active_rows(levels), network_gradient, d_encoding);
 }
 
-void scatter_encoding(const Device& device, const FieldConfig& config, int level, const float* points,
-                      const float* d_encoding, int n, int columns, float* d_table) {
-  const EncodingConfig& e = config.encoding;
-  const int row = 3 + 6 * e.frequencies + 2 * level;
-  device.launch<EncodeGridGrad>({{points, const_cast<float*>(d_encoding), encoding_rows(e), row, columns},
-                                 grid_level(e, level),
-                                 d_table},
-                                n);
-}
-
 void points_to_panels(const Vec3f* points, int n, float* panels) {
-  const int padded = (n + kPanel - 1) / kPanel * kPanel;
-  for (int i = 0; i < padded; ++i) {
-    const Vec3f p = i < n ? points[i] : Vec3f{0, 0, 0};
-    for (int c = 0; c < 3; ++c) panels[panel_at(i, 1, 0, 3, c)] = p[c];
-  }
+  for (int i = 0; i < padded_to_panels(n); ++i) store_point(panels, i, i < n ? points[i] : Vec3f{0, 0, 0});
 }
 
 }  // namespace cei3d

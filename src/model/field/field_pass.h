@@ -16,8 +16,8 @@ class FieldPass {
                int outputs);
   const float* output() const { return mlp_.output(); }
   float* d_output() { return mlp_.d_output(); }
-  // network_gradient: added to. d_encoding: [panels * columns][encoding_rows][32], written, for
-  // scatter_encoding.
+  // network_gradient: added to. d_encoding: [panels * columns][encoding_rows][32], written; for the hash
+  // tables, see ChunkGradients.
   void backward(const Device&, const MlpWeights&, int n, int levels, float* network_gradient,
                 float* d_encoding);
 
@@ -29,11 +29,7 @@ class FieldPass {
   MlpPass mlp_;
 };
 
-// Adds d_encoding of n points into the gradient of one level's table.
-void scatter_encoding(const Device&, const FieldConfig&, int level, const float* points,
-                      const float* d_encoding, int n, int columns, float* d_table);
-
-// SoA panels [panels][3][32] of points; the last panel is padded with the origin.
+// Panels [panels][3][32] of points; the last panel is padded with the origin.
 void points_to_panels(const Vec3f* points, int n, float* panels);
 
 }  // namespace cei3d

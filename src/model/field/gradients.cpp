@@ -4,17 +4,32 @@
 #include <algorithm>
 
 #include "core/base/parallel.h"
-#include "model/field/field_pass.h"
+#include "core/compute/kernels/encode.h"
 
 namespace cei3d {
 
 void ChunkGradients::reset(const FieldConfig& config, size_t network_size, int n, int columns_in) {
-  padded = (n + kPanel - 1) / kPanel * kPanel;
+  padded = padded_to_panels(n);
   columns = columns_in;
   points.resize(size_t(padded) * 3);
   d_encoding.resize(size_t(padded) * columns * encoding_rows(config.encoding));
   network.assign(network_size, 0.0f);
 }
+
+namespace {
+
+// Adds the gradients of one chunk to those of the table of a level.
+void scatter_encoding(const Device& device, const EncodingConfig& e, int level, const ChunkGradients& c,
+                      float* d_table) {
+  const EncodeGradArgs where{.points = c.points.data(),
+                             .d_out = c.d_encoding.data(),
+                             .stride = encoding_rows(e),
+                             .row = 3 + 6 * e.frequencies + 2 * level,
+                             .columns = c.columns};
+  device.launch<EncodeGridGrad>({where, grid_level(e, level), d_table}, c.padded);
+}
+
+}  // namespace
 
 void accumulate_layers(const ParamSet& params, const std::vector<const std::vector<float>*>& network,
                        Optimizer& optimizer) {
@@ -36,8 +51,7 @@ void accumulate_gradients(const Device& device, const Field& field, const std::v
   parallel_for(levels, [&](int level) {
     float* d_table = optimizer.gradient(field.params().get("encoding/level" + std::to_string(level))).data();
     for (const ChunkGradients& c : chunks)
-      scatter_encoding(device, field.config(), level, c.points.data(), c.d_encoding.data(), c.padded,
-                       c.columns, d_table);
+      scatter_encoding(device, field.config().encoding, level, c, d_table);
   });
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gradients of a field from many chunks, brought together in an order that does not depend on threads.
+// Gradients of a field from many chunks, summed in an order that does not depend on threads.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,11 @@
 
 namespace cei3d {
 
-// What one chunk leaves behind for the step.
+// The gradients of one chunk of samples; its hash tables' are scattered from d_encoding when chunks are
+// summed.
 struct ChunkGradients {
-  int padded = 0, columns = 1;      // samples (multiple of 32) and panels a group
+  int padded = 0;                   // samples, rounded up to a multiple of 32
+  int columns = 1;                  // panels per group of 32 samples: 1 values, 4 jets
   AlignedVector<float> points;      // [padded / 32][3][32]
   AlignedVector<float> d_encoding;  // [padded / 32 * columns][encoding_rows][32]
   std::vector<float> network;       // MlpWeights::gradient_size()
@@ -20,8 +22,8 @@ struct ChunkGradients {
   void reset(const FieldConfig& config, size_t network_size, int n, int columns);
 };
 
-// Sums chunk after chunk into the optimizer's gradients: layers by parameter, tables by level (an owner a
-// level).
+// Adds the gradients of all chunks to the optimizer's, in chunk order: layers by parameter, tables by level
+// (one task per level).
 void accumulate_gradients(const Device&, const Field&, const std::vector<ChunkGradients>&, int levels,
                           Optimizer&);
 

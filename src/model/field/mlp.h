@@ -61,6 +61,7 @@ class MlpPass {
   // active_inputs: rows after these are zero and skipped. outputs: how many of the first outputs are wanted.
   void forward(const Device&, const MlpWeights&, int n, int active_inputs, int outputs);
   const float* output() const { return y_.data(); }  // [panels * columns][outputs of the config][32]
+  float* mutable_output() { return y_.data(); }      // for what is added to the outputs of the network
   float* d_output() { return d_y_.data(); }  // same shape; filled by the caller; overwritten by backward
   // gradient: [MlpWeights::gradient_size()], added to. d_input: same shape as input, written; may be null.
   void backward(const Device&, const MlpWeights&, int n, int active_inputs, float* gradient, float* d_input);

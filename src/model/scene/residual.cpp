@@ -59,8 +59,8 @@ int ResidualPass::forward(const Device& device, const Field& features, const Mlp
       jets_[panel_at(i, 4, 0, rows, o)] = values_.output()[panel_at(i, 1, 0, rows, o)];
     for (int c = 0; c < 3; ++c) jets_[panel_at(i, 4, 1 + c, rows, 0)] = hit(i).normal[c];
   }
-  device.launch<RadianceInput>(
-      {points_.data(), directions_.data(), jets_.data(), nullptr, network_.input(), rows - 1}, samples);
+  device.launch<RadianceInput>({points_.data(), directions_.data(), jets_.data(), network_.input(), rows - 1},
+                               samples);
   network_.forward(device, weights, samples, weights.config().inputs, 3);
   return samples;
 }
@@ -83,7 +83,7 @@ void ResidualPass::backward_features(const Device& device, const MlpWeights& fea
   const int rows = features_.outputs;
   std::fill(d_jets_.begin(), d_jets_.end(), 0.0f);
   device.launch<RadianceInputGrad>(
-      {points_.data(), directions_.data(), d_jets_.data(), jets_.data(), d_input_.data(), rows - 1}, samples);
+      {directions_.data(), jets_.data(), d_input_.data(), d_jets_.data(), rows - 1}, samples);
   float* d_value = values_.d_output();
   for (int i = 0; i < samples; ++i)
     for (int o = 0; o < rows; ++o)  // the distance itself is no feature

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Encodings of a batch of points, one hash level or one frequency a launch, so that a level's table stays in
-// cache.
+// Encodings of a batch of points. A launch does one hash level or one frequency, so that the table of a level
+// stays in cache.
 #pragma once
 
 #include "core/compute/kernels/panel.h"
@@ -49,7 +49,7 @@ struct EncodeFrequency {
   }
 };
 
-// Rows row, row+1: the level's two features.
+// Rows row, row+1: the two features of the level.
 struct EncodeGrid {
   struct Args : EncodeArgs {
     GridLevel level;
@@ -71,18 +71,24 @@ struct EncodeGrid {
   }
 };
 
-// Adjoint of EncodeGrid: adds into d_table. `out` holds the gradients and is only read.
+// Adjoint of EncodeGrid with respect to the table.
+struct EncodeGradArgs {
+  const float* points;  // [panels][3][32], in [-1, 1]
+  const float* d_out;   // panels of `stride` rows; this launch reads rows from `row` on
+  int stride, row;
+  int columns;  // 1: values; 4: jets
+};
 struct EncodeGridGrad {
-  struct Args : EncodeArgs {
+  struct Args : EncodeGradArgs {
     GridLevel level;
-    float* d_table;
+    float* d_table;  // [corners][2], added to
   };
   template <class T>
   static HD void run(const Args& a, int i) {
     T d[2][4];
     for (int j = 0; j < 2; ++j)
       for (int c = 0; c < a.columns; ++c)
-        d[j][c] = load<T>(a.out + panel_at(i, a.columns, c, a.stride, a.row + j));
+        d[j][c] = load<T>(a.d_out + panel_at(i, a.columns, c, a.stride, a.row + j));
     grid_scatter(a.level, a.d_table, load_point<T>(a.points, i), d, a.columns);
   }
 };

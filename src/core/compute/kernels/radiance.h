@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the auxiliary radiance network sees of a surface sample: SDF features, normal, position, direction,
-// n.v and the mirrored direction with four octaves. It only serves the geometry stage.
+// The inputs of the auxiliary radiance network at a surface sample: SDF features, normal n, position,
+// direction of the ray (away from the camera), n . v with v the direction to the camera, and the mirrored
+// direction with four octaves.
 #pragma once
 
 #include "core/compute/kernels/panel.h"
@@ -11,23 +12,14 @@ namespace cei3d {
 inline constexpr int kRadianceOctaves = 4;
 HD constexpr int radiance_rows(int features) { return features + 3 + 3 + 3 + 1 + 3 + 6 * kRadianceOctaves; }
 
-struct RadianceArgs {
-  const float* points;      // [panels][3][32]
-  const float* directions;  // [panels][3][32], unit, from the camera
-  float* sdf;  // jets [panels * 4][1 + features][32]: read by the forward, holds gradients in the backward
-  const float* sdf_value;  // backward only: the jets of the forward
-  float* input;  // [panels][radiance_rows][32]: written by the forward, gradients read by the backward
-  int features;
-};
-
-template <class T>
-HD Vec3<T> load_sdf_gradient(const float* sdf, int i, int rows) {
-  return {load<T>(sdf + panel_at(i, 4, 1, rows, 0)), load<T>(sdf + panel_at(i, 4, 2, rows, 0)),
-          load<T>(sdf + panel_at(i, 4, 3, rows, 0))};
-}
-
 struct RadianceInput {
-  using Args = RadianceArgs;
+  struct Args {
+    const float* points;      // [panels][3][32]
+    const float* directions;  // [panels][3][32], unit, away from the camera
+    const float* jets;        // [panels * 4][1 + features][32]
+    float* input;             // [panels][radiance_rows][32], written
+    int features;
+  };
   template <class T>
   static HD void run(const Args& a, int i) {
     const int rows = radiance_rows(a.features);
@@ -36,8 +28,8 @@ struct RadianceInput {
       store<T>(out, v);
       out += kPanel;
     };
-    for (int f = 0; f < a.features; ++f) put(load<T>(a.sdf + panel_at(i, 4, 0, 1 + a.features, 1 + f)));
-    const Vec3<T> n = normalize(load_sdf_gradient<T>(a.sdf, i, 1 + a.features));
+    for (int f = 0; f < a.features; ++f) put(load<T>(a.jets + panel_at(i, 4, 0, 1 + a.features, 1 + f)));
+    const Vec3<T> n = normalize(load_sdf_gradient<T>(a.jets, i, 1 + a.features));
     const Vec3<T> x = load_point<T>(a.points, i), d = load_point<T>(a.directions, i);
     const T nv = -dot(n, d);
     const Vec3<T> r = n * (T(2.0f) * nv) + d;
@@ -56,20 +48,27 @@ struct RadianceInput {
   }
 };
 
-// Adds to the jets' gradient: features into rows 1.., the normal into the derivative columns of row 0.
+// Adjoint of RadianceInput with respect to the jets: adds to rows 1.. of the value column (features) and to
+// the derivative columns of row 0 (normal).
 struct RadianceInputGrad {
-  using Args = RadianceArgs;
+  struct Args {
+    const float* directions;  // [panels][3][32], as in the forward pass
+    const float* jets;        // [panels * 4][1 + features][32], as in the forward pass
+    const float* d_input;     // [panels][radiance_rows][32]
+    float* d_jets;            // like jets, added to
+    int features;
+  };
   template <class T>
   static HD void run(const Args& a, int i) {
     const int rows = radiance_rows(a.features), sdf_rows = 1 + a.features;
-    const float* in = a.input + panel_at(i, 1, 0, rows, 0);
+    const float* in = a.d_input + panel_at(i, 1, 0, rows, 0);
     const auto get = [&](int row) { return load<T>(in + size_t(row) * kPanel); };
     const auto get3 = [&](int row) { return Vec3<T>{get(row), get(row + 1), get(row + 2)}; };
     for (int f = 0; f < a.features; ++f) {
-      float* d = a.sdf + panel_at(i, 4, 0, sdf_rows, 1 + f);
+      float* d = a.d_jets + panel_at(i, 4, 0, sdf_rows, 1 + f);
       store<T>(d, load<T>(d) + get(f));
     }
-    const Vec3<T> g = load_sdf_gradient<T>(a.sdf_value, i, sdf_rows), d = load_point<T>(a.directions, i);
+    const Vec3<T> g = load_sdf_gradient<T>(a.jets, i, sdf_rows), d = load_point<T>(a.directions, i);
     const T inverse = T(1.0f) / sqrt(dot(g, g) + T(1e-20f));
     const Vec3<T> n = g * inverse, v = -d;
     const T nv = dot(n, v);
@@ -86,7 +85,7 @@ struct RadianceInputGrad {
     const Vec3<T> d_n = get3(a.features) + v * get(a.features + 9) + (d_r * nv + v * dot(d_r, n)) * T(2.0f);
     const Vec3<T> d_g = (d_n - n * dot(n, d_n)) * inverse;
     for (int k = 0; k < 3; ++k) {
-      float* p = a.sdf + panel_at(i, 4, 1 + k, sdf_rows, 0);
+      float* p = a.d_jets + panel_at(i, 4, 1 + k, sdf_rows, 0);
       store<T>(p, load<T>(p) + d_g[k]);
     }
   }

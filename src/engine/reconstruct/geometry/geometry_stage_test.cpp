@@ -59,6 +59,33 @@ double strayed(const PixelStore& pixels, GeometryOptions options) {
   return sum / double(x.size());
 }
 
+TEST(GeometryStage, ResumedFromItsCheckpointTakesTheSameStep) {
+  const PixelStore pixels = photographs();
+  const Device device = make_device();
+  GeometryOptions options = small_network();
+  options.sdf.encoding = {
+      .frequencies = 0, .levels = 2, .base_resolution = 4, .finest_resolution = 9, .log2_table = 9};
+  options.prefit_steps = 10;
+  StartShape start = start_shape(pixels, Start::hull, 1);
+  start.anchored = true;
+  start.matte_until = 0.1f;
+  GeometryStage stage(device, pixels, options, 1), resumed(device, pixels, options, 1);
+  stage.prefit(start);
+  for (int step = 0; step < 3; ++step) stage.step(step, 0.05);
+  Tensors checkpoint, want, got;
+  stage.save(checkpoint);
+  for (const char* name : {"sdf/encoding/level0", "sdf/layer0/weight", "radiance/layer0/bias", "adam/0/m",
+                           "adam/steps", "pixel_errors", "matte_until", "anchor", "occupancy"})
+    EXPECT_TRUE(checkpoint.contains(name)) << name;
+  resumed.load(checkpoint);
+  stage.step(3, 0.05);
+  resumed.step(3, 0.05);
+  stage.save(want);
+  resumed.save(got);
+  ASSERT_EQ(got.size(), want.size());
+  for (const auto& [name, tensor] : want) EXPECT_EQ(got[name].f32, tensor.f32) << name;
+}
+
 TEST(GeometryStage, HoldsItsStartWhereItIsTold) {
   const PixelStore pixels = photographs();
   GeometryOptions held = small_network();

@@ -22,12 +22,12 @@ bool unit_sphere_span(const Ray& ray, float& near, float& far) {
 
 OccupancyGrid::OccupancyGrid(int resolution)
     : n_(resolution), value_(size_t(n_) * n_ * n_, std::numeric_limits<int16_t>::max()) {
-  if (n_ % 4 != 0) fail("an occupancy grid of {} cells an axis: bricks have 4", n_);
+  if (n_ % 4 != 0) fail("an occupancy grid of {} cells per axis: not a multiple of 4", n_);
 }
 
 void OccupancyGrid::set_distance(size_t place, float d) {
-  constexpr float kMost = 3.9f;
-  value_[place] = int16_t(std::lround(std::clamp(d, -kMost, kMost) / kUnit));
+  constexpr float kMaxDistance = 3.9f;
+  value_[place] = int16_t(std::lround(std::clamp(d, -kMaxDistance, kMaxDistance) / kUnit));
 }
 
 void OccupancyGrid::set(std::span<const float> values) {
@@ -74,26 +74,27 @@ void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin
   });
 }
 
-float OccupancyGrid::between(Vec3f p) const {
+float OccupancyGrid::interpolated(Vec3f p) const {
   return kUnit * trilinear(p, n_, [&](int x, int y, int z) { return float(value_[place(x, y, z)]); });
 }
 
-// Looks at one place; false at the walk's end.
+// Takes one step; false where the walk ends.
 bool OccupancyGrid::advance(const Ray& ray, const March& m, Walk& walk, float* depths) const {
-  if (walk.t >= walk.far || walk.found >= m.most) return false;
+  if (walk.t >= walk.far || walk.found >= m.max_depths) return false;
   const Vec3f p = ray.origin + ray.direction * walk.t;
-  // A cell's distance is off by half its diagonal at most; between cells it can be known better.
+  // The distance of a point differs from that of its cell by half a diagonal at most; interpolation between
+  // cells is better than that.
   float reach = m.band + half_diagonal(), d = at(p);
   if (std::abs(d) <= reach) {
-    d = between(p);
+    d = interpolated(p);
     reach = m.band + m.slack * half_diagonal();
   }
   if (d < -reach) {
     walk.far = walk.t;
     return false;
   }
-  // Away from the surface nothing holds the field's slope at one: a leap of all of the distance would land
-  // behind the surface, and the ray find nothing.
+  // Away from the surface no sample keeps the gradient of the field at unit length: a leap of the whole
+  // distance could land behind the surface, and the ray would miss it.
   const bool leap = d > reach;
   if (!leap) depths[walk.found++] = walk.t;
   walk.t += leap ? std::max(0.5f * (d - reach), m.step) : m.step;
@@ -102,8 +103,8 @@ bool OccupancyGrid::advance(const Ray& ray, const March& m, Walk& walk, float* d
 
 void OccupancyGrid::march(std::span<const Ray> rays, const March& m, std::span<const float> jitter,
                           std::vector<float>& depths, std::span<int> counts) const {
-  constexpr size_t kTogether = 8;  // walks take turns: one's cells come from memory while others go on
-  std::vector<float> found(kTogether * size_t(m.most));
+  constexpr size_t kTogether = 8;  // interleaved walks hide the latency of each other's cache misses
+  std::vector<float> found(kTogether * size_t(m.max_depths));
   for (size_t first = 0; first < rays.size(); first += kTogether) {
     const size_t n = std::min(kTogether, rays.size() - first);
     Walk walks[kTogether];
@@ -113,10 +114,10 @@ void OccupancyGrid::march(std::span<const Ray> rays, const March& m, std::span<c
     for (bool going = true; going;) {
       going = false;
       for (size_t k = 0; k < n; ++k)
-        going |= advance(rays[first + k], m, walks[k], &found[k * size_t(m.most)]);
+        going |= advance(rays[first + k], m, walks[k], &found[k * size_t(m.max_depths)]);
     }
     for (size_t k = 0; k < n; ++k) {
-      const float* own = &found[k * size_t(m.most)];
+      const float* own = &found[k * size_t(m.max_depths)];
       depths.insert(depths.end(), own, own + walks[k].found);
       counts[first + k] = walks[k].found;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A coarse grid of signed distances over [-1, 1]^3 that tells where rays must look.
+// A coarse grid of signed distances over [-1, 1]^3 that tells which parts of rays are near the surface.
 #pragma once
 
 #include <cstdint>
@@ -12,16 +12,16 @@
 
 namespace cei3d {
 
-// Training is out for what this grid costs in cache misses: distances are 16-bit fixed point, and cells lie
-// in bricks of 4 x 4 x 4, so that a ray finds its next cell where it found the last one.
+// Lookups are bound by cache misses: distances are 16-bit fixed point, and cells lie in bricks of 4 x 4 x 4,
+// so that successive cells of a ray are close in memory.
 class OccupancyGrid {
  public:
-  explicit OccupancyGrid(int resolution = 128);  // a multiple of 4; far from everything
+  // resolution: cells per axis, a multiple of 4. All cells begin far from the surface.
+  explicit OccupancyGrid(int resolution = 128);
 
-  // Distances at cell centres: of every cell, or of those nearer than `margin` to the surface when last
-  // asked.
+  // Updates the distances at the centers of the cells that were within `margin` of the surface so far.
   void refresh(const Device&, const Field& sdf, float margin);
-  void set(std::span<const float> values);  // [z][y][x]; kept within 3.9, to half of 1/8192
+  void set(std::span<const float> values);  // [z][y][x]; clamped to +-3.9 and rounded to multiples of 1/8192
   std::vector<float> values() const;        // [z][y][x]
 
   int resolution() const { return n_; }
@@ -32,24 +32,26 @@ class OccupancyGrid {
   }
 
   struct March {
-    float step, band;  // along rays; about the surface
-    float slack = 1;   // how far off the distance between cells may be, in half diagonals of a cell
-    int most = 320;    // depths of a ray
+    float step;            // distance between depths along a ray
+    float band;            // distance from the surface within which rays have depths
+    float slack = 1;       // possible error of the interpolated distance, in half diagonals of a cell
+    int max_depths = 320;  // of a ray
   };
-  // Depths along each ray, `step` apart, that lie within `band` of the surface, front to back, from the unit
-  // sphere's entry to its exit or until the ray is deeper than `band` inside. jitter: [0, 1) of each ray,
-  // shifts its first one. depths: ray after ray, appended to; counts: #rays.
+  // Depths along each ray, `step` apart, that lie within `band` of the surface, front to back, from the entry
+  // into the unit sphere to the exit, or until the ray is deeper than `band` inside. jitter: [0, 1) of each
+  // ray, shifts its first depth by so many steps. depths: ray after ray, appended to; counts: #rays.
   void march(std::span<const Ray> rays, const March&, std::span<const float> jitter,
              std::vector<float>& depths, std::span<int> counts) const;
 
  private:
   static constexpr float kUnit = 1.0f / 8192;
   struct Walk {
-    float t = 0, far = 0;  // at, until
-    int found = 0;
+    float t = 0;    // present depth
+    float far = 0;  // depth at which the ray leaves the unit sphere
+    int found = 0;  // depths near the surface so far
   };
   bool advance(const Ray& ray, const March&, Walk& walk, float* depths) const;
-  float between(Vec3f p) const;  // interpolated between cell centres
+  float interpolated(Vec3f p) const;  // between cell centers
   float distance(size_t place) const { return kUnit * float(value_[place]); }
   void set_distance(size_t place, float d);
   int cell(float x) const { return min(max(int((x + 1) * 0.5f * float(n_)), 0), n_ - 1); }

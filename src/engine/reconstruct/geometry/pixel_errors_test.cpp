@@ -19,19 +19,19 @@ std::vector<int> counts(const PixelErrors& errors) {
   return n;
 }
 
-TEST(PixelErrors, ShowsUnseenPixelsFirst) {
+TEST(PixelErrors, DrawsPixelsNeverRenderedFirst) {
   PixelErrors errors(kPixels);
-  for (int i = 0; i < kPixels / 2; ++i) errors.saw(size_t(i), 9);
+  for (int i = 0; i < kPixels / 2; ++i) errors.record({size_t(i), 9});
   int seen = 0;
   const std::vector<int> n = counts(errors);
   for (int i = 0; i < kPixels / 2; ++i) seen += n[i];
-  EXPECT_NEAR(seen, kDraws / 8, kDraws / 60);  // when all three are seen
+  EXPECT_NEAR(seen, kDraws / 8, kDraws / 60);  // only when all three are among these
 }
 
 // The largest of three: the lower share q of all pixels comes with probability q^3.
-TEST(PixelErrors, ShowsAPixelTheMoreOftenTheLargerItsError) {
+TEST(PixelErrors, DrawsAPixelTheMoreOftenTheLargerItsError) {
   PixelErrors errors(kPixels);
-  for (int i = 0; i < kPixels; ++i) errors.saw(size_t(i), float(i / 16));
+  for (int i = 0; i < kPixels; ++i) errors.record({size_t(i), float(i / 16)});
   const std::vector<int> n = counts(errors);
   int lowest = 0, highest = 0;
   for (int i = 0; i < 250; ++i) lowest += n[i], highest += n[kPixels - 1 - i];
@@ -41,9 +41,9 @@ TEST(PixelErrors, ShowsAPixelTheMoreOftenTheLargerItsError) {
 
 TEST(PixelErrors, ForgetsOldErrors) {
   PixelErrors errors(32);
-  for (size_t i = 0; i < 32; ++i) errors.saw(i, 1);
+  for (size_t i = 0; i < 32; ++i) errors.record({i, 1});
   for (int k = 0; k < 20; ++k)
-    for (size_t i = 0; i < 16; ++i) errors.saw(i, 0);
+    for (size_t i = 0; i < 16; ++i) errors.record({i, 0});
   int first = 0;
   for (int i = 0; i < 1000; ++i) {
     Rng rng(1, 2, uint64_t(i));

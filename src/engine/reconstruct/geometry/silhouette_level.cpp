@@ -12,13 +12,14 @@
 namespace cei3d {
 namespace {
 
-constexpr size_t kRays = 16384, kFewest = 1000;  // of pixels half covered
-constexpr size_t kSlab = 512;                    // rays at a time
-constexpr float kStep = 0.005f;                  // along rays
-constexpr int kFine = 16;                        // steps, from one before the lowest to one behind it
+constexpr size_t kRays = 16384;      // through silhouette pixels
+constexpr size_t kMinPixels = 1000;  // on the silhouette
+constexpr size_t kSlab = 512;        // rays at a time
+constexpr float kStep = 0.005f;      // along rays, coarse
+constexpr int kFine = 16;            // fine steps, from a coarse one before the lowest value to one behind it
 
-// Pixels that the silhouette runs through: half covered, or, where masks know no halves, beside one of the
-// other kind.
+// Pixels that the silhouette runs through: partly covered, or, where masks are black and white, next to a
+// pixel of the other kind.
 std::vector<Pixel> silhouette_pixels(const PixelStore& store) {
   std::vector<Pixel> half, border;
   for (const Pixel& p : store.pixels()) {
@@ -33,10 +34,11 @@ std::vector<Pixel> silhouette_pixels(const PixelStore& store) {
         object(p.x, p.y + 1) != here)
       border.push_back(p);
   }
-  return half.size() >= kFewest ? half : border;
+  return half.size() >= kMinPixels ? half : border;
 }
 
-// Lowest value of the field along each ray, and where. The depths of ray i are first + k step, k < count.
+// Lowest value of the field along each ray, and its depth. The field is evaluated at depths first + k step,
+// k < count.
 struct Lowest {
   float value = std::numeric_limits<float>::max(), depth = 0;
 };
@@ -76,10 +78,10 @@ std::vector<Lowest> lowest_along(const Device& device, const Field& sdf, std::sp
 
 }  // namespace
 
-float silhouette_level(const Device& device, const Field& sdf, const PixelStore& store, float most,
+float silhouette_level(const Device& device, const Field& sdf, const PixelStore& store, float max_level,
                        uint64_t seed) {
   const std::vector<Pixel> pixels = silhouette_pixels(store);
-  if (pixels.size() < kFewest) return 0;
+  if (pixels.size() < kMinPixels) return 0;
   std::vector<Ray> rays;
   double coverage = 0;
   for (size_t i = 0; i < kRays; ++i) {
@@ -97,7 +99,7 @@ float silhouette_level(const Device& device, const Field& sdf, const PixelStore&
   // A ray meets the level set of every value above its lowest one.
   const auto at = values.begin() + std::ptrdiff_t(coverage * double(kRays - 1));
   std::nth_element(values.begin(), at, values.end());
-  return std::clamp(*at, -most, most);
+  return std::clamp(*at, -max_level, max_level);
 }
 
 }  // namespace cei3d

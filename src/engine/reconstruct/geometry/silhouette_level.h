@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which level of the trained field is the surface. Volume rendering shows what is thinner than its soft shell
-// as half transparent; the zero level may miss it. The silhouettes say how much matter there is.
+// The level of the trained field that is the surface. Parts thinner than the soft shell of volume rendering
+// are rendered half transparent, and the zero level may miss them; the masks tell how much the object covers.
 #pragma once
 
 #include "core/compute/device.h"
@@ -9,9 +9,10 @@
 
 namespace cei3d {
 
-// The level, unit-sphere units, at which as many rays through pixels half covered in the pictures meet the
-// surface as those say, on average. Positive: the object grows. Where masks are black and white, by the
-// pixels on both sides of their borders. Zero when those are too few; never farther from zero than `most`.
-float silhouette_level(const Device&, const Field& sdf, const PixelStore&, float most, uint64_t seed);
+// The level, unit-sphere units, at which the share of rays through silhouette pixels that meet the surface
+// equals the mean alpha of those pixels. Positive: the object grows. Silhouette pixels are those with an
+// alpha between 0 and 1, or, where masks are black and white, those on both sides of their borders. Zero when
+// there are too few; always within +-max_level.
+float silhouette_level(const Device&, const Field& sdf, const PixelStore&, float max_level, uint64_t seed);
 
 }  // namespace cei3d

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the processor time of training steps goes, for `cei3d bench`. Processor time, not time by the clock:
-// other programs on the machine do not count.
+// The processor time of the parts of training steps, for `cei3d bench`. Processor time is less disturbed by
+// other programs than wall time.
 #pragma once
 
 #include <time.h>
