@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/compute/device.h"
+#include "core/compute/kernels/all.h"
 #include "core/math/rng.h"
 
 namespace cei3d {

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/compute/kernels/shade.h"
 #include "core/math/brdf.h"
 #include "core/math/sg.h"
 #include "engine/render/env_table.h"

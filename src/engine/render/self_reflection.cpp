@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/compute/kernels/all.h"
+#include "core/compute/kernels/shade.h"
 #include "core/math/brdf.h"
 #include "engine/render/env_table.h"
 

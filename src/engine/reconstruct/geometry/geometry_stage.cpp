@@ -7,6 +7,7 @@
 #include "core/base/aligned.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/compute/kernels/radiance.h"
 #include "core/math/loss.h"
 #include "core/math/rng.h"
 #include "core/math/sub_pixel.h"
