@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # A module is a folder below src/: its *.cpp become a library, its *_test.cpp one test program.
 set(CEI3D_FLAGS -Wall -Wextra -Wno-psabi -fno-math-errno -ffp-contract=fast)
+# Masks of SIMD lanes are joined by & and |, which the same templates do with bool.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  list(APPEND CEI3D_FLAGS -Wno-bitwise-instead-of-logical)
+endif()
 if(CEI3D_WERROR)
   list(APPEND CEI3D_FLAGS -Werror)
 endif()
