@@ -1,12 +1,16 @@
+# SPDX-License-Identifier: Apache-2.0
 # core/compute/cpu/run.cpp is compiled once per instruction set, each in its own namespace; the device picks by cpuid.
 function(cei3d_instruction_sets path)
   cei3d_target_name(${path} target)
   set(source ${CMAKE_SOURCE_DIR}/src/${path}/cpu/run.cpp)
   set(isas scalar)
   if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-    list(APPEND isas avx2 avx512)
-    target_compile_definitions(${target} PRIVATE CEI3D_X86=1)
+    list(APPEND isas ${CEI3D_X86_ISAS})
   endif()
+  foreach(isa ${isas})
+    string(TOUPPER ${isa} name)
+    target_compile_definitions(${target} PRIVATE CEI3D_${name}=1)
+  endforeach()
   set(flags_scalar "")
   set(flags_avx2 -mavx2 -mfma -mf16c)
   set(flags_avx512 -mavx512f -mavx512dq -mavx512bw -mavx512vl -mfma -mavx2 -mprefer-vector-width=512)
@@ -17,7 +21,8 @@ function(cei3d_instruction_sets path)
     add_library(${target}_${isa} OBJECT ${source})
     target_include_directories(${target}_${isa} PRIVATE ${CMAKE_SOURCE_DIR}/src)
     # GCC 12 takes the undefined operands inside its own intrinsics headers for uninitialised variables.
-    target_compile_options(${target}_${isa} PRIVATE ${CEI3D_FLAGS} -O3 -Wno-maybe-uninitialized -Wno-uninitialized ${flags_${isa}})
+    target_compile_options(${target}_${isa} PRIVATE ${CEI3D_FLAGS} $<$<CONFIG:Release>:-O3>
+      $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> -Wno-uninitialized ${flags_${isa}})
     target_compile_definitions(${target}_${isa} PRIVATE CEI3D_ISA=${isa} CEI3D_WIDTH=${width_${isa}})
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_${isa}>)
   endforeach()

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # tools/layers.txt as CMake sees it: CEI3D_MODULES, bottom to top, and for a module <m> the lists CEI3D_DEPS_<m>,
 # CEI3D_PUBLIC_<m> and CEI3D_PRIVATE_<m> of its modules and third parties.
 set(layers_file ${CMAKE_SOURCE_DIR}/tools/layers.txt)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Every library we lean on, all packaged by Debian 12/13 and Ubuntu 24.04 (packages.txt). Each is used behind one file.
 find_package(PkgConfig REQUIRED)
 find_package(nlohmann_json REQUIRED)

@@ -3,7 +3,7 @@
 set -euo pipefail
 
 readonly program=$1 out=$2 sample=samples/spot
-readonly object=$(dirname "$out")/object/object
+readonly object=${out%/*}/object/object
 # Small enough for a test, long enough that a cow comes out.
 readonly small=(--iterations 60 --downscale 2 --seed 7)
 

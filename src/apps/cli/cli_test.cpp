@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "apps/cli/parse.h"
-#include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "core/base/temp_folder.h"
@@ -185,6 +185,52 @@ TEST(Parse, Sizes) {
   EXPECT_EQ(parse_size("800x600").height, 600);
   for (const char* bad : {"800", "x", "800x", "800x600x3", "0x5", "-3x5", "99999x5", "800 x 600"})
     EXPECT_THROW(parse_size(bad), Error) << bad;
+}
+
+TEST(Parse, Numbers) {
+  EXPECT_EQ(parse_numbers("1.5,-2,0", 3, "--from"), (std::vector<double>{1.5, -2, 0}));
+  for (const char* bad :
+       {"", "1,2", "1,2,3,4", "1,2,", ",1,2", "1,,2", "1,2,x", "1,2,3 ", "nan,1,2", "inf,1,2"})
+    EXPECT_THROW(parse_numbers(bad, 3, "--from"), Error) << bad;
+  EXPECT_THAT(message([] { parse_numbers("left", 2, "--pixel"); }), HasSubstr("--pixel"));
+}
+
+TEST(Parse, Pixels) {
+  const auto pixels = parse_pixels({"120.5,88", "0,-1"}, "--pixel");
+  ASSERT_EQ(pixels.size(), 2u);
+  EXPECT_EQ(pixels[0].x, 120.5);
+  EXPECT_EQ(pixels[0].y, 88);
+  EXPECT_EQ(pixels[1].y, -1);
+  EXPECT_TRUE(parse_pixels({}, "--pixel").empty());
+}
+
+TEST(Parse, Channels) {
+  std::string all;
+  for (const Channel c : parse_channels("rgb,albedo,diffuse,specular,normal,depth,roughness,mask"))
+    all += std::string(all.empty() ? "" : ",") + channel_name(c);
+  EXPECT_EQ(all, "rgb,albedo,diffuse,specular,normal,depth,roughness,mask");
+  for (const char* bad : {"", "RGB", "rgb,,mask", "rgb, mask"})
+    EXPECT_THROW(parse_channels(bad), Error) << bad;
+}
+
+TEST(Parse, EnvConventions) {
+  EXPECT_EQ(parse_env_convention("zup"), EnvConvention::zup);
+  EXPECT_EQ(parse_env_convention("mitsuba"), EnvConvention::mitsuba);
+  EXPECT_THROW(parse_env_convention("sideways"), Error);
+}
+
+TEST(Parse, CamerasAreAFileOfOursOrViewsOfACapture) {
+  const TempFolder temp;
+  const std::string ours = (temp.path() / "render.json").string();
+  const std::string theirs = (temp.path() / "transforms.json").string();
+  write_file_atomic(ours, R"({"cameras": []})");
+  write_file_atomic(theirs, R"({"frames": []})");
+  EXPECT_EQ(std::get<CameraFile>(parse_cameras(ours)).path, ours);
+  EXPECT_EQ(std::get<CaptureViews>(parse_cameras(theirs)).path, theirs);
+  const CaptureViews views = std::get<CaptureViews>(parse_cameras(temp.path().string() + ":test"));
+  EXPECT_EQ(views.path, temp.path());
+  EXPECT_EQ(views.split, Split::test);
+  EXPECT_EQ(std::get<CaptureViews>(parse_cameras(temp.path().string())).split, std::nullopt);
 }
 
 }  // namespace

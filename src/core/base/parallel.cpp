@@ -2,17 +2,11 @@
 #include "core/base/parallel.h"
 
 #include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <memory>
 
 namespace cei3d {
-
-void parallel_for(int chunks, const std::function<void(int)>& body) {
-  tbb::parallel_for(
-      0, chunks, [&](int i) { body(i); }, tbb::simple_partitioner());
-}
 
 void parallel_ranges(int n, int grain, const std::function<void(int, int)>& body) {
   const int chunks = (n + grain - 1) / grain;

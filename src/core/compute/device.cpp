@@ -8,10 +8,12 @@ namespace cei3d {
 namespace scalar {
 extern const LaunchTable table;
 }
-#ifdef CEI3D_X86
+#ifdef CEI3D_AVX2
 namespace avx2 {
 extern const LaunchTable table;
 }
+#endif
+#ifdef CEI3D_AVX512
 namespace avx512 {
 extern const LaunchTable table;
 }
@@ -19,8 +21,10 @@ extern const LaunchTable table;
 
 std::vector<Device> all_devices() {
   std::vector<Device> devices{Device(scalar::table)};
-#ifdef CEI3D_X86
+#ifdef CEI3D_AVX2
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) devices.emplace_back(avx2::table);
+#endif
+#ifdef CEI3D_AVX512
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl"))
     devices.emplace_back(avx512::table);

@@ -3,15 +3,20 @@
 // cutting work into chunks with parallel_for. Devices have no state and can be shared by threads.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/compute/kernels/all.h"
 #include "core/compute/linear.h"
 
 namespace cei3d {
+
+// The place of kernel K in every launch table; defined in kernels/list.h, which the header of each kernel
+// includes.
+template <class K>
+constexpr int kernel_index();
 
 // What one instruction set offers: compiled from cpu/run.cpp.
 struct LaunchTable {
@@ -32,10 +37,11 @@ class Device {
   const std::string& name() const { return name_; }
   int width() const { return table_.width; }
 
-  // Runs kernel K on items [0, n). Arrays must be padded to a multiple of 32 items.
+  // Runs kernel K on items [0, n). Arrays must be padded to a multiple of 32 items. The caller includes the
+  // kernel's header (core/compute/kernels/).
   template <class K>
   void launch(const typename K::Args& args, int n) const {
-    table_.kernels[AllKernels::index_of<K>()](&args, n);
+    table_.kernels[kernel_index<K>()](&args, n);
   }
   void linear(const LinearArgs& a) const { table_.linear(a); }
   void linear_weight_grad(const LinearWeightGradArgs& a) const { table_.linear_weight_grad(a); }

@@ -9,6 +9,7 @@
 
 #include "core/base/error.h"
 #include "core/compute/device.h"
+#include "core/compute/kernels/all.h"
 #include "core/math/rng.h"
 
 namespace cei3d {
@@ -175,7 +176,8 @@ struct Parity<RadianceInputGrad> {
 
 // Kernels whose cases are in shade_kernels_test.cpp.
 using ShadeKernels =
-    KernelList<SgFitResidual, SgFitGather, SgIrradiance, SgReflection, SgReflectionSlope, SgShadeGrad>;
+    KernelList<SgFitResidual, SgFitGather, SgIrradiance, SgReflection, SgReflectionGrad, ReflectionLobes,
+               SgLobesGrad, Shade, ShadeGrad>;
 
 template <class K>
 void append_cases(Cases& out) {

@@ -7,6 +7,8 @@
 #include <functional>
 
 #include "core/compute/device.h"
+#include "core/compute/kernels/light.h"
+#include "core/compute/kernels/shade.h"
 #include "core/math/rng.h"
 
 namespace cei3d {

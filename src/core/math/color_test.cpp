@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace cei3d {
 namespace {
 
@@ -17,6 +19,21 @@ TEST(Color, TheSlopeOfTheDisplayCurveEqualsItsDifferences) {
 TEST(Color, LinearAndDisplayAreInverse) {
   for (const float c : {0.0f, 0.002f, 0.0031308f, 0.2f, 1.0f})
     EXPECT_NEAR(linear_from_srgb(srgb_from_linear(c)), c, 1e-6f + 1e-5f * c);
+}
+
+TEST(Color, OklabOfGraysAndPrimariesIsThePublishedOne) {  // [Ottosson 2020]
+  for (const float y : {0.0f, 0.18f, 1.0f}) {
+    const Vec3f lab = oklab_from_linear({y, y, y});
+    EXPECT_NEAR(lab.x, std::cbrt(y), 1e-5);
+    EXPECT_NEAR(lab.y, 0, 1e-4);
+    EXPECT_NEAR(lab.z, 0, 1e-4);
+  }
+  const auto expect = [](Vec3f linear, Vec3f lab) {
+    EXPECT_NEAR(length(oklab_from_linear(linear) - lab), 0, 1e-3);
+  };
+  expect({1, 0, 0}, {0.6280f, 0.2249f, 0.1258f});
+  expect({0, 1, 0}, {0.8664f, -0.2339f, 0.1795f});
+  expect({0, 0, 1}, {0.4520f, -0.0324f, -0.3115f});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "core/base/aligned.h"
 #include "core/base/error.h"
+#include "core/compute/kernels/encode.h"
 #include "core/math/rng.h"
 #include "engine/bench/bench.h"
 #include "model/field/field_pass.h"

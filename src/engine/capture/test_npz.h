@@ -38,7 +38,7 @@ inline uint32_t test_crc32(const std::string& bytes) {
 inline std::string test_zip(const std::map<std::string, std::string>& files) {
   const auto number = [](uint64_t v, int bytes) {
     std::string s;
-    for (int i = 0; i < bytes; ++i) s += char(v >> (8 * i));
+    for (int i = 0; i < bytes; ++i, v >>= 8) s += char(v);
     return s;
   };
   std::string out, directory;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/compute/kernels/all.h"
+#include "core/compute/kernels/shade.h"
 #include "core/math/octahedron.h"
 
 namespace cei3d {

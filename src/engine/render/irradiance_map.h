@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/compute/device.h"
-#include "core/compute/kernels/light.h"
+#include "core/compute/kernels/lobes.h"
 
 namespace cei3d {
 

@@ -5,7 +5,7 @@
 #include <array>
 
 #include "core/base/parallel.h"
-#include "core/compute/kernels/all.h"
+#include "core/compute/kernels/shade.h"
 
 namespace cei3d {
 namespace {

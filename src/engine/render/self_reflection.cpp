@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/compute/kernels/all.h"
+#include "core/compute/kernels/shade.h"
 
 namespace cei3d {
 namespace {

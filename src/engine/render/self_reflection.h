@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "core/compute/device.h"
-#include "core/compute/kernels/light.h"
+#include "core/compute/kernels/lobes.h"
 #include "engine/render/vertex_light.h"
 #include "model/geometry/shape/surface.h"
 

@@ -7,6 +7,7 @@
 #include "core/base/aligned.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/compute/kernels/panel.h"
 #include "core/math/rng.h"
 #include "model/field/field_pass.h"
 

@@ -12,6 +12,7 @@
 
 #include "core/base/json.h"
 #include "core/compute/device.h"
+#include "core/math/encoding.h"
 #include "core/math/vec.h"
 #include "model/field/mlp.h"
 #include "model/field/params.h"

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "core/compute/kernels/encode.h"
+
 namespace cei3d {
 
 FieldPass::FieldPass(const FieldConfig& config, int capacity, int columns)

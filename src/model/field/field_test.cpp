@@ -7,6 +7,8 @@
 
 #include <cmath>
 
+#include "core/compute/kernels/panel.h"
+#include "core/math/activation.h"
 #include "core/math/rng.h"
 #include "model/field/field_pass.h"
 #include "model/field/gradients.h"

@@ -3,6 +3,7 @@
 
 #include "core/base/parallel.h"
 #include "core/base/pool.h"
+#include "core/compute/kernels/panel.h"
 #include "model/field/field.h"
 #include "model/field/field_pass.h"
 #include "model/field/gradients.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/compute/kernels/activate.h"
 #include "core/math/rng.h"
 
 namespace cei3d {

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/compute/kernels/adam.h"
 
 namespace cei3d {
 

@@ -5,6 +5,8 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/compute/kernels/adam.h"
+#include "core/compute/kernels/light.h"
 #include "core/math/sg.h"
 
 namespace cei3d {

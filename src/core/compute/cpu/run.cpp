@@ -3,6 +3,7 @@
 // set; no STL here and nothing that could leave a weak symbol outside namespace CEI3D_ISA (tools/check_isa.sh
 // looks).
 #include "core/compute/device.h"
+#include "core/compute/kernels/all.h"
 #if CEI3D_WIDTH > 1
 #include "core/math/lanes.h"
 #endif

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 
+#include "core/compute/kernel.h"
 #include "core/compute/linear.h"
 #include "core/math/vec.h"
 

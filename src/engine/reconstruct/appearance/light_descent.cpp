@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/compute/kernels/all.h"
+#include "core/compute/kernels/adam.h"
+#include "core/compute/kernels/shade.h"
 
 namespace cei3d {
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "core/compute/kernels/all.h"
+#include "core/compute/kernels/shade.h"
 #include "core/math/dual.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/display_loss.h"

@@ -28,7 +28,7 @@ Mesh plate() {
   return m;
 }
 
-// The vertices with x > 0 turned about the y axis and lifted: an affine map of half the plate.
+// The vertices of the plate with x > 0 turned about the y axis and lifted: an affine map of half the plate.
 struct Bend {
   Mat3f turn;
   Vec3f lift;
@@ -41,8 +41,9 @@ Bend bend(float angle, float lift) {
 
 Reshape bending(const Mesh& mesh, const Bend& b) {
   Reshape r;
-  for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
-    if (plate().positions[v].x <= 0.01f) continue;
+  const std::vector<Vec3f> flat = plate().positions;  // mesh may have more
+  for (uint32_t v = 0; v < flat.size(); ++v) {
+    if (flat[v].x <= 0.01f) continue;
     r.moved.push_back(v);
     r.positions.push_back(b(mesh.positions[v]));
     r.normals.push_back(b.turn * mesh.normals[v]);

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/export/object_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "core/base/error.h"
+#include "model/geometry/mesh/test_meshes.h"
+
+namespace cei3d {
+namespace {
+
+constexpr float kRadius = 0.5f;
+
+std::shared_ptr<const Field> color_field() {
+  FieldConfig c;
+  c.encoding.levels = 4;
+  c.output_activation = Activation::sigmoid;
+  return std::make_shared<Field>(c, 3);
+}
+
+// A ball whose sky is free everywhere, in a capture whose frame is not the unit sphere's.
+Scene ball() {
+  Scene s;
+  s.normalization = {{1, 2, 3}, 2};
+  Mesh mesh = sphere_mesh(kRadius, 2);
+  std::vector<uint8_t> free_sky(mesh.positions.size() * kSkyDirections / 8, 0xff);
+  s.surface = std::make_shared<const Surface>(std::move(mesh), std::move(free_sky));
+  s.albedo = color_field();
+  s.material.roughness = 0.4f;
+  return s;
+}
+
+bool above(Vec3f p) { return p.z > 0.1f; }
+
+// Everything above a plane, by points that reach just as far as the ball's vertices need.
+EditLayer upper_half(const Mesh& mesh) {
+  EditLayer layer;
+  layer.id = "0001-material";
+  Region::Points points;
+  for (size_t v = 0; v < mesh.positions.size(); ++v)
+    if (above(mesh.positions[v])) {
+      points.positions.push_back(mesh.positions[v]);
+      points.normals.push_back(mesh.normals[v]);
+      points.reach.push_back(1e-3f);
+    }
+  layer.region = Region(points);
+  layer.material.roughness = 0.9f;
+  return layer;
+}
+
+TEST(ObjectMesh, IsTheSurfaceInTheFrameOfTheCaptureWithTheColorOfTheField) {
+  const Scene s = ball();
+  const ColoredMesh out = colored_mesh(make_device(), s);
+  const Mesh& mesh = s.surface->mesh();
+  EXPECT_EQ(out.mesh.triangles, mesh.triangles);
+  ASSERT_EQ(out.mesh.positions.size(), mesh.positions.size());
+  std::vector<float> colors(mesh.positions.size() * 3);
+  s.albedo->eval(make_device(), mesh.positions, colors);
+  for (size_t v = 0; v < mesh.positions.size(); ++v) {
+    const Vec3f p = mesh.positions[v];
+    EXPECT_NEAR(length(out.mesh.positions[v] - Vec3f{1 + p.x / 2, 2 + p.y / 2, 3 + p.z / 2}), 0, 1e-6);
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(out.mesh.colors[v][c], colors[v * 3 + c]);
+  }
+  ASSERT_EQ(out.materials.list.size(), 1u);
+  EXPECT_EQ(out.materials.list[0].roughness, 0.4f);
+}
+
+TEST(ObjectMesh, TrianglesHaveTheMaterialOfMostOfTheirCorners) {
+  const Scene s = ball();
+  const Mesh& mesh = s.surface->mesh();
+  const ColoredMesh out = colored_mesh(make_device(), with_layer(s, upper_half(mesh)));
+  ASSERT_EQ(out.materials.of_triangle.size(), mesh.triangles.size());
+  std::set<float> seen;
+  for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& corners = mesh.triangles[t];
+    const auto edited =
+        std::count_if(corners.begin(), corners.end(), [&](uint32_t v) { return above(mesh.positions[v]); });
+    const float roughness = out.materials.list[out.materials.of_triangle[t]].roughness;
+    EXPECT_EQ(roughness, edited >= 2 ? 0.9f : 0.4f) << t;
+    seen.insert(roughness);
+  }
+  EXPECT_EQ(seen.size(), 2u);
+}
+
+TEST(ObjectMesh, AMaterialThatNoTriangleHasIsLeftOut) {
+  const Scene s = ball();
+  EditLayer all;
+  all.id = "0001-material";
+  all.everywhere = true;
+  all.material.roughness = 0.9f;
+  const ColoredMesh out = colored_mesh(make_device(), with_layer(s, all));
+  ASSERT_EQ(out.materials.list.size(), 1u);
+  EXPECT_EQ(out.materials.list[0].roughness, 0.9f);
+}
+
+TEST(ObjectMesh, VerticesOfRemovedTrianglesAreLeftOut) {
+  const Scene s = ball();
+  const Mesh& mesh = s.surface->mesh();
+  auto reshape = std::make_shared<Reshape>();
+  std::set<std::array<float, 3>> left;  // corners of the triangles that stay
+  size_t kept = 0;
+  for (uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& corners = mesh.triangles[t];
+    if (std::any_of(corners.begin(), corners.end(), [&](uint32_t v) { return above(mesh.positions[v]); })) {
+      reshape->removed.push_back(t);
+      continue;
+    }
+    ++kept;
+    for (const uint32_t v : corners) {
+      const Vec3f p = mesh.positions[v];
+      left.insert({p.x, p.y, p.z});
+    }
+  }
+  EditLayer layer;
+  layer.id = "0001-remove";
+  layer.reshape = reshape;
+  const ColoredMesh out = colored_mesh(make_device(), with_layer(s, layer));
+  EXPECT_EQ(out.mesh.triangles.size(), kept);
+  EXPECT_EQ(out.mesh.positions.size(), left.size());
+  EXPECT_EQ(out.mesh.colors.size(), left.size());
+  std::vector<bool> used(out.mesh.positions.size());
+  for (const auto& corners : out.mesh.triangles)
+    for (const uint32_t v : corners) used.at(v) = true;
+  EXPECT_EQ(std::count(used.begin(), used.end(), false), 0);
+  for (const Vec3f p : out.mesh.positions) EXPECT_LE(p.z, 3.05f + 1e-6f);
+}
+
+TEST(ObjectMesh, HandlerPointsAreInTheFrameOfTheCapture) {
+  Scene s = ball();
+  auto handlers = std::make_shared<HandlerPoints>();
+  handlers->positions = {{0, 0, 0.5f}, {0.2f, -0.4f, 0}};
+  handlers->normals = {{0, 0, 1}, {0, -1, 0}};
+  s.handlers = handlers;
+  const Mesh points = handler_point_cloud(s);
+  EXPECT_TRUE(points.triangles.empty());
+  ASSERT_EQ(points.positions.size(), 2u);
+  EXPECT_NEAR(length(points.positions[0] - Vec3f{1, 2, 3.25f}), 0, 1e-6);
+  EXPECT_NEAR(length(points.positions[1] - Vec3f{1.1f, 1.8f, 3}), 0, 1e-6);
+  EXPECT_EQ(points.normals[1].y, -1);
+}
+
+TEST(ObjectMesh, AnObjectWithoutSurfaceOrHandlersIsAnError) {
+  const Scene nothing;
+  EXPECT_THROW(colored_mesh(make_device(), nothing), Error);
+  EXPECT_THROW(handler_point_cloud(nothing), Error);
+}
+
+}  // namespace
+}  // namespace cei3d
