@@ -1,18 +1,27 @@
 # SPDX-License-Identifier: Apache-2.0
-# One seed, the same bits: with one thread as with all, uninterrupted as after kill -9 in the middle.
+# One seed, the same bits: with one thread as with all, uninterrupted as after kill -9 in two stages.
 source "$(dirname "$0")/lib.sh"
 
-"$program" reconstruct "$sample" -o "$out/first" "${small[@]}" --threads 1 &
-pid=$!
-for ((i = 0; i < 600; ++i)); do  # dead as soon as there is a state to go on from
-  [[ -e $out/first/base/latest || ! -e /proc/$pid ]] && break
-  sleep 0.05
-done
-kill -9 "$pid" 2>/dev/null || true
-wait "$pid" 2>/dev/null || true
-[[ -e $out/first/base/scene.json ]] && fail "the run was over before it could be killed"
+# killed_after STAGE ARGUMENTS...: reconstruct, dead as soon as the state after the stage is saved, in the next stage.
+killed_after() {
+  local stage=$1 pid
+  shift
+  "$program" reconstruct "$@" -o "$out/first" &
+  pid=$!
+  for ((i = 0; i < 2400; ++i)); do
+    grep -qs "\"stage\": *\"$stage\"" "$out"/first/base/*.ckpt.json && break
+    [[ -e /proc/$pid ]] || break
+    sleep 0.05
+  done
+  kill -9 "$pid" 2>/dev/null || true
+  wait "$pid" 2>/dev/null || true
+  [[ ! -e $out/first/base/scene.json ]] || fail "the run was over before it could be killed after $stage"
+}
+
+killed_after start "$sample" "${small[@]}" --threads 1
 refused 1 'resume' render "$out/first" -o "$out/nothing"
 absent "$out/nothing"
+killed_after surface --resume
 cei3d reconstruct -o "$out/first" --resume
 
 "$program" edit "$out/first" paint --view r_055 --scribble "$sample/edits/paint/scribble.png" &
