@@ -106,8 +106,10 @@ double squared_error(const Image& got, const Image& photograph, int first_row) {
 void train_geometry(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
   Training training(run, state);
   for (double u; (u = training.position()) < 1;) {
-    if (run.progress.cancelled()) training.save(checkpoint);
-    check_cancelled(run.progress);
+    if (run.progress.cancelled()) {
+      training.save(checkpoint);
+      check_cancelled(run.progress);
+    }
     training.step(u, checkpoint);
   }
   state.training_seconds = training.elapsed();

@@ -16,6 +16,23 @@ Json rates_of(const ReconstructInputs& in, const Preset& preset, const PixelStor
   return to_json(in.rates ? *in.rates : measure_rates(in.device, preset, pixels, in.clock, progress));
 }
 
+std::optional<SavedRun> read_saved(const ReconstructInputs& in, const Preset& preset,
+                                   const PixelStore& pixels, Checkpoints& checkpoints) {
+  const auto state = checkpoints.latest();
+  if (!state) return std::nullopt;
+  return read_checkpoint(*state, [&] {
+    return std::make_unique<GeometryStage>(in.device, pixels, preset.geometry, in.options.seed);
+  });
+}
+
+Plan make_plan(const ReconstructInputs& in, const Preset& preset, size_t pixels, const Json& rates,
+               Progress& progress) {
+  const Plan plan = plan_of(in.options, preset, pixels, rates.is_null() ? Rates() : rates_from_json(rates));
+  Json line{{"stage", "plan"}, {"pixels", pixels}, {"plan", to_json(plan)}, {"rates", rates}};
+  progress.log(line.dump());
+  return plan;
+}
+
 }  // namespace
 
 Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progress& listener) {
@@ -24,27 +41,18 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
   const TrainingViews views = load_training_views(in.capture, in.images, in.normalization, progress);
   Preset preset = in.preset;
   fit_to_footprint(preset, views.footprint);
-
-  std::optional<SavedRun> saved;
-  if (const auto state = checkpoints.latest())
-    saved = read_checkpoint(*state, [&] {
-      return std::make_unique<GeometryStage>(in.device, views.train, preset.geometry, in.options.seed);
-    });
+  std::optional<SavedRun> saved = read_saved(in, preset, views.train, checkpoints);
   const Json rates = rates_of(in, preset, views.train, saved, progress);
   if (saved) progress.resume_at(saved->position.elapsed);
-
   const RunContext context{.device = in.device,
                            .capture = in.capture,
                            .images = in.images,
                            .normalization = in.normalization,
                            .views = views,
                            .preset = preset,
-                           .plan = plan_of(in.options, preset, views.train.pixels().size(),
-                                           rates.is_null() ? Rates() : rates_from_json(rates)),
+                           .plan = make_plan(in, preset, views.train.pixels().size(), rates, progress),
                            .seed = in.options.seed,
                            .progress = progress};
-  progress.log(Json{{"stage", "plan"}, {"plan", to_json(context.plan)}, {"rates", rates}}.dump());
-
   RunState state = saved ? std::move(saved->state) : RunState();
   state.scene.normalization = in.normalization;
   state.scene.up = in.capture.up;

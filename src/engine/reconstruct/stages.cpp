@@ -40,6 +40,9 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
 void run_geometry(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
   train_geometry(run, state, checkpoint);
   log_radiance_psnr(run, *state.geometry);
+  if (!run.progress.cancelled()) return;
+  checkpoint();
+  check_cancelled(run.progress);
 }
 
 // Seconds of this round's descent, when the estimate before it has taken state.look_seconds and each later
