@@ -1,18 +1,30 @@
 # SPDX-License-Identifier: Apache-2.0
-# One seed, the same bits: with one thread as with all, uninterrupted as after kill -9 in the middle.
+# One seed, the same bits: with one thread as with all, uninterrupted as after a signal in three stages.
 source "$(dirname "$0")/lib.sh"
 
-"$program" reconstruct "$sample" -o "$out/first" "${small[@]}" --threads 1 &
-pid=$!
-for ((i = 0; i < 600; ++i)); do  # dead as soon as there is a state to go on from
-  [[ -e $out/first/base/latest || ! -e /proc/$pid ]] && break
-  sleep 0.05
-done
-kill -9 "$pid" 2>/dev/null || true
-wait "$pid" 2>/dev/null || true
-[[ -e $out/first/base/scene.json ]] && fail "the run was over before it could be killed"
+# stopped SIGNAL CODE STAGE ARGUMENTS...: reconstruct gets the signal as soon as the state after the stage is saved,
+# which is in the next stage, and exits with the code.
+stopped() {
+  local signal=$1 code=$2 finished="\"finished\":true,\"rates\":null,\"stage\":\"$3\"" pid status=0
+  shift 3
+  "$program" reconstruct "$@" -o "$out/first" &
+  pid=$!
+  for ((i = 0; i < 2400; ++i)); do
+    cat "$out"/first/base/*.ckpt.json 2>/dev/null | tr -d ' \n' | grep "$finished" >/dev/null && break
+    [[ -e /proc/$pid ]] || break
+    sleep 0.05
+  done
+  kill -"$signal" "$pid" || fail "the run was over before it got $signal"
+  wait "$pid" || status=$?
+  [[ $status == "$code" ]] || fail "exit code $status after $signal, expected $code"
+  absent "$out/first/base/scene.json"
+}
+
+stopped KILL 137 start "$sample" "${small[@]}" --threads 1
 refused 1 'resume' render "$out/first" -o "$out/nothing"
 absent "$out/nothing"
+stopped TERM 130 geometry --resume
+stopped KILL 137 surface --resume
 cei3d reconstruct -o "$out/first" --resume
 
 "$program" edit "$out/first" paint --view r_055 --scribble "$sample/edits/paint/scribble.png" &

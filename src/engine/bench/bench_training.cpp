@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "engine/bench/bench.h"
@@ -17,6 +18,7 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr const char* kInterrupted = "The measurement was interrupted.";
 constexpr int kRim = 6;            // as reconstruct() has it
 constexpr double kPosition = 0.5;  // in the schedule: all levels open, the surface soft still
 
@@ -156,7 +158,7 @@ std::vector<BenchFigure> bench_training(const Device& device, const TrainingBenc
   stage.prefit(start_shape(subject.pixels, Start::hull, 1));
   int64_t step = 0;
   while (step < options.warm_up) {
-    if (progress.cancelled()) throw Error(ErrorCode::interrupted, "The measurement was interrupted.");
+    check_cancelled(progress, kInterrupted);
     stage.step(step, kPosition * double(step) / options.warm_up);
     ++step;
   }
@@ -165,7 +167,7 @@ std::vector<BenchFigure> bench_training(const Device& device, const TrainingBenc
   Samples samples;
   double seconds = options.seconds;
   for (Stopwatch watch; int(samples.whole.size()) < options.least || seconds > 0;) {
-    if (progress.cancelled()) throw Error(ErrorCode::interrupted, "The measurement was interrupted.");
+    check_cancelled(progress, kInterrupted);
     progress.report({"training", 0.5, -1, ""});
     measure_block(stage, times, options.block, step, samples);
     seconds -= watch.lap();

@@ -2,9 +2,10 @@
 #include "engine/edit/deform.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "core/base/cancel.h"
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "engine/edit/part_vertices.h"
 #include "model/geometry/mesh/arap.h"
@@ -142,7 +143,7 @@ Reshape reshape_to(const Scene& scene, const std::vector<Vec3f>& after) {
 }  // namespace
 
 DeformResult deform(const Scene& scene, const DeformRequest& request, Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = steady_seconds();
   check_drag(scene, request);
   const std::vector<uint8_t> on_part =
       request.part.empty() ? std::vector<uint8_t>() : part_vertices(scene, request.part);
@@ -158,8 +159,7 @@ DeformResult deform(const Scene& scene, const DeformRequest& request, Progress& 
       std::clamp(kVertexIterations / std::max(free, 1), kLeastIterations, kMostIterations);
   const ArapResult moved = arap_deform(mesh.positions, mesh.triangles, reach.constraints, options);
   progress.report({"deform", 0.8, -1, ""});
-  if (progress.cancelled())
-    throw Error(ErrorCode::interrupted, "deforming was interrupted; nothing was changed");
+  check_cancelled(progress, "deforming was interrupted; nothing was changed");
   auto reshape = std::make_shared<Reshape>(reshape_to(scene, moved.positions));
 
   DeformResult result;
@@ -171,7 +171,7 @@ DeformResult deform(const Scene& scene, const DeformRequest& request, Progress& 
   report.radius = reach.radius;
   report.iterations = int(moved.energies.size());
   result.layer.reshape = std::move(reshape);
-  report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.seconds = steady_seconds() - start;
   return result;
 }
 

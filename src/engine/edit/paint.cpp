@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <bit>
-#include <chrono>
 #include <cmath>
 
+#include "core/base/cancel.h"
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/math/rng.h"
 #include "engine/edit/relearn.h"
@@ -14,10 +15,6 @@
 
 namespace cei3d {
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 void check_scribble(const Scribble& s) {
   if (s.image.channels != 4)
@@ -128,8 +125,7 @@ std::shared_ptr<const Field> fit_branch(const Device& device, const Paint& s, ui
   auto field = std::make_shared<Field>(branch_config(s), seed);
   FieldTrainer trainer(*field, {.encoding_rate = 2e-2f, .network_rate = 1e-2f});
   for (int step = 0; step < kSteps; ++step) {
-    if (progress.cancelled())
-      throw Error(ErrorCode::interrupted, "painting was interrupted; nothing was changed");
+    check_cancelled(progress, "painting was interrupted; nothing was changed");
     const float fraction = float(step) / kSteps;
     const Batch batch(s, seed, step);
     trainer.step(device, batch.x, cross_entropy(batch.target), 0.5f * (1 + std::cos(kPi * fraction)) + 1e-3f);
@@ -199,7 +195,7 @@ void count(const std::vector<Stroke>& strokes, const std::vector<Region>& region
 PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& request, Progress& progress) {
   PaintResult result;
   PaintReport& report = result.report;
-  const double start = now();
+  const double start = steady_seconds();
   const std::vector<Stroke> strokes = trace_strokes(device, scene, request);
   std::vector<Region> regions;
   for (const Stroke& s : strokes) regions.push_back(stroke_region(s, request.routing));
@@ -208,7 +204,7 @@ PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& 
   for (size_t i = 0; i < strokes.size(); ++i)
     add_stroke(strokes[i], std::span(regions).subspan(i + 1), paint);
   if (request.seen_in) report.out_of_reach = solve_for_albedo(device, scene, *request.seen_in, paint);
-  const double traced = now();
+  const double traced = steady_seconds();
   progress.report({"paint", 0.2, -1, ""});
   result.layer.id = request.id;
   result.layer.erase = request.erase;
@@ -224,7 +220,7 @@ PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& 
   }
   if (result.layer.albedo) measure_branch(device, *result.layer.albedo, paint, report);
   report.trace_seconds = traced - start;
-  report.train_seconds = now() - traced;
+  report.train_seconds = steady_seconds() - traced;
   return result;
 }
 

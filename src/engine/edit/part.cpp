@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/edit/part.h"
 
-#include <chrono>
-
+#include "core/base/cancel.h"
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "engine/edit/handler_colors.h"
 #include "engine/edit/material.h"
@@ -18,14 +18,7 @@ namespace {
 constexpr float kInside = 0.5f;        // score from which on a point belongs to a part
 constexpr double kEverything = 0.995;  // share of the points from which on a part is the whole object
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-void require_running(const Progress& progress) {
-  if (progress.cancelled())
-    throw Error(ErrorCode::interrupted, "Selecting the part was interrupted; nothing was changed.");
-}
+constexpr const char* kInterrupted = "Selecting the part was interrupted; nothing was changed.";
 
 std::vector<float> selected(const Device& device, const Scene& scene, const PartRequest& r,
                             std::span<const Seed> seeds, Progress& progress) {
@@ -105,20 +98,20 @@ double vertex_share(const Scene& scene, const EditLayer& layer) {
 PartResult select_part(const Device& device, const Scene& scene, const PartRequest& r, Progress& progress) {
   if (!scene.handlers || scene.handlers->positions.empty())
     fail("The object has no handler points to select a part of; reconstruct it again.");
-  const double start = now();
+  const double start = steady_seconds();
   if (r.combination) part_layer(scene, r.combination->part);  // an error before the work
   const std::vector<Seed> seeds = part_seeds(device, scene, r);
   progress.report({"part", 0.1, -1, ""});
-  const double seeded = now();
+  const double seeded = steady_seconds();
   std::vector<float> scores = selected(device, scene, r, seeds, progress);
-  require_running(progress);
+  check_cancelled(progress, kInterrupted);
   if (r.in_view) keep_seen(scene, r.camera, scores);
   if (r.combination) combine(r.combination->how, existing_scores(scene, r.combination->part), scores);
   PartResult result;
   result.report.points = count_inside(scores);
   check_size(result.report.points, scores.size(), r);
 
-  const double found = now();
+  const double found = steady_seconds();
   const HandlerPoints& points = *scene.handlers;
   EditLayer& layer = result.layer;
   layer.id = r.id;
@@ -129,7 +122,7 @@ PartResult select_part(const Device& device, const Scene& scene, const PartReque
   set_effects(device, scene, r, layer);
   result.report.seed_seconds = seeded - start;
   result.report.select_seconds = found - seeded;
-  result.report.color_seconds = now() - found;
+  result.report.color_seconds = steady_seconds() - found;
   return result;
 }
 

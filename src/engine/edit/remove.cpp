@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/edit/remove.h"
 
-#include <chrono>
-
+#include "core/base/cancel.h"
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "engine/edit/part_vertices.h"
 #include "model/geometry/mesh/cut.h"
@@ -26,14 +26,13 @@ void check_part(const Mesh& mesh, const std::vector<uint8_t>& inside, const std:
 
 RemoveResult remove_part(const Device& device, const Scene& scene, const RemoveRequest& request,
                          Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = steady_seconds();
   const Mesh& mesh = scene.surface->mesh();
   const std::vector<uint8_t> inside = part_vertices(scene, request.part);
   check_part(mesh, inside, request.part);
   progress.report({"remove", 0.2, -1, ""});
   CutResult result = cut(mesh, inside, appearance_at(device, scene, vertex_hits(mesh)).albedo);
-  if (progress.cancelled())
-    throw Error(ErrorCode::interrupted, "removing was interrupted; nothing was changed");
+  check_cancelled(progress, "removing was interrupted; nothing was changed");
   RemoveResult out;
   out.layer.id = request.id;
   out.report.removed_triangles = result.reshape.removed.size();
@@ -41,7 +40,7 @@ RemoveResult remove_part(const Device& device, const Scene& scene, const RemoveR
   out.report.holes = result.report.holes;
   out.report.pieces = result.report.pieces;
   out.layer.reshape = std::make_shared<Reshape>(std::move(result.reshape));
-  out.report.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  out.report.seconds = steady_seconds() - start;
   return out;
 }
 

@@ -9,61 +9,141 @@ namespace cei3d {
 
 namespace {
 
-constexpr double kPixelsASecond = 100000;  // of training, that the appearance stage gets time for: from
-constexpr double kLeastAppearance = 20, kMostAppearance = 60;  // to so many seconds; more brings nothing
-constexpr double kRefinement = 36;                             // seconds of one of the albedo, with its hits
-constexpr double kMostPolish = 60;                             // seconds a round; more brings nothing
-constexpr double kBetweenRounds = 7;                           // Plan::between
-constexpr int kPolishSteps = 600, kPolishStepsUntimed = 300;   // a round, at most
-constexpr double kMostResidual = 90;                           // seconds of training, or
-constexpr int kResidualSteps = 9000, kResidualStepsUntimed = 4500;  // steps,
-constexpr double kResidualHitsASecond = 4500;       // on so many hits for each second of the run,
-constexpr size_t kResidualHitsUntimed = 1000000;    // or so many; shading
-constexpr double kHitSeconds = 4e-6;                // one takes so long
-constexpr double kSaving = 8, kSavingShare = 0.03;  // seconds; of the run: what is left at the end
-constexpr double kResidualRun = 120;                // seconds; shorter runs spend them on the surface
-constexpr double kFinishing = 15;     // seconds of a mesh of 384 cells, with what its vertices see,
-constexpr double kFinishedRun = 300;  // in runs of so many
+// Work that is not measured by itself, in multiples of work that is (measured on spot, penguin and teapot).
+constexpr double kGeometryStep = 22;   // a step of the geometry stage: so many of Rates::sdf_step
+constexpr double kStartShapes = 4000;  // carving and stereo: so many of Rates::trial_step
+constexpr double kPolishStep = 60;     // a step of polishing: so many of Rates::sdf_step
+constexpr double kResidualStep = 8;    // a step of the residual's training: so many of Rates::sdf_step
+constexpr double kSplit = 4e6;         // the linear split: so many of Rates::hit_shaded
+constexpr double kFullSteps = 1000,
+                 kBriefSteps = 400;  // of the appearance stage: so many of Rates::albedo_step
+
+constexpr double kMinResidualShare = 0.13;  // of the residual's steps: fewer are not worth their time
+constexpr size_t kUntimedResidualHits = 1000000;
+
+// The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
+// another subset. They begin where there are so many times more pixels; one for each so many times more.
+constexpr double kSubsetsToRefine = 4, kSubsetsOfRefinement = 2.4;
+
+// Shares of the whole time, at most.
+constexpr double kPolishShare = 0.1;         // a round's descent
+constexpr double kPolishRoundsShare = 0.28;  // all rounds
+constexpr double kFullEffortShare = 0.36;    // the appearance stage at full effort; else it is brief
+constexpr double kRefinementsShare = 0.1;
+constexpr double kFinerMeshShare = 1.0 / 15;
+constexpr double kResidualShare = 0.1;           // the residual's training,
+constexpr double kResidualShadingShare = 0.018;  // and the shading of its pixels before
+constexpr double kTrialsShare = 0.25;            // comparing starts, of the geometry stage
+constexpr double kReserveShare = 0.03;
+constexpr double kMinGeometryShare = 0.35;
+
+// Seconds.
+struct Costs {
+  double trials, surface, full_appearance, brief_appearance, refinement, finer_mesh;
+  double look;      // of a polishing round
+  double polish;    // all steps of a round
+  double residual;  // all steps of its training
+  double residual_hit;
+};
+
+Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
+  const double hits = double(std::min(preset.max_hits, pixels)),
+               brief_hits = double(std::min(preset.brief_hits, pixels)), hit = r.hit_traced + r.hit_shaded;
+  const auto mesh = [&](const MeshingOptions& m) { return r.mesh * square(double(m.resolution)); };
+  const TrialOptions& trial = preset.trial;
+  Costs c{};
+  c.trials = r.trial_step * (3 * (trial.geometry.prefit_steps + kGeometryStep * trial.steps) + kStartShapes);
+  c.surface = mesh(preset.meshing) + hits * r.hit_traced;
+  c.full_appearance = kSplit * r.hit_shaded + hits * hit + kFullSteps * r.albedo_step;
+  c.brief_appearance = kSplit / 2 * r.hit_shaded + brief_hits * hit + kBriefSteps * r.albedo_step;
+  c.look = c.surface + c.brief_appearance;
+  c.polish = preset.polish_steps * kPolishStep * r.sdf_step;
+  c.refinement = hits * hit + preset.refinement_steps * r.albedo_step;
+  c.finer_mesh = mesh(preset.finer_meshing);
+  c.residual_hit = hit;
+  c.residual = preset.residual_steps * kResidualStep * r.sdf_step;
+  return c;
+}
+
+bool has_finer_meshing(const Preset& preset) {
+  return preset.finer_meshing.resolution > preset.meshing.resolution;
+}
+
+Plan untimed_plan(const ReconstructOptions& options, const Preset& preset) {
+  Plan p;
+  p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
+  p.choose_start = p.iterations >= preset.trials_from_iterations;
+  p.polish_rounds = p.iterations >= preset.polish_from_iterations ? 2 : 0;
+  p.polish_steps = preset.polish_steps / 2;
+  p.has_finer_mesh = has_finer_meshing(preset) && p.polish_rounds > 0;
+  p.residual_steps = std::min(preset.residual_steps, p.iterations) / 2;
+  p.residual_hits = std::min(preset.max_residual_hits, kUntimedResidualHits);
+  return p;
+}
+
+void plan_polish(double t, const Preset& preset, const Costs& c, Plan& p) {
+  p.look = c.look;
+  p.polish_steps = preset.polish_steps;
+  p.polish = std::min(c.polish, kPolishShare * t);
+  p.polish_rounds = std::min(2, int(kPolishRoundsShare * t / (p.polish + p.look)));
+}
+
+void plan_appearance(double t, const Preset& preset, const Costs& c, size_t pixels, Plan& p) {
+  const bool full = c.full_appearance <= kFullEffortShare * t;
+  p.effort = full ? Effort::full : Effort::brief;
+  p.appearance = full ? c.full_appearance : c.brief_appearance;
+  p.refinement = c.refinement;
+  const double subsets = double(pixels) / double(preset.max_hits),
+               wanted = (subsets - kSubsetsToRefine) / kSubsetsOfRefinement,
+               affordable = kRefinementsShare * t / c.refinement;
+  p.refinements = std::max(0, int(std::min(wanted, affordable)));
+}
+
+void plan_residual(double t, const Costs& c, const Preset& preset, size_t pixels, Plan& p) {
+  if (kResidualShare * t < kMinResidualShare * c.residual) return;
+  p.residual_steps = preset.residual_steps;
+  p.residual_hits =
+      std::min({preset.max_residual_hits, pixels, size_t(kResidualShadingShare * t / c.residual_hit)});
+  p.residual = std::min(c.residual, kResidualShare * t) + c.residual_hit * double(p.residual_hits);
+}
+
+Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c) {
+  Plan p;
+  plan_polish(t, preset, c, p);
+  plan_appearance(t, preset, c, pixels, p);
+  plan_residual(t, c, preset, pixels, p);
+  p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
+  p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
+  p.reserve = c.surface + kReserveShare * t;
+  const double rest = p.polish_rounds * (p.polish + p.look) + p.appearance + p.refinements * p.refinement +
+                      p.finer_mesh + p.residual + p.reserve;
+  p.geometry = std::max(kMinGeometryShare * t, t - rest);
+  p.choose_start = c.trials <= kTrialsShare * p.geometry;
+  return p;
+}
 
 }  // namespace
 
-Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pixels) {
-  Plan p;
-  p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
-  const double t = options.seconds;
-  const bool has_finer = preset.finished.resolution > preset.meshing.resolution;
-  const double appearance =
-      preset.stretch * std::clamp(double(pixels) / kPixelsASecond, kLeastAppearance, kMostAppearance);
-  if (t <= 0 || options.iterations > 0) {
-    p.appearance = t > 0 ? std::min(appearance, 0.2 * t) : 0;
-    p.rounds = p.iterations >= 1000 ? 2 : 0;
-    p.finish = has_finer && p.rounds > 0;
-    p.polish_steps = kPolishStepsUntimed;
-    p.residual_steps = std::min(kResidualStepsUntimed, p.iterations / 2);
-    p.residual_hits = std::min(preset.residual_hits, kResidualHitsUntimed);
-    return p;
-  }
-  p.between = kBetweenRounds * preset.stretch;
-  p.rounds = t >= 180 ? 2 : t >= 45 ? 1 : 0;
-  p.polish_steps = kPolishSteps;
-  p.residual_steps = t >= kResidualRun ? kResidualSteps : 0;
-  p.polish = std::min(kMostPolish * preset.stretch, 0.1 * t);
-  while (p.rounds * (p.polish + p.between) > 0.3 * t) --p.rounds;
-  p.appearance = std::min(appearance, 0.2 * t);
-  p.residual_hits = std::min({preset.residual_hits, size_t(kResidualHitsASecond * t), pixels});
-  p.finish = has_finer && t >= kFinishedRun;
-  if (p.finish) p.finishing = kFinishing * square(preset.finished.resolution / 384.0) * preset.stretch;
-  if (t >= kResidualRun)
-    p.residual = std::min(kMostResidual, 0.1 * t) + kHitSeconds * preset.stretch * double(p.residual_hits);
-  p.saving = std::max(kSaving, kSavingShare * t);
-  const double wanted = double(pixels) / kPixelsASecond - kMostAppearance,
-               affordable = 0.1 * t / preset.stretch;
-  p.refinements = std::max(0, int(std::min(wanted, affordable) / kRefinement));
-  p.refinement = kRefinement * preset.stretch;
-  const double polishing = p.rounds * (p.polish + p.between);
-  const double last = p.appearance + p.refinements * p.refinement + p.finishing + p.residual + p.saving;
-  p.geometry = std::max(0.35 * t, t - polishing - last);
-  return p;
+Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pixels, const Rates& rates) {
+  if (options.seconds <= 0 || options.iterations > 0) return untimed_plan(options, preset);
+  return timed_plan(options.seconds, preset, pixels, costs_of(rates, preset, pixels));
+}
+
+Json to_json(const Plan& p) {
+  return {{"choose_start", p.choose_start},
+          {"geometry", p.geometry},
+          {"iterations", p.iterations},
+          {"polish_rounds", p.polish_rounds},
+          {"look", p.look},
+          {"polish", p.polish},
+          {"effort", p.effort == Effort::full ? "full" : "brief"},
+          {"appearance", p.appearance},
+          {"refinements", p.refinements},
+          {"refinement", p.refinement},
+          {"finer_mesh", p.finer_mesh},
+          {"residual_hits", p.residual_hits},
+          {"residual", p.residual},
+          {"reserve", p.reserve}};
 }
 
 }  // namespace cei3d

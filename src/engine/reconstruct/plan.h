@@ -3,28 +3,34 @@
 #pragma once
 
 #include "engine/reconstruct/presets.h"
+#include "engine/reconstruct/rates.h"
 #include "engine/reconstruct/reconstruct.h"
 
 namespace cei3d {
 
-// Seconds; 0: no limit, the steps count.
+// Of a run by steps all seconds are 0: no limit, the numbers of steps decide.
 struct Plan {
-  double geometry = 0;
-  double polish = 0,
-         between = 0;  // a round of polishing; the mesh, its hits and a brief look at them before it
-  double appearance = 0, residual = 0;
-  double refinement = 0;  // one, with its hits
-  double finishing = 0;   // the finer mesh at the end
-  double saving = 0;      // the mesh before all that, and the object after it
-  int iterations = 0;     // of the geometry stage
-  int rounds = 0, polish_steps = 0;
-  int refinements = 0;  // of the albedo, on other pixels
-  bool finish = false;  // with the finer mesh, Preset::finished
-  int residual_steps = 0;
-  size_t residual_hits = 0;  // that it learns from
+  bool choose_start = false;  // short trainings compare three start shapes; else the visual hull
+  double geometry = 0;        // s, the comparison of starts included
+  int iterations = 0;         // steps of the geometry stage where `geometry` is 0
+  int polish_rounds = 0;      // of the surface by its reflections
+  double look = 0;            // s that a round takes to make a mesh and estimate light and material briefly
+  double polish = 0;          // s of a round's descent after that, at most
+  int polish_steps = 0;       // of a round's descent, at most
+  Effort effort = Effort::full;  // of the appearance stage
+  double appearance = 0;         // s of the appearance stage
+  int refinements = 0;           // of the albedo, each on another random subset of the pixels
+  double refinement = 0;         // s of one refinement
+  bool has_finer_mesh = false;   // Preset::finer_meshing
+  double finer_mesh = 0;         // s of the finer mesh
+  int residual_steps = 0;        // of the residual's training, at most; 0: no residual
+  size_t residual_hits = 0;      // training pixels of the residual, at most
+  double residual = 0;           // s of the residual: shading of its pixels and training
+  double reserve = 0;            // s for the first surface and for reading and writing files
 };
 
-// pixels: all of training.
-Plan plan_of(const ReconstructOptions&, const Preset&, size_t pixels);
+// pixels: number of training pixels. rates: of this machine; not read for a run by steps.
+Plan plan_of(const ReconstructOptions&, const Preset&, size_t pixels, const Rates& rates);
+Json to_json(const Plan&);
 
 }  // namespace cei3d

@@ -6,30 +6,81 @@
 namespace cei3d {
 namespace {
 
+// Of "fast" on two cores.
+constexpr Rates kRates{.sdf_step = 1.1e-3,
+                       .trial_step = 1.1e-3,
+                       .albedo_step = 8.5e-3,
+                       .mesh = 1e-4,
+                       .hit_traced = 1e-6,
+                       .hit_shaded = 1.5e-6};
+
+Rates times(Rates r, double factor) {
+  for (double* rate : {&r.sdf_step, &r.trial_step, &r.albedo_step, &r.mesh, &r.hit_traced, &r.hit_shaded})
+    *rate *= factor;
+  return r;
+}
+
+Plan plan_for(const char* name, double seconds, size_t pixels, double slowness) {
+  ReconstructOptions options;
+  options.seconds = seconds;
+  Preset preset = preset_by_name(name);
+  fit_to_footprint(preset, 0.004);
+  return plan_of(options, preset, pixels, times(kRates, slowness));
+}
+
+double sum_of(const Plan& p) {
+  return p.geometry + p.polish_rounds * (p.polish + p.look) + p.appearance + p.refinements * p.refinement +
+         p.finer_mesh + p.residual + p.reserve;
+}
+
 TEST(Plan, SpendsNoMoreThanWasAskedFor) {
   for (const char* name : {"fast", "balanced", "paper"})
     for (const double seconds : {180.0, 300.0, 600.0, 900.0, 3600.0, 36000.0})
-      for (const size_t pixels : {300000u, 3000000u, 13000000u}) {
-        ReconstructOptions options;
-        options.seconds = seconds;
-        Preset preset = preset_by_name(name);
-        fit_to_footprint(preset, 0.004);
-        const Plan p = plan_of(options, preset, pixels);
-        const double sum = p.geometry + p.rounds * (p.polish + p.between) + p.appearance +
-                           p.refinements * p.refinement + p.finishing + p.residual + p.saving;
-        EXPECT_EQ(p.finish, seconds >= 300 && preset.resolution_from_views);  // "paper" has one mesh
-        EXPECT_EQ(p.finishing > 0, p.finish);
-        EXPECT_LE(sum, seconds) << name << " " << pixels;
-        EXPECT_GE(p.geometry, 0.35 * seconds) << name << " " << pixels;
-      }
+      for (const size_t pixels : {300000u, 3000000u, 13000000u})
+        for (const double slowness : {0.1, 0.5, 1.0, 2.0}) {
+          const Plan p = plan_for(name, seconds, pixels, slowness);
+          EXPECT_LE(sum_of(p), seconds * (1 + 1e-9))
+              << name << " " << seconds << " " << pixels << " " << slowness;
+          EXPECT_GE(p.geometry, 0.35 * seconds);
+          EXPECT_EQ(p.finer_mesh > 0, p.has_finer_mesh);
+        }
+}
+
+// Only work per second counts: twice the time on a machine of half the speed is the same plan.
+TEST(Plan, DependsOnTheMachinesSpeedAlone) {
+  for (const double seconds : {60.0, 300.0, 900.0}) {
+    const Plan here = plan_for("fast", seconds, 10000000, 1),
+               there = plan_for("fast", 3 * seconds, 10000000, 3);
+    EXPECT_EQ(here.polish_rounds, there.polish_rounds);
+    EXPECT_EQ(here.refinements, there.refinements);
+    EXPECT_EQ(here.has_finer_mesh, there.has_finer_mesh);
+    EXPECT_EQ(here.choose_start, there.choose_start);
+    EXPECT_EQ(here.effort, there.effort);
+    EXPECT_EQ(here.residual_hits, there.residual_hits);
+    EXPECT_NEAR(3 * here.geometry, there.geometry, 1e-6 * there.geometry);
+  }
+}
+
+TEST(Plan, AFasterMachineLeavesNothingOutThatASlowerOneDoes) {
+  for (const double seconds : {30.0, 60.0, 180.0, 300.0, 900.0}) {
+    const Plan slow = plan_for("fast", seconds, 13000000, 2),
+               quick = plan_for("fast", seconds, 13000000, 0.5);
+    EXPECT_GE(quick.polish_rounds, slow.polish_rounds);
+    EXPECT_GE(quick.refinements, slow.refinements);
+    EXPECT_GE(quick.has_finer_mesh, slow.has_finer_mesh);
+    EXPECT_GE(quick.residual_hits, slow.residual_hits);
+    EXPECT_GE(quick.effort, slow.effort);
+  }
 }
 
 TEST(Plan, ByStepsKnowsNoClock) {
   ReconstructOptions options;
   options.iterations = 2000;
-  const Plan p = plan_of(options, preset_by_name("paper"), 3000000);
+  const Plan p = plan_of(options, preset_by_name("paper"), 3000000, {});
   EXPECT_EQ(p.iterations, 2000);
-  EXPECT_EQ(p.geometry + p.polish + p.appearance + p.residual, 0);
+  EXPECT_EQ(sum_of(p), 0);
+  EXPECT_EQ(p.polish_steps, 300);
+  EXPECT_EQ(p.residual_steps, 1000);
 }
 
 }  // namespace

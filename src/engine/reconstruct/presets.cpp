@@ -10,7 +10,7 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kFeatures = 16;  // what the SDF network tells the radiance network
+constexpr int kFeatures = 16;  // outputs of the SDF network that the radiance network reads
 
 Preset fast() {
   Preset p;
@@ -27,6 +27,7 @@ Preset fast() {
   p.appearance.albedo.activation = Activation::relu;
   p.appearance.albedo.outputs = 3;
   p.appearance.albedo.output_activation = Activation::sigmoid;
+  p.trial.geometry = p.geometry;
   p.iterations = 4000;
   p.resolution_from_views = true;
   return p;
@@ -43,16 +44,17 @@ Preset paper() {
   sdf.softplus_beta = 100;
   sdf.outputs = 1 + kFeatures;
   sdf.sphere_radius = 0.5f;
+  p.trial.geometry = fast().geometry;
   p.geometry.radiance_layers = 4;
   p.geometry.radiance_width = 512;
   p.geometry.layer_rate = 5e-4f;
   p.geometry.prefit_steps = 1000;
-  // The paper's 2048 pixels are of the whole picture and two of three miss the object; ours are all near it,
-  // and a smaller batch makes more of a processor's hours.
+  // The paper takes 2048 pixels of the whole picture, of which two in three miss the object. These are all
+  // near the object, and a smaller batch makes more steps in the same time.
   p.geometry.rays = 256;
   p.geometry.refresh_every = 40;
   p.geometry.anchor_until = 0.4f;
-  p.geometry.hold_start = true;  // one network for all of space: what it does not hold, it forgets at once
+  p.geometry.hold_start = true;  // a network without grid soon forgets places it is not trained at
   p.appearance.albedo.encoding.frequencies = 10;
   p.appearance.albedo.hidden_layers = 4;
   p.appearance.albedo.width = 512;
@@ -62,11 +64,9 @@ Preset paper() {
   p.appearance.batch = 1024;
   p.appearance.network_rate = 5e-4f;
   p.polish.batch = 1024;
-  p.meshing.resolution = p.finished.resolution = 128;
+  p.meshing.resolution = p.finer_meshing.resolution = 128;
   p.iterations = 200000;
-  p.resolution_from_views = false;
-  p.most_hits = p.residual_hits = 200000;
-  p.stretch = 8;
+  p.max_hits = p.max_residual_hits = 200000;
   return p;
 }
 
@@ -84,14 +84,18 @@ Preset preset_by_name(const std::string& name) {
 }
 
 void fit_to_footprint(Preset& p, double footprint) {
-  if (!p.resolution_from_views) return;
   const int finest = int(std::clamp(2.2 / footprint, 96.0, 640.0));  // cells a little finer than pixels
-  EncodingConfig &sdf = p.geometry.sdf.encoding, &albedo = p.appearance.albedo.encoding;
-  sdf.finest_resolution = albedo.finest_resolution = finest;
-  sdf.log2_table = finest > 330 ? 17 : 15;
-  albedo.log2_table = finest > 330 ? 19 : 16;
-  p.meshing.resolution = finest > 330 ? 256 : finest > 140 ? 192 : 96;
-  p.finished.resolution = p.meshing.resolution * 3 / 2;
+  const bool fine = finest > 330;
+  const auto fit = [&](EncodingConfig& grid, int log2_table) {
+    grid.finest_resolution = finest;
+    grid.log2_table = log2_table;
+  };
+  fit(p.trial.geometry.sdf.encoding, fine ? 17 : 15);
+  if (!p.resolution_from_views) return;
+  fit(p.geometry.sdf.encoding, fine ? 17 : 15);
+  fit(p.appearance.albedo.encoding, fine ? 19 : 16);
+  p.meshing.resolution = fine ? 256 : finest > 140 ? 192 : 96;
+  p.finer_meshing.resolution = p.meshing.resolution * 3 / 2;
 }
 
 }  // namespace cei3d

@@ -7,29 +7,36 @@
 #include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/appearance/surface_polish.h"
 #include "engine/reconstruct/geometry/geometry_stage.h"
+#include "engine/reconstruct/start/start.h"
 #include "model/geometry/mesh/surface_nets.h"
 
 namespace cei3d {
 
 struct Preset {
   GeometryOptions geometry;
+  TrialOptions trial;  // with the fastest networks, whatever the preset: the best start is the same for all
   AppearanceOptions appearance;
   PolishOptions polish;
-  MeshingOptions meshing;          // of what is fitted: light and material have unknowns by vertex
-  MeshingOptions finished;         // of the object in the end: its silhouettes are those of its mesh
-  int iterations;                  // of the geometry stage when neither a time nor a number is asked for
-  bool resolution_from_views;      // grids as fine as the pixels: finest_resolution and log2_table follow the
-                                   // capture
-  size_t most_hits = 1500000;      // training pixels of the appearance stage
-  size_t residual_hits = 4000000;  // ... and of the residual, which learns the noise of fewer
-  double stretch = 1;              // how many times as long as with "fast" what follows the geometry takes
+  MeshingOptions meshing;              // of the surface on which light and material are fitted, by vertex
+  MeshingOptions finer_meshing;        // of the finished object, whose silhouettes are those of its mesh
+  bool resolution_from_views = false;  // grids as fine as the pixels, see fit_to_footprint()
+  int polish_steps = 600;              // of a round, at most; half of them in a run by steps
+  int residual_steps = 9000;           // at most; half of them in a run by steps
+  int refinement_steps = 600;          // of the albedo on another subset of the pixels
+  int iterations = 0;                  // of the geometry stage, when neither a time nor a number is asked for
+  int polish_from_iterations = 1000;   // geometry steps from which an untimed run polishes and meshes finer
+  int trials_from_iterations = 4000;   // geometry steps from which an untimed run compares start shapes
+  size_t max_hits = 1500000;           // training pixels of the appearance stage
+  size_t brief_hits = 300000;          // training pixels of its brief runs between polishing rounds
+  size_t max_residual_hits = 4000000;  // training pixels of the residual; of fewer it learns the noise
 };
 
 // "fast" (hash grids), "balanced" (the same for longer), "paper" (the paper's networks: 8x512 SDF, 4x512
-// albedo, frequency encodings; reference-facts 2.1, 3.3). Usage error for any other name.
+// albedo, frequency encodings). Usage error for any other name.
 Preset preset_by_name(const std::string& name);
 
-// Sets the grids of a preset from the size of a pixel on the object (unit-sphere units).
+// Sets the hash grids and meshes from the size of a pixel on the object (unit-sphere units): all those of a
+// preset that asks for it, the trial's always.
 void fit_to_footprint(Preset& preset, double pixel_footprint);
 
 }  // namespace cei3d

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photos to an editable object: the geometry stage, then the appearance stage. [architecture 1.2]
+// Photographs to an editable object. The stages are in engine/reconstruct/stages.h.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@ namespace cei3d {
 
 struct ReconstructOptions {
   std::string preset = "fast";  // "fast", "balanced" or "paper" (engine/reconstruct/presets.h)
-  double seconds = 0;           // stop training after; the whole schedule scales with it. 0: the preset's own
+  double seconds = 0;           // for the whole run; 0: as long as the preset's steps take
   int iterations = 0;  // of the geometry stage, instead of seconds: makes a run a function of the seed alone
   uint64_t seed = 1;
   int downscale = 1;   // use images at 1/N of their size
@@ -32,7 +32,7 @@ class Checkpoints {
   virtual std::optional<State> latest() = 0;  // what to resume from; nothing: start anew
 };
 
-// Scene, or an interrupted Error after saving a checkpoint when progress.cancelled().
+// Error: interrupted, after saving a checkpoint, when progress.cancelled().
 Scene reconstruct(const Device&, const Capture&, const ImageSource&, const Normalization&,
                   const ReconstructOptions&, Checkpoints&, Progress&);
 

@@ -2,38 +2,47 @@
 #include "engine/reconstruct/run_clock.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 
 namespace cei3d {
 
 namespace {
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+constexpr double kMaxFraction = 0.99;  // of a run that is not over, however late
+
+std::string message_of(const std::string& stage, const ProgressReport& r) {
+  if (r.stage.empty() || r.stage == stage) return r.message;
+  return r.message.empty() ? r.stage : r.stage + ", " + r.message;
 }
 
 }  // namespace
 
-RunClock::RunClock(Progress& to, double seconds) : to_(to), seconds_(seconds), start_(now()) {}
+RunClock::RunClock(Progress& to, Clock clock, double seconds)
+    : to_(to), clock_(std::move(clock)), seconds_(seconds), start_(clock_()) {}
 
 void RunClock::resume_at(double elapsed) { start_ = now() - elapsed; }
-
-double RunClock::elapsed() const { return now() - start_; }
 
 double RunClock::left() const {
   return seconds_ > 0 ? seconds_ - elapsed() : std::numeric_limits<double>::infinity();
 }
 
+void RunClock::enter(std::string stage, double begin, double end) {
+  stage_ = std::move(stage);
+  begin_ = begin;
+  end_ = end;
+  report({stage_, 0, -1, ""});
+}
+
 void RunClock::report(const ProgressReport& r) {
-  constexpr double kAlmost = 0.99;  // a run that is late is not over
-  ProgressReport by_clock = r;
-  if (seconds_ > 0 && r.fraction < 1) {
-    by_clock.fraction = std::min(elapsed() / seconds_, kAlmost);
-    by_clock.seconds_left = left() > 0 ? left() : -1;
+  ProgressReport whole{stage_, begin_ + (end_ - begin_) * std::clamp(r.fraction, 0.0, 1.0), -1,
+                       message_of(stage_, r)};
+  if (seconds_ > 0) {
+    const double seconds_left = left();
+    whole.fraction = 1 - seconds_left / seconds_;
+    whole.seconds_left = seconds_left > 0 ? seconds_left : -1;
   }
-  furthest_ = by_clock.fraction = std::max(furthest_, by_clock.fraction);
-  to_.report(by_clock);
+  max_fraction_ = whole.fraction = std::clamp(whole.fraction, max_fraction_, kMaxFraction);
+  to_.report(whole);
 }
 
 }  // namespace cei3d

@@ -1,29 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time that a reconstruction was given, and its progress told by that.
+// The time of a reconstruction, and its progress as a part of the whole.
 #pragma once
 
+#include <string>
+
+#include "core/base/clock.h"
 #include "core/base/progress.h"
 
 namespace cei3d {
 
-// Passes reports on. With a time given, how far the run is and how long it still takes are a matter of the
-// clock: stages that come twice, or take longer on one object than on another, never turn it back.
+// Stages report which fraction of themselves is done; what is passed on is the fraction of the whole run,
+// which never falls. A run with a time limit is as far as its clock.
 class RunClock : public Progress {
  public:
-  // seconds: of the whole run, which begins now; 0: as long as it takes.
-  RunClock(Progress& to, double seconds);
-  void resume_at(double elapsed);  // a resumed run has used up this much already
-  double elapsed() const;
-  double left() const;  // below 0: late; infinite without a time given
+  // seconds: of the whole run, which begins now; 0: no limit.
+  RunClock(Progress& to, Clock clock, double seconds);
 
-  void report(const ProgressReport&) override;
+  double now() const { return clock_(); }
+  const Clock& clock() const { return clock_; }
+  void resume_at(double elapsed);  // an earlier part of the run took this many seconds
+  double elapsed() const { return now() - start_; }
+  double left() const;  // below 0: late; infinite without a limit
+
+  // Later reports are of this stage, which is the part [begin, end) of the run.
+  void enter(std::string stage, double begin, double end);
+
+  // r.fraction: of the stage. r.stage: what the stage is doing, passed on in the message.
+  void report(const ProgressReport& r) override;
   void log(const std::string& json_line) override { to_.log(json_line); }
   bool cancelled() const override { return to_.cancelled(); }
 
  private:
   Progress& to_;
+  Clock clock_;
   double seconds_, start_;
-  double furthest_ = 0;  // fraction reported
+  std::string stage_;
+  double begin_ = 0, end_ = 0;
+  double max_fraction_ = 0;  // reported so far
 };
 
 }  // namespace cei3d

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "engine/segment/seen_points.h"
 #include "model/geometry/shape/point_index.h"
@@ -279,7 +280,7 @@ PropagateResult propagate(const HandlerPoints& handlers, const Surface& surface,
   Propagation p(handlers, surface, request, segmenter);
   p.first_view();
   while (int(p.segmented()) < request.max_views) {
-    if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Interrupted; nothing was changed.");
+    check_cancelled(progress, "Interrupted; nothing was changed.");
     ProgressReport report;
     report.stage = "views";
     report.fraction = double(p.segmented()) / request.max_views;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <chrono>
-
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/compute/device.h"
 #include "engine/capture/capture_images.h"
@@ -54,7 +53,7 @@ Project create_project(const ReconstructRequest& request, const CheckReport& che
                          checked.capture, request.replace);
 }
 
-// The capture that was reconstructed must still be the one that training goes on with.
+// The capture must be as it was when the reconstruction was begun.
 void require_same_capture(const Project& project, const fs::path& given) {
   Capture now = project.capture();
   if (!given.empty()) {
@@ -64,8 +63,7 @@ void require_same_capture(const Project& project, const fs::path& given) {
   if (capture_fingerprint(now) != project.fingerprint())
     fail(
         "The capture {} is not as it was when {} was begun: its views, cameras or pictures differ. Restore "
-        "it, or start "
-        "anew with --force.",
+        "it, or start anew with --force.",
         now.root.string(), project.folder().string());
 }
 
@@ -82,7 +80,7 @@ ReconstructReport report_of(const Project& project, const Scene& scene, double s
 }  // namespace
 
 ReconstructReport Session::reconstruct(const ReconstructRequest& request, Progress& progress) {
-  const auto start = std::chrono::steady_clock::now();
+  const double start = steady_seconds();
   if (request.resume) {
     open(request.project, Access::write);
     require_same_capture(project(), request.capture);
@@ -104,8 +102,7 @@ ReconstructReport Session::reconstruct(const ReconstructRequest& request, Progre
     const Scene scene = cei3d::reconstruct(*device_, project().capture(), CaptureImages(options.downscale),
                                            project().head().normalization, options, checkpoints, log);
     project().save_base(scene);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return report_of(project(), scene, seconds);
+    return report_of(project(), scene, steady_seconds() - start);
   } catch (...) {
     project().discard_if_empty();
     throw;

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/compute/kernels/adam.h"
@@ -144,7 +145,8 @@ class LobeFit {
 
 }  // namespace
 
-SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOptions& options, EnvUp up) {
+SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOptions& options, EnvUp up,
+                    const Progress& progress) {
   if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a colour picture");
   for (const float x : lat_long.data)
     if (!std::isfinite(x)) fail("light map: a value is not finite");
@@ -152,8 +154,10 @@ SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOp
   const float kernel = options.seen_through;
   if (kernel > 0) map = blurred(map, kernel, up);
   LobeFit fit(map, options.lobes, kernel > 0 ? 0.7f * kernel : kSharpestLobe, up);
-  for (int t = 0; t < options.steps; ++t)
+  for (int t = 0; t < options.steps; ++t) {
+    check_cancelled(progress);
     fit.step(device, t, std::pow(0.02f, float(t) / float(options.steps)));
+  }
   SgMixture light = fit.lobes();
   if (kernel > 0)
     for (SgLobe& l : light.lobes) l = unblurred(l, kernel);

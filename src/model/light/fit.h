@@ -2,6 +2,7 @@
 // Distant light as a picture to distant light as lobes.
 #pragma once
 
+#include "core/base/progress.h"
 #include "core/compute/device.h"
 #include "core/image/image.h"
 #include "model/light/envmap.h"
@@ -21,6 +22,7 @@ struct LobeFitOptions {
 
 // Lobes that start on a Fibonacci sphere with sharpness lobes / 2 and descend on the squared error of square
 // roots, weighted by solid angle.
-SgMixture fit_lobes(const Device&, const Image& lat_long, const LobeFitOptions& = {}, EnvUp up = EnvUp::z);
+SgMixture fit_lobes(const Device&, const Image& lat_long, const LobeFitOptions& = {}, EnvUp up = EnvUp::z,
+                    const Progress& progress = Progress());
 
 }  // namespace cei3d

@@ -2,9 +2,10 @@
 #include "engine/reconstruct/appearance/appearance_stage.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
+#include "core/base/cancel.h"
+#include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/display_loss.h"
@@ -17,17 +18,11 @@ namespace cei3d {
 
 namespace {
 
-constexpr double kFullEffort = 10;  // seconds on two cores that all of it needs; with less, half the work
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 LinearSplitOptions split_options(const AppearanceOptions& o) {
   LinearSplitOptions s;
   s.seed = o.seed;
   s.fixed_roughness = o.roughness;
-  if (o.seconds > 0 && o.seconds < kFullEffort) {
+  if (o.effort == Effort::brief) {
     s.most_hits = 200000;
     s.search_hits = 120000;
     s.refinements = 2;
@@ -65,7 +60,8 @@ class Descent {
     const SurfaceSamples& samples = input_.samples;
     const std::vector<ShadingTerms<float>> terms =
         lighting_->terms(UniformBatch(samples.hits, result_.material));
-    for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
+    for (int step = 0; step < steps; ++step) {
+      check_cancelled(progress_);
       choose_batch();
       const auto loss = [&](int begin, int end, const float* out, float* d_out) {
         for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
@@ -73,20 +69,21 @@ class Descent {
         });
       };
       trainer_.step(device_, positions_, loss, rate * std::pow(0.1f, float(step) / float(steps)));
-      if (step % 50 == 0) progress_.report({"albedo", 0.92 + 0.03 * step / steps, -1, ""});
+      if (step % 50 == 0) progress_.report({"albedo", 0.6 + 0.2 * step / steps, -1, ""});
     }
   }
 
   // Field and light together; openness and bounce follow every kRefresh steps.
   void fit_jointly(int steps) {
     LightDescent light(result_.light, result_.material.metalness == 0);
-    for (int step = 0; step < steps && !progress_.cancelled(); ++step) {
+    for (int step = 0; step < steps; ++step) {
+      check_cancelled(progress_);
       if (step % kRefresh == 0)
         relight(field_.eval3(device_, input_.surface->mesh().positions));
       else
         lighting_->set_lobes(result_.light);
       joint_step(light, std::pow(0.1f, float(step) / float(steps)));
-      if (step % 50 == 0) progress_.report({"light and albedo", 0.95 + 0.04 * step / steps, -1, ""});
+      if (step % 50 == 0) progress_.report({"light and albedo", 0.8 + 0.2 * step / steps, -1, ""});
     }
   }
 
@@ -168,30 +165,30 @@ class Descent {
 
 AppearanceResult fit_appearance(const Device& device, const AppearanceInput& input,
                                 const AppearanceOptions& options, Progress& progress) {
-  const double start = now();
+  const double start = steady_seconds();
   AppearanceResult result;
-  progress.report({"light", 0.8, options.seconds, ""});
+  progress.report({"light", 0, -1, ""});
   const auto transport = std::make_shared<const Transport>(*input.surface);
   result.split = linear_split(*transport, input.samples, split_options(options), progress);
   result.material = result.split.material;
   progress.log(Json{{"stage", "linear split"},
-                    {"seconds", now() - start},
+                    {"seconds", steady_seconds() - start},
                     {"roughness", result.material.roughness},
                     {"metalness", result.material.metalness}}
                    .dump());
-  progress.report({"lobes", 0.9, -1, ""});
+  progress.report({"lobes", 0.5, -1, ""});
   LobeFitOptions lobes;
   lobes.height = result.split.light.height;
   lobes.seen_through = 0.5f * reflection_scale(result.material.roughness);
-  result.light = fit_lobes(device, result.split.light, lobes);
-  const bool brief = options.seconds > 0 && options.seconds < kFullEffort;
+  result.light = fit_lobes(device, result.split.light, lobes, EnvUp::z, progress);
+  const bool brief = options.effort == Effort::brief;
   Descent descent(device, input, transport, options, Field(options.albedo, options.seed + 100),
                   result.split.albedo, result, progress);
   descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800, 1);
   descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps
                                                : joint_steps_for(result.material, brief));
   result.albedo = std::make_shared<const Field>(descent.take_field());
-  progress.log(Json{{"stage", "appearance"}, {"seconds", now() - start}}.dump());
+  progress.log(Json{{"stage", "appearance"}, {"seconds", steady_seconds() - start}}.dump());
   return result;
 }
 

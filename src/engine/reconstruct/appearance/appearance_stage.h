@@ -17,11 +17,12 @@ struct AppearanceInput {
   SurfaceSamples samples;  // pixels wholly on the object
 };
 
+enum class Effort { brief, full };  // brief: fewer samples and steps, half the time
+
 struct AppearanceOptions {
-  double seconds =
-      0;  // what there is for all of it; full effort (0) takes about 12 on two cores, the least half
-  int albedo_steps = -1;  // of the field under the split's light; -1: as `seconds` allow
-  int joint_steps = -1;   // of field and light together; -1: as `seconds` allow
+  Effort effort = Effort::full;
+  int albedo_steps = -1;  // of the field under the split's light; -1: as `effort` says
+  int joint_steps = -1;   // of field and light together; -1: as `effort` says
   float roughness = 0;    // > 0: known, not searched
   uint64_t seed = 1;
   FieldConfig albedo;          // 3 outputs, sigmoid

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/math/color.h"
 #include "engine/reconstruct/appearance/split_system.h"
@@ -52,6 +53,7 @@ class Solver {
     system_.set_roughness(roughness);
     Solution s{start_, std::vector<Vec3f>(mesh_.positions.size(), Vec3f{0.7f, 0.7f, 0.7f}), 0};
     for (int round = 0; round < 3; ++round) {
+      check_cancelled(progress_);
       system_.set_metal(s.color);
       system_.solve(s.x, 3, 8);
       s.color = system_.fit_metal_color(s.x);
@@ -63,6 +65,7 @@ class Solver {
 
  private:
   Solution finish(Solution s, bool metal) {
+    check_cancelled(progress_);
     s.residual = system_.residual(s.x);
     trials.push_back({metal, system_.roughness(), s.residual});
     progress_.log(fmt::format(R"({{"stage":"split","metal":{},"roughness":{:.3f},"residual":{:.3e}}})", metal,

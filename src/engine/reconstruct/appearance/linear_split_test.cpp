@@ -204,7 +204,7 @@ AppearanceOptions brief(float roughness) {
   o.albedo.encoding = {0, 8, 8, 64, 12};
   o.albedo.width = 16;
   o.albedo.output_activation = Activation::sigmoid;
-  o.seconds = 1;
+  o.effort = Effort::brief;
   o.roughness = roughness;
   o.albedo_steps = 150;
   o.joint_steps = 12;

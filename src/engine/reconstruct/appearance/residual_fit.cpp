@@ -2,9 +2,9 @@
 #include "engine/reconstruct/appearance/residual_fit.h"
 
 #include <array>
-#include <chrono>
 #include <cmath>
 
+#include "core/base/cancel.h"
 #include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/base/pool.h"
@@ -27,10 +27,6 @@ constexpr double kLeastGain = 0.03;                                  // of the s
 constexpr double kJudging = 0.2;                                     // of the steps come before that,
 constexpr double kWarmUp = 0.05;  // and so many at rising rates: large first ones leave no unit alive
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 // Mean base colour of each pixel: at its centre alone the texture is sharper than the picture, and the
 // residual would learn to blur it.
 std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::span<const Hit> hits,
@@ -44,12 +40,14 @@ std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::
 }
 
 // What the physical model sends out.
-std::vector<Vec3f> physical(const Device& device, const Scene& scene, const SurfaceSamples& samples) {
+std::vector<Vec3f> physical(const Device& device, const Scene& scene, const SurfaceSamples& samples,
+                            const Progress& progress) {
   constexpr size_t kSlab = 1 << 17;  // hits at a time: shading takes more memory than they do
   const SceneLight light(device, scene, scene_transports(scene));
   std::vector<Vec3f> out;
   out.reserve(samples.hits.size());
   for (size_t begin = 0; begin < samples.hits.size(); begin += kSlab) {
+    check_cancelled(progress);
     const size_t n = std::min(kSlab, samples.hits.size() - begin);
     const std::span<const Hit> hits = samples.hits.subspan(begin, n);
     Appearance look = appearance_at(device, scene, hits);
@@ -65,12 +63,12 @@ std::vector<Vec3f> physical(const Device& device, const Scene& scene, const Surf
 class Trainer {
  public:
   Trainer(const Device& device, const Scene& scene, const SurfaceSamples& samples,
-          std::span<const uint16_t> views, const ResidualOptions& options)
+          std::span<const uint16_t> views, const ResidualOptions& options, const Progress& progress)
       : device_(device),
         samples_(samples),
         seed_(options.seed),
         warm_up_(kWarmUp * options.steps),
-        sent_(physical(device, scene, samples)),
+        sent_(physical(device, scene, samples, progress)),
         features_(std::make_shared<Field>(*scene.sdf)),
         features_learn_(features_->config().encoding.levels > 0),
         residual_(make_residual(features_learn_ ? features_ : scene.sdf, options.seed)),
@@ -182,14 +180,15 @@ class Trainer {
 };
 
 // The rates falling from all to a hundredth. seconds: at most; 0: no limit.
-void train(Trainer& trainer, int steps, double seconds, Progress& progress) {
-  const double start = now();
-  for (int step = 0; step < steps && !progress.cancelled(); ++step) {
-    const double by_clock = seconds > 0 ? (now() - start) / seconds : 0;
+void train(Trainer& trainer, int steps, double seconds, const Clock& clock, Progress& progress) {
+  const double start = clock();
+  for (int step = 0; step < steps; ++step) {
+    check_cancelled(progress);
+    const double by_clock = seconds > 0 ? (clock() - start) / seconds : 0;
     const double u = std::max(double(step) / steps, by_clock);
     if (u >= 1) break;
     trainer.step(std::pow(0.01, u));
-    if (step % 50 == 0) progress.report({"residual", 0.99, -1, ""});
+    if (step % 50 == 0) progress.report({"residual", u, -1, ""});
   }
 }
 
@@ -198,19 +197,19 @@ void train(Trainer& trainer, int steps, double seconds, Progress& progress) {
 std::optional<Residual> fit_residual(const Device& device, const Scene& scene, const SurfaceSamples& samples,
                                      std::span<const uint16_t> views, const ResidualOptions& options,
                                      Progress& progress) {
-  const double start = now();
-  progress.report({"residual", 0.99, -1, ""});
-  Trainer trainer(device, scene, samples, views, options);
+  const double start = options.clock();
+  progress.report({"residual", 0, -1, ""});
+  Trainer trainer(device, scene, samples, views, options, progress);
   if (!trainer.can_judge()) return {};
-  const double shading = now() - start;
+  const double shading = options.clock() - start;
   const double seconds = options.seconds > 0 ? std::max(options.seconds - shading, 0.5 * options.seconds) : 0;
   const int judging = std::max(1, int(kJudging * options.steps));
-  train(trainer, judging, kJudging * seconds, progress);
+  train(trainer, judging, kJudging * seconds, options.clock, progress);
   const double gain = trainer.gain();
   progress.log(Json{{"stage", "residual"}, {"shading", shading}, {"gain_on_views_kept_apart", gain}}.dump());
   if (gain < kLeastGain) return {};
   trainer.teach_all();
-  train(trainer, options.steps - judging, (1 - kJudging) * seconds, progress);
+  train(trainer, options.steps - judging, (1 - kJudging) * seconds, options.clock, progress);
   return trainer.take();
 }
 

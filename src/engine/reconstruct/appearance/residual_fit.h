@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "core/base/clock.h"
 #include "core/base/progress.h"
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "model/scene/residual.h"
@@ -14,6 +15,7 @@ namespace cei3d {
 struct ResidualOptions {
   // For the shading of all samples and the training, which gets half at least; 0: no limit, the steps count.
   double seconds = 0;
+  Clock clock = steady_seconds;
   int steps = 1500;
   // Adam's; they fall to a hundredth. Of the network, and of the features' tables and layers. Fields without
   // tables keep the features they have: they would take hours.
@@ -23,7 +25,7 @@ struct ResidualOptions {
 
 // scene: the object without residual. samples: as for the appearance stage; views: #samples. For the first
 // fifth every eighth view is kept apart, to judge by: nothing is returned where its pixels do not gain (spot:
-// what light and material leave there is noise), or where there is no such view. Cancelled: as far as it got.
+// what light and material leave there is noise), or where there is no such view. Error: interrupted.
 std::optional<Residual> fit_residual(const Device&, const Scene& scene, const SurfaceSamples& samples,
                                      std::span<const uint16_t> views, const ResidualOptions&, Progress&);
 

@@ -2,8 +2,8 @@
 #include "engine/reconstruct/appearance/surface_polish.h"
 
 #include <algorithm>
-#include <chrono>
 
+#include "core/base/cancel.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/render/lighting.h"
@@ -12,10 +12,6 @@
 
 namespace cei3d {
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 class Polish {
  public:
@@ -104,14 +100,14 @@ class Polish {
 
 void polish_surface(const Device& device, GeometryStage& stage, const AppearanceInput& input,
                     const AppearanceResult& appearance, const PolishOptions& options, Progress& progress) {
-  const double start = now();
+  const double start = options.clock();
   Polish polish(device, stage, input, appearance, options);
-  for (int step = 0; step < options.steps && !progress.cancelled(); ++step) {
-    const double time = options.seconds > 0 ? (now() - start) / options.seconds : 0;
+  for (int step = 0; step < options.steps; ++step) {
+    check_cancelled(progress);
+    const double time = options.seconds > 0 ? (options.clock() - start) / options.seconds : 0;
     if (time >= 1) break;
     polish.step(step, std::max(time, double(step) / options.steps));
-    if (step % 20 == 0)
-      progress.report({"surface by its reflections", 0.8 + 0.05 * step / options.steps, -1, ""});
+    if (step % 20 == 0) progress.report({"surface by its reflections", double(step) / options.steps, -1, ""});
   }
 }
 

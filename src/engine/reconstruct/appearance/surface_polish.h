@@ -4,6 +4,7 @@
 // geometry stage's own loss holds the silhouettes. [paper sec. 3.2, joint optimisation]
 #pragma once
 
+#include "core/base/clock.h"
 #include "core/base/progress.h"
 #include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/geometry/geometry_stage.h"
@@ -13,8 +14,9 @@ namespace cei3d {
 struct PolishOptions {
   int steps = 400;
   double seconds = 0;  // > 0: at most so long
-  int batch = 8192;    // hits a step
-  float weight = 1;    // of the shading loss against the geometry stage's
+  Clock clock = steady_seconds;
+  int batch = 8192;  // hits a step
+  float weight = 1;  // of the shading loss against the geometry stage's
   double from =
       0.66;  // where in the geometry stage's schedule, whose rates it takes, it begins; it ends with it
   uint64_t seed = 1;

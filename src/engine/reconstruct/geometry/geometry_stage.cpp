@@ -29,9 +29,9 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
   optimizer_.add(radiance_, "layer", layers);
 }
 
-void GeometryStage::prefit(const StartShape& start) {
-  cei3d::prefit(device_, sdf_, start.distance, options_.prefit_steps, options_.layer_rate, levels_at(0),
-                seed_);
+void GeometryStage::prefit(const StartShape& start, const Progress& progress) {
+  cei3d::prefit(device_, sdf_, start.distance,
+                {options_.prefit_steps, options_.layer_rate, levels_at(0), seed_}, progress);
   anchor_ = start.anchored || options_.hold_start ? start.distance : DistanceGrid{};
   matte_until_ = start.matte_until;
 }

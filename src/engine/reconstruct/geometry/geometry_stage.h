@@ -6,6 +6,7 @@
 #include <span>
 
 #include "core/base/pool.h"
+#include "core/base/progress.h"
 #include "engine/reconstruct/geometry/geometry_objective.h"
 #include "engine/reconstruct/geometry/geometry_options.h"
 #include "engine/reconstruct/geometry/occupancy.h"
@@ -44,7 +45,7 @@ class GeometryStage {
                 uint64_t seed);
 
   // Fits the field to a shape: descent then starts from the right object. Error: it is empty.
-  void prefit(const StartShape&);
+  void prefit(const StartShape&, const Progress& progress = Progress());
   // One training step at schedule position u in [0, 1).
   GeometryStats step(int64_t step, double u, const ValueSlopes& more = {});
   // Loss statistics of random pixels of another store (held-out views), no training.

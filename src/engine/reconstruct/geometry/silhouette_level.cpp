@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/cancel.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/geometry/occupancy.h"
 
@@ -79,7 +80,7 @@ std::vector<Lowest> lowest_along(const Device& device, const Field& sdf, std::sp
 }  // namespace
 
 float silhouette_level(const Device& device, const Field& sdf, const PixelStore& store, float max_level,
-                       uint64_t seed) {
+                       uint64_t seed, const Progress& progress) {
   const std::vector<Pixel> pixels = silhouette_pixels(store);
   if (pixels.size() < kMinPixels) return 0;
   std::vector<Ray> rays;
@@ -93,9 +94,11 @@ float silhouette_level(const Device& device, const Field& sdf, const PixelStore&
     coverage += double(p.srgba[3]) / 255 / double(kRays);
   }
   std::vector<float> values;
-  for (size_t begin = 0; begin < kRays; begin += kSlab)
+  for (size_t begin = 0; begin < kRays; begin += kSlab) {
+    check_cancelled(progress);
     for (const Lowest& l : lowest_along(device, sdf, std::span(rays).subspan(begin, kSlab)))
       values.push_back(l.value);
+  }
   // A ray meets the level set of every value above its lowest one.
   const auto at = values.begin() + std::ptrdiff_t(coverage * double(kRays - 1));
   std::nth_element(values.begin(), at, values.end());

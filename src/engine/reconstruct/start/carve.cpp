@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/base/cancel.h"
 #include "core/base/parallel.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/geometry/occupancy.h"
@@ -160,9 +161,13 @@ std::vector<uint8_t> spread(const std::vector<uint8_t>& grid, int n, uint8_t val
 
 }  // namespace
 
-VisualHull carve(const PixelStore& pixels, const VisualHull& hull, const CarveOptions& options) {
+VisualHull carve(const PixelStore& pixels, const VisualHull& hull, const CarveOptions& options,
+                 const Progress& progress) {
   Fog fog(pixels, hull, options);
-  for (int step = 0; step < options.steps; ++step) fog.step(step);
+  for (int step = 0; step < options.steps; ++step) {
+    check_cancelled(progress);
+    fog.step(step);
+  }
   VisualHull out = hull;
   out.inside = fog.solid();
   for (int k = 0; k < options.opening; ++k) out.inside = spread(out.inside, hull.n, 1);

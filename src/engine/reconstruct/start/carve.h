@@ -6,6 +6,7 @@
 // Sun et al. 2022; Yu et al. 2022]
 #pragma once
 
+#include "core/base/progress.h"
 #include "engine/reconstruct/pixels.h"
 #include "model/geometry/shape/visual_hull.h"
 
@@ -23,6 +24,7 @@ struct CarveOptions {
 };
 
 // The hull without its visibly empty cells. Same bits whatever the number of threads.
-VisualHull carve(const PixelStore&, const VisualHull&, const CarveOptions&);
+VisualHull carve(const PixelStore&, const VisualHull&, const CarveOptions&,
+                 const Progress& progress = Progress());
 
 }  // namespace cei3d

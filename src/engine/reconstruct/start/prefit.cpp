@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/loss.h"
@@ -77,8 +78,8 @@ float DistanceGrid::at(Vec3f p) const {
   return trilinear(p, n, [&](int x, int y, int z) { return values[(size_t(z) * n + y) * n + x]; });
 }
 
-void prefit(const Device& device, Field& sdf, const DistanceGrid& grid, int steps, float layer_rate,
-            int levels, uint64_t seed) {
+void prefit(const Device& device, Field& sdf, const DistanceGrid& grid, const PrefitOptions& options,
+            const Progress& progress) {
   const std::vector<float>& distance = grid.values;
   std::vector<uint32_t> near;  // cells close to the surface
   for (size_t i = 0; i < distance.size(); ++i)
@@ -87,14 +88,15 @@ void prefit(const Device& device, Field& sdf, const DistanceGrid& grid, int step
     fail("the visual hull of the masks is empty: masks and camera poses disagree, or the masks are wrong");
 
   FieldTrainer::Options rates;
-  rates.network_rate = layer_rate;
+  rates.network_rate = options.layer_rate;
   FieldTrainer trainer(sdf, rates);
   const int n = grid.n, batch = 2048, outputs = sdf.config().outputs;
   std::vector<Vec3f> x(batch);
   std::vector<float> target(batch);
-  for (int step = 0; step < steps; ++step) {
+  for (int step = 0; step < options.steps; ++step) {
+    check_cancelled(progress);
     for (int i = 0; i < batch; ++i) {
-      Rng rng(seed, uint64_t(step), uint64_t(i));
+      Rng rng(options.seed, uint64_t(step), uint64_t(i));
       const uint32_t cell =
           i % 4 ? near[rng.below(uint32_t(near.size()))] : rng.below(uint32_t(distance.size()));
       const auto at = [n](uint32_t k) { return (float(k) + 0.5f) * 2 / float(n) - 1; };
@@ -108,7 +110,7 @@ void prefit(const Device& device, Field& sdf, const DistanceGrid& grid, int step
             d_out[size_t(i - begin) * outputs] =
                 huber(out[size_t(i - begin) * outputs] - target[i], 0.02f).gradient / float(batch);
         },
-        steps > 1 ? std::pow(0.1f, float(step) / float(steps - 1)) : 1.0f, levels);
+        options.steps > 1 ? std::pow(0.1f, float(step) / float(options.steps - 1)) : 1.0f, options.levels);
   }
 }
 

@@ -3,6 +3,7 @@
 // colours. Descent from a sphere can lose the object for good (prototype-findings, trap 1).
 #pragma once
 
+#include "core/base/progress.h"
 #include "model/field/field.h"
 #include "model/geometry/shape/visual_hull.h"
 
@@ -19,9 +20,16 @@ struct DistanceGrid {
   float at(Vec3f p) const;    // trilinear, clamped to the grid
 };
 
-// Fits output 0 of `sdf` to the grid, most of all near its surface. layer_rate: Adam's. Error when it has no
-// surface.
-void prefit(const Device&, Field& sdf, const DistanceGrid& grid, int steps, float layer_rate, int levels,
-            uint64_t seed);
+struct PrefitOptions {
+  int steps = 300;
+  float layer_rate = 2e-3f;  // of Adam
+  int levels = -1;           // hash levels in use; -1: all
+  uint64_t seed = 1;
+};
+
+// Fits output 0 of `sdf` to the grid; three of four points are near its surface. Errors: the grid has no
+// surface; interrupted.
+void prefit(const Device&, Field& sdf, const DistanceGrid& grid, const PrefitOptions&,
+            const Progress& progress = Progress());
 
 }  // namespace cei3d

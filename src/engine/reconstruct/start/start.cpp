@@ -2,32 +2,36 @@
 #include "engine/reconstruct/start/start.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
-#include "core/base/error.h"
+#include "core/base/cancel.h"
 #include "core/base/json.h"
 #include "core/image/area.h"
-#include "engine/reconstruct/start/carve.h"
-#include "engine/reconstruct/start/stereo.h"
 
 namespace cei3d {
 
 namespace {
 
-constexpr int kCells = 128, kStereoCells = 192;  // an axis
-// Carved by colours, mirror images go on eating at the shape unless they have to be the surface. Stereo's is
-// near enough the surface for highlights to be told from it; without a view to depend on they would dent it.
+constexpr std::array<std::pair<Start, const char*>, 3> kStarts{
+    {{Start::hull, "hull_psnr"}, {Start::carved, "carved_psnr"}, {Start::stereo, "stereo_psnr"}}};
+
+// Fraction of the schedule during which colors do not depend on the view after a start carved by colors:
+// mirror images would hollow the shape out further unless they have to be explained by the surface. Not after
+// stereo, whose shape is near enough the surface for highlights to be told from it; colors that cannot depend
+// on the view would dent it.
 constexpr float kMatteUntil = 0.25f;
 // dB by which another start has to beat the visual hull, which nothing deceives: where the hull is wrong they
-// differ by one and a half and more.
-constexpr double kClearly = 0.3;
-// Views that must have a place in their frame before matter may start there. With fewer it can hang anywhere
-// along their rays and look right to them: a blob before the real surface, to everybody else.
-constexpr int kLeastViews = 3;
+// differ by 1.5 dB and more.
+constexpr double kMinGain = 0.3;
+// Views that must have a place in their frame before the object may start there. With fewer a blob can hang
+// anywhere along their rays and look right to them, before the real surface to all others.
+constexpr int kMinViews = 3;
 
-// Cells that may hold matter: masks are grown by half a cell, as the cameras see it at the object's centre,
-// or rods thinner than a cell would be lost, and descent makes no matter where there is none. It does take
-// away.
+// Cells that the object may fill. Masks are grown by half a cell, as the cameras see it at the object's
+// center, or rods thinner than a cell would be lost: training removes what is too much, but adds nothing
+// where nothing is.
 VisualHull hull_of(const PixelStore& pixels, int cells) {
   std::vector<Area> areas;
   areas.reserve(pixels.cameras().size());
@@ -38,57 +42,58 @@ VisualHull hull_of(const PixelStore& pixels, int cells) {
     areas.push_back(dilated(pixels.masks()[v], c.width, c.height, half_cell));
     masks.push_back({c, areas.back()});
   }
-  const int least_views = std::min(kLeastViews, int(masks.size() + 1) / 2);
-  return visual_hull(masks, cells, {-1, -1, -1}, {1, 1, 1}, 0, least_views);
+  const int min_views = std::min(kMinViews, int(masks.size() + 1) / 2);
+  return visual_hull(masks, cells, {-1, -1, -1}, {1, 1, 1}, 0, min_views);
 }
 
 StartShape shape_of(const VisualHull& hull, bool anchored, float matte_until) {
   return {{hull.n, signed_distance(hull)}, anchored, matte_until};
 }
 
-// dB on random training pixels after a short training.
-double trial(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
-             const StartShape& shape, uint64_t seed, Progress& progress) {
-  constexpr int kSteps = 400, kRays = 32768;
-  GeometryStage stage(device, pixels, options, seed);
-  stage.prefit(shape);
-  for (int step = 0; step < kSteps; ++step) {
-    if (progress.cancelled())
-      throw Error(ErrorCode::interrupted, "interrupted before there was a state to save");
-    stage.step(step, double(step) / kSteps);
-    if (step % 20 == 0) progress.report({"choosing a start", 0.01, -1, ""});
+// PSNR in dB of random training pixels after a short training. done: fraction of all trials before this one.
+double trial_psnr(const Device& device, const PixelStore& pixels, const TrialOptions& options,
+                  const StartShape& shape, uint64_t seed, double done, Progress& progress) {
+  GeometryStage stage(device, pixels, options.geometry, seed);
+  stage.prefit(shape, progress);
+  for (int step = 0; step < options.steps; ++step) {
+    check_cancelled(progress);
+    const double u = double(step) / options.steps;
+    stage.step(step, u);
+    if (step % 20 == 0) progress.report({"choosing a start", done + u / kStarts.size(), -1, ""});
   }
-  return stage.evaluate(pixels, kRays, 1).psnr();
+  return stage.evaluate(pixels, options.rays, 1).psnr();
 }
 
 }  // namespace
 
-StartShape start_shape(const PixelStore& pixels, Start start, uint64_t seed) {
+StartShape start_shape(const PixelStore& pixels, Start start, uint64_t seed, const ShapeOptions& options,
+                       const Progress& progress) {
   if (start == Start::stereo) {
-    const VisualHull hull = hull_of(pixels, kStereoCells);
-    return shape_of(carve_by_depths(hull, stereo_depths(pixels, hull, {})), true, 0);
+    const VisualHull hull = hull_of(pixels, options.stereo_cells);
+    return shape_of(carve_by_depths(hull, stereo_depths(pixels, hull, options.stereo, progress)), true, 0);
   }
-  const VisualHull hull = hull_of(pixels, kCells);
+  const VisualHull hull = hull_of(pixels, options.cells);
   if (start == Start::hull) return shape_of(hull, false, 0);
-  CarveOptions carving;
+  CarveOptions carving = options.carving;
   carving.seed = seed;
-  return shape_of(carve(pixels, hull, carving), true, kMatteUntil);
+  return shape_of(carve(pixels, hull, carving, progress), true, kMatteUntil);
 }
 
-StartShape choose_start(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
+StartShape choose_start(const Device& device, const PixelStore& pixels, const TrialOptions& options,
                         uint64_t seed, Progress& progress) {
   StartShape best;
   double best_psnr = -1e9;
   Json log{{"stage", "start"}};
-  const std::pair<Start, const char*> starts[] = {
-      {Start::hull, "hull_psnr"}, {Start::carved, "carved_psnr"}, {Start::stereo, "stereo_psnr"}};
-  for (const auto& [start, name] : starts) {
-    StartShape shape = start_shape(pixels, start, seed);
-    const double psnr = trial(device, pixels, options, shape, seed, progress);
+  for (size_t i = 0; i < kStarts.size(); ++i) {
+    const auto& [start, name] = kStarts[i];
+    check_cancelled(progress);
+    StartShape shape = start_shape(pixels, start, seed, options.shapes, progress);
+    const double done = double(i) / kStarts.size();
+    const double psnr = trial_psnr(device, pixels, options, shape, seed, done, progress);
     log[name] = psnr;
     if (psnr <= best_psnr) continue;
     best = std::move(shape);
-    best_psnr = psnr + (start == Start::hull ? kClearly : 0);
+    best_psnr = psnr + (start == Start::hull ? kMinGain : 0);
   }
   progress.log(log.dump());
   return best;

@@ -1,24 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shapes that descent can start from.
+// Shapes that the geometry stage can start from.
 #pragma once
 
 #include "core/base/progress.h"
 #include "engine/reconstruct/geometry/geometry_stage.h"
+#include "engine/reconstruct/start/carve.h"
+#include "engine/reconstruct/start/stereo.h"
 
 namespace cei3d {
 
 enum class Start {
-  hull,    // what the masks leave
-  carved,  // ... and the colours (engine/reconstruct/start/carve.h)
-  stereo,  // ... and depths by correlation (engine/reconstruct/start/stereo.h)
+  hull,    // the visual hull of the masks
+  carved,  // the hull without the cells that the colors show to be empty (engine/reconstruct/start/carve.h)
+  stereo,  // the hull without the cells that depth maps see through (engine/reconstruct/start/stereo.h)
 };
 
-// Error: empty hull.
-StartShape start_shape(const PixelStore&, Start, uint64_t seed);
+struct ShapeOptions {
+  int cells = 128, stereo_cells = 192;  // an axis; of the shapes by masks and colors, and of that by depths
+  CarveOptions carving;
+  StereoOptions stereo;
+};
 
-// The one from which a short training explains the pictures best: no rule tells beforehand. Carving opens
-// what the visual hull cannot (the inside of a shovel) but is deceived by mirror images (a metal body is
-// hollowed out where the reflections seem to be); stereo finds courtyards of brick but needs texture.
-StartShape choose_start(const Device&, const PixelStore&, const GeometryOptions&, uint64_t seed, Progress&);
+// Errors: empty hull; interrupted.
+StartShape start_shape(const PixelStore&, Start, uint64_t seed, const ShapeOptions& options = {},
+                       const Progress& progress = Progress());
+
+// A short training that a start shape is judged by.
+struct TrialOptions {
+  ShapeOptions shapes;
+  GeometryOptions geometry;
+  int steps = 400;
+  int rays = 32768;  // random training pixels that the result is compared with
+};
+
+// Trains briefly from each start and returns the one with the highest PSNR: no rule tells beforehand. Carving
+// opens what the visual hull cannot (the inside of a shovel) but is deceived by mirror images (a metal body
+// is hollowed out where the reflections seem to be); stereo finds courtyards of brick but needs texture.
+// Error: interrupted.
+StartShape choose_start(const Device&, const PixelStore&, const TrialOptions&, uint64_t seed, Progress&);
 
 }  // namespace cei3d

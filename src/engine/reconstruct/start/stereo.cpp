@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/cancel.h"
 #include "core/base/parallel.h"
 #include "engine/reconstruct/start/window_match.h"
 
@@ -218,11 +219,14 @@ std::vector<Vec3d> corners_of(const VisualHull& hull) {
 }  // namespace
 
 std::vector<DepthMap> stereo_depths(const PixelStore& pixels, const VisualHull& hull,
-                                    const StereoOptions& options) {
+                                    const StereoOptions& options, const Progress& progress) {
   const std::vector<Grey> pictures = grey_pictures(pixels, shrink_for(pixels, options.pixels));
   const std::vector<Vec3d> corners = corners_of(hull);
   std::vector<Estimate> estimates(pictures.size());
-  parallel_for(int(pictures.size()), [&](int v) { estimates[v] = sweep(v, pictures, corners, options); });
+  parallel_for(int(pictures.size()), [&](int v) {
+    if (!progress.cancelled()) estimates[v] = sweep(v, pictures, corners, options);
+  });
+  check_cancelled(progress);
   std::vector<DepthMap> out(pictures.size());
   parallel_for(int(pictures.size()), [&](int v) {
     const Camera& camera = pictures[v].camera;

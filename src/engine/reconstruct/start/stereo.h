@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "engine/reconstruct/pixels.h"
 #include "model/geometry/shape/visual_hull.h"
 
@@ -27,7 +28,8 @@ struct DepthMap {
 
 // One map a view; depths only where the masks show the object, and only what a second map confirms. Same bits
 // whatever the number of threads.
-std::vector<DepthMap> stereo_depths(const PixelStore&, const VisualHull&, const StereoOptions&);
+std::vector<DepthMap> stereo_depths(const PixelStore&, const VisualHull&, const StereoOptions&,
+                                    const Progress& progress = Progress());
 
 // The hull's cells without those that the maps see through.
 VisualHull carve_by_depths(const VisualHull&, std::span<const DepthMap>);

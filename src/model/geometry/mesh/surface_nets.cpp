@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "model/geometry/shape/sdf_normals.h"
 
@@ -133,13 +134,14 @@ void join_cells(const VertexLayers& vertices, const std::vector<float>& bottom, 
       }
 }
 
-Mesh net_of(const Corners& corners) {
+Mesh net_of(const Corners& corners, const Progress& progress) {
   Mesh mesh;
   const int cells = corners.cells();
   const float size = 2.0f / float(cells);
   VertexLayers vertices;
   std::vector<float> bottom = corners.layer(0);
   for (int z = 0; z < cells; ++z) {
+    check_cancelled(progress);
     std::vector<float> top = corners.layer(z + 1);
     vertices.above.assign(size_t(cells) * cells, ~0u);
     for (int y = 0; y < cells; ++y)
@@ -185,8 +187,9 @@ void drop_small_parts(Mesh& mesh, float smallest_share) {
 
 }  // namespace
 
-Mesh extract_mesh(const Device& device, const Field& sdf, const MeshingOptions& options) {
-  Mesh mesh = net_of(Corners(device, sdf, options.resolution));
+Mesh extract_mesh(const Device& device, const Field& sdf, const MeshingOptions& options,
+                  const Progress& progress) {
+  Mesh mesh = net_of(Corners(device, sdf, options.resolution), progress);
   if (mesh.triangles.empty())
     fail("the reconstructed field has no surface: the object was lost during training");
   drop_small_parts(mesh, options.smallest_part);

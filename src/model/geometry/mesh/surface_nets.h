@@ -3,6 +3,7 @@
 // through, moved onto the surface. Rounder triangles than marching cubes and no case table. [Gibson 1998]
 #pragma once
 
+#include "core/base/progress.h"
 #include "model/field/field.h"
 #include "model/geometry/mesh/mesh.h"
 
@@ -15,6 +16,7 @@ struct MeshingOptions {
 
 // Vertices lie on the zero set to about 1e-4; normals are sdf_normals(). Error when the field has no zero set
 // in the unit sphere.
-Mesh extract_mesh(const Device&, const Field& sdf, const MeshingOptions& options);
+Mesh extract_mesh(const Device&, const Field& sdf, const MeshingOptions& options,
+                  const Progress& progress = Progress());
 
 }  // namespace cei3d

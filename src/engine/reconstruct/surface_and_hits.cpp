@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/reconstruct/standing.h"
+#include "engine/reconstruct/surface_and_hits.h"
 
 #include <algorithm>
 
-#include "core/base/error.h"
+#include "core/base/cancel.h"
 #include "core/math/color.h"
 #include "core/math/rng.h"
 #include "engine/render/render.h"
-#include "model/geometry/mesh/surface_nets.h"
 
 namespace cei3d {
 
 namespace {
 
-constexpr size_t kSlab = 1 << 18;  // pixels at a time: tracing takes more memory than their hits do
+// Pixels traced at a time: tracing takes more memory than the hits do, and with the largest networks seconds.
+constexpr size_t kSlab = 1 << 16;
 
-// Empties the slab.
+// Traces the pixels of the slab and empties it.
 void add_hits(const Device& device, const Field& sdf, const Surface& surface, const PixelStore& pixels,
               std::vector<Pixel>& slab, ObjectHits& out) {
   std::vector<Ray> rays;
@@ -39,29 +39,38 @@ void add_hits(const Device& device, const Field& sdf, const Surface& surface, co
 }  // namespace
 
 ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& surface,
-                       const PixelStore& pixels, size_t most, uint64_t subset) {
-  size_t inner = 0;
+                       const PixelStore& pixels, const HitOptions& options, const Progress& progress) {
   const auto inside = [](const Pixel& p) { return p.srgba[3] == 255; };
-  for (const Pixel& p : pixels.pixels()) inner += inside(p);
-  const double keep = std::min(1.0, double(most) / double(std::max<size_t>(inner, 1)));
+  const auto inner = size_t(std::count_if(pixels.pixels().begin(), pixels.pixels().end(), inside));
+  const double keep = std::min(1.0, double(options.max_hits) / double(std::max<size_t>(inner, 1)));
   ObjectHits out;
-  const auto reserve = [n = std::min(most, inner)](auto&... lists) { (lists.reserve(n), ...); };
+  const auto reserve = [n = std::min(options.max_hits, inner)](auto&... lists) { (lists.reserve(n), ...); };
   reserve(out.hits, out.colors, out.clipped, out.views, out.footprints);
   std::vector<Pixel> slab;
   size_t i = 0;
   for (const Pixel& p : pixels.pixels()) {
     if (!inside(p)) continue;
-    if (keep == 1 || Rng(7, subset, i).uniform() < keep) slab.push_back(p);
+    if (keep == 1 || Rng(7, options.subset, i).uniform() < keep) slab.push_back(p);
     ++i;
-    if (slab.size() == kSlab || i == inner) add_hits(device, sdf, surface, pixels, slab, out);
+    if (slab.size() < kSlab && i < inner) continue;
+    check_cancelled(progress);
+    add_hits(device, sdf, surface, pixels, slab, out);
   }
   return out;
 }
 
-Standing stand(const Device& device, const Field& sdf, const Preset& preset, const PixelStore& pixels) {
-  Standing s;
-  s.surface = std::make_shared<const Surface>(extract_mesh(device, sdf, preset.meshing));
-  s.hits = object_hits(device, sdf, *s.surface, pixels, preset.most_hits);
+std::shared_ptr<const Surface> extract_surface(const Device& device, const Field& sdf,
+                                               const MeshingOptions& meshing, const Progress& progress) {
+  Mesh mesh = extract_mesh(device, sdf, meshing, progress);
+  check_cancelled(progress);
+  return std::make_shared<const Surface>(std::move(mesh));
+}
+
+SurfaceAndHits extract_surface_and_hits(const Device& device, const Field& sdf, const MeshingOptions& meshing,
+                                        const PixelStore& pixels, size_t max_hits, const Progress& progress) {
+  SurfaceAndHits s;
+  s.surface = extract_surface(device, sdf, meshing, progress);
+  s.hits = object_hits(device, sdf, *s.surface, pixels, {max_hits}, progress);
   if (s.hits.hits.empty()) fail("the reconstructed surface is not where the pictures show the object");
   return s;
 }

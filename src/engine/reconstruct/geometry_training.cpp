@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/geometry_training.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/cancel.h"
+#include "core/math/color.h"
+
+namespace cei3d {
+
+namespace {
+
+constexpr double kCheckpointSeconds = 30, kReportSeconds = 2;
+// Between evaluations on held-out pixels: at least 2 s, and 40 times as long as the last one took.
+constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
+constexpr int kEvaluationBatches = 2;  // pixels of an evaluation, in batches of the training
+
+class Training {
+ public:
+  Training(const RunContext& run, RunState& state)
+      : run_(run),
+        state_(state),
+        judged_(run.views.held_out.pixels().empty() ? run.views.train : run.views.held_out),
+        judged_name_(run.views.held_out.pixels().empty() ? "train" : "held-out"),
+        begin_(run.progress.now() - state.training_seconds) {
+    if (run.plan.geometry > 0) seconds_ = std::max(run.plan.geometry - state.start_seconds, 1.0);
+    last_save_ = elapsed();
+  }
+
+  // Position in the schedule, in [0, 1).
+  double position() const {
+    return seconds_ > 0 ? elapsed() / seconds_ : double(state_.step) / run_.plan.iterations;
+  }
+
+  // One step, and what is due after it.
+  void step(double u, const Stage::Checkpoint& checkpoint) {
+    const GeometryStats sum = state_.geometry->step(state_.step, u);
+    if (!std::isfinite(sum.color))
+      fail("training diverged at step {}: the loss is not a number", state_.step);
+    if (elapsed() > next_evaluation_) evaluate(u, sum);
+    if (elapsed() > next_report_) report(u, sum);
+    ++state_.step;
+    if (elapsed() - last_save_ > kCheckpointSeconds) save(checkpoint);
+  }
+
+  void save(const Stage::Checkpoint& checkpoint) {
+    state_.training_seconds = elapsed();
+    checkpoint();
+    last_save_ = elapsed();
+  }
+
+  double elapsed() const { return run_.progress.now() - begin_; }
+
+ private:
+  void evaluate(double u, const GeometryStats& sum) {
+    const double begin = elapsed(), rays = double(sum.rays);
+    psnr_ = state_.geometry->evaluate(judged_, kEvaluationBatches * run_.preset.geometry.rays, u).psnr();
+    const double end = elapsed();
+    next_evaluation_ = end + std::max(kEvaluationSeconds, kEvaluationShare * (end - begin));
+    run_.progress.log(Json{{"stage", "geometry"},
+                           {"step", state_.step},
+                           {"u", u},
+                           {"color", sum.color / rays},
+                           {"mask", sum.mask / rays},
+                           {"eikonal", sum.eikonal / double(std::max<int64_t>(sum.kept, 1))},
+                           {"psnr", psnr_},
+                           {"on", judged_name_},
+                           {"kept", double(sum.kept) / rays}}
+                          .dump());
+  }
+
+  void report(double u, const GeometryStats& sum) {
+    run_.progress.report({"", u, -1,
+                          fmt::format("loss {:.4f}  {} {:.1f} dB at the object", sum.color / double(sum.rays),
+                                      judged_name_, psnr_)});
+    next_report_ = elapsed() + kReportSeconds;
+  }
+
+  const RunContext& run_;
+  RunState& state_;
+  const PixelStore& judged_;
+  const char* judged_name_;
+  double begin_;        // of the training by the run's clock, as if it had not been interrupted
+  double seconds_ = 0;  // of the schedule; 0: by steps
+  double next_evaluation_ = kEvaluationSeconds, next_report_ = kReportSeconds, last_save_ = 0;  // elapsed()
+  double psnr_ = 0;
+};
+
+// Sum of squared differences from the photograph over white, display-encoded.
+double squared_error(const Image& got, const Image& photograph, int first_row) {
+  double sum = 0;
+  for (int y = 0; y < got.height; ++y)
+    for (int x = 0; x < got.width; ++x) {
+      const float* want = photograph.at(x, first_row + y);
+      for (int c = 0; c < 3; ++c) {
+        const float over_white = srgb_from_linear(want[c]) * want[3] + 1 - want[3];
+        sum += square(double(got.at(x, y)[c]) - over_white);
+      }
+    }
+  return sum;
+}
+
+}  // namespace
+
+void train_geometry(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
+  Training training(run, state);
+  for (double u; (u = training.position()) < 1;) {
+    if (run.progress.cancelled()) {
+      training.save(checkpoint);
+      check_cancelled(run.progress);
+    }
+    training.step(u, checkpoint);
+  }
+  state.training_seconds = training.elapsed();
+}
+
+void log_radiance_psnr(const RunContext& run, GeometryStage& stage) {
+  constexpr size_t kViews = 8;
+  constexpr double kSeconds = 15;
+  constexpr int kRows = 4;  // drawn at a time: with the largest networks a view takes minutes
+  const double begin = run.progress.now();
+  std::vector<const View*> held_out;
+  for (const View& view : run.capture.views)
+    if (view.split != Split::train) held_out.push_back(&view);
+  double sum = 0;
+  int views = 0;
+  for (size_t i = 0; i < held_out.size(); ++i) {
+    if (i > 0 && i * kViews / held_out.size() == (i - 1) * kViews / held_out.size()) continue;
+    const Image photograph = run.images.load(*held_out[i]);
+    Camera band = run.normalization.unit_from_input(held_out[i]->camera);
+    if (photograph.width != band.width) return;  // downscaled
+    const int height = band.height;
+    double error = 0;
+    int row = 0;
+    for (; row < height; row += kRows) {
+      if (run.progress.cancelled() || run.progress.now() - begin > kSeconds) break;
+      band.height = std::min(kRows, height - row);
+      error += squared_error(stage.render_radiance(band, 2), photograph, row);
+      band.cy -= band.height;
+    }
+    if (row < height) break;
+    sum += -10 * std::log10(error / (3.0 * band.width * height));
+    ++views;
+  }
+  if (views)
+    run.progress.log(
+        Json{{"stage", "radiance field"}, {"held_out_psnr_on_white", sum / views}, {"views", views}}.dump());
+}
+
+}  // namespace cei3d

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// A run that is interrupted anywhere and resumed makes the same object, bit for bit.
+#include "engine/reconstruct/reconstruct.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/reconstruct/test_run.h"
+
+namespace cei3d {
+namespace {
+
+using How = ScriptedProgress::How;
+
+// A run by steps that has every stage such a run can have.
+class SmallRun {
+ public:
+  SmallRun() : preset_(shrunken(preset_by_name("fast"))) {
+    preset_.polish_from_iterations = preset_.trials_from_iterations = 1;
+  }
+  Scene run(Checkpoints& checkpoints, Progress& progress) {
+    ReconstructOptions options;
+    options.iterations = 24;
+    options.seed = 5;
+    VirtualClock time(0.7);  // so that the geometry stage saves in its middle
+    return reconstruct({.device = device_,
+                        .capture = capture_.capture(),
+                        .images = capture_,
+                        .normalization = {},
+                        .options = options,
+                        .preset = preset_,
+                        .clock = time.clock()},
+                       checkpoints, progress);
+  }
+
+ private:
+  Device device_ = make_device();
+  BoxCapture capture_;
+  Preset preset_;
+};
+
+void expect_same(const Tensors& a, const Tensors& b, const std::string& where) {
+  ASSERT_EQ(a.size(), b.size()) << where;
+  for (const auto& [name, tensor] : a) {
+    ASSERT_TRUE(b.contains(name)) << where << " " << name;
+    EXPECT_EQ(tensor.shape, b.at(name).shape) << where << " " << name;
+    EXPECT_TRUE(tensor.f32 == b.at(name).f32 && tensor.u8 == b.at(name).u8) << where << " " << name;
+  }
+}
+
+Checkpoints::State saved(const Scene& scene) {
+  Checkpoints::State s;
+  save_scene(scene, s.tensors, s.head);
+  return s;
+}
+
+// What an uninterrupted run leaves.
+struct Reference {
+  explicit Reference(SmallRun& small) : scene(saved(small.run(checkpoints, progress))) {}
+  MemoryCheckpoints checkpoints;
+  ScriptedProgress progress;
+  Checkpoints::State scene;
+};
+
+// Runs up to the check, or to the end; the stage's name must be in the message.
+void run_interrupted(SmallRun& small, MemoryCheckpoints& checkpoints, const std::string& stage, int check,
+                     How how) {
+  ScriptedProgress progress;
+  progress.stop_at(stage, check, how);
+  try {
+    small.run(checkpoints, progress);
+    ADD_FAILURE() << "not stopped in " << stage << " at check " << check;
+  } catch (const Killed&) {
+    EXPECT_EQ(how, How::kill);
+  } catch (const Error& e) {
+    EXPECT_EQ(e.code(), ErrorCode::interrupted) << e.what();
+    EXPECT_NE(std::string(e.what()).find(stage), std::string::npos) << e.what();
+    EXPECT_EQ(e.hint().empty(), !checkpoints.latest_state) << e.what();  // the hint tells how to resume
+  }
+}
+
+// Interrupts the stage, resumes it, and compares what is saved after it (or the object, after the last one).
+void expect_same_after(SmallRun& small, const Reference& reference, size_t stage, int check, How how) {
+  const std::vector<std::string>& stages = reference.progress.stages;
+  const std::string &name = stages[stage], where = name + " at check " + std::to_string(check) +
+                                                   (how == How::kill ? ", killed" : "");
+  MemoryCheckpoints checkpoints;
+  if (stage > 1) checkpoints.latest_state = reference.checkpoints.after.at(stages[stage - 1]);
+  run_interrupted(small, checkpoints, name, check, how);
+  if (stage + 2 < stages.size()) {
+    run_interrupted(small, checkpoints, stages[stage + 1], 1, How::cancel);
+    ASSERT_TRUE(checkpoints.after.contains(name)) << where;
+    expect_same(checkpoints.after.at(name).tensors, reference.checkpoints.after.at(name).tensors, where);
+    EXPECT_EQ(checkpoints.after.at(name).head.at("state").at("scene"),
+              reference.checkpoints.after.at(name).head.at("state").at("scene"));
+  } else {
+    ScriptedProgress rest;
+    expect_same(saved(small.run(checkpoints, rest)).tensors, reference.scene.tensors, where);
+  }
+}
+
+TEST(Reconstruct, ResumedAnywhereMakesTheSameObject) {
+  SmallRun small;
+  const Reference reference(small);
+  const std::vector<std::string>& stages = reference.progress.stages;
+  const std::vector<std::string> expected{"loading", "start",      "geometry",   "polish 1", "polish 2",
+                                          "surface", "appearance", "finer mesh", "residual", "done"};
+  ASSERT_EQ(stages, expected);
+  EXPECT_GT(reference.checkpoints.midway.at("geometry"), 0);
+  for (size_t s = 1; s + 1 < stages.size(); ++s) {
+    const int checks = reference.progress.checks.at(stages[s]);
+    ASSERT_GE(checks, 3) << stages[s];
+    expect_same_after(small, reference, s, 1, How::cancel);
+    expect_same_after(small, reference, s, checks / 2 + 1, How::cancel);
+    expect_same_after(small, reference, s, checks / 2 + 1, How::kill);
+    expect_same_after(small, reference, s, checks, How::cancel);
+  }
+}
+
+TEST(Reconstruct, InterruptedAgainAndAgainMakesTheSameObject) {
+  SmallRun small;
+  const Reference reference(small);
+  MemoryCheckpoints checkpoints;
+  const std::vector<std::string>& stages = reference.progress.stages;
+  for (size_t s = 1; s + 1 < stages.size(); ++s)
+    run_interrupted(small, checkpoints, stages[s], 2, s % 2 ? How::kill : How::cancel);
+  ScriptedProgress rest;
+  const Checkpoints::State scene = saved(small.run(checkpoints, rest));
+  expect_same(scene.tensors, reference.scene.tensors, "the object");
+  EXPECT_EQ(scene.head, reference.scene.head);
+}
+
+// Before there were stages, checkpoints held the geometry stage alone.
+TEST(Reconstruct, ResumesACheckpointOfTheFirstVersion) {
+  SmallRun small;
+  const Reference reference(small);
+  MemoryCheckpoints checkpoints;
+  run_interrupted(small, checkpoints, "geometry", 12, How::cancel);
+  const Json state = checkpoints.latest_state->head.at("state");
+  Tensors geometry;
+  for (const auto& [name, tensor] : checkpoints.latest_state->tensors)
+    if (name.starts_with("geometry/")) geometry[name.substr(9)] = tensor;
+  checkpoints.latest_state = Checkpoints::State{Json::object({{"stage", "geometry"},
+                                                              {"step", state.at("step")},
+                                                              {"elapsed", state.at("training_seconds")},
+                                                              {"start", 1.5}}),
+                                                geometry};
+  ScriptedProgress rest;
+  expect_same(saved(small.run(checkpoints, rest)).tensors, reference.scene.tensors, "the object");
+}
+
+TEST(Reconstruct, RefusesACheckpointItCannotResume) {
+  SmallRun small;
+  ScriptedProgress progress;
+  MemoryCheckpoints checkpoints;
+  run_interrupted(small, checkpoints, "geometry", 3, How::cancel);
+  const Checkpoints::State good = *checkpoints.latest_state;
+  const auto sentence = [&](const Json& change) {
+    checkpoints.latest_state = good;
+    checkpoints.latest_state->head.update(change);
+    try {
+      small.run(checkpoints, progress);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string("it was resumed");
+  };
+  EXPECT_NE(sentence(Json::object({{"stage", "sculpting"}})).find("'sculpting'"), std::string::npos);
+  EXPECT_NE(sentence(Json::object({{"version", 99}})).find("newer program"), std::string::npos);
+  EXPECT_NE(sentence(Json::object({{"state", Json::object()}})).find("damaged"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace cei3d

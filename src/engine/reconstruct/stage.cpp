@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/stage.h"
+
+#include <algorithm>
+
+#include "core/base/cancel.h"
+
+namespace cei3d {
+
+namespace {
+
+// Index of the stage to run first.
+size_t first_stage(const std::vector<Stage>& stages, const std::optional<RunPosition>& position) {
+  if (!position) return 0;
+  const auto at =
+      std::find_if(stages.begin(), stages.end(), [&](const Stage& s) { return s.name == position->stage; });
+  if (at == stages.end())
+    fail("the checkpoint ends in a stage '{}' that this program does not have; start anew with --force",
+         position->stage);
+  return size_t(at - stages.begin()) + (position->finished ? 1 : 0);
+}
+
+Error interrupted(const std::string& stage, bool has_checkpoint) {
+  if (has_checkpoint)
+    return {ErrorCode::interrupted, fmt::format("interrupted in the stage '{}'; the state is saved", stage),
+            "go on with --resume"};
+  return {ErrorCode::interrupted,
+          fmt::format("interrupted in the stage '{}', before there was a state to save", stage)};
+}
+
+}  // namespace
+
+void StageRunner::run(const std::vector<Stage>& stages, RunState& state,
+                      const std::optional<RunPosition>& position) {
+  has_checkpoint_ = position.has_value();
+  double total = 0, before = 0;
+  for (const Stage& s : stages) total += s.budget;
+  const size_t first = first_stage(stages, position);
+  for (size_t i = 0; i < stages.size(); ++i) {
+    const double after = before + stages[i].budget / std::max(total, 1e-9);
+    if (i >= first) {
+      context_.progress.enter(stages[i].name, before, after);
+      run_stage(stages[i], state);
+      if (i + 1 < stages.size()) save(stages[i], true, state);  // the caller saves what the last one made
+    }
+    before = after;
+  }
+}
+
+void StageRunner::run_stage(const Stage& stage, RunState& state) {
+  RunClock& progress = context_.progress;
+  const double begin = progress.now();
+  try {
+    check_cancelled(progress);
+    stage.run(context_, state, [&] { save(stage, false, state); });
+  } catch (const Error& e) {
+    if (e.code() == ErrorCode::interrupted) throw interrupted(stage.name, has_checkpoint_);
+    throw;
+  }
+  progress.log(Json{{"stage", stage.name}, {"took", progress.now() - begin}}.dump());
+}
+
+void StageRunner::save(const Stage& stage, bool finished, const RunState& state) {
+  checkpoints_.save(checkpoint_of({stage.name, finished, context_.progress.elapsed(), rates_}, state));
+  has_checkpoint_ = true;
+}
+
+}  // namespace cei3d

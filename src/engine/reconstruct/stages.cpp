@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/stages.h"
+
+#include <algorithm>
+
+#include "core/base/cancel.h"
+#include "engine/reconstruct/appearance/residual_fit.h"
+#include "engine/reconstruct/geometry/silhouette_level.h"
+#include "engine/reconstruct/geometry_training.h"
+
+namespace cei3d {
+
+namespace {
+
+constexpr uint64_t kResidualSubset = 1000;  // of pixels; the albedo's refinements take 1, 2, ...
+constexpr float kHandlerSpacing = 1.5f;     // of handler points, in pixels
+constexpr float kMaxLevel = 0.002f;  // shift of the zero level; the shell of the sharpest density is as thick
+constexpr double kMinPolishSeconds =
+    10;  // a shorter descent is not worth another estimate of light and material
+
+// Lengths of the stages of a run by steps, in steps of the geometry stage.
+constexpr double kStartSteps = 50, kTrialsSteps = 1500, kLookSteps = 350, kSurfaceSteps = 80,
+                 kAppearanceSteps = 600, kFinerMeshSteps = 400, kPolishStepLength = 3,
+                 kResidualStepLength = 0.4;
+
+void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  const PixelStore& pixels = run.views.train;
+  const double begin = run.progress.now();
+  const StartShape start =
+      run.plan.choose_start
+          ? choose_start(run.device, pixels, run.preset.trial, run.seed, run.progress)
+          : start_shape(pixels, Start::hull, run.seed, run.preset.trial.shapes, run.progress);
+  const double chosen = run.progress.now();
+  state.start_seconds = chosen - begin;
+  state.geometry = std::make_unique<GeometryStage>(run.device, pixels, run.preset.geometry, run.seed);
+  state.geometry->prefit(start, run.progress);
+  run.progress.log(Json{{"stage", "prefit"}, {"seconds", run.progress.now() - chosen}}.dump());
+}
+
+void run_geometry(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
+  train_geometry(run, state, checkpoint);
+  log_radiance_psnr(run, *state.geometry);
+  if (!run.progress.cancelled()) return;
+  checkpoint();
+  check_cancelled(run.progress);
+}
+
+// Seconds of this round's descent, when the estimate before it has taken state.look_seconds and each later
+// round's is expected to take as long.
+double polish_seconds(const RunContext& run, const RunState& state, int round) {
+  const int rounds_left = run.plan.polish_rounds - round;
+  const double left = state.polish_deadline - run.progress.elapsed() - (rounds_left - 1) * state.look_seconds;
+  return std::clamp(left / rounds_left, std::min(1.0, run.plan.polish), run.plan.polish);
+}
+
+// Light and material for the present surface, then the surface for them. A round for which there is no time
+// is left out.
+void polish(const RunContext& run, RunState& state, int round) {
+  const Plan& plan = run.plan;
+  const bool timed = plan.polish > 0;
+  const double begin = run.progress.elapsed();
+  if (round == 0) {
+    state.polish_deadline = begin + plan.polish_rounds * (plan.polish + plan.look);
+    state.look_seconds = plan.look;
+  }
+  if (timed && round > 0 && state.polish_deadline - begin < state.look_seconds + kMinPolishSeconds) return;
+  GeometryStage& geometry = *state.geometry;
+  const PixelStore& pixels = run.views.train;
+  const SurfaceAndHits all = extract_surface_and_hits(run.device, geometry.sdf(), run.preset.meshing, pixels,
+                                                      run.preset.max_hits, run.progress);
+  const ObjectHits fewer =
+      object_hits(run.device, geometry.sdf(), *all.surface, pixels, {run.preset.brief_hits}, run.progress);
+  AppearanceOptions brief = run.preset.appearance;
+  brief.effort = Effort::brief;
+  brief.seed = run.seed;
+  const AppearanceResult appearance =
+      fit_appearance(run.device, {*all.surface, fewer.samples()}, brief, run.progress);
+  check_cancelled(run.progress);
+  state.look_seconds = run.progress.elapsed() - begin;
+  PolishOptions options = run.preset.polish;
+  options.steps = plan.polish_steps;
+  options.seconds = timed ? polish_seconds(run, state, round) : 0;
+  options.clock = run.progress.clock();
+  options.seed = run.seed + uint64_t(round);
+  options.first_step = (int64_t(round) + 1) << 24;
+  polish_surface(run.device, geometry, all.input(), appearance, options, run.progress);
+  check_cancelled(run.progress);
+  run.progress.log(Json{{"stage", "polish"}, {"look_seconds", state.look_seconds}}.dump());
+}
+
+// The field with the surface that the silhouettes show at its zero level.
+Field at_silhouettes(const RunContext& run, Field sdf) {
+  const float level = silhouette_level(run.device, sdf, run.views.train, kMaxLevel, run.seed, run.progress);
+  sdf.params().all().back().value[0] -= level;  // the last layer's bias
+  run.progress.log(Json{{"stage", "silhouettes"}, {"level", level}}.dump());
+  return sdf;
+}
+
+void make_surface(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  Scene& scene = state.scene;
+  scene.sdf = std::make_shared<const Field>(at_silhouettes(run, state.geometry->sdf()));
+  state.geometry.reset();
+  run.progress.report({"mesh", 0.2, -1, ""});
+  SurfaceAndHits made = extract_surface_and_hits(run.device, *scene.sdf, run.preset.meshing, run.views.train,
+                                                 run.preset.max_hits, run.progress);
+  scene.surface = std::move(made.surface);
+  state.hits = std::move(made.hits);
+  run.progress.report({"handler points", 0.8, -1, ""});
+  scene.handlers = std::make_shared<const HandlerPoints>(
+      thin_hits(state.hits.hits, state.hits.footprints, kHandlerSpacing * float(run.views.footprint)));
+}
+
+ObjectHits scene_hits(const RunContext& run, const Scene& scene, const HitOptions& options) {
+  return object_hits(run.device, *scene.sdf, *scene.surface, run.views.train, options, run.progress);
+}
+
+AppearanceOptions appearance_options(const RunContext& run) {
+  AppearanceOptions options = run.preset.appearance;
+  options.effort = run.plan.effort;
+  options.seed = run.seed;
+  return options;
+}
+
+void estimate_appearance(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  Scene& scene = state.scene;
+  if (state.hits.hits.empty()) state.hits = scene_hits(run, scene, {run.preset.max_hits});
+  AppearanceResult made = fit_appearance(run.device, {*scene.surface, state.hits.samples()},
+                                         appearance_options(run), run.progress);
+  check_cancelled(run.progress);
+  state.hits = {};
+  scene.light = std::move(made.light);
+  scene.material = made.material;
+  scene.albedo = std::move(made.albedo);
+}
+
+// Left out when time is short.
+void refine(const RunContext& run, RunState& state, uint64_t subset) {
+  const Plan& plan = run.plan;
+  if (run.progress.left() < plan.refinement + plan.finer_mesh + plan.residual) return;
+  Scene& scene = state.scene;
+  const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, subset});
+  AppearanceResult result{scene.light, scene.material, scene.albedo, {}};
+  refine_albedo(run.device, {*scene.surface, hits.samples()}, appearance_options(run), result, run.progress,
+                run.preset.refinement_steps);
+  check_cancelled(run.progress);
+  scene.albedo = std::move(result.albedo);
+}
+
+void make_finer_mesh(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  state.scene.surface = extract_surface(run.device, *state.scene.sdf, run.preset.finer_meshing, run.progress);
+}
+
+void fit_scene_residual(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  const Plan& plan = run.plan;
+  ResidualOptions options;
+  // Late: half of the planned time at least, which the training needs to be worth anything.
+  const double left = run.progress.left() - 0.5 * plan.reserve;
+  options.seconds = plan.residual > 0 ? std::clamp(left, 0.5 * plan.residual, plan.residual) : 0;
+  options.clock = run.progress.clock();
+  options.steps = plan.residual_steps;
+  options.seed = run.seed;
+  const ObjectHits hits = scene_hits(run, state.scene, {plan.residual_hits, kResidualSubset});
+  if (auto residual =
+          fit_residual(run.device, state.scene, hits.samples(), hits.views, options, run.progress))
+    state.scene.residual = std::make_shared<const Residual>(std::move(*residual));
+  check_cancelled(run.progress);
+}
+
+// Lengths of the stages: those of the plan, or of a run by steps, estimated.
+struct Budgets {
+  double start, geometry, polish, surface, appearance, refinement, finer_mesh, residual;
+};
+
+Budgets budgets_of(const Plan& p) {
+  const double start = p.choose_start ? 0.2 : 0.01;  // share of the geometry stage
+  if (p.geometry > 0)
+    return {.start = start * p.geometry,
+            .geometry = (1 - start) * p.geometry,
+            .polish = p.look + p.polish,
+            .surface = 0.5 * p.reserve,
+            .appearance = p.appearance,
+            .refinement = p.refinement,
+            .finer_mesh = p.finer_mesh,
+            .residual = p.residual};
+  return {.start = kStartSteps + (p.choose_start ? kTrialsSteps : 0),
+          .geometry = double(p.iterations),
+          .polish = kLookSteps + kPolishStepLength * p.polish_steps,
+          .surface = kSurfaceSteps,
+          .appearance = kAppearanceSteps,
+          .refinement = 0,
+          .finer_mesh = kFinerMeshSteps,
+          .residual = kResidualStepLength * p.residual_steps};
+}
+
+}  // namespace
+
+std::vector<Stage> stages_of(const Plan& plan) {
+  const Budgets budget = budgets_of(plan);
+  std::vector<Stage> stages{{"start", budget.start, make_start}, {"geometry", budget.geometry, run_geometry}};
+  for (int round = 0; round < plan.polish_rounds; ++round)
+    stages.push_back({fmt::format("polish {}", round + 1), budget.polish,
+                      [round](const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+                        polish(run, state, round);
+                      }});
+  stages.push_back({"surface", budget.surface, make_surface});
+  stages.push_back({"appearance", budget.appearance, estimate_appearance});
+  for (int k = 1; k <= plan.refinements; ++k)
+    stages.push_back({fmt::format("albedo {}", k), budget.refinement,
+                      [k](const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+                        refine(run, state, uint64_t(k));
+                      }});
+  if (plan.has_finer_mesh) stages.push_back({"finer mesh", budget.finer_mesh, make_finer_mesh});
+  if (plan.residual_steps > 0) stages.push_back({"residual", budget.residual, fit_scene_residual});
+  return stages;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+// The surface of a field, and the points of it that the training pictures show.
+#pragma once
+
+#include <memory>
+
+#include "core/base/progress.h"
+#include "engine/reconstruct/appearance/appearance_stage.h"
+#include "engine/reconstruct/pixels.h"
+#include "model/geometry/mesh/surface_nets.h"
+
+namespace cei3d {
+
+// Pixels wholly on the object whose ray meets the surface.
+struct ObjectHits {
+  std::vector<Hit> hits;
+  std::vector<Vec3f> colors;      // linear
+  std::vector<uint8_t> clipped;   // SurfaceSamples::clipped
+  std::vector<uint16_t> views;    // index of the camera
+  std::vector<float> footprints;  // distance between neighboring pixels on the surface, unit-sphere units
+  SurfaceSamples samples() const { return {hits, colors, clipped, footprints}; }
+};
+
+struct HitOptions {
+  size_t max_hits;      // about; a random subset of the pixels beyond that
+  uint64_t subset = 0;  // another number, another random subset
+};
+
+// Error: interrupted.
+ObjectHits object_hits(const Device&, const Field& sdf, const Surface&, const PixelStore&, const HitOptions&,
+                       const Progress&);
+
+// Error: interrupted.
+std::shared_ptr<const Surface> extract_surface(const Device&, const Field& sdf, const MeshingOptions&,
+                                               const Progress&);
+
+struct SurfaceAndHits {
+  std::shared_ptr<const Surface> surface;
+  ObjectHits hits;
+  AppearanceInput input() const { return {surface, hits.samples()}; }
+};
+
+// Errors: no picture shows the surface; interrupted.
+SurfaceAndHits extract_surface_and_hits(const Device&, const Field& sdf, const MeshingOptions&,
+                                        const PixelStore&, size_t max_hits, const Progress&);
+
+}  // namespace cei3d

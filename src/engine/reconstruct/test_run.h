@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// For tests: a reconstruction small enough to be run many times, on a clock that the test owns.
+#pragma once
+
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/base/error.h"
+#include "engine/reconstruct/reconstruct_with.h"
+#include "engine/reconstruct/test_box.h"
+
+namespace cei3d {
+
+// The box from all around, checkered so that stereo and albedo have something to find.
+class BoxCapture : public ImageSource {
+ public:
+  explicit BoxCapture(int views = 12, int size = 28) {
+    for (int v = 0; v < views; ++v) {
+      const Camera camera = box_camera(-0.5 + 1.3 * v / views, 2.4 * v, size);
+      View view;
+      view.name = std::to_string(v);
+      view.split = v % 6 == 5 ? Split::test : Split::train;
+      view.camera = camera;
+      pictures_[view.name] = box_picture(camera, [](Vec3f p) {
+        const bool odd = (int(std::floor(p.x * 7)) + int(std::floor(p.y * 7)) + int(std::floor(p.z * 7))) & 1;
+        return (odd ? Vec3f{0.5f, 0.3f, 0.2f} : Vec3f{0.2f, 0.3f, 0.4f}) * (1 + 0.3f * p.z);
+      });
+      capture_.views.push_back(view);
+    }
+  }
+  Image load(const View& view) const override { return pictures_.at(view.name); }
+  const Capture& capture() const { return capture_; }
+
+ private:
+  std::map<std::string, Image> pictures_;
+  Capture capture_;
+};
+
+// The preset's networks, schedules and grids, each as small as it still works.
+inline Preset shrunken(Preset p) {
+  const bool has_finer_mesh = p.resolution_from_views;
+  const auto shrink = [](FieldConfig& f) {
+    EncodingConfig& e = f.encoding;
+    e.frequencies = std::min(e.frequencies, 3);
+    e.levels = std::min(e.levels, 4);
+    e.base_resolution = 8;
+    e.finest_resolution = 24;
+    e.log2_table = 10;
+    f.width = 16;
+  };
+  for (GeometryOptions* g : {&p.geometry, &p.trial.geometry}) {
+    shrink(g->sdf);
+    g->sdf.outputs = 5;
+    g->radiance_width = 16;
+    g->rays = 128;
+    g->prefit_steps = 40;
+  }
+  shrink(p.appearance.albedo);
+  p.appearance.batch = p.polish.batch = 64;
+  p.appearance.albedo_steps = 6;
+  p.appearance.joint_steps = 28;  // two refreshes of the bounce
+  p.appearance.roughness = 0.3f;
+  p.trial.shapes.cells = p.trial.shapes.stereo_cells = 32;
+  p.trial.shapes.carving.steps = 20;
+  p.trial.shapes.carving.rays = 1024;
+  p.trial.steps = 3;
+  p.trial.rays = 128;
+  p.meshing.resolution = 24;
+  p.finer_meshing.resolution = has_finer_mesh ? 36 : 24;
+  p.resolution_from_views = false;
+  p.max_hits = 2500;
+  p.brief_hits = 2000;
+  p.max_residual_hits = 2000;
+  p.polish_steps = 8;
+  p.residual_steps = 12;
+  p.refinement_steps = 4;
+  return p;
+}
+
+// Seconds pass with every look at the clock and at no other time.
+class VirtualClock {
+ public:
+  explicit VirtualClock(double tick) : tick_(tick) {}
+  Clock clock() {
+    return [this] { return seconds_ += tick_; };
+  }
+  double seconds() const { return seconds_; }
+
+ private:
+  double tick_, seconds_ = 0;
+};
+
+class MemoryCheckpoints : public Checkpoints {
+ public:
+  void save(const State& s) override {
+    latest_state = s;
+    const std::string stage = s.head.at("stage").get<std::string>();
+    if (s.head.at("finished").get<bool>())
+      after[stage] = s;
+    else
+      ++midway[stage];
+  }
+  std::optional<State> latest() override { return latest_state; }
+
+  std::optional<State> latest_state;
+  std::map<std::string, State> after;  // that stage
+  std::map<std::string, int> midway;   // saved in the middle of that stage
+};
+
+struct Killed : std::runtime_error {
+  Killed() : std::runtime_error("killed") {}
+};
+
+// Notes the stages, counts the checks in each, and stops the run at one of them.
+class ScriptedProgress : public Progress {
+ public:
+  enum class How { cancel, kill };  // kill: nothing can be saved any more
+
+  void stop_at(std::string stage, int check, How how = How::cancel) {
+    stage_to_stop_ = std::move(stage);
+    check_to_stop_ = check;
+    how_ = how;
+  }
+
+  void report(const ProgressReport& r) override {
+    const std::lock_guard lock(mutex_);
+    if (stages.empty() || stages.back() != r.stage) stages.push_back(r.stage);
+    fractions.push_back(r.fraction);
+  }
+  void log(const std::string& line) override {
+    const std::lock_guard lock(mutex_);
+    lines.push_back(Json::parse(line));
+  }
+  bool cancelled() const override {
+    const std::lock_guard lock(mutex_);
+    const std::string stage = stages.empty() ? "" : stages.back();
+    const int check = ++checks[stage];
+    if (stage == stage_to_stop_ && check >= check_to_stop_) stopped_ = true;
+    if (stopped_ && how_ == How::kill) throw Killed();
+    return stopped_;
+  }
+
+  std::vector<std::string> stages;
+  std::vector<double> fractions;
+  std::vector<Json> lines;
+  mutable std::map<std::string, int> checks;
+
+ private:
+  mutable std::mutex mutex_;
+  std::string stage_to_stop_ = "no stage";
+  int check_to_stop_ = 0;
+  How how_ = How::cancel;
+  mutable bool stopped_ = false;
+};
+
+}  // namespace cei3d

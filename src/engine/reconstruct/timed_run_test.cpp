@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs with a time limit, on a clock that ticks with every look at it.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "engine/reconstruct/test_run.h"
+
+namespace cei3d {
+namespace {
+
+// Of the hash grids on two cores.
+constexpr Rates kRates{.sdf_step = 1e-3,
+                       .trial_step = 1e-3,
+                       .albedo_step = 8e-3,
+                       .mesh = 1e-4,
+                       .hit_traced = 1e-6,
+                       .hit_shaded = 1.5e-6};
+
+class TimedRun {
+ public:
+  TimedRun(const BoxCapture& capture, const Preset& preset, double limit)
+      : capture_(capture), preset_(preset), time_(0.01 * limit / 6) {
+    options_.seconds = limit;
+  }
+  void run(const Rates& rates = kRates) {
+    scene = reconstruct({.device = device_,
+                         .capture = capture_.capture(),
+                         .images = capture_,
+                         .normalization = {},
+                         .options = options_,
+                         .preset = preset_,
+                         .clock = time_.clock(),
+                         .rates = rates},
+                        checkpoints, *progress);
+  }
+  bool has(const std::string& stage) const {
+    return std::count(progress->stages.begin(), progress->stages.end(), stage) > 0;
+  }
+  double seconds() const { return time_.seconds(); }
+  Json plan() const {
+    for (const Json& line : progress->lines)
+      if (line.at("stage") == "plan") return line.at("plan");
+    return {};
+  }
+
+  MemoryCheckpoints checkpoints;
+  std::unique_ptr<ScriptedProgress> progress = std::make_unique<ScriptedProgress>();
+  Scene scene;
+
+ private:
+  Device device_ = make_device();
+  const BoxCapture& capture_;
+  Preset preset_;
+  VirtualClock time_;
+  ReconstructOptions options_;
+};
+
+Preset preset_for_time(const std::string& name) {
+  Preset preset = shrunken(preset_by_name(name));
+  preset.polish_steps = 600;  // so that the clock ends polishing and the residual's training
+  preset.residual_steps = 9000;
+  return preset;
+}
+
+void expect_complete(const Scene& scene, const std::string& where) {
+  EXPECT_TRUE(scene.sdf && scene.albedo && scene.handlers && scene.surface) << where;
+  EXPECT_FALSE(scene.light.lobes.empty()) << where;
+}
+
+TEST(TimedRun, EveryPresetEndsInTimeWithTheStagesOfItsPlan) {
+  const BoxCapture capture;
+  for (const char* name : {"fast", "balanced", "paper"})
+    for (const double limit : {30.0, 60.0, 400.0}) {
+      const std::string where = std::string(name) + " " + std::to_string(limit);
+      TimedRun r(capture, preset_for_time(name), limit);
+      r.run();
+      EXPECT_LE(r.seconds(), limit) << where;
+      EXPECT_GE(r.seconds(), 0.5 * limit) << where;
+      EXPECT_EQ(r.has("polish 1"), limit >= 60) << where;
+      EXPECT_EQ(r.has("polish 2"), limit >= 400) << where;
+      EXPECT_EQ(r.has("residual"), limit >= 400) << where;
+      EXPECT_EQ(r.has("finer mesh"), std::string(name) != "paper") << where;
+      expect_complete(r.scene, where);
+      const std::vector<double>& fractions = r.progress->fractions;
+      EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << where;
+      EXPECT_EQ(fractions.back(), 1) << where;
+    }
+}
+
+TEST(TimedRun, RefinesTheAlbedoOfManyPixels) {
+  const BoxCapture capture(24, 32);
+  Preset preset = preset_for_time("fast");
+  preset.max_hits = 1500;
+  TimedRun r(capture, preset, 400);
+  r.run();
+  EXPECT_TRUE(r.has("albedo 1"));
+  EXPECT_LE(r.seconds(), 400);
+  expect_complete(r.scene, "with refinements");
+}
+
+TEST(TimedRun, ResumedKeepsItsPlanAndItsTime) {
+  const BoxCapture capture;
+  TimedRun r(capture, preset_for_time("fast"), 400);
+  r.progress->stop_at("polish 2", 5);
+  EXPECT_THROW(r.run(), Error);
+  const Json plan = r.plan();
+  r.progress = std::make_unique<ScriptedProgress>();
+  Rates slower = kRates;
+  slower.albedo_step *= 10;
+  r.run(slower);  // not read: the checkpoint has those of the first part
+  EXPECT_EQ(r.plan(), plan);
+  EXPECT_FALSE(r.has("polish 1"));
+  EXPECT_TRUE(r.has("polish 2"));
+  EXPECT_LE(r.seconds(), 1.15 * 400);  // the interrupted round was begun anew
+  expect_complete(r.scene, "resumed");
+}
+
+}  // namespace
+}  // namespace cei3d

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/training_views.h"
+
+#include <algorithm>
+
+#include "core/base/cancel.h"
+
+namespace cei3d {
+
+namespace {
+
+constexpr int kRim = 6;            // pixels around the object that are trained on
+constexpr size_t kMaxHeldOut = 8;  // held-out views that are read
+
+// The camera in unit-sphere coordinates, for a picture of this width (pictures may be downscaled).
+Camera camera_of(const View& view, const Normalization& normalization, const Image& image) {
+  Camera camera = normalization.unit_from_input(view.camera);
+  const double scale = double(image.width) / camera.width;
+  camera.width = image.width;
+  camera.height = image.height;
+  for (double* f : {&camera.fx, &camera.fy, &camera.cx, &camera.cy, &camera.skew}) *f *= scale;
+  return camera;
+}
+
+}  // namespace
+
+TrainingViews load_training_views(const Capture& capture, const ImageSource& images,
+                                  const Normalization& normalization, Progress& progress) {
+  TrainingViews v;
+  int done = 0, trained = 0;
+  for (const View& view : capture.views) {
+    progress.report({"", double(done++) / double(capture.views.size()), -1, view.name});
+    check_cancelled(progress);
+    const bool train = view.split == Split::train;
+    if (!train && v.held_out.cameras().size() >= kMaxHeldOut) continue;
+    const Image image = images.load(view);
+    const Camera camera = camera_of(view, normalization, image);
+    (train ? v.train : v.held_out).add_view(camera, image, kRim);
+    if (train) v.footprint += length(camera.center) / camera.fx, ++trained;
+  }
+  v.footprint /= std::max(trained, 1);
+  if (v.train.pixels().empty()) fail("no training picture shows the object: every mask is empty");
+  return v;
+}
+
+}  // namespace cei3d
