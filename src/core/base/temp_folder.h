@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder for one test, gone when the test ends.
+// A new folder below the system's folder for temporary files, removed with all that is in it when the object
+// goes.
 #pragma once
 
 #include <stdlib.h>

@@ -10,6 +10,7 @@
 #include <ctime>
 
 #include "core/base/error.h"
+#include "core/base/hash.h"
 #include "engine/project/dataset.h"
 #include "engine/project/json_file.h"
 
@@ -255,8 +256,9 @@ Scene Project::base() const {
          folder_.string(), folder_.string());
   return read_json_file(file("base/scene.json"), [&](const Json& j) {
     const auto object = j.at("object").get<std::string>();
-    if (object != loaded_object_) loaded_base_ = load_scene(store_.get(object), j.at("head"));
-    loaded_object_ = object;
+    const std::string key = content_hash(object + j.at("head").dump());
+    if (key != loaded_key_) loaded_base_ = load_scene(store_.get(object), j.at("head"));
+    loaded_key_ = key;
     return loaded_base_;
   });
 }

@@ -98,20 +98,26 @@ Project::Resolved Project::resolve(const Stack& stack) const {
 }
 
 EditLayer Project::load_result(const StoredResult& r) const {
-  return load_layer(store_.get(r.object), r.head);
+  EditLayer layer = load_layer(store_.get(r.object), r.head);
+  layer.content = r.fingerprint();
+  return layer;
+}
+
+Scene Project::with_results(const Scene& base, std::span<const StoredResult> results) const {
+  std::vector<std::string> keys;
+  for (const StoredResult& r : results) keys.push_back(r.fingerprint());
+  return scenes_.scene(loaded_key_, base, keys, [&](size_t i) { return load_result(results[i]); });
 }
 
 Scene Project::scene() const {
-  Scene scene = base();
+  const Scene base = this->base();
   const Resolved resolved = resolve(stack_);
   if (!resolved.stale.empty())
     fail(
         "Edit {} has to be made anew for the object as it is, which only a command that writes can do: "
-        "switch it off "
-        "and on again with `cei3d toggle`.",
+        "switch it off and on again with `cei3d toggle`.",
         resolved.stale);
-  for (const StoredResult& r : resolved.results) scene = with_layer(std::move(scene), load_result(r));
-  return scene;
+  return with_results(base, resolved.results);
 }
 
 std::optional<std::string> Project::first_stale(const Stack& stack) const {
@@ -120,12 +126,11 @@ std::optional<std::string> Project::first_stale(const Stack& stack) const {
 }
 
 Scene Project::scene_below(const Stack& stack, const std::string& id) const {
-  Scene scene = base();
   const Resolved resolved = resolve(stack);
   const std::vector<std::string> active = stack.active();
-  for (size_t i = 0; i < resolved.results.size() && active[i] != id; ++i)
-    scene = with_layer(std::move(scene), load_result(resolved.results[i]));
-  return scene;
+  const auto end = std::find(active.begin(), active.end(), id) - active.begin();
+  return with_results(base(),
+                      std::span(resolved.results).first(std::min(resolved.results.size(), size_t(end))));
 }
 
 Json Project::store_result(const std::string& key, const EditLayer& layer) {

@@ -2,8 +2,8 @@
 #include "engine/render/scene_light.h"
 
 #include <algorithm>
-#include <map>
-#include <utility>
+#include <cstring>
+#include <optional>
 
 namespace cei3d {
 namespace {
@@ -39,23 +39,15 @@ std::vector<std::vector<uint32_t>> triangle_ids(const Poses& poses) {
   return ids;
 }
 
-// What shows its own colour in every light.
-Shading with_unlit(Shading lit, const Appearance& look) {
-  for (size_t i = 0; i < look.unlit.size(); ++i) {
-    const float share = look.unlit[i];
-    if (share <= 0) continue;
-    lit.diffuse[i] = lit.diffuse[i] * (1 - share) + look.albedo[i] * share;
-    lit.specular[i] = lit.specular[i] * (1 - share);
-  }
-  return lit;
+// Whether the layer was there when that pose of the object was the present one.
+bool was_on(const EditLayer& l, int pose) {
+  return l.pose <= pose && !(l.reshape && max(l.pose, 0) + 1 > pose);
 }
 
 // The scene as it was when that layer had been put on, as far as it has to do with that pose.
 Scene as_of(Scene scene, int layer, int pose) {
   scene.layers.resize(size_t(layer) + 1);
-  std::erase_if(scene.layers, [&](const EditLayer& l) {
-    return l.pose > pose || (l.reshape && max(l.pose, 0) + 1 > pose);
-  });
+  std::erase_if(scene.layers, [&](const EditLayer& l) { return !was_on(l, pose); });
   if (!scene.poses.empty()) scene.poses.resize(size_t(pose) + 1);
   return scene;
 }
@@ -67,69 +59,163 @@ struct Group {
   Appearance look;
 };
 
+bool same_bits(const Vec3f& a, const Vec3f& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+
+bool same_material(const Material& a, const Material& b) {
+  return a.roughness == b.roughness && a.specular == b.specular && a.metalness == b.metalness;
+}
+
+bool same_colors(const VertexColors& a, const VertexColors& b) {
+  if (!a || !b) return a == b;
+  return a == b ||
+         (a->size() == b->size() && std::memcmp(a->data(), b->data(), a->size() * sizeof(Vec3f)) == 0);
+}
+
+size_t pose_count(const Scene& scene) { return std::max<size_t>(scene.poses.size(), 1); }
+
+// What two ways to light the same hits have in common.
+class Comparison {
+ public:
+  Comparison(const LitHits& before, const LitHits& now) : before_(before), now_(now) {}
+
+  // Whether hit i, of these groups (pose and layer), is lit as it was.
+  bool same(size_t i, std::pair<int, int> group_before, std::pair<int, int> group) {
+    return same_bits(before_.look.albedo[i], now_.look.albedo[i]) &&
+           same_material(before_.look.materials[before_.look.material[i]],
+                         now_.look.materials[now_.look.material[i]]) &&
+           same_groups(group_before, group);
+  }
+
+ private:
+  bool same_groups(std::pair<int, int> a, std::pair<int, int> b) {
+    const auto [it, is_new] = groups_.try_emplace({a, b}, false);
+    if (is_new)
+      it->second = a.first == b.first && before_.lights[size_t(a.first)] == now_.lights[size_t(b.first)] &&
+                   same_colors(before_.mirrored.at(a), now_.mirrored.at(b));
+    return it->second;
+  }
+
+  const LitHits &before_, &now_;
+  std::map<std::pair<std::pair<int, int>, std::pair<int, int>>, bool> groups_;
+};
+
 }  // namespace
 
-std::vector<std::shared_ptr<const Transport>> scene_transports(const Scene& scene) {
-  const Surface& rest = scene.poses.empty() ? *scene.surface : *scene.poses.front()->surface;
-  std::vector<std::shared_ptr<const Transport>> out{std::make_shared<const Transport>(rest)};
-  for (size_t k = 1; k < scene.poses.size(); ++k)
-    out.push_back(std::make_shared<const Transport>(*scene.poses[k]->surface, changed_in(scene.poses, k)));
+const std::shared_ptr<const Surface>& surface_of_pose(const Scene& scene, size_t k) {
+  return scene.poses.empty() ? scene.surface : scene.poses[k]->surface;
+}
+
+std::shared_ptr<const Transport> transport_of_pose(const Scene& scene, size_t k) {
+  return std::make_shared<const Transport>(surface_of_pose(scene, k),
+                                           k == 0 ? std::vector<uint8_t>() : changed_in(scene.poses, k));
+}
+
+Transports scene_transports(const Scene& scene) {
+  Transports out;
+  for (size_t k = 0; k < pose_count(scene); ++k) out.push_back(transport_of_pose(scene, k));
   return out;
 }
 
-SceneLight::SceneLight(const Device& device, const Scene& scene,
-                       const std::vector<std::shared_ptr<const Transport>>& transports)
-    : device_(device), scene_(scene) {
-  const Poses& poses = scene_.poses;
-  const Surface& rest = poses.empty() ? *scene_.surface : *poses.front()->surface;
-  std::vector<Vec3f> colors = base_colors(device, scene, rest);
-  VertexLight light = vertex_light(*transports.at(0), scene.light, colors);
-  lights_.push_back(std::make_shared<const Lighting>(device, rest, scene.light, scene.material, light));
-  for (size_t k = 1; k < poses.size(); ++k) {
-    const Pose& pose = *poses[k];
-    colors.insert(colors.end(), pose.colors.begin() + colors.size(), pose.colors.end());
-    light = vertex_light_after(std::move(light), *transports.at(k), scene.light, colors);
-    lights_.push_back(
-        std::make_shared<const Lighting>(device, *pose.surface, scene.light, scene.material, light));
+std::shared_ptr<const PoseLight> light_on_pose(const Device& device, const Scene& scene, size_t k,
+                                               const Transport& transport, const PoseLight* before) {
+  auto out = std::make_shared<PoseLight>();
+  out->surface = surface_of_pose(scene, k);
+  if (before) {
+    std::vector<Vec3f> colors = before->vertices.base_color;
+    const std::vector<Vec3f>& made = scene.poses[k]->colors;
+    colors.insert(colors.end(), made.begin() + std::ptrdiff_t(colors.size()), made.end());
+    out->vertices = vertex_light_after(before->vertices, transport, scene.light, colors);
+  } else {
+    out->vertices = vertex_light(transport, scene.light, base_colors(device, scene, *out->surface));
   }
-  if (!poses.empty()) triangles_ = triangle_ids(poses);
+  out->lighting =
+      std::make_shared<const Lighting>(device, *out->surface, scene.light, scene.material, out->vertices);
+  return out;
+}
+
+SceneLight::SceneLight(const Device& device, const Scene& scene, const Transports& transports)
+    : SceneLight(device, scene, PoseLights(), nullptr) {
+  for (size_t k = 0; k < pose_count(scene); ++k)
+    lights_.push_back(
+        light_on_pose(device, scene, k, *transports.at(k), k == 0 ? nullptr : lights_.back().get()));
+}
+
+SceneLight::SceneLight(const Device& device, const Scene& scene, PoseLights lights, VertexColorsCache* colors)
+    : device_(device), scene_(scene), lights_(std::move(lights)), colors_(colors) {
+  if (!scene.poses.empty()) triangles_ = triangle_ids(scene.poses);
   for (size_t l = 0; l < scene.layers.size(); ++l)
     if (scene.layers[l].everywhere) everywhere_ = int(l);
 }
 
-// Of the pose's vertices; empty: as they were reconstructed.
-std::vector<Vec3f> SceneLight::colors_as_of(int layer, int pose) const {
-  if (layer < 0) return {};
-  const Scene then = as_of(scene_, layer, pose);
-  const bool colored = std::any_of(then.layers.begin(), then.layers.end(),
-                                   [](const EditLayer& l) { return l.albedo || l.erase || l.tint; });
-  if (!colored) return {};
-  const Surface& surface = scene_.poses.empty() ? *scene_.surface : *scene_.poses[size_t(pose)]->surface;
-  return appearance_at(device_, then, vertex_hits(surface.mesh())).albedo;
+// Of the pose's vertices; null: as they were reconstructed.
+VertexColors SceneLight::colors_as_of(int layer, int pose) const {
+  VertexColorsKey key{surface_of_pose(scene_, size_t(pose)), scene_.albedo, {}};
+  bool colored = false, stored = colors_;
+  for (int l = 0; l <= layer; ++l) {
+    const EditLayer& layer_l = scene_.layers[size_t(l)];
+    if (!was_on(layer_l, pose)) continue;
+    colored = colored || layer_l.albedo || layer_l.erase || layer_l.tint;
+    stored = stored && !layer_l.content.empty();
+    key.layers += layer_l.content + " ";
+  }
+  if (!colored) return nullptr;
+  if (stored)
+    if (const VertexColors kept = colors_->find(key)) return kept;
+  const auto colors = std::make_shared<const std::vector<Vec3f>>(
+      appearance_at(device_, as_of(scene_, layer, pose), vertex_hits(key.surface->mesh())).albedo);
+  if (stored) colors_->put(std::move(key), colors, colors->size() * sizeof(Vec3f));
+  return colors;
 }
 
-Shading SceneLight::shade(std::span<const Hit> hits, const Appearance& look) const {
-  std::map<std::pair<int, int>, Group> groups;  // by pose and by the last layer that has to do with them
+LitHits SceneLight::light_hits(std::span<const Hit> hits, const Appearance& look,
+                               const LitHits* before) const {
+  LitHits out{
+      {std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())}, look, lights_, {}, everywhere_};
+  for (size_t i = 0; i < hits.size(); ++i) out.mirrored.try_emplace(group_of(hits[i], look.layer[i]));
+  for (auto& [group, colors] : out.mirrored) colors = colors_as_of(group.second, group.first);
+  std::optional<Comparison> comparison;
+  if (before && before->look.albedo.size() == hits.size()) comparison.emplace(*before, out);
+  std::map<std::pair<int, int>, Group> groups;  // what is lit anew
   for (uint32_t i = 0; i < hits.size(); ++i) {
-    const int pose = scene_.poses.empty() ? 0 : scene_.poses.back()->shaped_in(hits[i].triangle);
-    Group& g = groups[{pose, max(look.layer[i], everywhere_)}];
+    const std::pair<int, int> key = group_of(hits[i], look.layer[i]);
+    if (comparison && comparison->same(i, {key.first, max(before->look.layer[i], before->everywhere)}, key)) {
+      out.shading.diffuse[i] = before->shading.diffuse[i];
+      out.shading.specular[i] = before->shading.specular[i];
+      ++out.kept;
+      continue;
+    }
+    Group& g = groups[key];
     g.index.push_back(i);
     g.hits.push_back(hits[i]);
-    if (!triangles_.empty()) g.hits.back().triangle = triangles_[pose][hits[i].triangle];
+    if (!triangles_.empty()) g.hits.back().triangle = triangles_[size_t(key.first)][hits[i].triangle];
     g.look.albedo.push_back(look.albedo[i]);
     g.look.material.push_back(look.material[i]);
   }
-  Shading out{std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())};
   for (auto& [key, group] : groups) {
-    const auto [pose, layer] = key;
+    const VertexColors& seen = out.mirrored.at(key);
     group.look.materials = look.materials;
-    const Shading part = lights_[pose]->shade(group.hits, group.look, colors_as_of(layer, pose));
+    const Shading part = lights_[size_t(key.first)]->lighting->shade(
+        group.hits, group.look, seen ? std::span<const Vec3f>(*seen) : std::span<const Vec3f>());
     for (size_t j = 0; j < group.index.size(); ++j) {
-      out.diffuse[group.index[j]] = part.diffuse[j];
-      out.specular[group.index[j]] = part.specular[j];
+      out.shading.diffuse[group.index[j]] = part.diffuse[j];
+      out.shading.specular[group.index[j]] = part.specular[j];
     }
   }
-  return with_unlit(std::move(out), look);
+  return out;
+}
+
+Shading SceneLight::shade(std::span<const Hit> hits, const Appearance& look) const {
+  return with_unlit(light_hits(hits, look, nullptr).shading, look);
+}
+
+Shading with_unlit(Shading lit, const Appearance& look) {
+  for (size_t i = 0; i < look.unlit.size(); ++i) {
+    const float share = look.unlit[i];
+    if (share <= 0) continue;
+    lit.diffuse[i] = lit.diffuse[i] * (1 - share) + look.albedo[i] * share;
+    lit.specular[i] = lit.specular[i] * (1 - share);
+  }
+  return lit;
 }
 
 }  // namespace cei3d

@@ -5,32 +5,87 @@
 // colour, and what an edited point mirrors has the colours that it had when that point was edited last.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "core/base/lru_cache.h"
 #include "engine/render/lighting.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {
 
+using Transports = std::vector<std::shared_ptr<const Transport>>;  // by pose, pose 0 first
+using VertexColors = std::shared_ptr<const std::vector<Vec3f>>;    // #V of a pose
+
+// The light on one pose; does not depend on the layers, except through the shapes and the light.
+struct PoseLight {
+  std::shared_ptr<const Surface> surface;
+  VertexLight vertices;  // what the light on the next pose starts from
+  std::shared_ptr<const Lighting> lighting;
+};
+using PoseLights = std::vector<std::shared_ptr<const PoseLight>>;  // by pose
+
+// Of pose k. before: of the pose before it; null for pose 0.
+std::shared_ptr<const PoseLight> light_on_pose(const Device&, const Scene&, size_t k, const Transport&,
+                                               const PoseLight* before);
+
+// The colours of a pose's vertices by what they are made of.
+struct VertexColorsKey {
+  std::shared_ptr<const Surface> surface;
+  std::shared_ptr<const Field> albedo;
+  std::string layers;  // content of all of them
+  bool operator==(const VertexColorsKey&) const = default;
+};
+using VertexColorsCache = LruCache<VertexColorsKey, const std::vector<Vec3f>>;
+
+// How hits were lit, for the next time that the same hits are.
+struct LitHits {
+  Shading shading;  // of lit colours: what is unlit is not in it
+  Appearance look;
+  PoseLights lights;
+  std::map<std::pair<int, int>, VertexColors>
+      mirrored;         // by pose and layer; null: as they were reconstructed
+  int everywhere = -1;  // SceneLight::everywhere_
+  size_t kept = 0;      // hits whose light was taken over
+};
+
 class SceneLight {
  public:
-  // transports: of the scene's poses, pose 0 first; see scene_transports(). They can serve several lights.
-  SceneLight(const Device&, const Scene&, const std::vector<std::shared_ptr<const Transport>>& transports);
+  // transports: of the scene's poses; see scene_transports(). They can serve several lights.
+  SceneLight(const Device&, const Scene&, const Transports& transports);
+  // lights: light_on_pose() of each. colors: where colours of vertices are kept, may be null; it has to
+  // outlive this.
+  SceneLight(const Device&, const Scene&, PoseLights lights, VertexColorsCache* colors);
 
   Shading shade(std::span<const Hit> hits, const Appearance&) const;
+  // The same bits. before: of the same hits, in any light and with any layers of the same shape; may be null.
+  // What it has of hits that are lit as they were is not computed again.
+  LitHits light_hits(std::span<const Hit> hits, const Appearance&, const LitHits* before) const;
 
  private:
-  std::vector<Vec3f> colors_as_of(int layer, int pose) const;
+  std::pair<int, int> group_of(const Hit& hit, int layer) const {
+    const int pose = scene_.poses.empty() ? 0 : scene_.poses.back()->shaped_in(hit.triangle);
+    return {pose, layer > everywhere_ ? layer : everywhere_};
+  }
+  VertexColors colors_as_of(int layer, int pose) const;
 
   const Device& device_;
   Scene scene_;
-  int everywhere_ = -1;                                  // the last layer that has no region
-  std::vector<std::shared_ptr<const Lighting>> lights_;  // by pose
-  std::vector<std::vector<uint32_t>> triangles_;         // [pose][present triangle]: its id in that pose
+  int everywhere_ = -1;  // the last layer that has no region
+  PoseLights lights_;
+  VertexColorsCache* colors_ = nullptr;
+  std::vector<std::vector<uint32_t>> triangles_;  // [pose][present triangle]: its id in that pose
 };
 
 // One for each pose; depends on the scene's shape only. A second for pose 0, less for what changed after it.
-std::vector<std::shared_ptr<const Transport>> scene_transports(const Scene&);
+Transports scene_transports(const Scene&);
+std::shared_ptr<const Transport> transport_of_pose(const Scene&, size_t k);
+const std::shared_ptr<const Surface>& surface_of_pose(const Scene&, size_t k);
+
+// What is shown, with the colours that no light falls on.
+Shading with_unlit(Shading lit, const Appearance&);
 
 }  // namespace cei3d

@@ -15,12 +15,14 @@
 
 namespace cei3d {
 
+class RenderCache;
 using EditInputs = std::vector<std::pair<std::string, std::string>>;  // file name, bytes
 
 struct EditContext {
   const Device& device;
   const Capture& capture;
   const Scene& scene;  // what lies below the edit
+  RenderCache& frames;
   Progress& progress;
 };
 

@@ -7,7 +7,7 @@
 #include "engine/edit/stroke.h"
 #include "engine/io/image_file.h"
 #include "engine/io/png_file.h"
-#include "engine/render/scene_light.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/edit_ops.h"
 #include "engine/session/requests.h"
 
@@ -90,7 +90,7 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
     request.scribbles.push_back(scribble_of(context, job, job.params));
   std::optional<SceneLight> light;
   if (target == PaintTarget::appearance) {
-    light.emplace(context.device, context.scene, scene_transports(context.scene));
+    light.emplace(context.frames.light(context.scene));
     request.seen_in = &*light;
   }
   PaintResult result = paint(context.device, context.scene, request, context.progress);

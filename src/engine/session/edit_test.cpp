@@ -12,7 +12,7 @@
 #include "core/math/rng.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
-#include "engine/render/render.h"
+#include "engine/render/render_cache.h"
 #include "engine/render/sphere_scene.h"
 #include "engine/session/session.h"
 #include "model/scene/appearance.h"
@@ -295,6 +295,40 @@ class RandomEdits : public EditTest {
     }
   }
 };
+
+// What the session keeps in memory from command to command changes no bit of object and frame.
+TEST_F(RandomEdits, AreShownWithTheBitsOfASessionThatJustOpened) {
+  const Camera camera = camera_towards_origin({0, -3, 0.3}, kSize);
+  std::vector<std::string> ids;
+  size_t cursor = 0;
+  for (uint64_t step = 0; step < 12; ++step) {
+    Rng rng(3, 8, step);
+    const uint32_t what = rng.below(10);
+    if (what < 6 || cursor == 0) {
+      ids.resize(cursor);
+      ids.push_back(make_edit(int(rng.below(9))));
+      ++cursor;
+    } else if (what < 7) {
+      session_.undo(quiet_);
+      --cursor;
+    } else if (what < 8 && cursor < ids.size()) {
+      session_.redo(quiet_);
+      ++cursor;
+    } else {
+      session_.toggle(ids[rng.below(uint32_t(ids.size()))], quiet_);
+    }
+    const Scene kept = session_.scene(), fresh = scene("a");
+    ASSERT_EQ(bytes_of(kept), bytes_of(fresh)) << step;
+    RenderCache& frames = session_.frames();
+    const Frame frame = frames.shade(kept, frames.light(kept), *frames.trace(kept, camera, 1));
+    const Frame plain = shade_view(session_.device(), fresh, trace_view(session_.device(), fresh, camera, 1));
+    ASSERT_EQ(std::memcmp(frame.rgb.data.data(), plain.rgb.data.data(), 4 * frame.rgb.data.size()), 0)
+        << step;
+  }
+  EXPECT_GT(session_.frames().hits_kept(), 0u);
+  EXPECT_GT(session_.frames().view_count().found, 2u);
+  EXPECT_GT(session_.frames().light_count().found, 2u);
+}
 
 TEST_F(RandomEdits, EndInTheSameBytesAsDoingWhatIsLeft) {
   for (uint64_t seed = 0; seed < 3; ++seed) {

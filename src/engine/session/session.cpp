@@ -12,7 +12,7 @@
 #include "engine/capture/normalize.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
-#include "engine/render/scene_light.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/version.h"
 
 namespace cei3d {
@@ -56,7 +56,8 @@ void describe_scene(const Scene& scene, ProjectInfo& info) {
 }  // namespace
 
 Session::Session(const std::string& device, int threads)
-    : device_(std::make_unique<Device>(make_device(device))) {
+    : device_(std::make_unique<Device>(make_device(device))),
+      frames_(std::make_unique<RenderCache>(*device_)) {
   set_threads(threads);
 }
 Session::~Session() = default;
@@ -69,14 +70,6 @@ MachineInfo Session::machine() {
   m.memory_gib = memory_gib();
   for (const Device& d : all_devices()) m.devices.push_back(d.name());
   return m;
-}
-
-SceneLight Session::light(const Scene& scene) {
-  if (lit_surface_ != scene.surface) {
-    transports_ = scene_transports(scene);
-    lit_surface_ = scene.surface;
-  }
-  return SceneLight(*device_, scene, transports_);
 }
 
 CheckReport Session::check(const CheckRequest& request) {
@@ -95,12 +88,15 @@ Project& Session::project() const {
 }
 
 void Session::open(const fs::path& folder, Access access) {
-  project_.reset();  // lets go of its lock first: it may be the same project
+  close();  // lets go of its lock first: it may be the same project
   const auto mode = access == Access::write ? Project::Mode::write : Project::Mode::read;
   project_ = std::make_unique<Project>(Project::open(folder, mode));
 }
 
-void Session::close() { project_.reset(); }
+void Session::close() {
+  project_.reset();
+  frames_ = std::make_unique<RenderCache>(*device_);
+}
 
 ProjectInfo Session::info() const {
   const Project& p = project();
@@ -118,6 +114,8 @@ ProjectInfo Session::info() const {
   if (info.finished) describe_scene(p.base(), info);
   return info;
 }
+
+Scene Session::scene() const { return project().scene(); }
 
 std::vector<LogEntry> Session::log() const {
   std::vector<LogEntry> entries;

@@ -19,9 +19,7 @@ namespace cei3d {
 
 class Device;
 class Project;
-class SceneLight;
-class Surface;
-class Transport;
+class RenderCache;
 struct Scene;
 using EditInputs = std::vector<std::pair<std::string, std::string>>;  // file name, bytes
 
@@ -32,6 +30,8 @@ class Session {
   ~Session();
 
   const Device& device() const { return *device_; }
+  // What frames of the open project share, for measurements and tests; a new one with every open().
+  RenderCache& frames() { return *frames_; }
 
   // Without a project.
   static MachineInfo machine();
@@ -47,6 +47,7 @@ class Session {
   void close();  // lets go of the project and its lock
   ProjectInfo info() const;
   std::vector<LogEntry> log() const;
+  Scene scene() const;  // the object as it is: base and the edits that are on
   // Edits. Each adds a layer at the cursor of the history; when one fails, nothing has changed.
   EditSummary paint(const PaintCommand&, Progress&);
   EditSummary change_material(const MaterialCommand&, Progress&);
@@ -54,7 +55,7 @@ class Session {
   EditSummary deform(const DeformCommand&, Progress&);
   EditSummary remove(const RemoveCommand&, Progress&);
   EditSummary select_part(const PartCommand&, Progress&);
-  ChangeSummary show_change(const ChangeRequest&) const;  // of an edit that is on
+  ChangeSummary show_change(const ChangeRequest&);  // of an edit that is on
   // Edits that depend on what comes or goes are made anew. Errors: one of them can't be; nothing has changed
   // then.
   std::string undo(Progress&);  // id of the edit that is undone now
@@ -72,12 +73,10 @@ class Session {
  private:
   Project& project() const;  // error when none is open
   EditSummary add_edit(const char* op, Json params, EditInputs inputs, Progress&);
-  SceneLight light(const Scene&);  // lights of one surface share what depends on it only
 
   std::unique_ptr<Device> device_;
   std::unique_ptr<Project> project_;
-  std::shared_ptr<const Surface> lit_surface_;  // of the transports below
-  std::vector<std::shared_ptr<const Transport>> transports_;
+  std::unique_ptr<RenderCache> frames_;  // of the open project
 };
 
 }  // namespace cei3d

@@ -7,6 +7,7 @@
 #include "engine/edit/change_report.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/frame_files.h"
 #include "engine/session/session.h"
 
@@ -28,7 +29,7 @@ const View& view_to_show(const Project& project, const ChangeRequest& request) {
 
 }  // namespace
 
-ChangeSummary Session::show_change(const ChangeRequest& request) const {
+ChangeSummary Session::show_change(const ChangeRequest& request) {
   const View& view = view_to_show(project(), request);
   const Scene before = project().scene_below(project().stack(), request.id);
   const Scene all = project().scene();
@@ -37,7 +38,8 @@ ChangeSummary Session::show_change(const ChangeRequest& request) const {
   if (layer == all.layers.end())
     fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", request.id);
   const Camera camera = before.normalization.unit_from_input(view.camera);
-  const ChangeReport r = compare_views(*device_, before, with_layer(before, *layer), camera, request.samples);
+  const ChangeReport r =
+      compare_views(*device_, *frames_, before, with_layer(before, *layer), camera, request.samples);
   if (!request.picture.empty())
     write_png(request.picture, side_by_side({rounded_srgb(r.before.rgb), rounded_srgb(r.after.rgb)}));
   return {view.name, r.pixels_inside, r.pixels_changed, r.changed_outside};

@@ -7,6 +7,7 @@
 #include "core/compute/device.h"
 #include "engine/io/npy.h"
 #include "engine/project/project.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/edit_ops.h"
 #include "engine/session/edit_params.h"
 #include "engine/session/light_choice.h"
@@ -16,15 +17,22 @@
 namespace cei3d {
 namespace {
 
-EditSummary add_edit_to(Project& project, const Device& device, const char* name, Json params,
-                        EditInputs inputs, Progress& progress) {
+// What edits are made with.
+struct Tools {
+  const Device& device;
+  RenderCache& frames;
+  Progress& progress;
+};
+
+EditSummary add_edit_to(Project& project, const Tools& tools, const char* name, Json params,
+                        EditInputs inputs) {
   Stopwatch watch;
   const EditOp& op = edit_op(name);
   const Scene scene = project.scene();
   EditSummary s;
   s.load_seconds = watch.lap();
   const EditJob job{project.stack().next_id(name), std::move(params), std::move(inputs)};
-  EditOutcome made = op.make({device, project.capture(), scene, progress}, job);
+  EditOutcome made = op.make({tools.device, project.capture(), scene, tools.frames, tools.progress}, job);
   const double seconds = watch.lap();
   if (!made.report.contains("seconds")) made.report["seconds"] = {{name, seconds}};
   s.id = job.id;
@@ -37,13 +45,14 @@ EditSummary add_edit_to(Project& project, const Device& device, const char* name
 
 // Makes what a change of the history asks for, before it is made: so the history that stands is always
 // complete.
-void make_anew(Project& project, const Device& device, const Stack& next, Progress& progress) {
+void make_anew(Project& project, const Tools& tools, const Stack& next) {
   while (const auto id = project.first_stale(next)) {
     const EditRecord record = project.edit(*id);
     try {
       const Scene below = project.scene_below(next, *id);
-      const EditOutcome made = edit_op(record.op).make({device, project.capture(), below, progress},
-                                                       {*id, record.params, project.edit_inputs(*id)});
+      const EditOutcome made =
+          edit_op(record.op).make({tools.device, project.capture(), below, tools.frames, tools.progress},
+                                  {*id, record.params, project.edit_inputs(*id)});
       project.add_result(next, *id, made.layer);
     } catch (const Error& e) {
       if (e.code() == ErrorCode::interrupted) throw;
@@ -52,17 +61,17 @@ void make_anew(Project& project, const Device& device, const Stack& next, Progre
   }
 }
 
-bool toggle_edit(Project& project, const Device& device, const std::string& id, Progress& progress) {
+bool toggle_edit(Project& project, const Tools& tools, const std::string& id) {
   Stack next = project.stack();
   next.toggle(id);
-  make_anew(project, device, next, progress);
+  make_anew(project, tools, next);
   return project.toggle(id);
 }
 
 }  // namespace
 
 EditSummary Session::add_edit(const char* op, Json params, EditInputs inputs, Progress& progress) {
-  return add_edit_to(project(), *device_, op, std::move(params), std::move(inputs), progress);
+  return add_edit_to(project(), {*device_, *frames_, progress}, op, std::move(params), std::move(inputs));
 }
 
 EditSummary Session::paint(const PaintCommand& command, Progress& progress) {
@@ -119,19 +128,19 @@ EditSummary Session::change_light(const LightChoice& choice, Progress& progress)
 std::string Session::undo(Progress& progress) {
   Stack next = project().stack();
   next.undo();
-  make_anew(project(), *device_, next, progress);
+  make_anew(project(), {*device_, *frames_, progress}, next);
   return project().undo();
 }
 
 std::string Session::redo(Progress& progress) {
   Stack next = project().stack();
   next.redo();
-  make_anew(project(), *device_, next, progress);
+  make_anew(project(), {*device_, *frames_, progress}, next);
   return project().redo();
 }
 
 bool Session::toggle(const std::string& id, Progress& progress) {
-  return toggle_edit(project(), *device_, id, progress);
+  return toggle_edit(project(), {*device_, *frames_, progress}, id);
 }
 
 ReplayReport Session::replay(const std::filesystem::path& on, Progress& progress) {
@@ -139,15 +148,16 @@ ReplayReport Session::replay(const std::filesystem::path& on, Progress& progress
   if (std::filesystem::equivalent(project().folder(), on, error))
     fail_usage("{} is the project itself; name another one with --on.", on.string());
   Project other = Project::open(on, Project::Mode::write);
+  const Tools tools{*device_, *frames_, progress};
   const Stack& stack = project().stack();
   ReplayReport report;
   for (size_t i = 0; i < stack.cursor(); ++i) {
     const StackEntry& entry = stack.entries()[i];
     const EditRecord record = project().edit(entry.id);
     try {
-      const EditSummary s = add_edit_to(other, *device_, edit_op(record.op).name, record.params,
-                                        project().edit_inputs(entry.id), progress);
-      if (!entry.enabled) toggle_edit(other, *device_, s.id, progress);
+      const EditSummary s =
+          add_edit_to(other, tools, edit_op(record.op).name, record.params, project().edit_inputs(entry.id));
+      if (!entry.enabled) toggle_edit(other, tools, s.id);
       report.edits.emplace_back(entry.id, s.id);
     } catch (const Error& e) {
       if (e.code() == ErrorCode::interrupted) throw;

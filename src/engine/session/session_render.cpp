@@ -8,7 +8,7 @@
 #include "engine/io/image_file.h"
 #include "engine/project/dataset.h"
 #include "engine/project/project.h"
-#include "engine/render/scene_light.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/cameras.h"
 #include "engine/session/frame_files.h"
 #include "engine/session/light_choice.h"
@@ -79,16 +79,16 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
   scene.light = chosen_light(*device_, request.light, scene.light, scene.up, {project().folder() / "cache"});
   if (!request.residual || !request.light.is_own()) scene.residual = nullptr;
   const double depth = depth_scale(cameras, scene.normalization);
-  const SceneLight light = this->light(scene);
+  const SceneLight light = frames_->light(scene);
   RenderReport report;
   for (size_t i = 0; i < cameras.size(); ++i) {
     require_running(progress);
     progress.report({"render", double(i) / double(cameras.size()), -1, cameras[i].name});
     const double before = now();
-    const GBuffer buffer =
-        trace_view(*device_, scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
+    const auto view =
+        frames_->trace(scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
     const double traced = now();
-    const Frame frame = shade_view(*device_, scene, light, buffer);
+    const Frame frame = frames_->shade(scene, light, *view);
     report.trace_seconds += traced - before;
     report.shade_seconds += now() - traced;
     for (const Channel c : request.channels)
