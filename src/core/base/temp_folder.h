@@ -3,22 +3,16 @@
 // goes.
 #pragma once
 
-#include <stdlib.h>
-
 #include <filesystem>
-#include <string>
 
 #include "core/base/error.h"
+#include "core/base/system.h"
 
 namespace cei3d {
 
 class TempFolder {
  public:
-  TempFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "cei3d-XXXXXX").string();
-    if (!::mkdtemp(name.data())) fail("Cannot make a temporary folder like {}.", name);
-    path_ = name;
-  }
+  TempFolder() : path_(make_temporary_folder()) {}
   ~TempFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);

@@ -110,7 +110,9 @@ class Project {
   // anew: the first such one, the scene below it, and a place for what it makes.
   std::optional<std::string> first_stale(const Stack&) const;
   Scene scene_below(const Stack&, const std::string& id) const;
-  void add_result(const Stack&, const std::string& id, const EditLayer& layer);
+  // op_version: of the operation that made it; where the edit was first made by another one, its report says
+  // so.
+  void add_result(const Stack&, const std::string& id, const EditLayer& layer, int op_version);
 
   void add_history(Json event);                            // one line of history.jsonl; "time" is added
   std::filesystem::path new_run(const std::string& verb);  // makes runs/<time>-<verb>

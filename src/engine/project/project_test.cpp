@@ -359,6 +359,38 @@ TEST_F(ProjectTest, DamagedJsonIsNamed) {
   EXPECT_NO_THROW(Project::open(folder(), Project::Mode::read).scene());
 }
 
+TEST_F(ProjectTest, UnknownKeysAreNamed) {
+  {
+    Project p = make_with_base();
+    add_paint(p, 1);
+  }
+  const auto reading = [&] {
+    const Project p = Project::open(folder(), Project::Mode::read);
+    p.scene();
+    p.edit("0001-paint");
+  };
+  for (const auto& [name, place] :
+       std::vector<std::pair<std::string, std::string>>{{"project.json", ""},
+                                                        {"project.json", "/normalization"},
+                                                        {"dataset.json", ""},
+                                                        {"dataset.json", "/views/0"},
+                                                        {"dataset.json", "/views/1/camera"},
+                                                        {"stack.json", ""},
+                                                        {"stack.json", "/edits/0"},
+                                                        {"base/scene.json", ""},
+                                                        {"base/scene.json", "/head"},
+                                                        {"base/scene.json", "/head/material"},
+                                                        {"edits/0001-paint/edit.json", ""}}) {
+    const std::string good = read_file(folder() / name);
+    Json bad = Json::parse(good);
+    bad[Json::json_pointer(place)]["surprise"] = 1;
+    write_file_atomic(folder() / name, bad.dump());
+    EXPECT_THAT(message_of(reading), HasSubstr("unknown key 'surprise'")) << name << place;
+    write_file_atomic(folder() / name, good);
+  }
+  EXPECT_NO_THROW(reading());
+}
+
 TEST_F(ProjectTest, DoesNotTakeAFolderThatHoldsSomethingElse) {
   fs::create_directories(folder());
   write_file_atomic(folder() / "thesis.tex", "irreplaceable");

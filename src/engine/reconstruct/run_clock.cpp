@@ -25,7 +25,7 @@ double RunClock::left() const {
   return seconds_ > 0 ? seconds_ - elapsed() : std::numeric_limits<double>::infinity();
 }
 
-void RunClock::report(const ProgressReport& r) {
+void RunClock::on_report(const ProgressReport& r) {
   constexpr double kAlmost = 0.99;  // a run that is late is not over
   ProgressReport by_clock = r;
   if (seconds_ > 0 && r.fraction < 1) {

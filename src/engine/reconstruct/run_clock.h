@@ -16,11 +16,11 @@ class RunClock : public Progress {
   double elapsed() const;
   double left() const;  // below 0: late; infinite without a time given
 
-  void report(const ProgressReport&) override;
-  void log(const std::string& json_line) override { to_.log(json_line); }
-  bool cancelled() const override { return to_.cancelled(); }
-
  private:
+  void on_report(const ProgressReport&) override;
+  void on_log(const std::string& json_line) override { to_.log(json_line); }
+  bool is_cancelled() const override { return to_.cancelled(); }
+
   Progress& to_;
   double seconds_, start_;
   double furthest_ = 0;  // fraction reported

@@ -20,7 +20,7 @@ struct RenderCacheLimits {
 };
 
 struct TracedView {
-  const GBuffer buffer;
+  GBuffer buffer;
   HitMemory memory;  // of its latest frame
 };
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <optional>
 
 namespace cei3d {
 namespace {
@@ -52,13 +51,6 @@ Scene as_of(Scene scene, int layer, int pose) {
   return scene;
 }
 
-// Hits that one pose lights, with its own triangles, and what they look like.
-struct Group {
-  std::vector<uint32_t> index;
-  std::vector<Hit> hits;
-  Appearance look;
-};
-
 bool same_bits(const Vec3f& a, const Vec3f& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
 
 bool same_material(const Material& a, const Material& b) {
@@ -73,30 +65,37 @@ bool same_colors(const VertexColors& a, const VertexColors& b) {
 
 size_t pose_count(const Scene& scene) { return std::max<size_t>(scene.poses.size(), 1); }
 
-// What two ways to light the same hits have in common.
+// Which hits are lit as they were.
 class Comparison {
  public:
-  Comparison(const LitHits& before, const LitHits& now) : before_(before), now_(now) {}
+  // before: null: none is.
+  Comparison(const LitHits* before, const LitHits& now)
+      : before_(before && before->groups.of.size() == now.groups.of.size() ? before : nullptr), now_(now) {
+    if (!before_) return;
+    for (size_t a = 0; a < before->groups.keys.size(); ++a)
+      for (size_t b = 0; b < now.groups.keys.size(); ++b) same_groups_.push_back(same_group(a, b));
+  }
 
-  // Whether hit i, of these groups (pose and layer), is lit as it was.
-  bool same(size_t i, std::pair<int, int> group_before, std::pair<int, int> group) {
-    return same_bits(before_.look.albedo[i], now_.look.albedo[i]) &&
-           same_material(before_.look.materials[before_.look.material[i]],
-                         now_.look.materials[now_.look.material[i]]) &&
-           same_groups(group_before, group);
+  bool same(size_t hit) const {
+    return before_ && same_groups_[before_->groups.of[hit] * now_.groups.keys.size() + now_.groups.of[hit]] &&
+           same_bits(before_->look.albedo[hit], now_.look.albedo[hit]) &&
+           same_material(material(*before_, hit), material(now_, hit));
   }
 
  private:
-  bool same_groups(std::pair<int, int> a, std::pair<int, int> b) {
-    const auto [it, is_new] = groups_.try_emplace({a, b}, false);
-    if (is_new)
-      it->second = a.first == b.first && before_.lights[size_t(a.first)] == now_.lights[size_t(b.first)] &&
-                   same_colors(before_.mirrored.at(a), now_.mirrored.at(b));
-    return it->second;
+  static const Material& material(const LitHits& l, size_t hit) {
+    return l.look.materials[l.look.material[hit]];
+  }
+  bool same_group(size_t a, size_t b) const {
+    const int pose = now_.groups.keys[b].first;
+    return before_->groups.keys[a].first == pose &&
+           before_->lights[size_t(pose)] == now_.lights[size_t(pose)] &&
+           same_colors(before_->mirrored[a], now_.mirrored[b]);
   }
 
-  const LitHits &before_, &now_;
-  std::map<std::pair<std::pair<int, int>, std::pair<int, int>>, bool> groups_;
+  const LitHits* before_;
+  const LitHits& now_;
+  std::vector<uint8_t> same_groups_;  // [group before][group now]
 };
 
 }  // namespace
@@ -167,40 +166,62 @@ VertexColors SceneLight::colors_as_of(int layer, int pose) const {
   return colors;
 }
 
-LitHits SceneLight::light_hits(std::span<const Hit> hits, const Appearance& look,
-                               const LitHits* before) const {
-  LitHits out{
-      {std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())}, look, lights_, {}, everywhere_};
-  for (size_t i = 0; i < hits.size(); ++i) out.mirrored.try_emplace(group_of(hits[i], look.layer[i]));
-  for (auto& [group, colors] : out.mirrored) colors = colors_as_of(group.second, group.first);
-  std::optional<Comparison> comparison;
-  if (before && before->look.albedo.size() == hits.size()) comparison.emplace(*before, out);
-  std::map<std::pair<int, int>, Group> groups;  // what is lit anew
+HitGroups SceneLight::groups_of(std::span<const Hit> hits, std::span<const int> layers) const {
+  HitGroups groups;
+  uint32_t last = 0;  // neighbours are mostly of one group
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const int pose = scene_.poses.empty() ? 0 : scene_.poses.back()->shaped_in(hits[i].triangle);
+    const std::pair<int, int> key{pose, max(layers[i], everywhere_)};
+    if (last >= groups.keys.size() || groups.keys[last] != key)
+      last = uint32_t(std::find(groups.keys.begin(), groups.keys.end(), key) - groups.keys.begin());
+    if (last == groups.keys.size()) groups.keys.push_back(key);
+    groups.of.push_back(last);
+  }
+  return groups;
+}
+
+// which: indices of hits of that group.
+void SceneLight::light_group(uint32_t group, std::span<const uint32_t> which, std::span<const Hit> hits,
+                             LitHits& out) const {
+  const auto pose = size_t(out.groups.keys[group].first);
+  std::vector<Hit> own;  // with the triangles of the pose
+  Appearance look;
+  look.materials = out.look.materials;
+  for (const uint32_t i : which) {
+    own.push_back(hits[i]);
+    if (!triangles_.empty()) own.back().triangle = triangles_[pose][hits[i].triangle];
+    look.albedo.push_back(out.look.albedo[i]);
+    look.material.push_back(out.look.material[i]);
+  }
+  const VertexColors& seen = out.mirrored[group];
+  const Shading part = lights_[pose]->lighting->shade(
+      own, look, seen ? std::span<const Vec3f>(*seen) : std::span<const Vec3f>());
+  for (size_t j = 0; j < which.size(); ++j) {
+    out.shading.diffuse[which[j]] = part.diffuse[j];
+    out.shading.specular[which[j]] = part.specular[j];
+  }
+}
+
+LitHits SceneLight::light_hits(std::span<const Hit> hits, Appearance look, const LitHits* before) const {
+  LitHits out;
+  out.shading = {std::vector<Vec3f>(hits.size()), std::vector<Vec3f>(hits.size())};
+  out.look = std::move(look);
+  out.lights = lights_;
+  out.groups = groups_of(hits, out.look.layer);
+  for (const auto& [pose, layer] : out.groups.keys) out.mirrored.push_back(colors_as_of(layer, pose));
+  const Comparison comparison(before, out);
+  std::vector<std::vector<uint32_t>> anew(out.groups.keys.size());  // hits by group
   for (uint32_t i = 0; i < hits.size(); ++i) {
-    const std::pair<int, int> key = group_of(hits[i], look.layer[i]);
-    if (comparison && comparison->same(i, {key.first, max(before->look.layer[i], before->everywhere)}, key)) {
-      out.shading.diffuse[i] = before->shading.diffuse[i];
-      out.shading.specular[i] = before->shading.specular[i];
-      ++out.kept;
+    if (!comparison.same(i)) {
+      anew[out.groups.of[i]].push_back(i);
       continue;
     }
-    Group& g = groups[key];
-    g.index.push_back(i);
-    g.hits.push_back(hits[i]);
-    if (!triangles_.empty()) g.hits.back().triangle = triangles_[size_t(key.first)][hits[i].triangle];
-    g.look.albedo.push_back(look.albedo[i]);
-    g.look.material.push_back(look.material[i]);
+    out.shading.diffuse[i] = before->shading.diffuse[i];
+    out.shading.specular[i] = before->shading.specular[i];
+    ++out.kept;
   }
-  for (auto& [key, group] : groups) {
-    const VertexColors& seen = out.mirrored.at(key);
-    group.look.materials = look.materials;
-    const Shading part = lights_[size_t(key.first)]->lighting->shade(
-        group.hits, group.look, seen ? std::span<const Vec3f>(*seen) : std::span<const Vec3f>());
-    for (size_t j = 0; j < group.index.size(); ++j) {
-      out.shading.diffuse[group.index[j]] = part.diffuse[j];
-      out.shading.specular[group.index[j]] = part.specular[j];
-    }
-  }
+  for (uint32_t group = 0; group < anew.size(); ++group)
+    if (!anew[group].empty()) light_group(group, anew[group], hits, out);
   return out;
 }
 

@@ -5,7 +5,6 @@
 // colour, and what an edited point mirrors has the colours that it had when that point was edited last.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -41,15 +40,20 @@ struct VertexColorsKey {
 };
 using VertexColorsCache = LruCache<VertexColorsKey, const std::vector<Vec3f>>;
 
+// Hits by the pose that lights them and the last layer that has to do with them; -1: none.
+struct HitGroups {
+  std::vector<std::pair<int, int>> keys;  // pose, layer
+  std::vector<uint32_t> of;               // #hits, index of the hit's key
+};
+
 // How hits were lit, for the next time that the same hits are.
 struct LitHits {
   Shading shading;  // of lit colours: what is unlit is not in it
   Appearance look;
   PoseLights lights;
-  std::map<std::pair<int, int>, VertexColors>
-      mirrored;         // by pose and layer; null: as they were reconstructed
-  int everywhere = -1;  // SceneLight::everywhere_
-  size_t kept = 0;      // hits whose light was taken over
+  HitGroups groups;
+  std::vector<VertexColors> mirrored;  // by group: what reflections see; null: the colours as reconstructed
+  size_t kept = 0;                     // hits whose light was taken over
 };
 
 class SceneLight {
@@ -63,13 +67,12 @@ class SceneLight {
   Shading shade(std::span<const Hit> hits, const Appearance&) const;
   // The same bits. before: of the same hits, in any light and with any layers of the same shape; may be null.
   // What it has of hits that are lit as they were is not computed again.
-  LitHits light_hits(std::span<const Hit> hits, const Appearance&, const LitHits* before) const;
+  LitHits light_hits(std::span<const Hit> hits, Appearance, const LitHits* before) const;
 
  private:
-  std::pair<int, int> group_of(const Hit& hit, int layer) const {
-    const int pose = scene_.poses.empty() ? 0 : scene_.poses.back()->shaped_in(hit.triangle);
-    return {pose, layer > everywhere_ ? layer : everywhere_};
-  }
+  HitGroups groups_of(std::span<const Hit> hits, std::span<const int> layers) const;
+  void light_group(uint32_t group, std::span<const uint32_t> which, std::span<const Hit> hits,
+                   LitHits& out) const;
   VertexColors colors_as_of(int layer, int pose) const;
 
   const Device& device_;

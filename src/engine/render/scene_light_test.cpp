@@ -240,8 +240,7 @@ TEST(RenderCache, FramesOfRandomHistoriesHaveTheBitsOfFramesMadeAnew) {
   for (uint64_t seed = 0; seed < 2; ++seed) {
     RenderCache frames(device);
     expect_frames_as_without(frames, device, seed, 14);
-    EXPECT_GT(frames.transport_count().found, 0u);
-    EXPECT_GT(frames.light_count().found, frames.light_count().missed);
+    EXPECT_GT(frames.light_count().found, 0u);
     EXPECT_GT(frames.view_count().found, 0u);
     EXPECT_GT(frames.hits_kept(), 0u);
     EXPECT_GT(frames.hits_lit(), 0u);
@@ -271,8 +270,13 @@ TEST(RenderCache, ASecondFrameComputesNoLight) {
   draw(one);  // the lower sphere stays as it was
   EXPECT_GT(frames.hits_kept(), hits);
   EXPECT_LT(frames.hits_lit(), 2 * hits);
-  EXPECT_EQ(frames.transport_count().missed, 1u);
   EXPECT_EQ(frames.light_count().missed, 1u);
+  Scene relit = base;
+  relit.light.lobes[0].mu = {2, 1, 0.5f};
+  draw(relit);
+  EXPECT_EQ(frames.light_count().missed, 2u);
+  EXPECT_EQ(frames.transport_count().missed, 1u);
+  EXPECT_EQ(frames.transport_count().found, 1u);
   EXPECT_EQ(frames.view_count().missed, 1u);
 }
 

@@ -2,6 +2,8 @@
 // Interrupted after its geometry is trained, a reconstruction leaves no half-made object and can go on.
 #include <gtest/gtest.h>
 
+#include <atomic>
+
 #include "core/base/error.h"
 #include "core/base/temp_folder.h"
 #include "engine/capture/test_capture.h"
@@ -15,12 +17,15 @@ namespace {
 class StopsAt : public Progress {
  public:
   explicit StopsAt(std::string stage) : stage_(std::move(stage)) {}
-  void report(const ProgressReport& r) override { reached_ |= r.stage == stage_; }
-  bool cancelled() const override { return reached_; }
 
  private:
+  void on_report(const ProgressReport& r) override {
+    if (r.stage == stage_) reached_ = true;
+  }
+  bool is_cancelled() const override { return reached_; }
+
   std::string stage_;
-  bool reached_ = false;
+  std::atomic<bool> reached_ = false;
 };
 
 TEST(Reconstruct, InterruptedInALateStageIsGoneOnWith) {

@@ -20,9 +20,12 @@ namespace cei3d {
 class Device;
 class Project;
 class RenderCache;
+class Threads;
 struct Scene;
 using EditInputs = std::vector<std::pair<std::string, std::string>>;  // file name, bytes
 
+// For one thread at a time; it works on several of its own. Several sessions, each with its own project, may
+// be used by several threads at the same time.
 class Session {
  public:
   // device: core/compute/device.h make_device(). threads: 0 takes every core.
@@ -30,6 +33,7 @@ class Session {
   ~Session();
 
   const Device& device() const { return *device_; }
+  const Threads& threads() const { return *threads_; }
   // What frames of the open project share, for measurements and tests; a new one with every open().
   RenderCache& frames() { return *frames_; }
 
@@ -74,7 +78,10 @@ class Session {
   Project& project() const;  // error when none is open
   EditSummary add_edit(const char* op, Json params, EditInputs inputs, Progress&);
 
+  ReconstructReport run_reconstruction(const ReconstructRequest&, Progress&);
+
   std::unique_ptr<Device> device_;
+  std::unique_ptr<Threads> threads_;
   std::unique_ptr<Project> project_;
   std::unique_ptr<RenderCache> frames_;  // of the open project
 };

@@ -81,7 +81,7 @@ ReconstructReport report_of(const Project& project, const Scene& scene, double s
 
 }  // namespace
 
-ReconstructReport Session::reconstruct(const ReconstructRequest& request, Progress& progress) {
+ReconstructReport Session::run_reconstruction(const ReconstructRequest& request, Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   if (request.resume) {
     open(request.project, Access::write);
