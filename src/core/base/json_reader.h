@@ -63,16 +63,23 @@ class JsonReader {
 };
 
 template <class T>
+bool fits_into(const Json& j) {
+  if (j.is_number_unsigned()) return j.get<uint64_t>() <= uint64_t(std::numeric_limits<T>::max());
+  if (!j.is_number_integer()) return false;
+  const auto n = j.get<int64_t>();
+  if constexpr (std::is_signed_v<T>)
+    return n >= std::numeric_limits<T>::min() && n <= std::numeric_limits<T>::max();
+  else
+    return n >= 0 && uint64_t(n) <= uint64_t(std::numeric_limits<T>::max());
+}
+
+template <class T>
 T JsonReader::value(const Json& j, const char* key) const {
   if constexpr (std::is_same_v<T, bool>) {
     if (!j.is_boolean()) wrong_type(key, j, "true or false");
   } else if constexpr (std::is_integral_v<T>) {
-    const bool fits =
-        j.is_number_unsigned()
-            ? j.get<uint64_t>() <= uint64_t(std::numeric_limits<T>::max())
-            : j.is_number_integer() && j.get<int64_t>() >= int64_t(std::numeric_limits<T>::min()) &&
-                  (std::is_signed_v<T> && j.get<int64_t>() <= int64_t(std::numeric_limits<T>::max()));
-    if (!fits) wrong_type(key, j, std::is_signed_v<T> ? "a whole number" : "a whole number, not negative,");
+    if (!fits_into<T>(j))
+      wrong_type(key, j, std::is_signed_v<T> ? "a whole number" : "a whole number, not negative,");
   } else if constexpr (std::is_floating_point_v<T>) {
     if (!j.is_number()) wrong_type(key, j, "a number");
   } else {

@@ -31,6 +31,8 @@ TEST(JsonReader, ReadsWhatIsThere) {
   inner.finish();
   EXPECT_EQ(r.require<uint64_t>("h"), ~uint64_t(0));
   r.finish();
+  const Json made = {{"signed", 5}};  // in memory a number may be signed that is stored without a sign
+  EXPECT_EQ(JsonReader(made, "it").require<size_t>("signed"), 5u);
 }
 
 TEST(JsonReader, UnknownKeysAreNamedWithTheNearestKnownOne) {

@@ -103,27 +103,31 @@ PaintCommand disc_command(const Device& device, const fs::path& folder, const fs
   return command;
 }
 
-// What `edit paint` does between its start and its end, on a fresh copy of the project each time; and a
-// second one in the same session.
-void add_paints(Session& session, const fs::path& folder, const std::string& subject, int repeats,
-                Progress& progress, std::vector<BenchFigure>& figures) {
+// What `edit paint` does between its start and its end, on a fresh copy of the project each time; a second
+// one in the same session, and the frame after it.
+std::vector<BenchFigure> paint_figures(Session& session, const fs::path& folder, const Camera& camera,
+                                       const std::string& subject, int repeats, Progress& progress) {
   const TempFolder temp;
   const fs::path copy = temp.path() / "project";
   const PaintCommand command = disc_command(session.device(), folder, temp.path() / "scribble.png");
-  std::vector<double> first, second;
+  std::vector<double> first, second, frame;
   for (int k = 0; k < repeats; ++k) {
     fs::copy(folder, copy, fs::copy_options::recursive);
     Stopwatch watch;
     session.open(copy, Session::Access::write);
     session.paint(command, progress);
     first.push_back(watch.lap());
+    frame_seconds(session.frames(), session.scene(), camera, 1);
+    watch.lap();
     session.paint(command, progress);
     second.push_back(watch.lap());
+    frame.push_back(frame_seconds(session.frames(), session.scene(), camera, 1));
     session.close();
     fs::remove_all(copy);
   }
-  figures.push_back(seconds_figure(subject, "paint edit, a disc of a ninth of the object", std::move(first)));
-  figures.push_back(seconds_figure(subject, "second paint edit of a session", std::move(second)));
+  return {seconds_figure(subject, "paint edit, a disc of a ninth of the object", std::move(first)),
+          seconds_figure(subject, "second paint edit of a session", std::move(second)),
+          seconds_figure(subject, frame_name(1) + "after that", std::move(frame))};
 }
 
 }  // namespace
@@ -132,6 +136,7 @@ std::vector<BenchFigure> bench_object(Session& session, const fs::path& folder, 
                                       Progress& progress) {
   std::vector<BenchFigure> figures;
   std::string subject;
+  Camera camera;
   {
     const Project project = Project::open(folder, Project::Mode::read);
     if (!project.has_base()) fail("{} has no object yet; finish its reconstruction first.", folder.string());
@@ -139,13 +144,14 @@ std::vector<BenchFigure> bench_object(Session& session, const fs::path& folder, 
                           project.base().surface->mesh().triangles.size());
     progress.report({"frame", 0.7, -1, ""});
     const Scene scene = project.scene();
-    const Camera camera = scene.normalization.unit_from_input(
+    camera = scene.normalization.unit_from_input(
         choose_cameras(project, ProjectViews{}, kSize, kSize).front().camera);
     add_frames(session.device(), scene, camera, subject, repeats, figures);
     add_later_frames(session.device(), project, camera, subject, repeats, figures);
   }
   progress.report({"edit", 0.9, -1, ""});
-  add_paints(session, folder, subject, repeats, progress, figures);
+  for (BenchFigure& f : paint_figures(session, folder, camera, subject, repeats, progress))
+    figures.push_back(std::move(f));
   return figures;
 }
 

@@ -184,7 +184,15 @@ HitGroups SceneLight::groups_of(std::span<const Hit> hits, std::span<const int> 
 void SceneLight::light_group(uint32_t group, std::span<const uint32_t> which, std::span<const Hit> hits,
                              LitHits& out) const {
   const auto pose = size_t(out.groups.keys[group].first);
+  const Lighting& lighting = *lights_[pose]->lighting;
+  const VertexColors& colors = out.mirrored[group];
+  const std::span<const Vec3f> seen = colors ? std::span<const Vec3f>(*colors) : std::span<const Vec3f>();
+  if (which.size() == hits.size() && triangles_.empty()) {  // all of them, as they are
+    out.shading = lighting.shade(hits, out.look, seen);
+    return;
+  }
   std::vector<Hit> own;  // with the triangles of the pose
+  own.reserve(which.size());
   Appearance look;
   look.materials = out.look.materials;
   for (const uint32_t i : which) {
@@ -193,9 +201,7 @@ void SceneLight::light_group(uint32_t group, std::span<const uint32_t> which, st
     look.albedo.push_back(out.look.albedo[i]);
     look.material.push_back(out.look.material[i]);
   }
-  const VertexColors& seen = out.mirrored[group];
-  const Shading part = lights_[pose]->lighting->shade(
-      own, look, seen ? std::span<const Vec3f>(*seen) : std::span<const Vec3f>());
+  const Shading part = lighting.shade(own, look, seen);
   for (size_t j = 0; j < which.size(); ++j) {
     out.shading.diffuse[which[j]] = part.diffuse[j];
     out.shading.specular[which[j]] = part.specular[j];

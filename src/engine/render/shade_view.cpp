@@ -121,7 +121,8 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
   memory.lit =
       light.light_hits(g.hits, appearance_at(device, scene, g.hits), memory.lit ? &*memory.lit : nullptr);
   const Appearance& look = memory.lit->look;
-  const Shading shading = with_unlit(memory.lit->shading, look);
+  const Shading shown = look.unlit.empty() ? Shading() : with_unlit(memory.lit->shading, look);
+  const Shading& shading = look.unlit.empty() ? memory.lit->shading : shown;
   const std::vector<Vec3f> residual = residuals(device, scene, look, g.hits, memory);
   const PixelFilter filter(g);
   Frame f = empty_frame(g.width, g.height);
