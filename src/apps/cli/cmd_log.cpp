@@ -61,6 +61,7 @@ void replay(const Options& o, Session& session, Console& console) {
   const ReplayReport r = session.replay(o.on, console);
   std::string text = fmt::format("{} edits of {} were made on {}.", r.edits.size(), o.project, o.on);
   for (const auto& [from, to] : r.edits) text += fmt::format("\n{:<20} as {}", from, to);
+  for (const std::string& note : r.notes) console.warn(note);
   console.done(r.json(), text);
 }
 

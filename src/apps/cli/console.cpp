@@ -60,7 +60,7 @@ void Console::error(const std::string& text, const std::string& hint, int code) 
   err_.flush();
 }
 
-void Console::report(const ProgressReport& r) {
+void Console::on_report(const ProgressReport& r) {
   if (level_ < LogLevel::info) return;
   const Clock::time_point now = Clock::now();
   const auto since = [&](Clock::time_point t) { return std::chrono::duration<double>(now - t).count(); };
@@ -96,12 +96,12 @@ void Console::clear_bar() {
   bar_drawn_ = false;
 }
 
-void Console::log(const std::string& json_line) {
+void Console::on_log(const std::string& json_line) {
   if (level_ < LogLevel::debug) return;
   clear_bar();
   err_ << json_line << '\n';
 }
 
-bool Console::cancelled() const { return interrupted(); }
+bool Console::is_cancelled() const { return interrupted(); }
 
 }  // namespace cei3d

@@ -13,6 +13,7 @@ namespace cei3d {
 
 enum class LogLevel { error, warn, info, debug };
 
+// Answers, warnings and errors are for the thread that made it, while no work runs.
 class Console : public Progress {
  public:
   Console(std::ostream& out, std::ostream& err, bool err_is_terminal)
@@ -29,11 +30,11 @@ class Console : public Progress {
   // With --json also an object on standard output, unless an answer is there already.
   void error(const std::string& text, const std::string& hint, int code);
 
-  void report(const ProgressReport&) override;
-  void log(const std::string& json_line) override;
-  bool cancelled() const override;
-
  private:
+  void on_report(const ProgressReport&) override;
+  void on_log(const std::string& json_line) override;
+  bool is_cancelled() const override;
+
   using Clock = std::chrono::steady_clock;
   void draw_bar(const ProgressReport&, double seconds_left);
   void print_line(const ProgressReport&, double seconds_left);

@@ -3,16 +3,17 @@
 
 #include <unistd.h>
 
+#include <atomic>
 #include <csignal>
 
 namespace cei3d {
 namespace {
 
-volatile std::sig_atomic_t asked = 0;  // a signal handler can reach nothing but a global
+std::atomic<bool> asked = false;  // a signal handler can reach nothing but a global
+static_assert(std::atomic<bool>::is_always_lock_free, "locks are not for signal handlers");
 
 void on_signal(int) {
-  if (asked) ::_exit(130);
-  asked = 1;
+  if (asked.exchange(true)) ::_exit(130);
 }
 
 }  // namespace
@@ -25,6 +26,6 @@ void catch_interrupts() {
   ::sigaction(SIGTERM, &action, nullptr);
 }
 
-bool interrupted() { return asked != 0; }
+bool interrupted() { return asked; }
 
 }  // namespace cei3d

@@ -119,4 +119,9 @@ void write_file_atomic(const fs::path& path, std::string_view bytes) {
   sync_folder(path);
 }
 
+void append_to_file(const fs::path& path, std::string_view bytes) {
+  const Descriptor fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
+  if (fd.get() < 0 || !write_all(fd.get(), bytes)) fail("Cannot write {}: {}.", path.string(), reason(errno));
+}
+
 }  // namespace cei3d

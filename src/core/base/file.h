@@ -17,4 +17,8 @@ std::string read_file(const std::filesystem::path&);
 // the error says why.
 void write_file_atomic(const std::filesystem::path&, std::string_view bytes);
 
+// In one piece at the end, also where several processes write; makes the file where it is missing. Error: it
+// cannot be written.
+void append_to_file(const std::filesystem::path&, std::string_view bytes);
+
 }  // namespace cei3d

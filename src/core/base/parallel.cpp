@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/parallel.h"
 
-#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
-#include <memory>
 
 namespace cei3d {
 
@@ -13,11 +12,14 @@ void parallel_ranges(int n, int grain, const std::function<void(int, int)>& body
   parallel_for(chunks, [&](int c) { body(c * grain, std::min(n, (c + 1) * grain)); });
 }
 
-void set_threads(int n) {
-  static std::unique_ptr<tbb::global_control> control;  // oneTBB's limit lives as long as this object
-  control.reset();
-  if (n > 0)
-    control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, size_t(n));
-}
+struct Threads::Arena {
+  tbb::task_arena arena;
+};
+
+Threads::Threads(int n)
+    : arena_(std::make_unique<Arena>(Arena{tbb::task_arena(n > 0 ? n : tbb::task_arena::automatic)})) {}
+Threads::~Threads() = default;
+
+void Threads::enter(const std::function<void()>& work) const { arena_->arena.execute(work); }
 
 }  // namespace cei3d

@@ -2,6 +2,7 @@
 // How long work talks to whoever asked for it.
 #pragma once
 
+#include <mutex>
 #include <string>
 
 namespace cei3d {
@@ -13,12 +14,34 @@ struct ProgressReport {
   std::string message;       // "loss 0.0123, PSNR 31.2 dB"
 };
 
+// report(), log() and cancelled() may be called from any thread, and from several at once: calls of
+// on_report() and on_log() come one at a time, so that an implementation needs no lock for what only those
+// two use; is_cancelled() is called without a lock.
 class Progress {
  public:
+  Progress() = default;
   virtual ~Progress() = default;
-  virtual void report(const ProgressReport&) {}
-  virtual void log(const std::string& json_line) { (void)json_line; }  // one line of the run's JSON log
-  virtual bool cancelled() const { return false; }                     // asked to stop: save and return early
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+
+  void report(const ProgressReport& r) {
+    const std::lock_guard lock(mutex_);
+    on_report(r);
+  }
+  // One line of the run's JSON log.
+  void log(const std::string& json_line) {
+    const std::lock_guard lock(mutex_);
+    on_log(json_line);
+  }
+  // Whether the work is asked to stop: to save and return early.
+  bool cancelled() const { return is_cancelled(); }
+
+ private:
+  virtual void on_report(const ProgressReport&) {}
+  virtual void on_log(const std::string&) {}
+  virtual bool is_cancelled() const { return false; }
+
+  std::mutex mutex_;
 };
 
 }  // namespace cei3d

@@ -1,23 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder for one test, gone when the test ends.
+// A new folder below the system's folder for temporary files, removed with all that is in it when the object
+// goes.
 #pragma once
 
-#include <stdlib.h>
-
 #include <filesystem>
-#include <string>
 
 #include "core/base/error.h"
+#include "core/base/system.h"
 
 namespace cei3d {
 
 class TempFolder {
  public:
-  TempFolder() {
-    std::string name = (std::filesystem::temp_directory_path() / "cei3d-XXXXXX").string();
-    if (!::mkdtemp(name.data())) fail("Cannot make a temporary folder like {}.", name);
-    path_ = name;
-  }
+  TempFolder() : path_(make_temporary_folder()) {}
   ~TempFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);

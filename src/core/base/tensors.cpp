@@ -4,18 +4,16 @@
 #include "core/base/tensors.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 #include <limits>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
 
 namespace cei3d {
 namespace {
-
-static_assert(std::endian::native == std::endian::little);
 
 constexpr uint64_t kMaxHeader = 100'000'000;  // the limit that the format's own reader sets
 
@@ -83,8 +81,8 @@ void require_tiling(std::vector<const Entry*> entries, uint64_t data_size, const
 }
 
 void append(std::string& out, const Tensor& t) {
-  if (!t.f32.empty()) out.append(reinterpret_cast<const char*>(t.f32.data()), t.f32.size() * 4);
-  if (!t.u8.empty()) out.append(reinterpret_cast<const char*>(t.u8.data()), t.u8.size());
+  append_bytes(out, t.f32);
+  append_bytes(out, t.u8);
 }
 
 void require_consistent(const std::string& name, const Tensor& t) {
@@ -125,8 +123,9 @@ std::string tensors_to_bytes(const Tensors& tensors) {
   std::string text = header.dump();
   text.append((8 - text.size() % 8) % 8, ' ');  // aligns the arrays
   const uint64_t length = text.size();
-  std::string out(reinterpret_cast<const char*>(&length), 8);
+  std::string out;
   out.reserve(8 + text.size() + position);
+  append_bytes(out, length);
   out += text;
   for (const auto& [name, t] : tensors) append(out, t);
   return out;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/session/session.h"
 
@@ -74,7 +75,9 @@ std::string BenchReport::text() const {
   return text;
 }
 
-BenchReport run_bench(Session& session, const BenchRequest& request, Progress& progress) {
+namespace {
+
+BenchReport measure(Session& session, const BenchRequest& request, Progress& progress) {
   const Device& device = session.device();
   BenchReport report;
   report.machine = Session::machine();
@@ -85,6 +88,12 @@ BenchReport run_bench(Session& session, const BenchRequest& request, Progress& p
   if (!request.project.empty())
     append(report.figures, bench_object(session, request.project, (request.repeats + 2) / 3, progress));
   return report;
+}
+
+}  // namespace
+
+BenchReport run_bench(Session& session, const BenchRequest& request, Progress& progress) {
+  return session.threads().run([&] { return measure(session, request, progress); });
 }
 
 }  // namespace cei3d

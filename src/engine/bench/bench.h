@@ -65,8 +65,8 @@ struct TrainingBench {
   int least = 7;      // measurements, however long they take
 };
 std::vector<BenchFigure> bench_training(const Device&, const TrainingBench&, Progress&);
-// A 512 x 512 frame of the project's first held-out view; a paint edit, made on copies that the session
-// opens.
+// A 512 x 512 frame of the project's first held-out view, and later ones in the same session; two paint
+// edits, made on copies that the session opens.
 std::vector<BenchFigure> bench_object(Session&, const std::filesystem::path& project, int repeats, Progress&);
 
 }  // namespace cei3d

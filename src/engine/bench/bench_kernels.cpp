@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <time.h>
-
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -9,6 +7,7 @@
 
 #include "core/base/aligned.h"
 #include "core/base/error.h"
+#include "core/base/system.h"
 #include "core/compute/kernels/encode.h"
 #include "core/math/rng.h"
 #include "engine/bench/bench.h"
@@ -20,12 +19,6 @@ namespace {
 constexpr const char* kFma = "multiply-add peak";
 constexpr const char* kGather = "gather peak";
 constexpr const char* kScatter = "read-modify-write peak";
-
-double processor_seconds() {
-  timespec t{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return double(t.tv_sec) + 1e-9 * double(t.tv_nsec);
-}
 
 struct LinearData {
   static constexpr int kPanels = 64, kSize = 64,
@@ -99,8 +92,8 @@ std::vector<Spread> measure(const std::vector<Kernel>& kernels, int repeats) {
   std::vector<std::vector<double>> rates(kernels.size());
   for (int k = 0; k <= repeats; ++k)
     for (size_t i = 0; i < kernels.size(); ++i) {
-      const double begin = processor_seconds(), work = kernels[i].run();
-      if (k > 0) rates[i].push_back(work / (processor_seconds() - begin) / kernels[i].per);
+      const double begin = thread_seconds(), work = kernels[i].run();
+      if (k > 0) rates[i].push_back(work / (thread_seconds() - begin) / kernels[i].per);
     }
   std::vector<Spread> spreads;
   for (std::vector<double>& r : rates) spreads.push_back(spread_of(std::move(r), true));

@@ -7,7 +7,7 @@
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
 #include "engine/render/render.h"
-#include "engine/render/scene_light.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/cameras.h"
 #include "engine/session/session.h"
 #include "engine/session/stopwatch.h"
@@ -22,12 +22,13 @@ BenchFigure seconds_figure(const std::string& subject, std::string name, std::ve
   return {"object", subject, std::move(name), "s", false, spread_of(std::move(seconds), false), {}};
 }
 
-void add_frames(const Device& device, const Project& project, const std::string& subject, int repeats,
-                std::vector<BenchFigure>& figures) {
-  const Scene scene = project.scene();
+std::string frame_name(int samples) {
+  return fmt::format("512 x 512, {} sample{} a pixel, ", samples * samples, samples > 1 ? "s" : "");
+}
+
+void add_frames(const Device& device, const Scene& scene, const Camera& camera, const std::string& subject,
+                int repeats, std::vector<BenchFigure>& figures) {
   const SceneLight light(device, scene, scene_transports(scene));
-  const Camera camera = scene.normalization.unit_from_input(
-      choose_cameras(project, ProjectViews{}, kSize, kSize).front().camera);
   for (const int samples : {1, 2}) {
     std::vector<double> traced, shaded;
     for (int k = 0; k <= repeats; ++k) {
@@ -40,10 +41,35 @@ void add_frames(const Device& device, const Project& project, const std::string&
       traced.push_back(trace);
       shaded.push_back(shade);
     }
-    const std::string what =
-        fmt::format("512 x 512, {} sample{} a pixel, ", samples * samples, samples > 1 ? "s" : "");
-    figures.push_back(seconds_figure(subject, what + "traced", traced));
-    figures.push_back(seconds_figure(subject, what + "shaded", shaded));
+    figures.push_back(seconds_figure(subject, frame_name(samples) + "traced", traced));
+    figures.push_back(seconds_figure(subject, frame_name(samples) + "shaded", shaded));
+  }
+}
+
+// All that a session does for a frame, but for writing it.
+double frame_seconds(RenderCache& frames, const Scene& scene, const Camera& camera, int samples) {
+  Stopwatch watch;
+  const auto view = frames.trace(scene, camera, samples);
+  frames.shade(scene, frames.light(scene), *view);
+  return watch.lap();
+}
+
+// Frames after the first one of a session: nothing changed, and another light each time.
+void add_later_frames(const Device& device, const Project& project, const Camera& camera,
+                      const std::string& subject, int repeats, std::vector<BenchFigure>& figures) {
+  for (const int samples : {1, 2}) {
+    RenderCache frames(device);
+    std::vector<double> again, relit;
+    frame_seconds(frames, project.scene(), camera, samples);
+    for (int k = 0; k < repeats; ++k) {
+      again.push_back(frame_seconds(frames, project.scene(), camera, samples));
+      Scene scene = project.scene();
+      scene.light = scaled(scene.light, Vec3f{1, 1, 1} * (1 + 0.1f * float(k + 1)));
+      relit.push_back(frame_seconds(frames, scene, camera, samples));
+      frame_seconds(frames, project.scene(), camera, samples);
+    }
+    figures.push_back(seconds_figure(subject, frame_name(samples) + "second frame", again));
+    figures.push_back(seconds_figure(subject, frame_name(samples) + "second light", relit));
   }
 }
 
@@ -66,31 +92,42 @@ Image disc_scribble(const Device& device, const Scene& scene, const Camera& came
   return scribble;
 }
 
-// What `edit paint` does between its start and its end, on a fresh copy of the project each time.
-BenchFigure paint_figure(Session& session, const fs::path& folder, const std::string& subject, int repeats,
-                         Progress& progress) {
-  const TempFolder temp;
-  const fs::path copy = temp.path() / "project", scribble = temp.path() / "scribble.png";
+// A scribble on the project's first view.
+PaintCommand disc_command(const Device& device, const fs::path& folder, const fs::path& scribble) {
+  const Project project = Project::open(folder, Project::Mode::read);
+  const Scene scene = project.scene();
+  const View& view = project.capture().views.front();
+  write_png(scribble, disc_scribble(device, scene, scene.normalization.unit_from_input(view.camera)));
   PaintCommand command;
-  {
-    const Project project = Project::open(folder, Project::Mode::read);
-    const Scene scene = project.scene();
-    const View& view = project.capture().views.front();
-    write_png(scribble,
-              disc_scribble(session.device(), scene, scene.normalization.unit_from_input(view.camera)));
-    command.strokes = {{view.name, scribble}};
-  }
-  std::vector<double> seconds;
+  command.strokes = {{view.name, scribble}};
+  return command;
+}
+
+// What `edit paint` does between its start and its end, on a fresh copy of the project each time; a second
+// one in the same session, and the frame after it.
+std::vector<BenchFigure> paint_figures(Session& session, const fs::path& folder, const Camera& camera,
+                                       const std::string& subject, int repeats, Progress& progress) {
+  const TempFolder temp;
+  const fs::path copy = temp.path() / "project";
+  const PaintCommand command = disc_command(session.device(), folder, temp.path() / "scribble.png");
+  std::vector<double> first, second, frame;
   for (int k = 0; k < repeats; ++k) {
     fs::copy(folder, copy, fs::copy_options::recursive);
     Stopwatch watch;
     session.open(copy, Session::Access::write);
     session.paint(command, progress);
+    first.push_back(watch.lap());
+    frame_seconds(session.frames(), session.scene(), camera, 1);
+    watch.lap();
+    session.paint(command, progress);
+    second.push_back(watch.lap());
+    frame.push_back(frame_seconds(session.frames(), session.scene(), camera, 1));
     session.close();
-    seconds.push_back(watch.lap());
     fs::remove_all(copy);
   }
-  return seconds_figure(subject, "paint edit, a disc of a ninth of the object", std::move(seconds));
+  return {seconds_figure(subject, "paint edit, a disc of a ninth of the object", std::move(first)),
+          seconds_figure(subject, "second paint edit of a session", std::move(second)),
+          seconds_figure(subject, frame_name(1) + "after that", std::move(frame))};
 }
 
 }  // namespace
@@ -99,16 +136,22 @@ std::vector<BenchFigure> bench_object(Session& session, const fs::path& folder, 
                                       Progress& progress) {
   std::vector<BenchFigure> figures;
   std::string subject;
+  Camera camera;
   {
     const Project project = Project::open(folder, Project::Mode::read);
     if (!project.has_base()) fail("{} has no object yet; finish its reconstruction first.", folder.string());
     subject = fmt::format("{}, {} triangles", fs::path(folder / "").parent_path().filename().string(),
                           project.base().surface->mesh().triangles.size());
     progress.report({"frame", 0.7, -1, ""});
-    add_frames(session.device(), project, subject, repeats, figures);
+    const Scene scene = project.scene();
+    camera = scene.normalization.unit_from_input(
+        choose_cameras(project, ProjectViews{}, kSize, kSize).front().camera);
+    add_frames(session.device(), scene, camera, subject, repeats, figures);
+    add_later_frames(session.device(), project, camera, subject, repeats, figures);
   }
   progress.report({"edit", 0.9, -1, ""});
-  figures.push_back(paint_figure(session, folder, subject, repeats, progress));
+  for (BenchFigure& f : paint_figures(session, folder, camera, subject, repeats, progress))
+    figures.push_back(std::move(f));
   return figures;
 }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/name_distance.h"
 #include "engine/capture/capture_format.h"
 #include "engine/capture/spread.h"
 #include "engine/io/image_file.h"
@@ -117,25 +118,11 @@ std::string normalized(const std::string& name) {
   return path.generic_string();
 }
 
-size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), size_t(0));
-  for (size_t i = 1; i <= a.size(); ++i) {
-    size_t diagonal = std::exchange(row[0], i);
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const size_t change = diagonal + (a[i - 1] != b[j - 1]);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, change});
-    }
-  }
-  return row.back();
-}
-
 std::string near_names(const Capture& capture, const std::string& name) {
   std::vector<std::pair<size_t, std::string>> all;
   for (const View& v : capture.views)
     all.push_back(
-        {std::min(edit_distance(name, v.name), edit_distance(name, fs::path(v.name).filename().string())),
+        {std::min(name_distance(name, v.name), name_distance(name, fs::path(v.name).filename().string())),
          v.name});
   const size_t n = std::min<size_t>(3, all.size());
   std::partial_sort(all.begin(), all.begin() + std::ptrdiff_t(n), all.end());

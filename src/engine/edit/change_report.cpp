@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "engine/render/scene_light.h"
+#include "engine/render/render_cache.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {
@@ -42,18 +42,15 @@ std::vector<uint8_t> with_neighbours(const std::vector<uint8_t>& mask, int width
 
 }  // namespace
 
-ChangeReport compare_views(const Device& device, const Scene& before, const Scene& after,
+ChangeReport compare_views(const Device& device, RenderCache& frames, const Scene& before, const Scene& after,
                            const Camera& camera, int samples) {
-  const GBuffer a = trace_view(device, before, camera, samples),
-                b = trace_view(device, after, camera, samples);
+  const auto a = frames.trace(before, camera, samples), b = frames.trace(after, camera, samples);
   ChangeReport r;
-  // The poses before are among those after, and their transports too.
-  const auto transports = scene_transports(after);
-  const std::vector known(transports.begin(), transports.begin() + std::max<size_t>(before.poses.size(), 1));
-  r.before = shade_view(device, before, SceneLight(device, before, known), a);
-  r.after = shade_view(device, after, SceneLight(device, after, transports), b);
+  // Shaded without the memory of each other's hits: this is what shows whether they agree.
+  r.before = shade_view(device, before, frames.light(before), a->buffer);
+  r.after = shade_view(device, after, frames.light(after), b->buffer);
   const std::vector<uint8_t> inside =
-      with_neighbours(touched_pixels(device, after, a, b), camera.width, camera.height);
+      with_neighbours(touched_pixels(device, after, a->buffer, b->buffer), camera.width, camera.height);
   for (size_t p = 0; p < inside.size(); ++p) {
     const bool changed =
         std::memcmp(&r.before.rgb.data[4 * p], &r.after.rgb.data[4 * p], 4 * sizeof(float)) != 0;

@@ -6,6 +6,8 @@
 
 namespace cei3d {
 
+class RenderCache;  // engine/render/render_cache.h
+
 struct ChangeReport {
   size_t pixels_inside = 0;    // of the picture, that the edit may change: see compare_views()
   size_t pixels_changed = 0;   // among all
@@ -16,7 +18,7 @@ struct ChangeReport {
 // camera: unit-sphere frame. A pixel is inside when one of its samples meets matter that the layer contains
 // or that it reshaped, or matter elsewhere than before. An edit that is not local (light, the whole object)
 // has the whole object inside. before: the scene below the last layer of `after`.
-ChangeReport compare_views(const Device&, const Scene& before, const Scene& after, const Camera& camera,
-                           int samples);
+ChangeReport compare_views(const Device&, RenderCache&, const Scene& before, const Scene& after,
+                           const Camera& camera, int samples);
 
 }  // namespace cei3d

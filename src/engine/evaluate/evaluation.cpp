@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
+#include "core/base/parallel.h"
 #include "engine/evaluate/evaluation_objects.h"
 #include "engine/session/stopwatch.h"
 
@@ -22,16 +23,17 @@ class RowProgress : public Progress {
   RowProgress(Progress& whole, std::string name) : whole_(whole), name_(std::move(name)) {
     whole_.report({name_, 0, -1, ""});
   }
-  void report(const ProgressReport& r) override {
+
+ private:
+  void on_report(const ProgressReport& r) override {
     elapsed_ += watch_.lap();
     double left = r.seconds_left;
     if (left < 0 && r.fraction > 0) left = elapsed_ * (1 - r.fraction) / r.fraction;
     whole_.report({name_, r.fraction, left, r.stage + (r.message.empty() ? "" : ", " + r.message)});
   }
-  void log(const std::string& line) override { whole_.log(line); }
-  bool cancelled() const override { return whole_.cancelled(); }
+  void on_log(const std::string& line) override { whole_.log(line); }
+  bool is_cancelled() const override { return whole_.cancelled(); }
 
- private:
   Progress& whole_;
   std::string name_;
   Stopwatch watch_;
@@ -239,7 +241,7 @@ class Job {
 }  // namespace
 
 EvaluationReport evaluate_capture(Session& session, const EvaluationRequest& request, Progress& progress) {
-  return Job(session, request, progress).run();
+  return session.threads().run([&] { return Job(session, request, progress).run(); });
 }
 
 }  // namespace cei3d

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -28,11 +29,12 @@ constexpr int kSize = 48;
 class Impatient : public Progress {
  public:
   explicit Impatient(int patience) : patience_(patience) {}
-  void report(const ProgressReport&) override { --patience_; }
-  bool cancelled() const override { return patience_ < 0; }
 
  private:
-  int patience_;
+  void on_report(const ProgressReport&) override { --patience_; }
+  bool is_cancelled() const override { return patience_ < 0; }
+
+  std::atomic<int> patience_;
 };
 
 class EvaluationTest : public ::testing::Test {

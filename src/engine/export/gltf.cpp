@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
@@ -66,7 +67,7 @@ Json material_json(const Material& m) {
 void append_chunk(std::string& out, const char* type, std::string data, char padding) {
   data.append((4 - data.size() % 4) % 4, padding);
   const uint32_t size = uint32_t(data.size());
-  out.append(reinterpret_cast<const char*>(&size), 4);
+  append_bytes(out, size);
   out.append(type, 4);
   out += data;
 }
@@ -141,8 +142,9 @@ std::string encode_glb(const Mesh& mesh, const MeshMaterials& materials, Vec3d u
   std::string chunks;
   append_chunk(chunks, "JSON", j.dump(), ' ');
   append_chunk(chunks, std::string("BIN\0", 4).c_str(), std::move(buffer.bytes_), '\0');
-  const uint32_t head[3] = {0x46546c67, 2, uint32_t(12 + chunks.size())};  // "glTF"
-  return std::string(reinterpret_cast<const char*>(head), 12) + chunks;
+  std::string out;
+  append_bytes(out, std::array<uint32_t, 3>{0x46546c67, 2, uint32_t(12 + chunks.size())});  // "glTF"
+  return out + chunks;
 }
 
 void write_glb(const std::filesystem::path& path, const Mesh& mesh, const MeshMaterials& materials,

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstring>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 
@@ -62,7 +63,7 @@ std::string encode_npy(std::span<const float> values, int64_t rows, int64_t colu
   out += char(header.size() & 255);
   out += char(header.size() >> 8);
   out += header;
-  if (!values.empty()) out.append(reinterpret_cast<const char*>(values.data()), values.size_bytes());
+  append_bytes(out, values);
   return out;
 }
 

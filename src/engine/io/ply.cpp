@@ -6,17 +6,13 @@
 #include <optional>
 #include <sstream>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/math/color.h"
 
 namespace cei3d {
 namespace {
-
-template <class T>
-void put(std::string& out, T value) {
-  out.append(reinterpret_cast<const char*>(&value), sizeof value);
-}
 
 uint8_t to_byte(float linear) {
   const float v = srgb_from_linear(linear);
@@ -178,13 +174,13 @@ std::string encode_ply(const Mesh& mesh) {
   out += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
                      mesh.triangles.size());
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
-    put(out, mesh.positions[i]);
-    if (normals) put(out, mesh.normals[i]);
-    for (int c = 0; colors && c < 3; ++c) put(out, to_byte(mesh.colors[i][c]));
+    append_bytes(out, mesh.positions[i]);
+    if (normals) append_bytes(out, mesh.normals[i]);
+    for (int c = 0; colors && c < 3; ++c) append_bytes(out, to_byte(mesh.colors[i][c]));
   }
   for (const auto& t : mesh.triangles) {
-    put(out, uint8_t(3));
-    put(out, t);
+    append_bytes(out, uint8_t(3));
+    append_bytes(out, t);
   }
   return out;
 }

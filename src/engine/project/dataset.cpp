@@ -13,6 +13,10 @@ Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 Vec3d vector_from(const Json& j) {
   return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
+Vec3d vector_from(JsonReader& reader, const char* key) {
+  const auto [x, y, z] = reader.numbers<3>(key);
+  return {x, y, z};
+}
 
 std::string relative_to(const fs::path& file, const fs::path& root) {
   return file.empty() ? std::string()
@@ -25,12 +29,12 @@ fs::path below(const fs::path& root, const std::string& file) {
 
 // Where the capture is now: where it was, or where it lies relative to the project when both were moved
 // together.
-fs::path find_root(const Json& j, const fs::path& project) {
-  const fs::path root = j.at("root").get<std::string>();
+fs::path find_root(JsonReader& reader, const fs::path& project) {
+  const fs::path root = reader.require<std::string>("root");
+  const fs::path from_project = reader.require<std::string>("root_from_project");
   std::error_code error;
   if (fs::exists(root, error)) return root;
-  const fs::path moved =
-      fs::absolute(project / j.at("root_from_project").get<std::string>()).lexically_normal();
+  const fs::path moved = fs::absolute(project / from_project).lexically_normal();
   return fs::exists(moved, error) ? moved : root;
 }
 
@@ -70,17 +74,18 @@ Json camera_json(const Camera& c) {
           {"center", vector_json(c.center)}};
 }
 
-Camera camera_from_json(const Json& j) {
+Camera camera_from_json(JsonReader& reader) {
   Camera c;
-  c.width = j.at("width").get<int>();
-  c.height = j.at("height").get<int>();
-  c.fx = j.at("fx").get<double>();
-  c.fy = j.at("fy").get<double>();
-  c.cx = j.at("cx").get<double>();
-  c.cy = j.at("cy").get<double>();
-  c.skew = j.value("skew", 0.0);
-  for (int i = 0; i < 3; ++i) c.world_from_cam.row[i] = vector_from(j.at("world_from_cam").at(size_t(i)));
-  c.center = vector_from(j.at("center"));
+  c.width = reader.require<int>("width");
+  c.height = reader.require<int>("height");
+  c.fx = reader.require<double>("fx");
+  c.fy = reader.require<double>("fy");
+  c.cx = reader.require<double>("cx");
+  c.cy = reader.require<double>("cy");
+  c.skew = reader.optional("skew", 0.0);
+  for (int i = 0; i < 3; ++i)
+    c.world_from_cam.row[i] = vector_from(reader.array("world_from_cam").at(size_t(i)));
+  c.center = vector_from(reader, "center");
   return c;
 }
 
@@ -97,21 +102,36 @@ Json dataset_json(const Capture& capture, const fs::path& project) {
           {"views", std::move(views)}};
 }
 
-Capture capture_from_json(const Json& j, const fs::path& project) {
-  Capture c;
-  c.root = find_root(j, project);
-  c.format = j.at("format").get<std::string>();
-  c.up = vector_from(j.at("up"));
-  for (const Json& v : j.at("views")) {
-    View view;
-    view.name = v.at("name").get<std::string>();
-    view.split = split_of(v.at("split").get<std::string>());
-    view.camera = camera_from_json(v.at("camera"));
-    view.image_path = below(c.root, v.at("image").get<std::string>());
-    view.mask_path = below(c.root, v.at("mask").get<std::string>());
-    c.views.push_back(std::move(view));
-  }
-  return c;
+namespace {
+
+View view_from_json(JsonReader reader, const fs::path& root) {
+  View view;
+  view.name = reader.require<std::string>("name");
+  view.split = split_of(reader.require<std::string>("split"));
+  JsonReader camera = reader.object("camera");
+  view.camera = camera_from_json(camera);
+  camera.finish();
+  view.image_path = below(root, reader.require<std::string>("image"));
+  view.mask_path = below(root, reader.require<std::string>("mask"));
+  reader.finish();
+  return view;
+}
+
+}  // namespace
+
+Dataset dataset_from_json(const Json& j, const fs::path& project) {
+  const std::string file = (project / "dataset.json").string();
+  JsonReader reader(j, file);
+  Dataset d;
+  Capture& c = d.capture;
+  c.root = find_root(reader, project);
+  c.format = reader.require<std::string>("format");
+  c.up = vector_from(reader, "up");
+  for (const Json& v : reader.array("views"))
+    c.views.push_back(view_from_json({v, "A view in " + file}, c.root));
+  d.fingerprint = reader.require<std::string>("fingerprint");
+  reader.finish();
+  return d;
 }
 
 std::string capture_fingerprint(const Capture& capture) {

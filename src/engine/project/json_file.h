@@ -34,7 +34,4 @@ inline void write_json_file(const std::filesystem::path& path, const Json& j) {
   write_file_atomic(path, j.dump(1) + "\n");
 }
 
-// UTC, by a format of strftime.
-std::string time_text(const char* format);
-
 }  // namespace cei3d

@@ -3,20 +3,20 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
+
+#include "core/base/system.h"
 
 namespace cei3d {
 
 class ProjectLock {
  public:
-  ProjectLock() = default;
+  ProjectLock() = default;                                    // holds nothing
   explicit ProjectLock(const std::filesystem::path& folder);  // error when another process writes there
-  ~ProjectLock();
-  ProjectLock(ProjectLock&&) noexcept;
-  ProjectLock& operator=(ProjectLock&&) noexcept;
-  bool held() const { return fd_ >= 0; }
+  bool held() const { return lock_.has_value(); }
 
  private:
-  int fd_ = -1;
+  std::optional<FileLock> lock_;
 };
 
 }  // namespace cei3d

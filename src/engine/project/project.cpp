@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/project/project.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <ctime>
 
 #include "core/base/error.h"
+#include "core/base/hash.h"
+#include "core/base/json_reader.h"
+#include "core/base/system.h"
 #include "engine/project/dataset.h"
 #include "engine/project/json_file.h"
 
@@ -24,7 +21,7 @@ Json head_json(const ProjectHead& head) {
   const Normalization& n = head.normalization;
   return {{"format", kFormat},
           {"version", kProjectVersion},
-          {"created", time_text("%Y-%m-%dT%H:%M:%SZ")},
+          {"created", utc_text("%Y-%m-%dT%H:%M:%SZ")},
           {"normalization", {{"center", {n.center.x, n.center.y, n.center.z}}, {"scale", n.scale}}},
           {"options", head.options}};
 }
@@ -45,10 +42,14 @@ ProjectHead read_head(const fs::path& path) {
   return read_json_file(path, [&](const Json& j) {
     check_version(j, path);
     ProjectHead head;
-    const Json &n = j.at("normalization"), &c = n.at("center");
-    head.normalization.center = {c.at(0).get<double>(), c.at(1).get<double>(), c.at(2).get<double>()};
-    head.normalization.scale = n.at("scale").get<double>();
-    head.options = j.at("options");
+    JsonReader reader(j, path.string());
+    for (const char* key : {"format", "version", "created"}) reader.has(key);
+    JsonReader n = reader.object("normalization");
+    const auto [x, y, z] = n.numbers<3>("center");
+    head.normalization = {{x, y, z}, n.require<double>("scale")};
+    n.finish();
+    head.options = reader.member("options");
+    reader.finish();
     return head;
   });
 }
@@ -79,14 +80,6 @@ void remove_temporaries(const fs::path& folder) {
     if (is_temporary(p)) fs::remove(p, error);
 }
 
-void append_line(const fs::path& path, const std::string& line) {
-  const int fd = ::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-  const bool written = fd >= 0 && ::write(fd, line.data(), line.size()) == ssize_t(line.size());
-  const int code = errno;
-  if (fd >= 0) ::close(fd);
-  if (!written) fail("Cannot write {}: {}.", path.string(), std::strerror(code));
-}
-
 // Undoes the making of a folder when something after it fails.
 class FolderGuard {
  public:
@@ -113,15 +106,6 @@ class FolderGuard {
 };
 
 }  // namespace
-
-std::string time_text(const char* format) {
-  const std::time_t now = std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  char text[64];
-  std::strftime(text, sizeof text, format, &utc);
-  return text;
-}
 
 bool Project::is_project(const fs::path& folder) {
   std::error_code error;
@@ -158,10 +142,10 @@ Project::Project(fs::path folder, Mode mode)
       head_(read_head(file("project.json"))),
       stack_(Stack::from_json(parse_json_file(file("stack.json")), file("stack.json").string())),
       store_(folder_ / "objects") {
-  read_json_file(file("dataset.json"), [&](const Json& j) {
-    capture_ = capture_from_json(j, folder_);
-    fingerprint_ = j.at("fingerprint").get<std::string>();
-  });
+  Dataset dataset =
+      read_json_file(file("dataset.json"), [&](const Json& j) { return dataset_from_json(j, folder_); });
+  capture_ = std::move(dataset.capture);
+  fingerprint_ = std::move(dataset.fingerprint);
 }
 
 Project Project::create(const fs::path& folder, const ProjectHead& head, const Capture& capture,
@@ -225,7 +209,11 @@ std::optional<TrainingState> Project::latest_checkpoint() const {
   for (size_t i = 0; i < files.size(); ++i) {
     try {
       return read_json_file(files[i], [&](const Json& j) {
-        return TrainingState{j.at("head"), store_.get(j.at("object").get<std::string>())};
+        JsonReader reader(j, files[i].string());
+        const Json& head = reader.member("head");
+        const auto object = reader.require<std::string>("object");
+        reader.finish();
+        return TrainingState{head, store_.get(object)};
       });
     } catch (const Error&) {
       if (i + 1 == files.size()) throw;  // an older one is better than none
@@ -254,9 +242,13 @@ Scene Project::base() const {
     fail("Project {} holds no finished object; go on with `cei3d reconstruct --resume -o {}`.",
          folder_.string(), folder_.string());
   return read_json_file(file("base/scene.json"), [&](const Json& j) {
-    const auto object = j.at("object").get<std::string>();
-    if (object != loaded_object_) loaded_base_ = load_scene(store_.get(object), j.at("head"));
-    loaded_object_ = object;
+    JsonReader reader(j, file("base/scene.json").string());
+    const auto object = reader.require<std::string>("object");
+    const Json& head = reader.member("head");
+    reader.finish();
+    const std::string key = content_hash(object + head.dump());
+    if (key != loaded_key_) loaded_base_ = load_scene(store_.get(object), head);
+    loaded_key_ = key;
     return loaded_base_;
   });
 }
@@ -268,14 +260,14 @@ void Project::save_stack(const Stack& stack) {
 
 void Project::add_history(Json event) {
   require_writable();
-  Json line = {{"time", time_text("%Y-%m-%dT%H:%M:%SZ")}};
+  Json line = {{"time", utc_text("%Y-%m-%dT%H:%M:%SZ")}};
   line.update(event);
-  append_line(file("history.jsonl"), line.dump() + "\n");
+  append_to_file(file("history.jsonl"), line.dump() + "\n");
 }
 
 fs::path Project::new_run(const std::string& verb) {
   require_writable();
-  const std::string stem = time_text("%Y%m%d-%H%M%S") + "-" + verb;
+  const std::string stem = utc_text("%Y%m%d-%H%M%S") + "-" + verb;
   fs::path folder = file("runs") / stem;
   for (int i = 2; fs::exists(folder); ++i) folder = file("runs") / fmt::format("{}-{}", stem, i);
   std::error_code error;

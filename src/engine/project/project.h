@@ -18,12 +18,14 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/base/json.h"
 #include "engine/project/lock.h"
+#include "engine/project/scene_cache.h"
 #include "engine/project/stack.h"
 #include "engine/project/store.h"
 #include "model/scene/aspects.h"
@@ -55,6 +57,8 @@ struct TrainingState {
   Tensors tensors;
 };
 
+// For one thread at a time: reading fills caches. The scenes that it returns are immutable and may be used
+// from any number of threads, also when the project has changed or is gone.
 class Project {
  public:
   enum class Mode { read, write };
@@ -87,8 +91,10 @@ class Project {
 
   void save_base(const Scene&);  // the reconstruction's result, without layers
   bool has_base() const;
-  Scene base() const;   // from one thread at a time; error when the reconstruction was not finished
-  Scene scene() const;  // base and the edits that are on, up to the cursor
+  Scene base() const;  // error when the reconstruction was not finished
+  Scene scene()
+      const;  // base and the edits that are on, up to the cursor; what did not change is kept in memory
+  const SceneCache& scene_cache() const { return scenes_; }
 
   // One edit more, at the cursor. record.id must be stack().next_id(record.op), which is also the layer's.
   void add_edit(const EditRecord& record, const EditLayer& layer);
@@ -104,7 +110,9 @@ class Project {
   // anew: the first such one, the scene below it, and a place for what it makes.
   std::optional<std::string> first_stale(const Stack&) const;
   Scene scene_below(const Stack&, const std::string& id) const;
-  void add_result(const Stack&, const std::string& id, const EditLayer& layer);
+  // op_version: of the operation that made it; where the edit was first made by another one, its report says
+  // so.
+  void add_result(const Stack&, const std::string& id, const EditLayer& layer, int op_version);
 
   void add_history(Json event);                            // one line of history.jsonl; "time" is added
   std::filesystem::path new_run(const std::string& verb);  // makes runs/<time>-<verb>
@@ -128,6 +136,7 @@ class Project {
   Resolved resolve(const Stack&) const;
   Json store_result(const std::string& key, const EditLayer& layer);
   EditLayer load_result(const StoredResult&) const;
+  Scene with_results(const Scene& base, std::span<const StoredResult>) const;  // the base and those
   void collect_garbage();
 
   std::filesystem::path folder_;
@@ -137,10 +146,11 @@ class Project {
   std::string fingerprint_;
   Stack stack_;
   ObjectStore store_;
-  // What base() read last, and the object it is: scenes of one project share their surface, and what depends
-  // on it.
-  mutable std::string loaded_object_;
+  // What base() read last, and the hash of what it was read from: scenes of one project share their surface,
+  // and what depends on it.
+  mutable std::string loaded_key_;
   mutable Scene loaded_base_;
+  mutable SceneCache scenes_;
 };
 
 }  // namespace cei3d

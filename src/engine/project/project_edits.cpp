@@ -3,6 +3,8 @@
 #include <algorithm>
 
 #include "core/base/hash.h"
+#include "core/base/json_reader.h"
+#include "core/base/system.h"
 #include "engine/project/json_file.h"
 #include "engine/project/project.h"
 
@@ -56,8 +58,12 @@ std::vector<Project::StoredResult> Project::results_of(const std::string& id) co
       return std::vector<StoredResult>{
           {kAnyKey, object_of(j.at("result")), j.at("result").at("head"), {.look = true}}};
     std::vector<StoredResult> results;
-    for (const auto& [key, r] : j.at("results").items())
-      results.push_back({key, object_of(r), r.at("head"), aspects_from_json(r.at("changes"))});
+    for (const auto& [key, r] : j.at("results").items()) {
+      JsonReader result(r, "A result in " + edit_file(id).string());
+      results.push_back({key, result.require<std::string>("object"), result.member("head"),
+                         aspects_from_json(result.array("changes"))});
+      result.finish();
+    }
     return results;
   });
 }
@@ -98,20 +104,26 @@ Project::Resolved Project::resolve(const Stack& stack) const {
 }
 
 EditLayer Project::load_result(const StoredResult& r) const {
-  return load_layer(store_.get(r.object), r.head);
+  EditLayer layer = load_layer(store_.get(r.object), r.head);
+  layer.content = r.fingerprint();
+  return layer;
+}
+
+Scene Project::with_results(const Scene& base, std::span<const StoredResult> results) const {
+  std::vector<std::string> keys;
+  for (const StoredResult& r : results) keys.push_back(r.fingerprint());
+  return scenes_.scene(loaded_key_, base, keys, [&](size_t i) { return load_result(results[i]); });
 }
 
 Scene Project::scene() const {
-  Scene scene = base();
+  const Scene base = this->base();
   const Resolved resolved = resolve(stack_);
   if (!resolved.stale.empty())
     fail(
         "Edit {} has to be made anew for the object as it is, which only a command that writes can do: "
-        "switch it off "
-        "and on again with `cei3d toggle`.",
+        "switch it off and on again with `cei3d toggle`.",
         resolved.stale);
-  for (const StoredResult& r : resolved.results) scene = with_layer(std::move(scene), load_result(r));
-  return scene;
+  return with_results(base, resolved.results);
 }
 
 std::optional<std::string> Project::first_stale(const Stack& stack) const {
@@ -120,12 +132,11 @@ std::optional<std::string> Project::first_stale(const Stack& stack) const {
 }
 
 Scene Project::scene_below(const Stack& stack, const std::string& id) const {
-  Scene scene = base();
   const Resolved resolved = resolve(stack);
   const std::vector<std::string> active = stack.active();
-  for (size_t i = 0; i < resolved.results.size() && active[i] != id; ++i)
-    scene = with_layer(std::move(scene), load_result(resolved.results[i]));
-  return scene;
+  const auto end = std::find(active.begin(), active.end(), id) - active.begin();
+  return with_results(base(),
+                      std::span(resolved.results).first(std::min(resolved.results.size(), size_t(end))));
 }
 
 Json Project::store_result(const std::string& key, const EditLayer& layer) {
@@ -138,13 +149,16 @@ Json Project::store_result(const std::string& key, const EditLayer& layer) {
             {"changes", to_json(changed_by(layer))}}}};
 }
 
-void Project::add_result(const Stack& stack, const std::string& id, const EditLayer& layer) {
+void Project::add_result(const Stack& stack, const std::string& id, const EditLayer& layer, int op_version) {
   require_writable();
   const Resolved resolved = resolve(stack);
   if (resolved.stale != id || layer.id != id)
     fail("Edit '{}' is out of order (an error in the program).", id);
   Json j = parse_json_file(edit_file(id));
   j.at("results").update(store_result(resolved.stale_key, layer));
+  if (const int first = j.at("op_version").get<int>(); first != op_version)
+    j.at("report")["note"] =
+        fmt::format("made anew by version {} of the operation, first made by version {}", op_version, first);
   write_json_file(edit_file(id), j);
 }
 
@@ -163,7 +177,7 @@ void Project::add_edit(const EditRecord& record, const EditLayer& layer) {
                   {{"id", record.id},
                    {"op", record.op},
                    {"op_version", record.op_version},
-                   {"time", time_text("%Y-%m-%dT%H:%M:%SZ")},
+                   {"time", utc_text("%Y-%m-%dT%H:%M:%SZ")},
                    {"params", record.params},
                    {"inputs", std::move(inputs)},
                    {"depends", to_json(record.depends)},
@@ -183,12 +197,16 @@ EditRecord Project::edit(const std::string& id) const {
   const Aspects depends = depends_of(id);
   return read_json_file(edit_file(id), [&](const Json& j) {
     EditRecord r;
+    JsonReader reader(j, edit_file(id).string());
     r.depends = depends;
-    r.id = j.at("id").get<std::string>();
-    r.op = j.at("op").get<std::string>();
-    r.op_version = j.at("op_version").get<int>();
-    r.params = j.at("params");
-    r.report = j.at("report");
+    r.id = reader.require<std::string>("id");
+    r.op = reader.require<std::string>("op");
+    r.op_version = reader.require<int>("op_version");
+    r.params = reader.member("params");
+    r.report = reader.member("report");
+    // Read elsewhere, where they are needed; "result" is that of the first format.
+    for (const char* key : {"time", "inputs", "depends", "result", "results"}) reader.has(key);
+    reader.finish();
     return r;
   });
 }

@@ -192,6 +192,26 @@ TEST_F(ProjectTest, EditsUndoRedoToggleGiveTheSameBytes) {
   EXPECT_EQ(bytes_of(p.scene()), after[3]);
 }
 
+TEST_F(ProjectTest, AddsToTheSceneInMemoryOnlyWhatIsNew) {
+  Project p = make_with_base();
+  for (uint64_t seed = 1; seed <= 4; ++seed) {
+    add_paint(p, seed);
+    EXPECT_EQ(p.scene().layers.size(), seed);
+    EXPECT_EQ(p.scene_cache().layers_added(), seed);
+  }
+  p.undo();
+  EXPECT_EQ(bytes_of(p.scene()), bytes_of(Project::open(folder(), Project::Mode::read).scene()));
+  p.redo();
+  EXPECT_EQ(bytes_of(p.scene()), bytes_of(Project::open(folder(), Project::Mode::read).scene()));
+  EXPECT_EQ(p.scene_cache().layers_added(), 4u);
+  p.toggle("0002-paint");  // those above it lie on another scene now
+  EXPECT_EQ(bytes_of(p.scene()), bytes_of(Project::open(folder(), Project::Mode::read).scene()));
+  EXPECT_EQ(p.scene_cache().layers_added(), 6u);
+  p.toggle("0002-paint");
+  EXPECT_EQ(bytes_of(p.scene()), bytes_of(Project::open(folder(), Project::Mode::read).scene()));
+  EXPECT_EQ(p.scene_cache().layers_added(), 6u);
+}
+
 TEST_F(ProjectTest, AnEditAfterUndoDropsWhatWasUndone) {
   Project p = make_with_base();
   add_paint(p, 1);
@@ -337,6 +357,38 @@ TEST_F(ProjectTest, DamagedJsonIsNamed) {
     write_file_atomic(folder() / name, good);
   }
   EXPECT_NO_THROW(Project::open(folder(), Project::Mode::read).scene());
+}
+
+TEST_F(ProjectTest, UnknownKeysAreNamed) {
+  {
+    Project p = make_with_base();
+    add_paint(p, 1);
+  }
+  const auto reading = [&] {
+    const Project p = Project::open(folder(), Project::Mode::read);
+    p.scene();
+    p.edit("0001-paint");
+  };
+  for (const auto& [name, place] :
+       std::vector<std::pair<std::string, std::string>>{{"project.json", ""},
+                                                        {"project.json", "/normalization"},
+                                                        {"dataset.json", ""},
+                                                        {"dataset.json", "/views/0"},
+                                                        {"dataset.json", "/views/1/camera"},
+                                                        {"stack.json", ""},
+                                                        {"stack.json", "/edits/0"},
+                                                        {"base/scene.json", ""},
+                                                        {"base/scene.json", "/head"},
+                                                        {"base/scene.json", "/head/material"},
+                                                        {"edits/0001-paint/edit.json", ""}}) {
+    const std::string good = read_file(folder() / name);
+    Json bad = Json::parse(good);
+    bad[Json::json_pointer(place)]["surprise"] = 1;
+    write_file_atomic(folder() / name, bad.dump());
+    EXPECT_THAT(message_of(reading), HasSubstr("unknown key 'surprise'")) << name << place;
+    write_file_atomic(folder() / name, good);
+  }
+  EXPECT_NO_THROW(reading());
 }
 
 TEST_F(ProjectTest, DoesNotTakeAFolderThatHoldsSomethingElse) {

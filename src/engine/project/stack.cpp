@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "core/base/error.h"
+#include "core/base/json_reader.h"
 
 namespace cei3d {
 namespace {
@@ -74,14 +74,15 @@ Json Stack::to_json() const {
 
 Stack Stack::from_json(const Json& j, const std::string& file) {
   Stack stack;
-  try {
-    for (const Json& e : j.at("edits"))
-      stack.entries_.push_back({e.at("id").get<std::string>(), e.at("enabled").get<bool>()});
-    stack.cursor_ = j.at("cursor").get<size_t>();
-    stack.next_ = j.at("next").get<int>();
-  } catch (const Json::exception& e) {
-    fail("{} is damaged ({}); restore it from a copy of the project.", file, e.what());
+  JsonReader reader(j, file);
+  for (const Json& e : reader.array("edits")) {
+    JsonReader entry(e, "An edit in " + file);
+    stack.entries_.push_back({entry.require<std::string>("id"), entry.require<bool>("enabled")});
+    entry.finish();
   }
+  stack.cursor_ = reader.require<size_t>("cursor");
+  stack.next_ = reader.require<int>("next");
+  reader.finish();
   if (stack.cursor_ > stack.entries_.size()) fail("{} is damaged: its cursor is beyond the last edit.", file);
   for (const StackEntry& e : stack.entries_)
     if (!is_plain_id(e.id)) fail("{} is damaged: '{}' is not an edit's name.", file, e.id);

@@ -112,7 +112,8 @@ TEST(Stack, DamagedFilesAreRefused) {
   const Json good = {{"edits", {{{"id", "0001-paint"}, {"enabled", true}}}}, {"cursor", 1}, {"next", 2}};
   EXPECT_NO_THROW(Stack::from_json(good, "stack.json"));
   for (const char* patch : {R"({"cursor": 2})", R"({"cursor": "x"})", R"({"edits": 3})", R"({"next": null})",
-                            R"({"edits": [{"id": "../../home", "enabled": true}]})"}) {
+                            R"({"edits": [{"id": "../../home", "enabled": true}]})", R"({"cursors": 1})",
+                            R"({"edits": [{"id": "0001-paint", "enabled": true, "color": 1}]})"}) {
     Json bad = good;
     bad.update(Json::parse(patch));
     EXPECT_THROW(Stack::from_json(bad, "stack.json"), Error) << patch;

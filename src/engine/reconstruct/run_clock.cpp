@@ -33,7 +33,7 @@ void RunClock::enter(std::string stage, double begin, double end) {
   report({stage_, 0, -1, ""});
 }
 
-void RunClock::report(const ProgressReport& r) {
+void RunClock::on_report(const ProgressReport& r) {
   ProgressReport whole{stage_, begin_ + (end_ - begin_) * std::clamp(r.fraction, 0.0, 1.0), -1,
                        message_of(stage_, r)};
   if (seconds_ > 0) {

@@ -25,12 +25,12 @@ class RunClock : public Progress {
   // Later reports are of this stage, which is the part [begin, end) of the run.
   void enter(std::string stage, double begin, double end);
 
-  // r.fraction: of the stage. r.stage: what the stage is doing, passed on in the message.
-  void report(const ProgressReport& r) override;
-  void log(const std::string& json_line) override { to_.log(json_line); }
-  bool cancelled() const override { return to_.cancelled(); }
-
  private:
+  // r.fraction: of the stage. r.stage: what the stage is doing, passed on in the message.
+  void on_report(const ProgressReport& r) override;
+  void on_log(const std::string& json_line) override { to_.log(json_line); }
+  bool is_cancelled() const override { return to_.cancelled(); }
+
   Progress& to_;
   Clock clock_;
   double seconds_, start_;

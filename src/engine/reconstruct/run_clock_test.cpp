@@ -10,8 +10,10 @@ namespace {
 
 class Listener : public Progress {
  public:
-  void report(const ProgressReport& r) override { heard.push_back(r); }
   std::vector<ProgressReport> heard;
+
+ private:
+  void on_report(const ProgressReport& r) override { heard.push_back(r); }
 };
 
 struct VirtualTime {

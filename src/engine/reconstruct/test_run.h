@@ -126,16 +126,16 @@ class ScriptedProgress : public Progress {
     how_ = how;
   }
 
-  void report(const ProgressReport& r) override {
+  void on_report(const ProgressReport& r) override {
     const std::lock_guard lock(mutex_);
     if (stages.empty() || stages.back() != r.stage) stages.push_back(r.stage);
     fractions.push_back(r.fraction);
   }
-  void log(const std::string& line) override {
+  void on_log(const std::string& line) override {
     const std::lock_guard lock(mutex_);
     lines.push_back(Json::parse(line));
   }
-  bool cancelled() const override {
+  bool is_cancelled() const override {
     const std::lock_guard lock(mutex_);
     const std::string stage = stages.empty() ? "" : stages.back();
     const int check = ++checks[stage];

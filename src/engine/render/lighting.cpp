@@ -85,7 +85,7 @@ void put(const ShadingSlopes& part, size_t first, ShadingSlopes& out) {
 
 std::shared_ptr<const Transport> or_new(std::shared_ptr<const Transport> transport,
                                         const std::shared_ptr<const Surface>& surface) {
-  return transport ? transport : std::make_shared<const Transport>(*surface);
+  return transport ? transport : std::make_shared<const Transport>(surface);
 }
 
 VertexMaterials uniform_materials(std::span<const Vec3f> albedo, const Material& material) {

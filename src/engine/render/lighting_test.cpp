@@ -276,7 +276,7 @@ double error_between_balls(const MadeOf& lower, const MadeOf& upper) {
     vertices.material.push_back(made_of(p).material);
   }
   const Lighting lighting(device, surface, some_sky(),
-                          vertex_light(Transport(*surface), some_sky(), vertices));
+                          vertex_light(Transport(surface), some_sky(), vertices));
   const auto hits = some_hits(surface->mesh(), 400);
   std::vector<Material> materials;
   std::vector<Vec3f> albedo;

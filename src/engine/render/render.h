@@ -13,6 +13,7 @@
 namespace cei3d {
 
 class SceneLight;  // engine/render/scene_light.h
+struct HitMemory;  // engine/render/hit_memory.h
 
 // Every sub-pixel sample that met the surface, ordered by pixel.
 struct GBuffer {
@@ -55,6 +56,9 @@ struct Frame {
       edited;  // #pixels, 1 where any sample of the pixel's mean lies in the region of an edit
 };
 Frame shade_view(const Device&, const Scene&, const SceneLight&, const GBuffer&);
+// The same bits; `memory` (see engine/render/hit_memory.h) takes over what it has of an earlier frame of the
+// same buffer, and keeps this one.
+Frame shade_view(const Device&, const Scene&, const SceneLight&, const GBuffer&, HitMemory& memory);
 Frame shade_view(const Device&, const Scene&, const GBuffer&);  // for a single view
 
 }  // namespace cei3d

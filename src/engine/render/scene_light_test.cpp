@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "core/math/rng.h"
+#include "engine/render/render_cache.h"
 #include "engine/render/sphere_scene.h"
 #include "model/scene/appearance.h"
 
@@ -126,6 +128,167 @@ TEST(SceneLight, ALaterEditElsewhereLeavesWhatEditedPointsMirrorAlone) {
     others += length(first[i] - last[i]) > 1e-3f;
   }
   EXPECT_GT(others, hits.size() / 2);  // made after it, they mirror it
+}
+
+// Metal spheres with a residual that is not zero.
+Scene scene_with_residual() {
+  Scene s = metal_scene();
+  FieldConfig config = s.albedo->config();
+  config.outputs = 4;
+  config.output_activation = Activation::none;
+  auto residual = std::make_shared<Residual>(make_residual(std::make_shared<Field>(config, 5), 3));
+  Param& last = residual->params.all()[residual->params.all().size() - 2];
+  for (size_t i = 0; i < last.count(); ++i) last.value[i] = 0.2f * Rng(5, 5, i).normal();
+  s.residual = residual;
+  return s;
+}
+
+// Moves the upper sphere up.
+EditLayer lifted(const Scene& scene, float by) {
+  Reshape r;
+  const Mesh& mesh = scene.surface->mesh();
+  for (uint32_t v = 0; v < mesh.positions.size(); ++v) {
+    if (mesh.positions[v].z < 0) continue;
+    r.moved.push_back(v);
+    r.positions.push_back(mesh.positions[v] + Vec3f{0, 0, by});
+    r.normals.push_back(mesh.normals[v]);
+    r.gradients.push_back({1, 0, 0, 0, 1, 0, 0, 0, 1});
+  }
+  EditLayer layer;
+  layer.id = "deform";
+  layer.reshape = std::make_shared<const Reshape>(std::move(r));
+  return layer;
+}
+
+// One of ten edits; equal kinds are equal edits of an equal scene.
+EditLayer some_edit(const Scene& scene, uint32_t kind) {
+  EditLayer layer;
+  switch (kind) {
+    case 0:
+    case 1:
+      layer = grey_sphere(scene, "paint", kind == 0 ? 1 : -1);
+      break;
+    case 2:
+      layer.everywhere = true;
+      layer.tint = Tint{{0.1f, 0.3f, 0.5f}, true, {0.5f, 0.5f, 0.5f}};
+      break;
+    case 3:
+    case 4:
+      layer = grey_sphere(scene, "material", kind == 3 ? 1 : -1);
+      layer.albedo = nullptr;
+      layer.material.roughness = kind == 3 ? 0.5f : 0.9f;
+      break;
+    case 5:
+      layer.everywhere = true;
+      layer.material.metalness = 0;
+      break;
+    case 6:
+      layer.everywhere = true;
+      layer.light = scene.light;
+      layer.light->lobes[0].mu = {2, 1, 0.5f};
+      break;
+    case 7:
+      layer = grey_sphere(scene, "erase", 1);
+      layer.albedo = nullptr;
+      layer.erase = true;
+      break;
+    case 8:
+      layer = grey_sphere(scene, "unlit", -1);
+      layer.unlit = true;
+      break;
+    default:
+      layer = lifted(scene, 0.05f);
+  }
+  layer.id = "edit" + std::to_string(kind);
+  layer.content = layer.id;  // as if it were stored
+  return layer;
+}
+
+bool same_bits(const Image& a, const Image& b) {
+  return a.data.size() == b.data.size() &&
+         std::memcmp(a.data.data(), b.data.data(), a.data.size() * sizeof(float)) == 0;
+}
+
+bool same_bits(const Frame& a, const Frame& b) {
+  return same_bits(a.rgb, b.rgb) && same_bits(a.albedo, b.albedo) && same_bits(a.diffuse, b.diffuse) &&
+         same_bits(a.specular, b.specular) && same_bits(a.normal, b.normal) && same_bits(a.depth, b.depth) &&
+         same_bits(a.roughness, b.roughness) && same_bits(a.mask, b.mask) && a.edited == b.edited;
+}
+
+// Edits are put on and taken off at random; every frame is compared with one of which nothing was kept.
+void expect_frames_as_without(RenderCache& frames, const Device& device, uint64_t seed, int steps) {
+  std::vector<Scene> stack{scene_with_residual()};  // the last one is the object as it is
+  const Camera cameras[] = {camera_towards_origin({1, -3, 0.3}, 32), camera_towards_origin({-2, 2, 1}, 32)};
+  for (int step = 0; step < steps; ++step) {
+    Rng rng(seed, 17, uint64_t(step));
+    if (rng.below(3) == 0 && stack.size() > 1)
+      stack.pop_back();
+    else
+      stack.push_back(with_layer(stack.back(), some_edit(stack.back(), rng.below(10))));
+    const Scene& scene = stack.back();
+    const Camera& camera = cameras[rng.below(2)];
+    const int samples = 1 + int(rng.below(2));
+    const auto view = frames.trace(scene, camera, samples);
+    const Frame frame = frames.shade(scene, frames.light(scene), *view);
+    const Frame plain = shade_view(device, scene, trace_view(device, scene, camera, samples));
+    ASSERT_TRUE(same_bits(frame, plain)) << "seed " << seed << ", step " << step;
+  }
+}
+
+TEST(RenderCache, FramesOfRandomHistoriesHaveTheBitsOfFramesMadeAnew) {
+  const Device device = make_device();
+  RenderCache frames(device);
+  expect_frames_as_without(frames, device, 0, 12);
+  EXPECT_GT(frames.light_count().found, 0u);
+  EXPECT_GT(frames.view_count().found, 0u);
+  EXPECT_GT(frames.hits_kept(), 0u);
+  EXPECT_GT(frames.hits_lit(), 0u);
+}
+
+TEST(RenderCache, WithoutMemoryItStillGivesTheSameBits) {
+  const Device device = make_device();
+  RenderCache frames(device, {.transports = 0, .lights = 0, .views = 0, .colors = 0});
+  expect_frames_as_without(frames, device, 2, 5);
+}
+
+TEST(RenderCache, ASecondFrameComputesNoLight) {
+  const Device device = make_device();
+  const Scene base = scene_with_residual();
+  const Scene one = with_layer(base, some_edit(base, 0));
+  const Camera camera = camera_towards_origin({1, -3, 0.3}, 32);
+  RenderCache frames(device);
+  const auto draw = [&](const Scene& s) { frames.shade(s, frames.light(s), *frames.trace(s, camera, 1)); };
+  draw(base);
+  const size_t hits = frames.hits_lit();
+  EXPECT_GT(hits, 100u);
+  EXPECT_EQ(frames.hits_kept(), 0u);
+  draw(base);
+  EXPECT_EQ(frames.hits_lit(), hits);
+  EXPECT_EQ(frames.hits_kept(), hits);
+  draw(one);  // the lower sphere stays as it was
+  EXPECT_GT(frames.hits_kept(), hits);
+  EXPECT_LT(frames.hits_lit(), 2 * hits);
+  EXPECT_EQ(frames.light_count().missed, 1u);
+  Scene relit = base;
+  relit.light.lobes[0].mu = {2, 1, 0.5f};
+  draw(relit);
+  EXPECT_EQ(frames.light_count().missed, 2u);
+  EXPECT_EQ(frames.transport_count().missed, 1u);
+  EXPECT_EQ(frames.transport_count().found, 1u);
+  EXPECT_EQ(frames.view_count().missed, 1u);
+}
+
+TEST(Transport, KeepsItsSurface) {
+  auto surface = std::make_shared<const Surface>(two_spheres());
+  const std::weak_ptr<const Surface> alive = surface;
+  auto transport = std::make_unique<Transport>(std::move(surface));
+  surface.reset();
+  ASSERT_FALSE(alive.expired());
+  EXPECT_GT(
+      transport->bounce(std::vector<Vec3f>(transport->surface().mesh().positions.size(), {1, 1, 1}))[0].x,
+      -1);
+  transport.reset();
+  EXPECT_TRUE(alive.expired());
 }
 
 }  // namespace

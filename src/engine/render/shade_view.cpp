@@ -5,6 +5,7 @@
 
 #include "core/base/parallel.h"
 #include "core/math/sub_pixel.h"
+#include "engine/render/hit_memory.h"
 #include "engine/render/render.h"
 #include "engine/render/scene_light.h"
 #include "model/scene/appearance.h"
@@ -75,20 +76,36 @@ void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverag
   image.data[4 * pixel + 3] = coverage;
 }
 
-// The residual of what is as it was photographed; else nothing. #hits
-std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const Appearance& look,
-                             std::span<const Hit> hits) {
-  std::vector<Vec3f> out(hits.size(), Vec3f{0, 0, 0});
-  if (!scene.residual) return out;
+// Evaluates the residual where the memory lacks it.
+void fill_residuals(const Device& device, const Scene& scene, const Appearance& look,
+                    std::span<const Hit> hits, HitMemory& memory) {
+  if (memory.residual != scene.residual || memory.residuals.size() != hits.size()) {
+    memory.residual = scene.residual;
+    memory.residuals.assign(hits.size(), Vec3f{0, 0, 0});
+    memory.has_residual.assign(hits.size(), 0);
+  }
   std::vector<Hit> original;
   std::vector<size_t> of;
   for (size_t i = 0; i < hits.size(); ++i)
-    if (look.original[i] > 0) {
+    if (look.original[i] > 0 && !memory.has_residual[i]) {
       original.push_back(hits[i]);
       of.push_back(i);
     }
   const std::vector<Vec3f> values = residual_at(device, *scene.residual, original);
-  for (size_t k = 0; k < of.size(); ++k) out[of[k]] = values[k] * look.original[of[k]];
+  for (size_t k = 0; k < of.size(); ++k) {
+    memory.residuals[of[k]] = values[k];
+    memory.has_residual[of[k]] = 1;
+  }
+}
+
+// The residual of what is as it was photographed; else nothing. #hits
+std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const Appearance& look,
+                             std::span<const Hit> hits, HitMemory& memory) {
+  std::vector<Vec3f> out(hits.size(), Vec3f{0, 0, 0});
+  if (!scene.residual) return out;
+  fill_residuals(device, scene, look, hits, memory);
+  for (size_t i = 0; i < hits.size(); ++i)
+    if (look.original[i] > 0) out[i] = memory.residuals[i] * look.original[i];
   return out;
 }
 
@@ -99,10 +116,13 @@ Vec3f sent(const Shading& shading, const std::vector<Vec3f>& residual, size_t hi
 
 }  // namespace
 
-Frame shade_view(const Device& device, const Scene& scene, const SceneLight& light, const GBuffer& g) {
-  const Appearance look = appearance_at(device, scene, g.hits);
-  const Shading shading = light.shade(g.hits, look);
-  const std::vector<Vec3f> residual = residuals(device, scene, look, g.hits);
+Frame shade_view(const Device& device, const Scene& scene, const SceneLight& light, const GBuffer& g,
+                 HitMemory& memory) {
+  memory.lit =
+      light.light_hits(g.hits, appearance_at(device, scene, g.hits), memory.lit ? &*memory.lit : nullptr);
+  const Appearance& look = memory.lit->look;
+  const Shading shading = memory.lit->shading();
+  const std::vector<Vec3f> residual = residuals(device, scene, look, g.hits, memory);
   const PixelFilter filter(g);
   Frame f = empty_frame(g.width, g.height);
   parallel_for(g.height, [&](int y) {
@@ -135,6 +155,11 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
     }
   });
   return f;
+}
+
+Frame shade_view(const Device& device, const Scene& scene, const SceneLight& light, const GBuffer& g) {
+  HitMemory none;
+  return shade_view(device, scene, light, g, none);
 }
 
 Frame shade_view(const Device& device, const Scene& scene, const GBuffer& g) {

@@ -37,14 +37,14 @@ void Transport::for_blocked(uint32_t vertex, F visit) const {
   if (!covers(vertex)) return;
   const auto& sky = sky_directions();
   for (int k = 0; k < kSkyDirections; ++k) {
-    const float c = dot(surface_.mesh().normals[vertex], sky[k]);
-    if (c > 0.02f && !surface_.sees(vertex, k)) visit(k, c);
+    const float c = dot(surface_->mesh().normals[vertex], sky[k]);
+    if (c > 0.02f && !surface_->sees(vertex, k)) visit(k, c);
   }
 }
 
-Transport::Transport(const Surface& surface, std::vector<uint8_t> which)
-    : surface_(surface), which_(std::move(which)) {
-  const Mesh& mesh = surface.mesh();
+Transport::Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t> which)
+    : surface_(std::move(surface)), which_(std::move(which)) {
+  const Mesh& mesh = surface_->mesh();
   const int n = int(mesh.positions.size());
   start_.assign(n + 1, 0);
   parallel_ranges(n, kGrain, [&](int begin, int end) {
@@ -52,6 +52,7 @@ Transport::Transport(const Surface& surface, std::vector<uint8_t> which)
   });
   std::partial_sum(start_.begin(), start_.end(), start_.begin());
   blockers_.resize(start_.back());
+  directions_.reserve(start_.back());
   std::vector<Vec3f> origins, directions;
   std::vector<Surface::RayHit> hits;
   for (int begin = 0; begin < n; begin += 16 * kGrain) {
@@ -62,18 +63,19 @@ Transport::Transport(const Surface& surface, std::vector<uint8_t> which)
       for_blocked(v, [&](int k, float) {
         origins.push_back(mesh.positions[v] + mesh.normals[v] * kStart);
         directions.push_back(sky_directions()[k]);
+        directions_.push_back(uint16_t(k));
       });
     hits.resize(origins.size());
-    surface.intersect(origins, directions, 0, hits);
+    surface_->intersect(origins, directions, 0, hits);
     for (size_t i = 0; i < hits.size(); ++i)
       blockers_[start_[begin] + i] = hits[i].t < 0 ? kNone : nearest_corner(mesh, hits[i]);
   }
 }
 
 std::vector<Vec3f> Transport::sky(const SkyRadiance& radiance) const {
-  const Mesh& mesh = surface_.mesh();
+  const Mesh& mesh = surface_->mesh();
   const auto& sky = sky_directions();
-  const uint8_t* bits = surface_.visibility().data();
+  const uint8_t* bits = surface_->visibility().data();
   return per_vertex([&](int v) {
     const uint8_t* row = bits + size_t(v) * (kSkyDirections / 8);
     Vec3f sum{0, 0, 0};
@@ -87,7 +89,7 @@ std::vector<Vec3f> Transport::sky(const SkyRadiance& radiance) const {
 }
 
 std::vector<Vec3f> Transport::open_sky(const SkyRadiance& radiance) const {
-  const Mesh& mesh = surface_.mesh();
+  const Mesh& mesh = surface_->mesh();
   const auto& sky = sky_directions();
   return per_vertex([&](int v) {
     Vec3f sum{0, 0, 0};
@@ -97,12 +99,14 @@ std::vector<Vec3f> Transport::open_sky(const SkyRadiance& radiance) const {
 }
 
 std::vector<Vec3f> Transport::bounce(std::span<const Vec3f> radiance) const {
+  const auto& sky = sky_directions();
   return per_vertex([&](int v) {
     Vec3f sum{0, 0, 0};
-    uint32_t i = start_[v];
-    for_blocked(v, [&](int, float cosine) {
-      if (const uint32_t from = blockers_[i++]; from != kNone) sum += radiance[from] * (cosine * kSolidAngle);
-    });
+    for (uint32_t i = start_[v]; i < start_[v + 1]; ++i) {
+      if (blockers_[i] == kNone) continue;
+      const float cosine = dot(surface_->mesh().normals[v], sky[directions_[i]]);
+      sum += radiance[blockers_[i]] * (cosine * kSolidAngle);
+    }
     return sum;
   });
 }

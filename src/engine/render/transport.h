@@ -3,6 +3,7 @@
 // bounce from what blocks it. Depends on geometry only, so one table serves every light.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,10 @@ class Transport {
  public:
   // Casts a ray along every blocked direction above a vertex's horizon. which: #V, 1 for the vertices that
   // are asked for; the others get zeros. Empty: all.
-  explicit Transport(const Surface& surface, std::vector<uint8_t> which = {});
+  explicit Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t> which = {});
+  // Of a surface that its owner keeps for as long as the transport lives.
+  explicit Transport(const Surface& surface)
+      : Transport(std::shared_ptr<const Surface>(std::shared_ptr<void>(), &surface)) {}
 
   // Irradiance of every vertex from the sky it sees. #V
   std::vector<Vec3f> sky(const SkyRadiance&) const;
@@ -27,7 +31,11 @@ class Transport {
   // #V
   std::vector<Vec3f> bounce(std::span<const Vec3f> radiance) const;
 
-  const Surface& surface() const { return surface_; }
+  const Surface& surface() const { return *surface_; }
+  size_t bytes() const {
+    return which_.size() + start_.size() * sizeof(uint32_t) +
+           blockers_.size() * (sizeof(uint16_t) + sizeof(uint32_t));
+  }
   bool covers(size_t vertex) const { return which_.empty() || which_[vertex]; }
 
  private:
@@ -36,11 +44,13 @@ class Transport {
   template <class F>
   void for_blocked(uint32_t vertex, F visit) const;
 
-  const Surface& surface_;
+  std::shared_ptr<const Surface> surface_;
   std::vector<uint8_t> which_;
   std::vector<uint32_t> start_;  // #V + 1
-  std::vector<uint32_t>
-      blockers_;  // vertices nearest to what blocks each vertex's directions, in their order
+  // Of each vertex's blocked directions above its horizon, in their order: the direction and the vertex
+  // nearest to what blocks it.
+  std::vector<uint16_t> directions_;
+  std::vector<uint32_t> blockers_;
 };
 
 }  // namespace cei3d

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/system.h"
 
 namespace cei3d {
 namespace {
@@ -111,8 +112,7 @@ Image to_picture(const std::vector<float>& plane, const SamPicture& p) {
 
 std::filesystem::path installed_sam() {
   std::error_code ignored;
-  const std::filesystem::path program =
-      std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  const std::filesystem::path program = program_file().parent_path();
   const std::filesystem::path first = program.parent_path() / "sam";
   for (const auto& folder : {first, program / "sam", program.parent_path() / "share/cei3d/sam"})
     if (std::filesystem::exists(folder / "encoder.onnx", ignored)) return folder;

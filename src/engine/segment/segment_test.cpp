@@ -112,9 +112,7 @@ TEST(Grow, SameBitsOnAnyNumberOfThreads) {
     return grown(o, {on_sphere(kOrigin, {0, 0, 1})}, {on_sphere(kOrigin, {1, 0, -0.2f})});
   };
   const auto all = run();
-  set_threads(1);
-  const auto one = run();
-  set_threads(0);
+  const auto one = Threads(1).run(run);
   EXPECT_EQ(all, one);
 }
 

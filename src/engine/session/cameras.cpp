@@ -44,9 +44,17 @@ std::vector<NamedCamera> named(const std::vector<View>& views) {
 std::vector<NamedCamera> read_camera_file(const fs::path& path) {
   std::vector<NamedCamera> cameras;
   try {
-    const Json file = Json::parse(read_file(path));
-    for (const Json& j : file.at("cameras"))
-      cameras.push_back({j.at("name").get<std::string>(), "", camera_from_json(j)});
+    const Json json = Json::parse(read_file(path));
+    JsonReader file(json, path.string());
+    for (const char* key : {"program", "project", "edits", "light", "channels", "switches", "depth", "axes"})
+      file.has(key);  // what else a render.json has
+    for (const Json& j : file.array("cameras")) {
+      JsonReader camera(j, "A camera in " + path.string());
+      cameras.push_back({camera.require<std::string>("name"), "", camera_from_json(camera)});
+      camera.has("file");  // the picture that was rendered
+      camera.finish();
+    }
+    file.finish();
   } catch (const Json::exception& e) {
     fail("{} is not a list of cameras ({}); a render.json of `cei3d render` is one.", path.string(),
          e.what());

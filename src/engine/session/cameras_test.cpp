@@ -113,10 +113,13 @@ TEST_F(CamerasTest, DamagedCameraFilesAreRefused) {
   Camera no_size = camera_at({0, 0, 0});
   no_size.width = 0;
   flat.update(camera_json(no_size));
+  Json extra = {{"name", "a"}, {"distortion", 0.1}};
+  extra.update(camera_json(camera_at({0, 0, -3})));
   for (const std::string& text :
        {std::string("{"), std::string("[]"), std::string(R"({"cameras": 3})"),
         std::string(R"({"cameras": []})"), std::string(R"({"cameras": [{"name": "a"}]})"),
-        Json{{"cameras", Json::array({outside})}}.dump(), Json{{"cameras", Json::array({flat})}}.dump()}) {
+        Json{{"cameras", Json::array({outside})}}.dump(), Json{{"cameras", Json::array({extra})}}.dump(),
+        Json{{"cameras", Json::array({flat})}}.dump()}) {
     write_file_atomic(file, text);
     EXPECT_THROW(choose_cameras(p, CameraFile{file}, 0, 0), Error) << text;
   }

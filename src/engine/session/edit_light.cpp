@@ -7,14 +7,16 @@ namespace cei3d {
 namespace {
 
 EditOutcome make(const EditContext& context, const EditJob& job) {
+  JsonReader params = job.reader();
   SgMixture light = context.scene.light;
-  if (job.params.contains("env"))
+  if (params.optional<std::string>("env"))
     light = light_from_array(decode_npy(job.input("light.npy"), "light.npy").floats());
   EditOutcome out;
   out.layer.id = job.id;
   out.layer.everywhere = true;
-  out.layer.light = turned_light(light, job.params.value("rotate_degrees", 0.0),
-                                 job.params.value("scale", 1.0), context.scene.up);
+  const double degrees = params.optional("rotate_degrees", 0.0), scale = params.optional("scale", 1.0);
+  params.finish();
+  out.layer.light = turned_light(light, degrees, scale, context.scene.up);
   out.report = {{"lobes", light.lobes.size()}};
   return out;
 }

@@ -7,10 +7,12 @@ namespace cei3d {
 namespace {
 
 EditOutcome make(const EditContext& context, const EditJob& job) {
-  const Effects effects = effects_from_params(job.params);
+  JsonReader params = job.reader();
+  const Effects effects = effects_from_params(params);
   MaterialRequest request;
   request.id = job.id;
-  request.part = job.params.value("part", "");
+  request.part = params.optional<std::string>("part", "");
+  params.finish();
   request.change = effects.change;
   request.color = effects.color;
   request.keep_texture = !effects.replace;

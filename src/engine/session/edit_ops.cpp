@@ -2,6 +2,7 @@
 #include "engine/session/edit_ops.h"
 
 #include "core/base/error.h"
+#include "engine/project/project.h"
 
 namespace cei3d {
 
@@ -9,6 +10,18 @@ const EditOp& edit_op(const std::string& name) {
   for (const EditOp* op : {&kPaintOp, &kMaterialOp, &kLightOp, &kDeformOp, &kRemoveOp, &kPartOp})
     if (name == op->name) return *op;
   fail("'{}' is an edit that this program does not know; update cei3d.", name);
+}
+
+Json present_params(const EditOp& op, const EditRecord& record) {
+  if (record.op_version > op.version)
+    fail(
+        "Edit {} was made by version {} of '{}', and this program has version {}: it cannot be made anew "
+        "here; update "
+        "cei3d.",
+        record.id, record.op_version, op.name, op.version);
+  if (record.op_version < 1) fail("Edit {} has the impossible version {}.", record.id, record.op_version);
+  return record.op_version < op.version && op.migrate ? op.migrate(record.params, record.op_version)
+                                                      : record.params;
 }
 
 const std::string& EditJob::input(const std::string& name) const {

@@ -7,7 +7,7 @@
 #include "engine/edit/stroke.h"
 #include "engine/io/image_file.h"
 #include "engine/io/png_file.h"
-#include "engine/render/scene_light.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/edit_ops.h"
 #include "engine/session/requests.h"
 
@@ -41,11 +41,13 @@ void require_paint(const Image& scribble, const std::string& name) {
   fail("Nothing in {} is opaque (alpha at least one half): there is nothing to paint.", name);
 }
 
-Scribble scribble_of(const EditContext& context, const EditJob& job, const Json& stroke) {
-  const View& view = find_view(context.capture, stroke.at("view").get<std::string>());
-  const std::string name = stroke.value("file", "the scribble");
+Scribble scribble_of(const EditContext& context, const EditJob& job, const Json& j) {
+  JsonReader stroke(j, fmt::format("A stroke of edit {}", job.id));
+  const View& view = find_view(context.capture, stroke.require<std::string>("view"));
+  const std::string name = stroke.optional<std::string>("file", "the scribble");
   Scribble s;
-  s.image = decode_scribble(job.input(stroke.value("input", "scribble.png")), name);
+  s.image = decode_scribble(job.input(stroke.optional<std::string>("input", "scribble.png")), name);
+  stroke.finish();
   require_size(s.image, view, name);
   require_paint(s.image, name);
   s.camera = context.scene.normalization.unit_from_input(view.camera);
@@ -62,42 +64,54 @@ Json report_json(const PaintReport& r) {
           {"seconds", {{"trace", r.trace_seconds}, {"fit", r.train_seconds}}}};
 }
 
-PaintTarget target_of(const Json& params) {
-  const std::string name = params.value("target", "albedo");
+PaintTarget target_of(JsonReader& params) {
+  const std::string name = params.optional<std::string>("target", "albedo");
   if (const auto target = paint_target_from_name(name)) return *target;
   fail("Paint has no target '{}' in this program; update cei3d.", name);
 }
 
-Routing routing_of(const Json& params) {
-  const std::string name = params.value("routing", "both");
+Routing routing_of(JsonReader& params) {
+  const std::string name = params.optional<std::string>("routing", "both");
   if (const auto routing = routing_from_name(name)) return *routing;
   fail("Paint has no routing '{}' in this program; update cei3d.", name);
 }
 
-// The first version of the parameters was one stroke.
 EditOutcome make(const EditContext& context, const EditJob& job) {
+  JsonReader params = job.reader();
   PaintRequest request;
   request.id = job.id;
-  request.seed = job.params.at("seed").get<uint64_t>();
-  request.erase = job.params.value("erase", false);
-  request.routing = routing_of(job.params);
-  const PaintTarget target = target_of(job.params);
+  request.seed = params.require<uint64_t>("seed");
+  request.erase = params.optional("erase", false);
+  request.routing = routing_of(params);
+  const PaintTarget target = target_of(params);
   request.unlit = target == PaintTarget::radiance;
-  if (job.params.contains("strokes"))
-    for (const Json& stroke : job.params.at("strokes"))
-      request.scribbles.push_back(scribble_of(context, job, stroke));
-  else
-    request.scribbles.push_back(scribble_of(context, job, job.params));
+  params.has("view");  // the names of the strokes' views, for lists
+  for (const Json& stroke : params.array("strokes"))
+    request.scribbles.push_back(scribble_of(context, job, stroke));
+  params.finish();
   std::optional<SceneLight> light;
   if (target == PaintTarget::appearance) {
-    light.emplace(context.device, context.scene, scene_transports(context.scene));
+    light.emplace(context.frames.light(context.scene));
     request.seen_in = &*light;
   }
   PaintResult result = paint(context.device, context.scene, request, context.progress);
   return {std::move(result.layer), report_json(result.report)};
 }
 
-Aspects depends(const Json& params) {
+// The first version of the parameters was one stroke.
+Json migrate(Json params, int) {
+  if (params.contains("strokes")) return params;
+  Json stroke = {{"view", params.value("view", "")}, {"input", "scribble.png"}};
+  if (params.contains("file")) {
+    stroke["file"] = params["file"];
+    params.erase("file");
+  }
+  params["strokes"] = Json::array({std::move(stroke)});
+  return params;
+}
+
+Aspects depends(const Json& stored) {
+  JsonReader params(stored, "The parameters of a paint edit");
   const bool seen = target_of(params) == PaintTarget::appearance;
   const bool everything = routing_of(params) == Routing::none;
   return {.shape = true, .look = seen || everything, .light = seen};
@@ -105,6 +119,6 @@ Aspects depends(const Json& params) {
 
 }  // namespace
 
-const EditOp kPaintOp{"paint", 2, make, depends};
+const EditOp kPaintOp{"paint", 2, make, depends, migrate};
 
 }  // namespace cei3d

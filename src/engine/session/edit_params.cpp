@@ -16,10 +16,6 @@ void put_share(const std::optional<double>& value, const char* name, Json& param
   params[name] = *value;
 }
 
-std::optional<float> share_from(const Json& params, const char* name) {
-  return params.contains(name) ? std::optional(params.at(name).get<float>()) : std::nullopt;
-}
-
 }  // namespace
 
 Vec3f color_from_text(const std::string& text) {
@@ -34,12 +30,12 @@ Vec3f color_from_text(const std::string& text) {
   return color;
 }
 
-Effects effects_from_params(const Json& params) {
+Effects effects_from_params(JsonReader& params) {
   Effects e;
-  e.change = {share_from(params, "roughness"), share_from(params, "specular"),
-              share_from(params, "metalness")};
-  if (params.contains("color")) e.color = color_from_text(params.at("color").get<std::string>());
-  e.replace = params.value("replace", false);
+  e.change = {params.optional<float>("roughness"), params.optional<float>("specular"),
+              params.optional<float>("metalness")};
+  if (const auto color = params.optional<std::string>("color")) e.color = color_from_text(*color);
+  e.replace = params.optional("replace", false);
   return e;
 }
 

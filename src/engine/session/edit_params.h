@@ -2,7 +2,7 @@
 // Parameters that several edits have in common, between commands and what is stored.
 #pragma once
 
-#include "core/base/json.h"
+#include "core/base/json_reader.h"
 #include "core/math/vec.h"
 #include "engine/session/requests.h"
 #include "model/material/change.h"
@@ -18,7 +18,7 @@ struct Effects {
   std::optional<Vec3f> color;  // linear
   bool replace = false;        // of the colour: it replaces what is there instead of scaling it
 };
-Effects effects_from_params(const Json& params);
+Effects effects_from_params(JsonReader& params);
 // Writes the keys that the command has. Usage errors: values out of range, no colour, --replace without a
 // colour.
 void put_effects(const MaterialEffects&, Json& params);

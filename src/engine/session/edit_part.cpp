@@ -12,10 +12,10 @@
 namespace cei3d {
 namespace {
 
-std::vector<Vec2f> pixels_from(const Json& params, const char* key) {
+std::vector<Vec2f> pixels_from(JsonReader& params, const char* key) {
   std::vector<Vec2f> pixels;
-  for (const Json& p : params.value(key, Json::array()))
-    pixels.push_back({p.at(0).get<float>(), p.at(1).get<float>()});
+  if (!params.has(key)) return pixels;
+  for (const Json& p : params.array(key)) pixels.push_back({p.at(0).get<float>(), p.at(1).get<float>()});
   return pixels;
 }
 
@@ -35,12 +35,13 @@ Image decode_mask(const std::string& bytes, const std::string& name) {
   return mask;
 }
 
-std::optional<PartCombination> combination_from(const Json& params) {
+std::optional<PartCombination> combination_from(JsonReader& params) {
   using How = PartCombination::How;
+  std::optional<PartCombination> combination;
   for (const auto& [key, how] :
        {std::pair{"add", How::add}, {"subtract", How::subtract}, {"intersect", How::intersect}})
-    if (params.contains(key)) return PartCombination{how, params.at(key).get<std::string>()};
-  return std::nullopt;
+    if (const auto part = params.optional<std::string>(key); part && !combination) combination = {how, *part};
+  return combination;
 }
 
 // The network looks at the training views, the clicked one first; their cameras only: it is shown the object
@@ -58,23 +59,25 @@ std::vector<float> scores_by_network(const EditContext& context, const std::stri
 }
 
 PartRequest request_of(const EditContext& context, const EditJob& job) {
-  const View& view = find_view(context.capture, job.params.at("view").get<std::string>());
-  const Effects effects = effects_from_params(job.params);
+  JsonReader params = job.reader();
+  const View& view = find_view(context.capture, params.require<std::string>("view"));
+  const Effects effects = effects_from_params(params);
   PartRequest r;
   r.id = job.id;
-  r.name = job.params.at("name").get<std::string>();
+  r.name = params.require<std::string>("name");
   r.view = view.name;
   r.camera = context.scene.normalization.unit_from_input(view.camera);
-  r.clicks = {pixels_from(job.params, "positive"), pixels_from(job.params, "negative")};
-  if (job.params.contains("mask"))
-    r.mask = decode_mask(job.input("mask.png"), job.params.at("mask").get<std::string>());
-  if (job.params.value("segmenter", "grow") == "sam")
+  r.clicks = {pixels_from(params, "positive"), pixels_from(params, "negative")};
+  if (const auto mask = params.optional<std::string>("mask"))
+    r.mask = decode_mask(job.input("mask.png"), *mask);
+  if (params.optional<std::string>("segmenter", "grow") == "sam")
     r.network = [&context, name = view.name](const Scene& scene, const PartRequest& request,
                                              Progress& progress) {
       return scores_by_network(context, name, scene, request, progress);
     };
-  r.in_view = job.params.value("in_view", false);
-  r.combination = combination_from(job.params);
+  r.in_view = params.optional("in_view", false);
+  r.combination = combination_from(params);
+  params.finish();
   r.change = effects.change;
   r.color = effects.color;
   r.keep_texture = !effects.replace;
@@ -94,7 +97,8 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
 
 // Colour decides where a part ends.
 Aspects depends(const Json& params) {
-  return {.shape = true, .look = true, .parts = combination_from(params).has_value()};
+  JsonReader reader(params, "The parameters of a part");
+  return {.shape = true, .look = true, .parts = combination_from(reader).has_value()};
 }
 
 }  // namespace

@@ -8,18 +8,21 @@
 namespace cei3d {
 namespace {
 
-Vec3d point_from(const Json& j) {
-  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+Vec3d point_from(JsonReader& params, const char* key) {
+  const auto [x, y, z] = params.numbers<3>(key);
+  return {x, y, z};
 }
 
 EditOutcome make_deform(const EditContext& context, const EditJob& job) {
   const Normalization& n = context.scene.normalization;
+  JsonReader params = job.reader();
   DeformRequest request;
   request.id = job.id;
-  request.from = to_float(n.unit_from_input(point_from(job.params.at("from"))));
-  request.to = to_float(n.unit_from_input(point_from(job.params.at("to"))));
-  if (job.params.contains("radius")) request.radius = float(job.params.at("radius").get<double>() * n.scale);
-  request.part = job.params.value("part", "");
+  request.from = to_float(n.unit_from_input(point_from(params, "from")));
+  request.to = to_float(n.unit_from_input(point_from(params, "to")));
+  if (const auto radius = params.optional<double>("radius")) request.radius = float(*radius * n.scale);
+  request.part = params.optional<std::string>("part", "");
+  params.finish();
   DeformResult result = deform(context.scene, request, context.progress);
   const DeformReport& r = result.report;
   return {std::move(result.layer),
@@ -32,8 +35,10 @@ EditOutcome make_deform(const EditContext& context, const EditJob& job) {
 }
 
 EditOutcome make_remove(const EditContext& context, const EditJob& job) {
-  RemoveResult result = remove_part(context.device, context.scene,
-                                    {job.id, job.params.at("part").get<std::string>()}, context.progress);
+  JsonReader params = job.reader();
+  const auto part = params.require<std::string>("part");
+  params.finish();
+  RemoveResult result = remove_part(context.device, context.scene, {job.id, part}, context.progress);
   const RemoveReport& r = result.report;
   return {std::move(result.layer),
           {{"removed_triangles", r.removed_triangles},

@@ -2,6 +2,7 @@
 // A project whose reconstruction was interrupted holds no half-made object, and resumes where it was.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <set>
 
 #include "core/base/error.h"
@@ -17,17 +18,20 @@ namespace {
 class StopsAt : public Progress {
  public:
   explicit StopsAt(std::string stage) : stage_(std::move(stage)) {}
-  void log(const std::string& line) override {
-    const Json j = Json::parse(line);
-    if (j.contains("took")) finished.insert(j.at("stage").get<std::string>());
-  }
-  void report(const ProgressReport& r) override { reached_ |= r.stage == stage_; }
-  bool cancelled() const override { return reached_; }
   std::set<std::string> finished;
 
  private:
+  void on_report(const ProgressReport& r) override {
+    if (r.stage == stage_) reached_ = true;
+  }
+  void on_log(const std::string& line) override {
+    const Json j = Json::parse(line);
+    if (j.contains("took")) finished.insert(j.at("stage").get<std::string>());
+  }
+  bool is_cancelled() const override { return reached_; }
+
   std::string stage_;
-  bool reached_ = false;
+  std::atomic<bool> reached_ = false;
 };
 
 std::set<std::string> stages_until(const ReconstructRequest& request, const std::string& stage) {

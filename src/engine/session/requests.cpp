@@ -130,7 +130,7 @@ Json ChangeSummary::json() const {
 Json ReplayReport::json() const {
   Json list = Json::array();
   for (const auto& [from, to] : edits) list.push_back({{"from", from}, {"to", to}});
-  return {{"edits", list}};
+  return {{"edits", list}, {"notes", notes}};
 }
 
 Json RenderReport::json() const {

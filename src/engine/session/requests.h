@@ -156,6 +156,7 @@ struct ChangeSummary {
 
 struct ReplayReport {
   std::vector<std::pair<std::string, std::string>> edits;  // id in the project replayed, id in the other one
+  std::vector<std::string> notes;                          // sentences: what may differ
   Json json() const;
 };
 

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <fstream>
-#include <mutex>
 
 #include "core/base/progress.h"
 
@@ -15,18 +14,16 @@ class RunLog : public Progress {
   RunLog(Progress& listener, const std::filesystem::path& file)
       : listener_(listener), out_(file, std::ios::app) {}
 
-  void report(const ProgressReport& r) override { listener_.report(r); }
-  void log(const std::string& json_line) override {
-    const std::lock_guard lock(mutex_);
+ private:
+  void on_report(const ProgressReport& r) override { listener_.report(r); }
+  void on_log(const std::string& json_line) override {
     out_ << json_line
          << std::endl;  // at once: it is read while the run goes on; a full disk must not stop training
     listener_.log(json_line);
   }
-  bool cancelled() const override { return listener_.cancelled(); }
+  bool is_cancelled() const override { return listener_.cancelled(); }
 
- private:
   Progress& listener_;
-  std::mutex mutex_;
   std::ofstream out_;
 };
 

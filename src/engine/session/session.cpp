@@ -1,36 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/session/session.h"
 
-#include <sys/sysinfo.h>
-
-#include <fstream>
 #include <thread>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/base/system.h"
 #include "core/compute/device.h"
 #include "engine/capture/normalize.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
-#include "engine/render/scene_light.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/version.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
-
-std::string processor_name() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown";
-}
-
-double memory_gib() {
-  struct sysinfo info {};
-  if (::sysinfo(&info) != 0) return 0;
-  return double(info.totalram) * info.mem_unit / double(1 << 30);
-}
 
 uintmax_t bytes_below(const fs::path& folder) {
   uintmax_t sum = 0;
@@ -56,9 +41,9 @@ void describe_scene(const Scene& scene, ProjectInfo& info) {
 }  // namespace
 
 Session::Session(const std::string& device, int threads)
-    : device_(std::make_unique<Device>(make_device(device))) {
-  set_threads(threads);
-}
+    : device_(std::make_unique<Device>(make_device(device))),
+      threads_(std::make_unique<Threads>(threads)),
+      frames_(std::make_unique<RenderCache>(*device_)) {}
 Session::~Session() = default;
 
 MachineInfo Session::machine() {
@@ -71,22 +56,16 @@ MachineInfo Session::machine() {
   return m;
 }
 
-SceneLight Session::light(const Scene& scene) {
-  if (lit_surface_ != scene.surface) {
-    transports_ = scene_transports(scene);
-    lit_surface_ = scene.surface;
-  }
-  return SceneLight(*device_, scene, transports_);
-}
-
 CheckReport Session::check(const CheckRequest& request) {
-  CheckReport r;
-  r.capture = load_capture(request.capture, request.options);
-  r.report = cei3d::check(r.capture);
-  if (r.report.normalization) r.object_radius = kObjectRadius / r.report.normalization->scale;
-  if (!request.picture.empty() && r.report.normalization)
-    write_png(request.picture, draw_cameras(r.capture, *r.report.normalization));
-  return r;
+  return threads_->run([&]() -> CheckReport {
+    CheckReport r;
+    r.capture = load_capture(request.capture, request.options);
+    r.report = cei3d::check(r.capture);
+    if (r.report.normalization) r.object_radius = kObjectRadius / r.report.normalization->scale;
+    if (!request.picture.empty() && r.report.normalization)
+      write_png(request.picture, draw_cameras(r.capture, *r.report.normalization));
+    return r;
+  });
 }
 
 Project& Session::project() const {
@@ -95,28 +74,41 @@ Project& Session::project() const {
 }
 
 void Session::open(const fs::path& folder, Access access) {
-  project_.reset();  // lets go of its lock first: it may be the same project
+  close();  // lets go of its lock first: it may be the same project
   const auto mode = access == Access::write ? Project::Mode::write : Project::Mode::read;
   project_ = std::make_unique<Project>(Project::open(folder, mode));
 }
 
-void Session::close() { project_.reset(); }
+void Session::close() {
+  project_.reset();
+  frames_ = std::make_unique<RenderCache>(*device_);
+}
 
 ProjectInfo Session::info() const {
-  const Project& p = project();
-  ProjectInfo info;
-  info.folder = p.folder();
-  info.capture_root = p.capture().root;
-  info.capture_format = p.capture().format;
-  info.normalization = p.head().normalization;
-  info.options = p.head().options;
-  info.finished = p.has_base();
-  for (const View& v : p.capture().views) ++info.views[size_t(v.split)];
-  info.edits = p.stack().entries().size();
-  info.edits_active = p.stack().active().size();
-  info.bytes = bytes_below(p.folder());
-  if (info.finished) describe_scene(p.base(), info);
-  return info;
+  return threads_->run([&]() -> ProjectInfo {
+    const Project& p = project();
+    ProjectInfo info;
+    info.folder = p.folder();
+    info.capture_root = p.capture().root;
+    info.capture_format = p.capture().format;
+    info.normalization = p.head().normalization;
+    info.options = p.head().options;
+    info.finished = p.has_base();
+    for (const View& v : p.capture().views) ++info.views[size_t(v.split)];
+    info.edits = p.stack().entries().size();
+    info.edits_active = p.stack().active().size();
+    info.bytes = bytes_below(p.folder());
+    if (info.finished) describe_scene(p.base(), info);
+    return info;
+  });
+}
+
+Scene Session::scene() const {
+  return threads_->run([&] { return project().scene(); });
+}
+
+ReconstructReport Session::reconstruct(const ReconstructRequest& request, Progress& progress) {
+  return threads_->run([&] { return run_reconstruction(request, progress); });
 }
 
 std::vector<LogEntry> Session::log() const {

@@ -19,12 +19,13 @@ namespace cei3d {
 
 class Device;
 class Project;
-class SceneLight;
-class Surface;
-class Transport;
+class RenderCache;
+class Threads;
 struct Scene;
 using EditInputs = std::vector<std::pair<std::string, std::string>>;  // file name, bytes
 
+// For one thread at a time; it works on several of its own. Several sessions, each with its own project, may
+// be used by several threads at the same time.
 class Session {
  public:
   // device: core/compute/device.h make_device(). threads: 0 takes every core.
@@ -32,6 +33,9 @@ class Session {
   ~Session();
 
   const Device& device() const { return *device_; }
+  const Threads& threads() const { return *threads_; }
+  // What frames of the open project share, for measurements and tests; a new one with every open().
+  RenderCache& frames() { return *frames_; }
 
   // Without a project.
   static MachineInfo machine();
@@ -47,6 +51,7 @@ class Session {
   void close();  // lets go of the project and its lock
   ProjectInfo info() const;
   std::vector<LogEntry> log() const;
+  Scene scene() const;  // the object as it is: base and the edits that are on
   // Edits. Each adds a layer at the cursor of the history; when one fails, nothing has changed.
   EditSummary paint(const PaintCommand&, Progress&);
   EditSummary change_material(const MaterialCommand&, Progress&);
@@ -54,7 +59,7 @@ class Session {
   EditSummary deform(const DeformCommand&, Progress&);
   EditSummary remove(const RemoveCommand&, Progress&);
   EditSummary select_part(const PartCommand&, Progress&);
-  ChangeSummary show_change(const ChangeRequest&) const;  // of an edit that is on
+  ChangeSummary show_change(const ChangeRequest&);  // of an edit that is on
   // Edits that depend on what comes or goes are made anew. Errors: one of them can't be; nothing has changed
   // then.
   std::string undo(Progress&);  // id of the edit that is undone now
@@ -72,12 +77,13 @@ class Session {
  private:
   Project& project() const;  // error when none is open
   EditSummary add_edit(const char* op, Json params, EditInputs inputs, Progress&);
-  SceneLight light(const Scene&);  // lights of one surface share what depends on it only
+
+  ReconstructReport run_reconstruction(const ReconstructRequest&, Progress&);
 
   std::unique_ptr<Device> device_;
+  std::unique_ptr<Threads> threads_;
   std::unique_ptr<Project> project_;
-  std::shared_ptr<const Surface> lit_surface_;  // of the transports below
-  std::vector<std::shared_ptr<const Transport>> transports_;
+  std::unique_ptr<RenderCache> frames_;  // of the open project
 };
 
 }  // namespace cei3d

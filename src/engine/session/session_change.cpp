@@ -2,11 +2,13 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/capture/capture.h"
 #include "engine/edit/change_report.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/frame_files.h"
 #include "engine/session/session.h"
 
@@ -28,19 +30,22 @@ const View& view_to_show(const Project& project, const ChangeRequest& request) {
 
 }  // namespace
 
-ChangeSummary Session::show_change(const ChangeRequest& request) const {
-  const View& view = view_to_show(project(), request);
-  const Scene before = project().scene_below(project().stack(), request.id);
-  const Scene all = project().scene();
-  const auto layer = std::find_if(all.layers.begin(), all.layers.end(),
-                                  [&](const EditLayer& l) { return l.id == request.id; });
-  if (layer == all.layers.end())
-    fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", request.id);
-  const Camera camera = before.normalization.unit_from_input(view.camera);
-  const ChangeReport r = compare_views(*device_, before, with_layer(before, *layer), camera, request.samples);
-  if (!request.picture.empty())
-    write_png(request.picture, side_by_side({rounded_srgb(r.before.rgb), rounded_srgb(r.after.rgb)}));
-  return {view.name, r.pixels_inside, r.pixels_changed, r.changed_outside};
+ChangeSummary Session::show_change(const ChangeRequest& request) {
+  return threads_->run([&]() -> ChangeSummary {
+    const View& view = view_to_show(project(), request);
+    const Scene before = project().scene_below(project().stack(), request.id);
+    const Scene all = project().scene();
+    const auto layer = std::find_if(all.layers.begin(), all.layers.end(),
+                                    [&](const EditLayer& l) { return l.id == request.id; });
+    if (layer == all.layers.end())
+      fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", request.id);
+    const Camera camera = before.normalization.unit_from_input(view.camera);
+    const ChangeReport r =
+        compare_views(*device_, *frames_, before, with_layer(before, *layer), camera, request.samples);
+    if (!request.picture.empty())
+      write_png(request.picture, side_by_side({rounded_srgb(r.before.rgb), rounded_srgb(r.after.rgb)}));
+    return {view.name, r.pixels_inside, r.pixels_changed, r.changed_outside};
+  });
 }
 
 }  // namespace cei3d

@@ -4,9 +4,11 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/io/npy.h"
 #include "engine/project/project.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/edit_ops.h"
 #include "engine/session/edit_params.h"
 #include "engine/session/light_choice.h"
@@ -16,15 +18,22 @@
 namespace cei3d {
 namespace {
 
-EditSummary add_edit_to(Project& project, const Device& device, const char* name, Json params,
-                        EditInputs inputs, Progress& progress) {
+// What edits are made with.
+struct Tools {
+  const Device& device;
+  RenderCache& frames;
+  Progress& progress;
+};
+
+EditSummary add_edit_to(Project& project, const Tools& tools, const char* name, Json params,
+                        EditInputs inputs) {
   Stopwatch watch;
   const EditOp& op = edit_op(name);
   const Scene scene = project.scene();
   EditSummary s;
   s.load_seconds = watch.lap();
   const EditJob job{project.stack().next_id(name), std::move(params), std::move(inputs)};
-  EditOutcome made = op.make({device, project.capture(), scene, progress}, job);
+  EditOutcome made = op.make({tools.device, project.capture(), scene, tools.frames, tools.progress}, job);
   const double seconds = watch.lap();
   if (!made.report.contains("seconds")) made.report["seconds"] = {{name, seconds}};
   s.id = job.id;
@@ -37,14 +46,16 @@ EditSummary add_edit_to(Project& project, const Device& device, const char* name
 
 // Makes what a change of the history asks for, before it is made: so the history that stands is always
 // complete.
-void make_anew(Project& project, const Device& device, const Stack& next, Progress& progress) {
+void make_anew(Project& project, const Tools& tools, const Stack& next) {
   while (const auto id = project.first_stale(next)) {
     const EditRecord record = project.edit(*id);
+    const EditOp& op = edit_op(record.op);
     try {
+      const Json params = present_params(op, record);
       const Scene below = project.scene_below(next, *id);
-      const EditOutcome made = edit_op(record.op).make({device, project.capture(), below, progress},
-                                                       {*id, record.params, project.edit_inputs(*id)});
-      project.add_result(next, *id, made.layer);
+      const EditOutcome made = op.make({tools.device, project.capture(), below, tools.frames, tools.progress},
+                                       {*id, params, project.edit_inputs(*id)});
+      project.add_result(next, *id, made.layer, op.version);
     } catch (const Error& e) {
       if (e.code() == ErrorCode::interrupted) throw;
       fail("Edit {} would have to be made anew, and cannot be: {} Nothing was changed.", *id, e.what());
@@ -52,17 +63,24 @@ void make_anew(Project& project, const Device& device, const Stack& next, Progre
   }
 }
 
-bool toggle_edit(Project& project, const Device& device, const std::string& id, Progress& progress) {
+std::string version_note(const std::string& id, int version, const EditOp& op) {
+  return fmt::format("Edit {} was made by version {} of '{}' and is made anew by version {}: it may differ.",
+                     id, version, op.name, op.version);
+}
+
+bool toggle_edit(Project& project, const Tools& tools, const std::string& id) {
   Stack next = project.stack();
   next.toggle(id);
-  make_anew(project, device, next, progress);
+  make_anew(project, tools, next);
   return project.toggle(id);
 }
 
 }  // namespace
 
 EditSummary Session::add_edit(const char* op, Json params, EditInputs inputs, Progress& progress) {
-  return add_edit_to(project(), *device_, op, std::move(params), std::move(inputs), progress);
+  return threads_->run([&]() -> EditSummary {
+    return add_edit_to(project(), {*device_, *frames_, progress}, op, std::move(params), std::move(inputs));
+  });
 }
 
 EditSummary Session::paint(const PaintCommand& command, Progress& progress) {
@@ -100,61 +118,73 @@ EditSummary Session::change_material(const MaterialCommand& command, Progress& p
 }
 
 EditSummary Session::change_light(const LightChoice& choice, Progress& progress) {
-  if (choice.env.empty() && choice.rotate_degrees == 0 && choice.scale == 1)
-    fail_usage("Nothing to change: give --env, --rotate or --scale.");
-  check_turn(choice);
-  Json params = Json::object();
-  EditInputs inputs;
-  if (!choice.env.empty()) {
-    const SgMixture light =
-        environment_light(*device_, choice, project().base().up, {project().folder() / "cache", true});
-    params["env"] = choice.env.string();
-    inputs.emplace_back("light.npy", encode_npy(to_array(light), int64_t(light.lobes.size()), 7));
-  }
-  if (choice.rotate_degrees != 0) params["rotate_degrees"] = choice.rotate_degrees;
-  if (choice.scale != 1) params["scale"] = choice.scale;
-  return add_edit("light", std::move(params), std::move(inputs), progress);
+  return threads_->run([&]() -> EditSummary {
+    if (choice.env.empty() && choice.rotate_degrees == 0 && choice.scale == 1)
+      fail_usage("Nothing to change: give --env, --rotate or --scale.");
+    check_turn(choice);
+    Json params = Json::object();
+    EditInputs inputs;
+    if (!choice.env.empty()) {
+      const SgMixture light =
+          environment_light(*device_, choice, project().base().up, {project().folder() / "cache", true});
+      params["env"] = choice.env.string();
+      inputs.emplace_back("light.npy", encode_npy(to_array(light), int64_t(light.lobes.size()), 7));
+    }
+    if (choice.rotate_degrees != 0) params["rotate_degrees"] = choice.rotate_degrees;
+    if (choice.scale != 1) params["scale"] = choice.scale;
+    return add_edit("light", std::move(params), std::move(inputs), progress);
+  });
 }
 
 std::string Session::undo(Progress& progress) {
-  Stack next = project().stack();
-  next.undo();
-  make_anew(project(), *device_, next, progress);
-  return project().undo();
+  return threads_->run([&]() -> std::string {
+    Stack next = project().stack();
+    next.undo();
+    make_anew(project(), {*device_, *frames_, progress}, next);
+    return project().undo();
+  });
 }
 
 std::string Session::redo(Progress& progress) {
-  Stack next = project().stack();
-  next.redo();
-  make_anew(project(), *device_, next, progress);
-  return project().redo();
+  return threads_->run([&]() -> std::string {
+    Stack next = project().stack();
+    next.redo();
+    make_anew(project(), {*device_, *frames_, progress}, next);
+    return project().redo();
+  });
 }
 
 bool Session::toggle(const std::string& id, Progress& progress) {
-  return toggle_edit(project(), *device_, id, progress);
+  return threads_->run([&]() -> bool { return toggle_edit(project(), {*device_, *frames_, progress}, id); });
 }
 
 ReplayReport Session::replay(const std::filesystem::path& on, Progress& progress) {
-  std::error_code error;
-  if (std::filesystem::equivalent(project().folder(), on, error))
-    fail_usage("{} is the project itself; name another one with --on.", on.string());
-  Project other = Project::open(on, Project::Mode::write);
-  const Stack& stack = project().stack();
-  ReplayReport report;
-  for (size_t i = 0; i < stack.cursor(); ++i) {
-    const StackEntry& entry = stack.entries()[i];
-    const EditRecord record = project().edit(entry.id);
-    try {
-      const EditSummary s = add_edit_to(other, *device_, edit_op(record.op).name, record.params,
-                                        project().edit_inputs(entry.id), progress);
-      if (!entry.enabled) toggle_edit(other, *device_, s.id, progress);
-      report.edits.emplace_back(entry.id, s.id);
-    } catch (const Error& e) {
-      if (e.code() == ErrorCode::interrupted) throw;
-      fail("Edit {} cannot be made on {}: {} The {} before it were.", entry.id, on.string(), e.what(), i);
+  return threads_->run([&]() -> ReplayReport {
+    std::error_code error;
+    if (std::filesystem::equivalent(project().folder(), on, error))
+      fail_usage("{} is the project itself; name another one with --on.", on.string());
+    Project other = Project::open(on, Project::Mode::write);
+    const Tools tools{*device_, *frames_, progress};
+    const Stack& stack = project().stack();
+    ReplayReport report;
+    for (size_t i = 0; i < stack.cursor(); ++i) {
+      const StackEntry& entry = stack.entries()[i];
+      const EditRecord record = project().edit(entry.id);
+      try {
+        const EditOp& op = edit_op(record.op);
+        const EditSummary s =
+            add_edit_to(other, tools, op.name, present_params(op, record), project().edit_inputs(entry.id));
+        if (record.op_version < op.version)
+          report.notes.push_back(version_note(entry.id, record.op_version, op));
+        if (!entry.enabled) toggle_edit(other, tools, s.id);
+        report.edits.emplace_back(entry.id, s.id);
+      } catch (const Error& e) {
+        if (e.code() == ErrorCode::interrupted) throw;
+        fail("Edit {} cannot be made on {}: {} The {} before it were.", entry.id, on.string(), e.what(), i);
+      }
     }
-  }
-  return report;
+    return report;
+  });
 }
 
 }  // namespace cei3d

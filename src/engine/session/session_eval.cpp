@@ -3,13 +3,14 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/capture/capture_images.h"
 #include "engine/io/image_file.h"
 #include "engine/metrics/psnr.h"
 #include "engine/metrics/ssim.h"
 #include "engine/project/project.h"
-#include "engine/render/scene_light.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/cameras.h"
 #include "engine/session/edit_score.h"
 #include "engine/session/frame_files.h"
@@ -92,41 +93,40 @@ Image side_by_side(const EditPictures& p, bool edited) {
 }  // namespace
 
 EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
-  const Perceptual perceptual(request.networks);
-  const std::vector<View> views = views_to_score(project(), request);
-  Scene scene = project().scene(), base = project().base();
-  if (!request.residual) scene.residual = base.residual = nullptr;
-  const EditLayer* edit = layer_of(scene, request.edit);
-  const Scene without = edit ? scene_without(base, scene, request.edit) : scene;
-  const SceneLight lit = light(scene), lit_without = edit ? light(without) : lit;
-  const auto trace = [&](const Scene& s, const View& v) {
-    return trace_view(*device_, s, s.normalization.unit_from_input(v.camera), request.samples);
-  };
-  const auto picture_without = [&](const View& v, const GBuffer& buffer) {
-    const bool same_shape = without.surface == scene.surface;
-    return rounded_srgb(
-        shade_view(*device_, without, lit_without, same_shape ? buffer : trace(without, v)).rgb);
-  };
-  EvalReport report;
-  Sets sets;
-  EditScorer scorer(request.truth, request.masks, perceptual);
-  for (size_t i = 0; i < views.size(); ++i) {
-    if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Evaluation was interrupted.");
-    progress.report({"eval", double(i) / double(views.size()), -1, views[i].name});
-    const GBuffer buffer = trace(scene, views[i]);
-    EditPictures p;
-    p.after = rounded_srgb(shade_view(*device_, scene, lit, buffer).rgb);
-    p.before = edit ? picture_without(views[i], buffer) : p.after;
-    p.photo = rounded_srgb(load_linear_rgba(views[i]));
-    report.views.push_back(score_view(views[i], p.before, p.photo, perceptual, sets));
-    if (edit) scorer.add(views[i], p, edited_area(scene, *edit, buffer, p));
-    if (!request.pictures.empty()) write_png(picture_like(request.pictures, views[i]), side_by_side(p, edit));
-  }
-  summarise(report);
-  report.residual = bool(scene.residual);
-  report.fid = perceptual.frechet(sets.rendered, sets.photos);
-  if (edit) report.edit = scorer.result();
-  return report;
+  return threads_->run([&]() -> EvalReport {
+    const Perceptual perceptual(request.networks);
+    const std::vector<View> views = views_to_score(project(), request);
+    Scene scene = project().scene(), base = project().base();
+    if (!request.residual) scene.residual = base.residual = nullptr;
+    const EditLayer* edit = layer_of(scene, request.edit);
+    const Scene without = edit ? scene_without(base, scene, request.edit) : scene;
+    const SceneLight lit = frames_->light(scene), lit_without = edit ? frames_->light(without) : lit;
+    const auto trace = [&](const Scene& s, const View& v) {
+      return frames_->trace(s, s.normalization.unit_from_input(v.camera), request.samples);
+    };
+    EvalReport report;
+    Sets sets;
+    EditScorer scorer(request.truth, request.masks, perceptual);
+    for (size_t i = 0; i < views.size(); ++i) {
+      if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Evaluation was interrupted.");
+      progress.report({"eval", double(i) / double(views.size()), -1, views[i].name});
+      const auto view = trace(scene, views[i]);
+      EditPictures p;
+      p.after = rounded_srgb(frames_->shade(scene, lit, *view).rgb);
+      p.before =
+          edit ? rounded_srgb(frames_->shade(without, lit_without, *trace(without, views[i])).rgb) : p.after;
+      p.photo = rounded_srgb(load_linear_rgba(views[i]));
+      report.views.push_back(score_view(views[i], p.before, p.photo, perceptual, sets));
+      if (edit) scorer.add(views[i], p, edited_area(scene, *edit, view->buffer, p));
+      if (!request.pictures.empty())
+        write_png(picture_like(request.pictures, views[i]), side_by_side(p, edit));
+    }
+    summarise(report);
+    report.residual = bool(scene.residual);
+    report.fid = perceptual.frechet(sets.rendered, sets.photos);
+    if (edit) report.edit = scorer.result();
+    return report;
+  });
 }
 
 }  // namespace cei3d

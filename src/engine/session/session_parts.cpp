@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
@@ -80,39 +81,43 @@ EditSummary Session::select_part(const PartCommand& command, Progress& progress)
 }
 
 std::vector<PartInfo> Session::parts() const {
-  const Scene scene = project().scene();
-  const std::vector<Hit> hits = vertex_hits(scene.surface->mesh());
-  std::vector<PartInfo> list;
-  for (const std::string& name : part_names(scene)) {
-    const EditLayer& layer = part_layer(scene, name);
-    PartInfo info{name, layer.id, 0, 0};
-    for (const uint8_t i : inside_layer(scene, layer, hits)) info.points += i;
-    info.share = double(info.points) / double(std::max<size_t>(hits.size(), 1));
-    list.push_back(info);
-  }
-  return list;
+  return threads_->run([&]() -> std::vector<PartInfo> {
+    const Scene scene = project().scene();
+    const std::vector<Hit> hits = vertex_hits(scene.surface->mesh());
+    std::vector<PartInfo> list;
+    for (const std::string& name : part_names(scene)) {
+      const EditLayer& layer = part_layer(scene, name);
+      PartInfo info{name, layer.id, 0, 0};
+      for (const uint8_t i : inside_layer(scene, layer, hits)) info.points += i;
+      info.share = double(info.points) / double(std::max<size_t>(hits.size(), 1));
+      list.push_back(info);
+    }
+    return list;
+  });
 }
 
 PartMasksReport Session::part_masks(const PartMasksRequest& request, Progress& progress) const {
-  Stopwatch watch;
-  const Scene scene = project().scene();
-  const EditLayer& part = part_layer(scene, request.part);
-  const std::vector<NamedCamera> cameras = choose_cameras(project(), request.cameras, 0, 0);
-  PartMasksReport report;
-  for (const NamedCamera& c : cameras) {
-    if (progress.cancelled())
-      throw Error(ErrorCode::interrupted, "Writing masks was interrupted; those written so far are whole.");
-    progress.report({"masks", double(report.views) / double(cameras.size()), -1, c.name});
-    const GBuffer g =
-        trace_view(*device_, scene, scene.normalization.unit_from_input(c.camera), request.samples);
-    const Image mask = part_mask(scene, part, g);
-    write_png(request.out / (c.file + ".png"), mask);
-    ++report.views;
-    report.shown += std::any_of(mask.data.begin(), mask.data.end(), [](float m) { return m > 0; });
-  }
-  progress.report({"masks", 1, 0, ""});
-  report.seconds = watch.lap();
-  return report;
+  return threads_->run([&]() -> PartMasksReport {
+    Stopwatch watch;
+    const Scene scene = project().scene();
+    const EditLayer& part = part_layer(scene, request.part);
+    const std::vector<NamedCamera> cameras = choose_cameras(project(), request.cameras, 0, 0);
+    PartMasksReport report;
+    for (const NamedCamera& c : cameras) {
+      if (progress.cancelled())
+        throw Error(ErrorCode::interrupted, "Writing masks was interrupted; those written so far are whole.");
+      progress.report({"masks", double(report.views) / double(cameras.size()), -1, c.name});
+      const GBuffer g =
+          trace_view(*device_, scene, scene.normalization.unit_from_input(c.camera), request.samples);
+      const Image mask = part_mask(scene, part, g);
+      write_png(request.out / (c.file + ".png"), mask);
+      ++report.views;
+      report.shown += std::any_of(mask.data.begin(), mask.data.end(), [](float m) { return m > 0; });
+    }
+    progress.report({"masks", 1, 0, ""});
+    report.seconds = watch.lap();
+    return report;
+  });
 }
 
 }  // namespace cei3d

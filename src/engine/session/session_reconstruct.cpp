@@ -79,7 +79,7 @@ ReconstructReport report_of(const Project& project, const Scene& scene, double s
 
 }  // namespace
 
-ReconstructReport Session::reconstruct(const ReconstructRequest& request, Progress& progress) {
+ReconstructReport Session::run_reconstruction(const ReconstructRequest& request, Progress& progress) {
   const double start = steady_seconds();
   if (request.resume) {
     open(request.project, Access::write);

@@ -1,27 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <chrono>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/io/image_file.h"
 #include "engine/project/dataset.h"
 #include "engine/project/project.h"
-#include "engine/render/scene_light.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/cameras.h"
 #include "engine/session/frame_files.h"
 #include "engine/session/light_choice.h"
 #include "engine/session/session.h"
+#include "engine/session/stopwatch.h"
 #include "engine/session/version.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
-
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 // One scale for every view of a run: the farthest point that any of them can see becomes 65535.
 double depth_scale(const std::vector<NamedCamera>& cameras, const Normalization& n) {
@@ -72,35 +69,38 @@ void require_running(const Progress& progress) {
 }  // namespace
 
 RenderReport Session::render(const RenderRequest& request, Progress& progress) {
-  const double start = now();
-  const std::vector<NamedCamera> cameras =
-      choose_cameras(project(), request.cameras, request.width, request.height);
-  Scene scene = project().scene();
-  scene.light = chosen_light(*device_, request.light, scene.light, scene.up, {project().folder() / "cache"});
-  if (!request.residual || !request.light.is_own()) scene.residual = nullptr;
-  const double depth = depth_scale(cameras, scene.normalization);
-  const SceneLight light = this->light(scene);
-  RenderReport report;
-  for (size_t i = 0; i < cameras.size(); ++i) {
-    require_running(progress);
-    progress.report({"render", double(i) / double(cameras.size()), -1, cameras[i].name});
-    const double before = now();
-    const GBuffer buffer =
-        trace_view(*device_, scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
-    const double traced = now();
-    const Frame frame = shade_view(*device_, scene, light, buffer);
-    report.trace_seconds += traced - before;
-    report.shade_seconds += now() - traced;
-    for (const Channel c : request.channels)
-      write_png(picture_path(request.out, c, cameras[i]), channel_picture(frame, c, depth), channel_bits(c));
-  }
-  write_file_atomic(request.out / "render.json",
-                    run_json(project(), request, cameras, depth, bool(scene.residual)).dump(1) + "\n");
-  progress.report({"render", 1, 0, ""});
-  report.views = cameras.size();
-  for (const Channel c : request.channels) report.folders.push_back(request.out / channel_name(c));
-  report.seconds = now() - start;
-  return report;
+  return threads_->run([&]() -> RenderReport {
+    Stopwatch whole, watch;
+    const std::vector<NamedCamera> cameras =
+        choose_cameras(project(), request.cameras, request.width, request.height);
+    Scene scene = project().scene();
+    scene.light =
+        chosen_light(*device_, request.light, scene.light, scene.up, {project().folder() / "cache"});
+    if (!request.residual || !request.light.is_own()) scene.residual = nullptr;
+    const double depth = depth_scale(cameras, scene.normalization);
+    const SceneLight light = frames_->light(scene);
+    RenderReport report;
+    for (size_t i = 0; i < cameras.size(); ++i) {
+      require_running(progress);
+      progress.report({"render", double(i) / double(cameras.size()), -1, cameras[i].name});
+      watch.lap();
+      const auto view =
+          frames_->trace(scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
+      report.trace_seconds += watch.lap();
+      const Frame frame = frames_->shade(scene, light, *view);
+      report.shade_seconds += watch.lap();
+      for (const Channel c : request.channels)
+        write_png(picture_path(request.out, c, cameras[i]), channel_picture(frame, c, depth),
+                  channel_bits(c));
+    }
+    write_file_atomic(request.out / "render.json",
+                      run_json(project(), request, cameras, depth, bool(scene.residual)).dump(1) + "\n");
+    progress.report({"render", 1, 0, ""});
+    report.views = cameras.size();
+    for (const Channel c : request.channels) report.folders.push_back(request.out / channel_name(c));
+    report.seconds = whole.lap();
+    return report;
+  });
 }
 
 }  // namespace cei3d

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "engine/capture/capture.h"
 #include "engine/project/project.h"
 #include "engine/render/render.h"
@@ -34,14 +35,16 @@ Json list_of(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 }  // namespace
 
 EditSummary Session::deform(const DeformCommand& command, Progress& progress) {
-  const auto* points = std::get_if<PointDrag>(&command.drag);
-  const PointDrag drag =
-      points ? *points
-             : drag_of(*device_, project().scene(), project().capture(), std::get<PixelDrag>(command.drag));
-  Json params = {{"from", list_of(drag.from)}, {"to", list_of(drag.to)}};
-  if (command.radius) params["radius"] = *command.radius;
-  if (!command.part.empty()) params["part"] = command.part;
-  return add_edit("deform", std::move(params), {}, progress);
+  return threads_->run([&]() -> EditSummary {
+    const auto* points = std::get_if<PointDrag>(&command.drag);
+    const PointDrag drag =
+        points ? *points
+               : drag_of(*device_, project().scene(), project().capture(), std::get<PixelDrag>(command.drag));
+    Json params = {{"from", list_of(drag.from)}, {"to", list_of(drag.to)}};
+    if (command.radius) params["radius"] = *command.radius;
+    if (!command.part.empty()) params["part"] = command.part;
+    return add_edit("deform", std::move(params), {}, progress);
+  });
 }
 
 EditSummary Session::remove(const RemoveCommand& command, Progress& progress) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/scene/layer.h"
 
+#include "core/base/json_reader.h"
 #include "model/scene/stored.h"
 
 namespace cei3d {
@@ -8,16 +9,20 @@ namespace {
 
 Json vector_json(Vec3f v) { return Json::array({v.x, v.y, v.z}); }
 
-Vec3f vector_from(const Json& j) {
-  return {j.at(0).get<float>(), j.at(1).get<float>(), j.at(2).get<float>()};
+Vec3f vector_from(JsonReader& reader, const char* key) {
+  const auto [x, y, z] = reader.numbers<3>(key);
+  return {float(x), float(y), float(z)};
 }
 
 Json tint_json(const Tint& t) {
   return {{"color", vector_json(t.color)}, {"keep_texture", t.keep_texture}, {"mean", vector_json(t.mean)}};
 }
 
-Tint tint_from(const Json& j) {
-  return {vector_from(j.at("color")), j.at("keep_texture").get<bool>(), vector_from(j.at("mean"))};
+Tint tint_from(JsonReader reader) {
+  const Tint tint{vector_from(reader, "color"), reader.require<bool>("keep_texture"),
+                  vector_from(reader, "mean")};
+  reader.finish();
+  return tint;
 }
 
 Json change_json(const MaterialChange& c) {
@@ -28,11 +33,11 @@ Json change_json(const MaterialChange& c) {
   return j;
 }
 
-MaterialChange change_from(const Json& j) {
-  const auto value = [&](const char* name) {
-    return j.contains(name) ? std::optional(j.at(name).get<float>()) : std::nullopt;
-  };
-  return {value("roughness"), value("specular"), value("metalness")};
+MaterialChange change_from(JsonReader reader) {
+  const MaterialChange change{reader.optional<float>("roughness"), reader.optional<float>("specular"),
+                              reader.optional<float>("metalness")};
+  reader.finish();
+  return change;
 }
 
 // Regions name their tensors alike: each gets a prefix of its own.
@@ -93,21 +98,24 @@ void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
 
 EditLayer load_layer(const Tensors& tensors, const Json& head) {
   return checked_load("edit", [&] {
+    JsonReader reader(head, "The description of the edit");
     EditLayer layer;
-    layer.id = head.at("id").get<std::string>();
-    layer.everywhere = head.value("everywhere", false);
-    if (!layer.everywhere) layer.region = Region::load(tensors, head.at("region"));
-    if (head.contains("also")) layer.also = load_further(tensors, head.at("also"));
-    layer.pose = head.value("pose", kLatestPose);
-    layer.part = head.value("part", "");
+    layer.id = reader.require<std::string>("id");
+    layer.everywhere = reader.optional("everywhere", false);
+    if (!layer.everywhere) layer.region = Region::load(tensors, reader.member("region"));
+    if (reader.has("also")) layer.also = load_further(tensors, reader.array("also"));
+    layer.pose = reader.optional("pose", kLatestPose);
+    layer.part = reader.optional<std::string>("part", "");
+    reader.has("albedo");
     layer.albedo = load_field("albedo", tensors, head);
-    layer.unlit = head.value("unlit", false);
-    layer.erase = head.value("erase", false);
-    if (head.contains("tint")) layer.tint = tint_from(head.at("tint"));
-    if (head.contains("material")) layer.material = change_from(head.at("material"));
-    if (head.contains("light")) layer.light = load_light(tensors, head.at("light"));
-    if (head.contains("reshape"))
-      layer.reshape = std::make_shared<const Reshape>(load_reshape(tensors, head.at("reshape")));
+    layer.unlit = reader.optional("unlit", false);
+    layer.erase = reader.optional("erase", false);
+    if (reader.has("tint")) layer.tint = tint_from(reader.object("tint"));
+    if (reader.has("material")) layer.material = change_from(reader.object("material"));
+    if (reader.has("light")) layer.light = load_light(tensors, reader.member("light"));
+    if (reader.has("reshape"))
+      layer.reshape = std::make_shared<const Reshape>(load_reshape(tensors, reader.member("reshape")));
+    reader.finish();
     return layer;
   });
 }

@@ -22,6 +22,7 @@ inline constexpr int kLatestPose = -1;
 
 struct EditLayer {
   std::string id;            // "0001-paint"
+  std::string content;       // hash of what is stored of it: equal hashes, equal layers; empty: not stored
   bool everywhere = false;   // the whole object; else `region`
   Region region;             // contains nothing by default
   std::vector<Region> also;  // further regions of the same edit: those of scribbles in other views

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/scene/scene.h"
 
-#include "core/base/error.h"
+#include "core/base/json_reader.h"
 #include "model/geometry/shape/carry.h"
 #include "model/geometry/shape/vec_tensors.h"
 #include "model/scene/stored.h"
@@ -11,8 +11,9 @@ namespace {
 
 Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
-Vec3d vector_from(const Json& j) {
-  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+Vec3d vector_from(JsonReader& reader, const char* key) {
+  const auto [x, y, z] = reader.numbers<3>(key);
+  return {x, y, z};
 }
 
 void save_surface(const Surface& surface, Tensors& tensors, Json& head) {
@@ -128,19 +129,23 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
 
 Scene load_scene(const Tensors& tensors, const Json& head) {
   return checked_load("object", [&] {
+    JsonReader reader(head, "The description of the object");
     Scene scene;
-    scene.normalization.center = vector_from(head.at("center"));
-    scene.normalization.scale = head.at("scale").get<double>();
-    scene.up = vector_from(head.at("up"));
-    const Json& material = head.at("material");
-    scene.material = Material{material.at("roughness").get<float>(), material.at("specular").get<float>(),
-                              material.at("metalness").get<float>()};
+    scene.normalization.center = vector_from(reader, "center");
+    scene.normalization.scale = reader.require<double>("scale");
+    scene.up = vector_from(reader, "up");
+    JsonReader material = reader.object("material");
+    scene.material = Material{material.require<float>("roughness"), material.require<float>("specular"),
+                      material.require<float>("metalness")};
+    material.finish();
+    for (const char* field : {"sdf", "albedo", "residual_features"}) reader.has(field);
     scene.sdf = load_field("sdf", tensors, head);
     scene.albedo = load_field("albedo", tensors, head);
-    if (head.contains("surface")) scene.surface = load_surface(tensors, head.at("surface"));
-    scene.light = load_light(tensors, head.at("light"));
-    if (head.contains("residual")) scene.residual = load_residual(tensors, scene.sdf, head);
-    if (head.contains("handlers")) scene.handlers = load_handlers(tensors, head.at("handlers"));
+    if (reader.has("surface")) scene.surface = load_surface(tensors, reader.member("surface"));
+    scene.light = load_light(tensors, reader.member("light"));
+    if (reader.has("residual")) scene.residual = load_residual(tensors, scene.sdf, head);
+    if (reader.has("handlers")) scene.handlers = load_handlers(tensors, reader.member("handlers"));
+    reader.finish();
     return scene;
   });
 }

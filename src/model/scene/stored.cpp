@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "core/base/bytes.h"
 #include "model/geometry/shape/vec_tensors.h"
 
 namespace cei3d {

@@ -66,7 +66,7 @@ struct Drawn {
 Drawn draw(const Material& material, float brightness = 1) {
   Drawn d;
   d.surface = std::make_shared<const Surface>(bumpy_ball());
-  d.transport = std::make_shared<Transport>(*d.surface);
+  d.transport = std::make_shared<Transport>(d.surface);
   const Mesh& m = d.surface->mesh();
   for (const Vec3f& p : m.positions) d.base.push_back(paint(p) * brightness);
   std::vector<Vec3f> origins, directions;

@@ -56,9 +56,7 @@ TEST_F(Box, APitThatNoSilhouetteShowsIsOpened) {
 }
 
 TEST_F(Box, SameBitsOnOneThread) {
-  set_threads(1);
-  const std::vector<DepthMap> again = stereo_depths(pixels, hull, {});
-  set_threads(0);
+  const std::vector<DepthMap> again = Threads(1).run([&] { return stereo_depths(pixels, hull, {}); });
   for (size_t v = 0; v < maps.size(); ++v) EXPECT_EQ(again[v].depth, maps[v].depth);
 }
 

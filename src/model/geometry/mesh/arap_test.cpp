@@ -169,9 +169,7 @@ TEST(Arap, ABentBarKeepsItsEdges) {
 
 TEST(Arap, SameBitsWhateverTheThreads) {
   const Tent tent({0.3f, 0.1f, 0.4f});
-  set_threads(1);
-  const ArapResult one = tent.solve();
-  set_threads(0);
+  const ArapResult one = Threads(1).run([&] { return tent.solve(); });
   const ArapResult all = tent.solve();
   ASSERT_EQ(one.energies, all.energies);
   for (size_t v = 0; v < one.positions.size(); ++v)

@@ -33,38 +33,50 @@ std::vector<Vec3f> vectors_of(const Tensor& t) {
 
 }  // namespace
 
-Region::Region(Points points, Projector projector)
-    : points_(std::move(points)), projector_(std::move(projector)) {
-  for (const float r : points_.reach) max_reach_ = max(max_reach_, r);
-  if (max_reach_ > 0) index_ = PointIndex(points_.positions, max_reach_);
+Region::Region(Points points, Projector projector) {
+  auto data = std::make_shared<Data>();
+  for (const float r : points.reach) data->max_reach = max(data->max_reach, r);
+  if (data->max_reach > 0) data->index = PointIndex(points.positions, data->max_reach);
+  data->points = std::move(points);
+  data->projector = std::move(projector);
+  data_ = std::move(data);
 }
 
-Region::Region(ScoredPoints part) : scored_(std::move(part)) {}
+Region::Region(ScoredPoints part) {
+  auto data = std::make_shared<Data>();
+  data->scored = std::move(part);
+  data_ = std::move(data);
+}
 
 bool Region::contains(Vec3f position, Vec3f normal) const {
-  if (!scored_.empty()) return scored_.score(position, normal) >= 0.5f;
-  if (!projector_.empty() && !projector_.covers(position, normal)) return false;
-  if (!projector_.empty() && points_.positions.empty()) return true;
-  return index_.any_within(position, max_reach_, [&](size_t i) {
-    const Vec3f d = points_.positions[i] - position;
-    return dot(d, d) < square(points_.reach[i]) && dot(points_.normals[i], normal) > 0;
+  const Data& d = *data_;
+  if (!d.scored.empty()) return d.scored.score(position, normal) >= 0.5f;
+  if (!d.projector.empty() && !d.projector.covers(position, normal)) return false;
+  if (!d.projector.empty() && d.points.positions.empty()) return true;
+  return d.index.any_within(position, d.max_reach, [&](size_t i) {
+    const Vec3f gap = d.points.positions[i] - position;
+    return dot(gap, gap) < square(d.points.reach[i]) && dot(d.points.normals[i], normal) > 0;
   });
 }
 
 float Region::weight(Vec3f position, Vec3f normal) const {
   if (!contains(position, normal)) return 0;
-  if (!projector_.soft()) return 1;
-  const Vec3d p = projector_.camera.project(to_double(position));
-  return projector_.alpha_at(p.x, p.y);
+  const Projector& projector = data_->projector;
+  if (!projector.soft()) return 1;
+  const Vec3d p = projector.camera.project(to_double(position));
+  return projector.alpha_at(p.x, p.y);
 }
 
 void Region::save(Tensors& tensors, Json& head) const {
-  if (!scored_.empty()) return scored_.save(tensors, head["scored"]);
-  head["points"] = points_.positions.size();
-  tensors["region/positions"] = tensor_of(points_.positions);
-  tensors["region/normals"] = tensor_of(points_.normals);
-  tensors["region/reach"] = {{int64_t(points_.reach.size())}, points_.reach, {}};
-  if (!projector_.empty()) save_projector(projector_, tensors, head["projector"], "region/projector/");
+  const Points& points = data_->points;
+  const Projector& projector = data_->projector;
+  const ScoredPoints& scored = data_->scored;
+  if (!scored.empty()) return scored.save(tensors, head["scored"]);
+  head["points"] = points.positions.size();
+  tensors["region/positions"] = tensor_of(points.positions);
+  tensors["region/normals"] = tensor_of(points.normals);
+  tensors["region/reach"] = {{int64_t(points.reach.size())}, points.reach, {}};
+  if (!projector.empty()) save_projector(projector, tensors, head["projector"], "region/projector/");
 }
 
 Region Region::load(const Tensors& tensors, const Json& head) {

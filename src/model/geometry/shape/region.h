@@ -11,6 +11,7 @@
 // A part of the object is a third kind: scored points (model/geometry/shape/scored_points.h).
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "core/math/vec.h"
@@ -36,9 +37,9 @@ class Region {
   bool contains(Vec3f position, Vec3f normal) const;
   // How much of it: 1 inside, 0 outside, the mask's alpha where that is soft.
   float weight(Vec3f position, Vec3f normal) const;
-  const Points& points() const { return points_; }
-  const Projector& projector() const { return projector_; }
-  const ScoredPoints& scored() const { return scored_; }  // empty: not a part
+  const Points& points() const { return data_->points; }
+  const Projector& projector() const { return data_->projector; }
+  const ScoredPoints& scored() const { return data_->scored; }  // empty: not a part
 
   // Tensors "region/...", the rest in the head; and back. Errors: missing tensors or keys, sizes that
   // disagree.
@@ -46,11 +47,14 @@ class Region {
   static Region load(const Tensors& tensors, const Json& head);
 
  private:
-  Points points_;
-  Projector projector_;
-  ScoredPoints scored_;
-  PointIndex index_;
-  float max_reach_ = 0;
+  struct Data {
+    Points points;
+    Projector projector;
+    ScoredPoints scored;
+    PointIndex index;
+    float max_reach = 0;
+  };
+  std::shared_ptr<const Data> data_ = std::make_shared<const Data>();  // copies of a region share it
 };
 
 }  // namespace cei3d

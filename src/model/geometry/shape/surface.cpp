@@ -11,6 +11,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <type_traits>
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
@@ -57,29 +59,43 @@ RTCRay make_ray(Vec3f o, Vec3f d, float t_min) {
   return r;
 }
 
+// A handle of Embree's, released with its owner.
+struct Release {
+  void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
+  void operator()(RTCScene s) const { rtcReleaseScene(s); }
+  void operator()(RTCGeometry g) const { rtcReleaseGeometry(g); }
+};
+template <class Handle>
+using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
+
+std::shared_ptr<std::remove_pointer_t<RTCDevice>> new_device() {
+  const RTCDevice device = rtcNewDevice(nullptr);
+  if (!device) fail("the ray index (Embree) could not start on this processor");
+  return {device, Release()};
+}
+
 }  // namespace
 
 struct Surface::Bvh {
-  RTCDevice device = nullptr;
-  RTCScene scene = nullptr;
+  std::shared_ptr<std::remove_pointer_t<RTCDevice>> device;
+  Owned<RTCScene> owned_scene;
+  RTCScene scene;
 
-  explicit Bvh(const Mesh& mesh) {
-    device = rtcNewDevice(nullptr);
-    if (!device) fail("the ray index (Embree) could not start on this processor");
-    scene = rtcNewScene(device);
+  // before: of the shape before, whose device is used; null: a new one.
+  Bvh(const Mesh& mesh, const Bvh* before)
+      : device(before ? before->device : new_device()),
+        owned_scene(rtcNewScene(device.get())),
+        scene(owned_scene.get()) {
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     if (!mesh.triangles.empty()) add(mesh);
     rtcCommitScene(scene);
+    if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE)
+      fail("the ray index of a mesh of {} triangles could not be made", mesh.triangles.size());
   }
-  ~Bvh() {
-    rtcReleaseScene(scene);
-    rtcReleaseDevice(device);
-  }
-  Bvh(const Bvh&) = delete;
-  Bvh& operator=(const Bvh&) = delete;
 
   void add(const Mesh& mesh) {
-    RTCGeometry g = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    const Owned<RTCGeometry> owned(rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_TRIANGLE));
+    const RTCGeometry g = owned.get();
     // Embree reads 4 bytes past the last vertex of a shared buffer, so it gets its own copy.
     auto* p = static_cast<float*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                                           sizeof(Vec3f), mesh.positions.size()));
@@ -91,7 +107,6 @@ struct Surface::Bvh {
     for (const auto& tri : mesh.triangles) t = std::copy(tri.begin(), tri.end(), t);
     rtcCommitGeometry(g);
     rtcAttachGeometry(scene, g);
-    rtcReleaseGeometry(g);
   }
 
   bool blocked(Vec3f o, Vec3f d) const {
@@ -140,7 +155,7 @@ struct Surface::Bvh {
 Surface::Surface(Mesh mesh) : mesh_(std::move(mesh)) {
   check_mesh(mesh_);
   if (mesh_.normals.empty()) mesh_.normals = angle_weighted_normals(mesh_);
-  bvh_ = std::make_unique<Bvh>(mesh_);
+  bvh_ = std::make_unique<Bvh>(mesh_, nullptr);
   visibility_.resize(mesh_.positions.size() * kRowBytes);
   bvh_->cast_visibility(mesh_, {}, visibility_);
 }
@@ -152,7 +167,7 @@ Surface::Surface(Mesh mesh, std::vector<uint8_t> visibility)
   if (visibility_.size() != mesh_.positions.size() * kRowBytes)
     fail("visibility table of {} bytes does not fit a mesh of {} vertices", visibility_.size(),
          mesh_.positions.size());
-  bvh_ = std::make_unique<Bvh>(mesh_);
+  bvh_ = std::make_unique<Bvh>(mesh_, nullptr);
 }
 
 Surface::Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> looks)
@@ -160,7 +175,7 @@ Surface::Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> look
   check_mesh(mesh_);
   if (looks.size() != mesh_.positions.size() || mesh_.normals.empty())
     fail("surface: a change needs normals and {} marks, not {}", mesh_.positions.size(), looks.size());
-  bvh_ = std::make_unique<Bvh>(mesh_);
+  bvh_ = std::make_unique<Bvh>(mesh_, before.bvh_.get());
   visibility_.resize(mesh_.positions.size() * kRowBytes);
   bvh_->cast_visibility(mesh_, looks, visibility_);
 }

@@ -3,6 +3,7 @@
 
 #include <cstring>
 
+#include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "model/field/params.h"
 

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the program asks of the operating system, beside files (core/base/file.h): the one place to port.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace cei3d {
+
+std::string processor_name();          // "unknown" where it cannot be told
+double memory_gib();                   // of the machine; 0 where it cannot be told
+std::filesystem::path program_file();  // of the running program; empty where it cannot be told
+
+double thread_seconds();   // processor time of the calling thread
+double process_seconds();  // processor time of all threads
+
+std::string utc_text(const char* format);  // the time now, by a format of strftime
+
+std::filesystem::path make_temporary_folder();  // a new, empty one
+
+// A lock on a file, for one process at a time; it goes with the process, however that ends.
+class FileLock {
+ public:
+  // Makes the file where it is missing. None: another process has the lock. Error: it cannot be locked.
+  static std::optional<FileLock> take(const std::filesystem::path&);
+  ~FileLock();
+  FileLock(FileLock&&) noexcept;
+  FileLock& operator=(FileLock&&) noexcept;
+
+ private:
+  explicit FileLock(int descriptor) : descriptor_(descriptor) {}
+  int descriptor_;
+};
+
+}  // namespace cei3d

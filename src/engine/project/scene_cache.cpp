@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/project/scene_cache.h"
+
+#include <vector>
+
+#include "core/base/hash.h"
+
+namespace cei3d {
+namespace {
+
+// Of what the scene does not share with the one below it: a new surface with its index of rays, or a copy of
+// the list of layers.
+size_t own_bytes(const Scene& scene) {
+  constexpr size_t kLayer = size_t(64) << 10, kRayIndexPerTriangle = 96;
+  size_t bytes = scene.layers.size() * kLayer;
+  if (!scene.layers.empty() && scene.layers.back().reshape) {
+    const Surface& s = *scene.surface;
+    bytes += s.visibility().size() + s.mesh().positions.size() * (2 * sizeof(Vec3f) + sizeof(Mat3f)) +
+             s.mesh().triangles.size() * kRayIndexPerTriangle;
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Scene SceneCache::scene(const std::string& base_key, const Scene& base,
+                        std::span<const std::string> layer_keys,
+                        const std::function<EditLayer(size_t)>& layer) {
+  std::vector<std::string> keys;  // of the scenes above each layer
+  for (const std::string& k : layer_keys)
+    keys.push_back(content_hash((keys.empty() ? base_key : keys.back()) + k));
+  size_t done = keys.size();
+  Scene scene = base;
+  for (; done > 0; --done)
+    if (const auto kept = scenes_.find(keys[done - 1])) {
+      scene = *kept;
+      break;
+    }
+  for (; done < keys.size(); ++done) {
+    scene = with_layer(std::move(scene), layer(done));
+    scenes_.put(keys[done], std::make_shared<const Scene>(scene), own_bytes(scene));
+    ++layers_added_;
+  }
+  return scene;
+}
+
+}  // namespace cei3d

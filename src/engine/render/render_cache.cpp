@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/render/render_cache.h"
+
+#include <algorithm>
+
+namespace cei3d {
+namespace {
+
+std::vector<double> numbers_of(const Camera& c) {
+  std::vector<double> n{double(c.width), double(c.height), c.fx, c.fy, c.cx, c.cy, c.skew};
+  for (const Vec3d& row : c.world_from_cam.row) n.insert(n.end(), {row.x, row.y, row.z});
+  n.insert(n.end(), {c.center.x, c.center.y, c.center.z});
+  return n;
+}
+
+std::vector<float> numbers_of(const SgMixture& light, const Material& m) {
+  std::vector<float> n = to_array(light);
+  n.insert(n.end(), {m.roughness, m.specular, m.metalness});
+  return n;
+}
+
+size_t bytes_of(const GBuffer& g) {
+  return g.hits.size() * (sizeof(Hit) + sizeof(float) + sizeof(uint16_t)) +
+         g.samples.size() * (sizeof(uint8_t) + sizeof(uint32_t));
+}
+
+// Of HitMemory, when it is full: appearance, radiance and residual of each hit.
+size_t memory_bytes(const GBuffer& g) { return g.hits.size() * (4 * sizeof(Vec3f) + 6 * sizeof(float)); }
+
+// Four values at each vertex; the lighting has a copy.
+size_t bytes_of(const PoseLight& light) { return 8 * light.vertices.visibility.size() * sizeof(Vec3f); }
+
+std::shared_ptr<const Surface> surface_before(const Scene& scene, size_t pose) {
+  return pose == 0 ? nullptr : surface_of_pose(scene, pose - 1);
+}
+
+}  // namespace
+
+RenderCache::RenderCache(const Device& device, RenderCacheLimits limits)
+    : device_(device),
+      transports_(limits.transports),
+      lights_(limits.lights),
+      views_(limits.views),
+      seen_(limits.colors) {}
+
+std::shared_ptr<const Transport> RenderCache::transport(const Scene& scene, size_t pose) {
+  TransportKey key{surface_of_pose(scene, pose), surface_before(scene, pose)};
+  if (auto kept = transports_.find(key)) return kept;
+  const auto made = transport_of_pose(scene, pose);
+  return transports_.put(std::move(key), made, made->bytes());
+}
+
+std::shared_ptr<const PoseLight> RenderCache::pose_light(const Scene& scene, size_t pose,
+                                                         const PoseLight* before) {
+  LightKey key{surface_of_pose(scene, pose), surface_before(scene, pose), scene.albedo,
+               numbers_of(scene.light, scene.material.mean())};
+  if (auto kept = lights_.find(key)) return kept;
+  const auto made = light_on_pose(device_, scene, pose, *transport(scene, pose), before);
+  return lights_.put(std::move(key), made, bytes_of(*made));
+}
+
+SceneLight RenderCache::light(const Scene& scene) {
+  PoseLights lights;
+  for (size_t k = 0; k < std::max<size_t>(scene.poses.size(), 1); ++k)
+    lights.push_back(pose_light(scene, k, lights.empty() ? nullptr : lights.back().get()));
+  return SceneLight(device_, scene, std::move(lights), &seen_);
+}
+
+std::shared_ptr<TracedView> RenderCache::trace(const Scene& scene, const Camera& camera, int samples) {
+  ViewKey key{scene.surface, scene.sdf, numbers_of(camera), samples};
+  if (auto kept = views_.find(key)) return kept;
+  const auto view = std::make_shared<TracedView>(TracedView{trace_view(device_, scene, camera, samples), {}});
+  return views_.put(std::move(key), view, bytes_of(view->buffer) + memory_bytes(view->buffer));
+}
+
+Frame RenderCache::shade(const Scene& scene, const SceneLight& light, TracedView& view) {
+  Frame frame = shade_view(device_, scene, light, view.buffer, view.memory);
+  hits_kept_ += view.memory.lit->kept;
+  hits_lit_ += view.buffer.hits.size() - view.memory.lit->kept;
+  return frame;
+}
+
+}  // namespace cei3d
