@@ -32,7 +32,7 @@ Typed type(const std::vector<std::string>& args) {
 }
 
 const std::vector<std::string> kVerbs = {"check",  "reconstruct", "render", "edit", "log",  "undo",  "redo",
-                                         "toggle", "replay",      "export", "eval", "info", "doctor"};
+                                         "toggle", "replay",      "export", "eval", "info", "doctor", "synth"};
 
 TEST(Cli, HelpNamesEveryVerb) {
   const Typed t = type({"--help"});

@@ -39,6 +39,15 @@ HD T microfacet_brdf(Vec3<T> n, Vec3<T> v, Vec3<T> l, T f0, T roughness) {
   return select((dot(n, v) > T(0.0f)) & (dot(n, l) > T(0.0f)), f, T(0.0f));
 }
 
+// What a diffuse surface reflects from a light at cosine nl to a viewer at cosine nv, over what a Lambertian
+// one does; lh: cosine between the light and the half vector. [Burley 2012, sec. 5.3]
+template <class T>
+HD T burley_diffuse(T nl, T nv, T lh, T roughness) {
+  const T flat = T(2.0f) * roughness * lh * lh - T(0.5f), a = T(1.0f) - nl, b = T(1.0f) - nv;
+  const T a2 = a * a, b2 = b * b;
+  return (T(1.0f) + flat * a2 * a2 * a) * (T(1.0f) + flat * b2 * b2 * b);
+}
+
 // What a diffuse surface sends to a viewer at cosine nv, over what a Lambertian one does: a smooth one loses
 // light at flat angles, a rough one throws it back [Burley 2012, sec. 5.3]. Mean over light from everywhere;
 // its mean cosine to the viewer stands for all: 2/3 nv, and 1/4 nv of what comes in flat.

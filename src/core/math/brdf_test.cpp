@@ -31,6 +31,17 @@ TEST(Brdf, DensityOfFacetsIsNormalised) {
                 2e-3);
 }
 
+TEST(Brdf, TheDiffuseFactorOfAViewIsTheMeanOverLightFromEverywhere) {
+  for (const double roughness : {0.05, 0.3, 0.7, 1.0})
+    for (const double nv : {0.1, 0.3, 0.6, 1.0}) {
+      const double mean = over_hemisphere([&](Vec3d l) {
+        const Vec3d v = viewer(nv);
+        return burley_diffuse(l.z, nv, dot(l, normalize(l + v)), roughness) * l.z / M_PI;
+      });
+      EXPECT_NEAR(diffuse_view(nv, roughness), mean, 0.02) << roughness << ' ' << nv;
+    }
+}
+
 TEST(Brdf, LightAndViewerMayTradePlaces) {
   const Vec3d a = normalize(Vec3d{0.3, 0.5, 0.6}), b = normalize(Vec3d{-0.7, 0.2, 0.4});
   EXPECT_NEAR(microfacet_brdf(kUp, a, b, 0.04, 0.4), microfacet_brdf(kUp, b, a, 0.04, 0.4), 1e-14);
