@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <sstream>
-
 #include "apps/cli/command.h"
 #include "apps/cli/parse.h"
 #include "core/base/error.h"

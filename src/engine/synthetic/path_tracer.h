@@ -22,22 +22,22 @@ struct SyntheticScene {
   int bounces = 3;  // how often light may go from one place of the surface to another
 };
 
-struct SurfacePoint {
+struct BodyPoint {
   Vec3f position, normal;
   Material material;
   Vec3f base_color;  // linear
 };
-SurfacePoint surface_point(const SyntheticScene&, Vec3f position);
+BodyPoint body_point(const SyntheticScene&, Vec3f position);
 
 class PathTracer {
  public:
   explicit PathTracer(const SyntheticScene& scene) : scene_(scene), light_(scene.light) {}
 
   // One path's estimate of the linear radiance that the point sends to the viewer.
-  Vec3f radiance(SurfacePoint point, Vec3f to_viewer, SampleSequence& samples) const;
+  Vec3f radiance(BodyPoint point, Vec3f to_viewer, SampleSequence& samples) const;
 
  private:
-  Vec3f direct(const SurfacePoint&, const Scattering&, float pick, Vec2<float> u) const;
+  Vec3f direct(const BodyPoint&, const Scattering&, float pick, Vec2<float> u) const;
 
   const SyntheticScene& scene_;
   LightSampler light_;

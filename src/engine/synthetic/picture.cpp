@@ -14,7 +14,7 @@ struct PixelSum {
   Vec3f color{0, 0, 0}, base_color{0, 0, 0}, normal{0, 0, 0};
   float depth = 0, roughness = 0, metalness = 0;
 
-  void add(const SurfacePoint& p, Vec3f radiance, float z) {
+  void add(const BodyPoint& p, Vec3f radiance, float z) {
     ++hits;
     color += radiance;
     base_color += p.base_color;
@@ -68,7 +68,7 @@ class ViewPainter {
     const Ray ray = camera_.ray(x + double(inside.x), y + double(inside.y));
     const float t = scene_.shape.body->cast(ray);
     if (t < 0) return;
-    const SurfacePoint p = surface_point(scene_, ray.origin + ray.direction * t);
+    const BodyPoint p = body_point(scene_, ray.origin + ray.direction * t);
     sum.add(p, tracer_.radiance(p, -ray.direction, samples), t * dot(ray.direction, forward_));
   }
 

@@ -26,12 +26,12 @@ Lens lens_of_size(int width, int height) {
   return {width, height, 0.5 * std::min(width, height) / std::tan(0.5 * kFieldOfView)};
 }
 
-Camera look_at(Vec3d eye, Vec3d target, const Lens& lens) {
+Camera look_at(Vec3d eye, Vec3d target, const Lens& lens, Vec3d up) {
   Camera c;
   c.width = lens.width, c.height = lens.height;
   c.fx = c.fy = lens.focal;
   c.cx = 0.5 * lens.width, c.cy = 0.5 * lens.height;
-  const Vec3d z = normalize(target - eye), x = normalize(cross(z, Vec3d{0, 0, 1})), y = cross(z, x);
+  const Vec3d z = normalize(target - eye), x = normalize(cross(z, up)), y = cross(z, x);
   c.world_from_cam = transpose(Mat3d{{x, y, z}});
   c.center = eye;
   return c;

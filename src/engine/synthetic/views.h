@@ -19,8 +19,8 @@ struct Lens {
 // The shorter side covers 0.6 radians: the unit sphere seen from a distance of 3.5.
 Lens lens_of_size(int width, int height);
 
-// Upright, z up, looking from `eye` at `target`; the principal point is the middle of the picture.
-Camera look_at(Vec3d eye, Vec3d target, const Lens&);
+// Upright, looking from `eye` at `target`; the principal point is the middle of the picture.
+Camera look_at(Vec3d eye, Vec3d target, const Lens&, Vec3d up = {0, 0, 1});
 
 // n cameras at a distance of 3.5 that look at the origin, spread evenly over the sphere above z = -0.5.
 std::vector<Camera> spread_cameras(int n, const Lens&);
