@@ -59,6 +59,7 @@ void expect_exact_normals(const Body& body, Distance distance) {
     const float t = body.cast(ray);
     if (t < 0) continue;
     const Vec3f p = ray.origin + ray.direction * t;
+    if (dot(body.normal(p), ray.direction) > -0.1f) continue;  // grazing: as for the ball
     Vec3d slope;
     for (int k = 0; k < 3; ++k) {
       Vec3d up = to_double(p), down = up;
