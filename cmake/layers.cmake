@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # tools/layers.txt as CMake sees it: CEI3D_MODULES, bottom to top, and for a module <m> the lists CEI3D_DEPS_<m>,
-# CEI3D_PUBLIC_<m> and CEI3D_PRIVATE_<m> of its modules and third parties.
+# CEI3D_TEST_DEPS_<m>, CEI3D_PUBLIC_<m> and CEI3D_PRIVATE_<m> of its modules and third parties.
 set(layers_file ${CMAKE_SOURCE_DIR}/tools/layers.txt)
 set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${layers_file})
 
@@ -37,10 +37,12 @@ foreach(line ${layers_lines})
       endif()
       list(APPEND CEI3D_${scope}_${module} ${target})
     endforeach()
-  elseif(line MATCHES "^([^:]+): ?(.*)$")
+  elseif(line MATCHES "^([^:]+): ?([^|]*)[|]?(.*)$")
     set(module ${CMAKE_MATCH_1})
     string(REPLACE " " ";" patterns "${CMAKE_MATCH_2}")
+    string(REPLACE " " ";" test_patterns "${CMAKE_MATCH_3}")
     cei3d_matching(CEI3D_DEPS_${module} "${patterns}")
+    cei3d_matching(CEI3D_TEST_DEPS_${module} "${test_patterns}")
     list(APPEND CEI3D_MODULES ${module})
   endif()
 endforeach()

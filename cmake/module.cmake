@@ -47,7 +47,7 @@ endfunction()
 
 # Each case is a test of its own (`ctest -R Lighting.WhiteFurnace`); a suite with a SetUpTestSuite is one test, so that
 # what it makes is made once. The label is the module's target (`ctest -L core_math`).
-function(cei3d_tests target sources)
+function(cei3d_tests target sources modules)
   if(NOT CEI3D_TESTS OR NOT sources)
     return()
   endif()
@@ -55,6 +55,10 @@ function(cei3d_tests target sources)
   add_executable(${program} ${sources})
   add_dependencies(unit_tests ${program})
   target_link_libraries(${program} PRIVATE ${target} GTest::gtest GTest::gmock GTest::gtest_main)
+  foreach(module ${modules})
+    cei3d_target_name(${module} dep_target)
+    target_link_libraries(${program} PRIVATE ${dep_target})
+  endforeach()
   target_include_directories(${program} PRIVATE ${CMAKE_SOURCE_DIR})
   target_compile_options(${program} PRIVATE ${CEI3D_FLAGS})
   cei3d_shared_suites(suites "${sources}")
@@ -90,7 +94,7 @@ function(cei3d_module path)
     cei3d_target_name(${dep} dep_target)
     target_link_libraries(${target} ${scope} ${dep_target})
   endforeach()
-  cei3d_tests(${target} "${tests}")
+  cei3d_tests(${target} "${tests}" "${CEI3D_TEST_DEPS_${path}}")
 endfunction()
 
 # A program is the main.cpp of a module; all else of the folder is a library, so that its tests are like any module's.

@@ -19,7 +19,8 @@ def read_rules(path):
         if name.startswith('<'):
             third_parties[name] = rest.partition(': ')[2].split()
         else:
-            modules[name] = rest.split()
+            deps, _, test_deps = rest.partition('|')
+            modules[name] = deps.split(), test_deps.split()
     return modules, third_parties
 
 
@@ -28,6 +29,11 @@ def sources(root):
         for f in sorted(files):
             if f.endswith(('.h', '.cpp', '.cu')):
                 yield os.path.relpath(os.path.join(folder, f), root)
+
+
+def is_test(path):
+    name = os.path.basename(path)
+    return name.endswith('_test.cpp') or name.startswith('test_')
 
 
 def module_of(path):
@@ -40,12 +46,14 @@ def problems(root, modules, third_parties):
         if module not in modules:
             yield f'{path}: module {module} is not listed in tools/layers.txt'
             continue
+        deps, test_deps = modules[module]
+        allowed = deps + test_deps if is_test(path) else deps
         for number, line in enumerate(open(os.path.join(root, path)), 1):
             match = INCLUDE.match(line)
             if not match:
                 continue
             own, system = match.groups()
-            if own and module_of(own) != module and not any(fnmatch.fnmatch(module_of(own), m) for m in modules[module]):
+            if own and module_of(own) != module and not any(fnmatch.fnmatch(module_of(own), m) for m in allowed):
                 yield f'{path}:{number}: {module} may not include {module_of(own)} ({own})'
             for prefix, files in third_parties.items():
                 if system and system.startswith(prefix) and path not in files:

@@ -131,7 +131,7 @@ int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostrea
   app.require_subcommand(0, 1);
   Commands commands(app, common);
   for (const auto add : {add_check, add_reconstruct, add_render, add_edit, add_parts, add_history, add_export,
-                         add_eval, add_evaluate, add_info, add_bench})
+                         add_eval, add_evaluate, add_info, add_bench, add_synth})
     add(commands);
   app.footer(kFooter);
   wrap_help(app);

@@ -31,8 +31,9 @@ Typed type(const std::vector<std::string>& args) {
   return {code, out.str(), err.str()};
 }
 
-const std::vector<std::string> kVerbs = {"check",  "reconstruct", "render", "edit", "log",  "undo",  "redo",
-                                         "toggle", "replay",      "export", "eval", "info", "doctor"};
+const std::vector<std::string> kVerbs = {"check", "reconstruct", "render", "edit",   "log",
+                                         "undo",  "redo",        "toggle", "replay", "export",
+                                         "eval",  "info",        "doctor", "synth"};
 
 TEST(Cli, HelpNamesEveryVerb) {
   const Typed t = type({"--help"});
@@ -161,6 +162,31 @@ TEST(Cli, ReconstructRefusesAFolderThatHoldsSomethingElse) {
     EXPECT_THAT(t.err, HasSubstr("is not a project"));
   }
   EXPECT_EQ(read_file(temp.path() / "p/thesis.tex"), "irreplaceable");
+}
+
+TEST(Cli, SynthDrawsACaptureThatCheckFindsUsable) {
+  const TempFolder temp;
+  const std::string out = (temp.path() / "ball").string(), other = (temp.path() / "other").string();
+  const Typed made = type({"synth",      "-o",
+                           out,          "--json",
+                           "--quiet",    "--shape",
+                           "ball",       "--size",
+                           "64x48",      "--views",
+                           "20",         "--test-views",
+                           "2",          "--samples",
+                           "2",          "--light-tint",
+                           "1,0.7,0.45", "--light-turns",
+                           "--material", "clay",
+                           "--material", "lid=0.3,0.5,0,#c04020,#ffffff"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_EQ(Json::parse(made.out).at("views"), 20);
+  const Typed checked = type({"check", out, "--json"});
+  EXPECT_EQ(checked.code, 0) << checked.out;
+  EXPECT_EQ(type({"synth", "-o", out}).code, 2);  // holds something
+  for (const char* bad :
+       {"lid=0.3", "lid=1,2,#c04020", "lid=0.3,0.5,0,red", "snout=0.3,0.5,0,#c04020", "silk"})
+    EXPECT_EQ(type({"synth", "-o", other, "--material", bad}).code, 2) << bad;
+  EXPECT_FALSE(fs::exists(other));
 }
 
 TEST(Parse, Durations) {

@@ -61,5 +61,6 @@ void add_eval(Commands&);
 void add_evaluate(Commands&);
 void add_info(Commands&);  // info, doctor
 void add_bench(Commands&);
+void add_synth(Commands&);
 
 }  // namespace cei3d

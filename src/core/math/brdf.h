@@ -46,6 +46,15 @@ HD T microfacet_brdf(Vec3<T> n, Vec3<T> v, Vec3<T> l, T f0, T roughness) {
   return select((dot(n, v) > T(0.0f)) & (dot(n, l) > T(0.0f)), f, T(0.0f));
 }
 
+// Burley's diffuse term relative to a Lambertian one, for a light at cosine nl and a viewer at cosine nv; lh is the cosine
+// of light and half vector. [Burley 2012, sec. 5.3]
+template <class T>
+HD T burley_diffuse(T nl, T nv, T lh, T roughness) {
+  const T flat = T(2.0f) * roughness * lh * lh - T(0.5f), a = T(1.0f) - nl, b = T(1.0f) - nv;
+  const T a2 = a * a, b2 = b * b;
+  return (T(1.0f) + flat * a2 * a2 * a) * (T(1.0f) + flat * b2 * b2 * b);
+}
+
 // Reflected radiance of a diffuse surface towards a viewer at cosine nv, relative to a Lambertian one: a
 // smooth surface is darker at grazing angles, a rough one brighter. Burley's diffuse term averaged over
 // uniform light, with the mean cosine of half vector and viewer taken as 2/3 nv in the view factor and 1/4 nv

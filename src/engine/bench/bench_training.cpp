@@ -13,6 +13,8 @@
 #include "engine/reconstruct/presets.h"
 #include "engine/reconstruct/start/start.h"
 #include "engine/session/stopwatch.h"
+#include "engine/synthetic/picture.h"
+#include "engine/synthetic/views.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -48,34 +50,18 @@ Subject read_subject(const fs::path& path) {
   return s;
 }
 
-// A ball of many colours, seen from all around: for machines where no capture is at hand.
+// A ball of many colors, seen from all around: for machines where no capture is at hand.
 Subject made_up_subject() {
   constexpr int kViews = 24, kSize = 160;
-  constexpr double kRadius = 0.7, kDistance = 3.2;
+  const Shape ball = ball_shape(0.7f);
   Subject s;
   s.name = fmt::format("a made-up ball, {} views of {} x {}", kViews, kSize, kSize);
-  for (int i = 0; i < kViews; ++i) {
-    const double z = -0.7 + 1.6 * (i + 0.5) / kViews, phi = 2.4 * i, r = std::sqrt(1 - z * z);
-    const Vec3d away{r * std::cos(phi), r * std::sin(phi), z},
-        right = normalize(cross(-away, Vec3d{0, 0, 1}));
-    Camera c;
-    c.width = c.height = kSize;
-    c.fx = c.fy = 1.7 * kSize;
-    c.cx = c.cy = 0.5 * kSize;
-    c.world_from_cam = transpose(Mat3d{{right, cross(-away, right), -away}});
-    c.center = away * kDistance;
-    Image image(kSize, kSize, 4);
-    for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x) {
-        const Vec3d d = to_double(c.ray(x + 0.5, y + 0.5).direction);
-        const double b = dot(c.center, d), root = b * b - dot(c.center, c.center) + kRadius * kRadius;
-        if (root < 0) continue;
-        const Vec3d p = c.center + d * (-b - std::sqrt(root));
-        for (int k = 0; k < 3; ++k) image.at(x, y)[k] = float(0.4 + 0.3 * std::sin(9 * p[k] + k));
-        image.at(x, y)[3] = 1;
-      }
-    add_view(s, c, image);
-  }
+  for (const Camera& camera : spread_cameras(kViews, lens_of_size(kSize, kSize)))
+    add_view(s, camera, draw_unlit(*ball.body, camera, [](Vec3f p) {
+               Vec3f color;
+               for (int k = 0; k < 3; ++k) color[k] = 0.4f + 0.3f * std::sin(9 * p[k] + float(k));
+               return color;
+             }));
   s.footprint /= kViews;
   return s;
 }

@@ -37,7 +37,7 @@ TEST(Idr, ProjectionsComeApart) {
   std::normal_distribution<double> normal;
   const auto vec = [&] { return Vec3d{normal(random), normal(random), normal(random)}; };
   for (int i = 0; i < 200; ++i) {
-    Camera truth = look_at(vec() * 3.0, vec(), vec(), 80, 60, 100 + 20 * normal(random));
+    Camera truth = look_at(vec() * 3.0, vec(), {80, 60, 100 + 20 * normal(random)}, vec());
     truth.fy = truth.fx * (1 + 0.1 * normal(random));
     truth.cx += 9 * normal(random);
     truth.skew = 3 * normal(random);

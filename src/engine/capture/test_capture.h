@@ -10,6 +10,8 @@
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "engine/io/image_file.h"
+#include "engine/synthetic/picture.h"
+#include "engine/synthetic/views.h"
 #include "model/scene/view.h"
 
 namespace cei3d {
@@ -24,17 +26,6 @@ struct TestView {
   Camera camera;
 };
 
-inline Camera look_at(Vec3d eye, Vec3d target, Vec3d up, int width, int height, double focal) {
-  Camera c;
-  c.width = width, c.height = height;
-  c.fx = c.fy = focal;
-  c.cx = width / 2.0, c.cy = height / 2.0;
-  const Vec3d z = normalize(target - eye), x = normalize(cross(z, up)), y = cross(z, x);
-  c.world_from_cam = transpose(Mat3d{{x, y, z}});
-  c.center = eye;
-  return c;
-}
-
 // n cameras on a spiral around the ball, z up, each aimed a little beside its centre.
 inline std::vector<TestView> test_views(const TestBall& ball, int n, int width = 64, int height = 48) {
   std::vector<TestView> views;
@@ -44,36 +35,18 @@ inline std::vector<TestView> test_views(const TestBall& ball, int n, int width =
     const Vec3d aim = ball.center + Vec3d{std::cos(3.0 * i), std::sin(5.0 * i), 0.3} * (0.1 * ball.radius);
     std::string stem = std::to_string(1000 + i).replace(0, 1, "r_");
     views.push_back(
-        {stem, look_at(ball.center + out * (4.5 * ball.radius), aim, {0, 0, 1}, width, height, 1.4 * width)});
+        {stem, look_at(ball.center + out * (4.5 * ball.radius), aim, {width, height, 1.4 * width})});
   }
   return views;
 }
 
 // RGBA, sRGB values, straight alpha; the ball is shaded by its normal.
-inline Image ball_image(const TestBall& ball, const Camera& camera) {
-  Image image(camera.width, camera.height, 4);
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) {
-      const Ray ray = camera.ray(x + 0.5, y + 0.5);
-      const Vec3d d = to_double(ray.direction), m = camera.center - ball.center;
-      const double b = dot(m, d), disc = b * b - dot(m, m) + ball.radius * ball.radius;
-      if (disc < 0) continue;
-      const Vec3d n = (m + d * (-b - std::sqrt(disc))) / ball.radius;
-      float* p = image.at(x, y);
-      for (int c = 0; c < 3; ++c) p[c] = float(0.5 + 0.4 * n[c]);
-      p[3] = 1;
-    }
-  return image;
-}
-
-inline Json nerf_frame(const std::string& file_path, const Camera& c) {
-  Json rows = Json::array();
-  for (int r = 0; r < 3; ++r) {
-    const Vec3d m = c.world_from_cam.row[r];
-    rows.push_back({m.x, -m.y, -m.z, c.center[r]});
-  }
-  rows.push_back({0.0, 0.0, 0.0, 1.0});
-  return {{"file_path", file_path}, {"transform_matrix", rows}};
+inline Image ball_image(const TestBall& ball, Camera camera) {
+  constexpr float kRadius = 0.9f;  // in the frame of synthetic bodies
+  camera.center = (camera.center - ball.center) * (double(kRadius) / ball.radius);
+  return draw_unlit(*ball_shape(kRadius).body, camera, [](Vec3f p) {
+    return Vec3f{0.5f, 0.5f, 0.5f} + p * (0.4f / kRadius);
+  });
 }
 
 // transforms_<split>.json and <split>/r_000.png ...

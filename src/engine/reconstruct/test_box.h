@@ -5,56 +5,40 @@
 #include <cmath>
 
 #include "engine/reconstruct/pixels.h"
+#include "engine/synthetic/picture.h"
+#include "engine/synthetic/views.h"
 #include "model/geometry/shape/visual_hull.h"
 
 namespace cei3d {
 
-inline bool in_pit(Vec3f p) {
-  return std::abs(p.x) < 0.28f && std::abs(p.y) < 0.28f && p.z > 0.1f && p.z < 0.4f;
-}
 // More than a cell of 0.05 from its walls.
 inline bool amid_pit(Vec3f p) {
   return std::abs(p.x) < 0.22f && std::abs(p.y) < 0.22f && p.z > 0.16f && p.z < 0.4f;
 }
-inline bool in_solid(Vec3f p) {
-  return std::abs(p.x) < 0.45f && std::abs(p.y) < 0.45f && std::abs(p.z) < 0.4f && !in_pit(p);
+struct PitBoxDistance {
+  template <class T>
+  T operator()(Vec3<T> p) const {
+    const BoxDistance solid{{0.45f, 0.45f, 0.4f}, 0}, pit{{0.28f, 0.28f, 0.25f}, 0};
+    return max(solid(p), -pit(Vec3<T>{p.x, p.y, p.z - T(0.35f)}));
+  }
+};
+inline const Body& pit_box() {
+  static const SdfBody<PitBoxDistance> body{PitBoxDistance()};
+  return body;
 }
+inline bool in_solid(Vec3f p) { return pit_box().distance(p) < 0; }
 
-// Distance along the ray to the solid; 0: it misses.
-inline float distance_to_solid(const Ray& ray) {
-  for (float t = 1.5f; t < 4; t += 0.01f)
-    if (in_solid(ray.origin + ray.direction * t)) return t;
-  return 0;
-}
-
-// RGBA, linear. color_at: of a point on the surface.
+// RGBA, linear. color_at: of a point just below the surface.
 template <class ColorAt>
 Image box_picture(const Camera& camera, const ColorAt& color_at) {
-  Image image(camera.width, camera.height, 4);
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) {
-      const Ray ray = camera.ray(x + 0.5, y + 0.5);
-      const float t = distance_to_solid(ray);
-      if (t == 0) continue;
-      const Vec3f c = color_at(ray.origin + ray.direction * t);
-      float* out = image.at(x, y);
-      out[0] = c.x, out[1] = c.y, out[2] = c.z, out[3] = 1;
-    }
-  return image;
+  return draw_unlit(pit_box(), camera, [&](Vec3f p) { return color_at(p - pit_box().normal(p) * 2e-3f); });
 }
 
 // On a sphere of radius 2.5 around the origin, looking at it; `size` pixels an axis.
 inline Camera box_camera(double height, double turn, int size) {
   const double flat = std::sqrt(1 - height * height);
-  const Vec3d z{flat * std::cos(turn), flat * std::sin(turn), height};
-  Camera c;
-  c.width = c.height = size;
-  c.fx = c.fy = 70 / 48.0 * size;
-  c.cx = c.cy = 0.5 * size;
-  c.center = z * 2.5;
-  const Vec3d right = normalize(cross(Vec3d{0, 0, 1}, z)), down = cross(right, z);
-  for (int k = 0; k < 3; ++k) c.world_from_cam.row[k] = {right[k], down[k], -z[k]};
-  return c;
+  return look_at(Vec3d{flat * std::cos(turn), flat * std::sin(turn), height} * 2.5, {0, 0, 0},
+                 {size, size, 70 / 48.0 * size});
 }
 
 inline VisualHull hull_of(const PixelStore& pixels, int cells) {

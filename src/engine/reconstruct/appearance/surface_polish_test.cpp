@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A metal ball, drawn exactly: whether normals come nearer to its own when they learn from what it mirrors.
+// A metal ball, drawn by path tracing: whether normals come nearer to its own when they learn from what it
+// mirrors.
 #include "engine/reconstruct/appearance/surface_polish.h"
 
 #include <gtest/gtest.h>
@@ -8,9 +9,9 @@
 
 #include "core/math/color.h"
 #include "engine/reconstruct/start/start.h"
-#include "engine/render/lighting.h"
 #include "engine/render/render.h"
 #include "engine/render/sphere_scene.h"
+#include "engine/synthetic/picture.h"
 #include "model/geometry/mesh/surface_nets.h"
 
 namespace cei3d {
@@ -41,41 +42,15 @@ Camera camera_of(int view) {
   return camera_towards_origin({3 * r * std::cos(a), 3 * r * std::sin(a), 3 * z}, kSize);
 }
 
-bool meets_ball(const Ray& ray, Hit& hit) {
-  const float b = dot(ray.origin, ray.direction),
-              d = b * b - dot(ray.origin, ray.origin) + kSphereRadius * kSphereRadius;
-  if (d <= 0) return false;
-  hit.position = ray.origin + ray.direction * (-b - std::sqrt(d));
-  hit.normal = normalize(hit.position);
-  hit.to_camera = -ray.direction;
-  hit.triangle = 0;
-  hit.b1 = hit.b2 = 0;
-  return true;
-}
-
-PixelStore pictures(const Device& device) {
-  const Scene ball = sphere_scene();
-  const std::vector<Vec3f> grey(ball.surface->mesh().positions.size(), Vec3f{0.5f, 0.5f, 0.5f});
-  const Lighting lighting(device, ball.surface, room(), grey, kMetal);
+PixelStore pictures() {
+  SyntheticScene ball;
+  ball.shape = ball_shape(kSphereRadius);
+  ball.finishes.assign(ball.shape.regions.size(), {kMetal, {0.5f, 0.5f, 0.5f}});
+  ball.light = room();
   PixelStore store;
   for (int view = 0; view < kViews; ++view) {
     const Camera camera = camera_of(view);
-    Image image(kSize, kSize, 4);
-    for (int y = 0; y < kSize; ++y)
-      for (int x = 0; x < kSize; ++x) {
-        std::vector<Hit> hits;
-        for (int k = 0; k < 16; ++k) {
-          Hit hit;
-          if (meets_ball(camera.ray(x + (k % 4 + 0.5) / 4, y + (k / 4 + 0.5) / 4), hit)) hits.push_back(hit);
-        }
-        if (hits.empty()) continue;
-        Vec3f sum{0, 0, 0};
-        const std::vector<Vec3f> albedo(hits.size(), grey[0]);
-        for (const Vec3f& s : lighting.shade(UniformBatch(hits, kMetal), albedo).specular) sum += s;
-        for (int c = 0; c < 3; ++c) image.at(x, y)[c] = sum[c] / float(hits.size());
-        image.at(x, y)[3] = float(hits.size()) / 16;
-      }
-    store.add_view(camera, image, 3);
+    store.add_view(camera, draw(ball, camera, {.samples = 64, .view = uint64_t(view)}).color, 3);
   }
   return store;
 }
@@ -125,7 +100,7 @@ double normal_error(const Device& device, const Field& sdf, const PixelStore& pi
 
 TEST(SurfacePolish, BringsNormalsNearerToTheTruthThanTheSameStepsWithoutIt) {
   const Device device = make_device("cpu");
-  const PixelStore pixels = pictures(device);
+  const PixelStore pixels = pictures();
   GeometryStage stage(device, pixels, small_geometry(), 1);
   stage.prefit(start_shape(pixels, Start::hull, 1));
   for (int step = 0; step < 150; ++step) stage.step(step, 0.66 * step / 150);

@@ -38,7 +38,7 @@ TEST_F(Box, DepthsAreThoseOfTheSurface) {
     for (int y = 0; y < map.camera.height; ++y)
       for (int x = 0; x < map.camera.width; ++x) {
         const Ray ray = map.camera.ray(x + 0.5, y + 0.5);
-        const float distance = distance_to_solid(ray), depth = map.depth[size_t(y) * map.camera.width + x];
+        const float distance = pit_box().cast(ray), depth = map.depth[size_t(y) * map.camera.width + x];
         on_object += distance > 0;
         known += depth > 0;
         right += distance > 0 && depth > 0 &&

@@ -18,13 +18,13 @@ namespace {
 // elsewhere. Made a layer at a time: the whole of a fine grid would be the largest thing in memory.
 class Corners {
  public:
-  Corners(const Device& device, const Field& sdf, int resolution)
-      : device_(device), sdf_(sdf), n_(resolution + 1), coarse_n_(resolution / kFactor + 1) {
+  Corners(const DistancesAt& distances, int resolution)
+      : distances_(distances), n_(resolution + 1), coarse_n_(resolution / kFactor + 1) {
     std::vector<Vec3f> points;
     for (int z = 0; z < coarse_n_; ++z)
       for (int y = 0; y < coarse_n_; ++y)
         for (int x = 0; x < coarse_n_; ++x) points.push_back(position(x, y, z, coarse_n_));
-    coarse_ = first_output(device, sdf, points);
+    coarse_ = distances_(points);
   }
   int cells() const { return n_ - 1; }
   Vec3f position(int x, int y, int z) const { return position(x, y, z, n_); }
@@ -43,7 +43,7 @@ class Corners {
         wanted.push_back(i);
         points.push_back(position(x, y, z));
       }
-    const std::vector<float> exact = first_output(device_, sdf_, points);
+    const std::vector<float> exact = distances_(points);
     for (size_t k = 0; k < wanted.size(); ++k) values[wanted[k]] = exact[k];
     // Outside the unit sphere there is nothing, whatever the untrained field says.
     for (int y = 0; y < n_; ++y)
@@ -66,8 +66,7 @@ class Corners {
     return coarse_[(near(z) * coarse_n_ + near(y)) * coarse_n_ + near(x)];
   }
 
-  const Device& device_;
-  const Field& sdf_;
+  const DistancesAt& distances_;
   int n_, coarse_n_;  // corners along an axis
   std::vector<float> coarse_;
 };
@@ -187,9 +186,14 @@ void drop_small_parts(Mesh& mesh, float smallest_share) {
 
 }  // namespace
 
+Mesh surface_net(const DistancesAt& distances, int resolution, const Progress& progress) {
+  return net_of(Corners(distances, resolution), progress);
+}
+
 Mesh extract_mesh(const Device& device, const Field& sdf, const MeshingOptions& options,
                   const Progress& progress) {
-  Mesh mesh = net_of(Corners(device, sdf, options.resolution), progress);
+  Mesh mesh = surface_net([&](std::span<const Vec3f> points) { return first_output(device, sdf, points); },
+                          options.resolution, progress);
   if (mesh.triangles.empty())
     fail("the reconstructed field has no surface: the object was lost during training");
   drop_small_parts(mesh, options.smallest_part);

@@ -3,11 +3,23 @@
 // through, moved onto the surface. Rounder triangles than marching cubes and no case table. [Gibson 1998]
 #pragma once
 
+#include <functional>
+#include <span>
+#include <vector>
+
 #include "core/base/progress.h"
 #include "model/field/field.h"
 #include "model/geometry/mesh/mesh.h"
 
 namespace cei3d {
+
+// Signed distances of points, negative inside.
+using DistancesAt = std::function<std::vector<float>(std::span<const Vec3f>)>;
+
+// The mesh alone, without normals: vertices are as near to the surface as straight lines between the corners
+// of a cell take them. What lies outside the unit sphere is cut off. resolution: cells along [-1, 1]; a
+// multiple of 4.
+Mesh surface_net(const DistancesAt& distances, int resolution, const Progress& progress = Progress());
 
 struct MeshingOptions {
   int resolution = 192;          // cells along [-1, 1]; a multiple of 4

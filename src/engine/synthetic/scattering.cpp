@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/synthetic/scattering.h"
+
+#include <cmath>
+
+#include "core/math/brdf.h"
+#include "core/math/color.h"
+
+namespace cei3d {
+
+Scattering::Scattering(Vec3f normal, Vec3f to_viewer, const Material& m, Vec3f base_color, Diffuse model)
+    : normal_(normal),
+      view_(to_viewer),
+      tangents_(tangents_of(normal)),
+      nv_(max(dot(normal, to_viewer), 1e-4f)),
+      roughness_(m.roughness),
+      alpha_(m.roughness * m.roughness),
+      model_(model) {
+  const float dielectric = (1 - m.metalness) * kDielectricF0 * m.specular;
+  f0_ = base_color * m.metalness + Vec3f{dielectric, dielectric, dielectric};
+  diffuse_ = base_color * (1 - m.metalness);
+  const float mirror = schlick(luminance(f0_), nv_), base = luminance(diffuse_);
+  mirror_share_ = base > 0 ? clamp(mirror / (mirror + base), 0.2f, 0.8f) : 1.0f;
+}
+
+Vec3f Scattering::reflected(Vec3f l) const {
+  const float nl = dot(normal_, l);
+  if (nl <= 0) return {0, 0, 0};
+  // Schlick's term, and with it the whole, is linear in F0.
+  const float at_0 = microfacet_brdf(normal_, view_, l, 0.0f, roughness_),
+              at_1 = microfacet_brdf(normal_, view_, l, 1.0f, roughness_);
+  float base = 1;
+  if (model_ == Diffuse::burley)
+    base = burley_diffuse(min(nl, 1.0f), min(nv_, 1.0f), dot(l, normalize(l + view_)), roughness_);
+  const Vec3f mirror = Vec3f{at_0, at_0, at_0} + f0_ * (at_1 - at_0);
+  return (mirror + diffuse_ * (base / kPi)) * nl;
+}
+
+float Scattering::density(Vec3f l) const {
+  const Vec3f h = normalize(view_ + l);
+  const float nh = max(dot(normal_, h), 0.0f), vh = max(dot(view_, h), 1e-4f);
+  const float mirror = ggx_density(nh, alpha_) * nh / (4 * vh);
+  const float base = max(dot(normal_, l), 0.0f) / kPi;
+  return mirror_share_ * mirror + (1 - mirror_share_) * base;
+}
+
+Vec3f Scattering::sample(float pick, Vec2<float> u) const {
+  const bool mirror = pick < mirror_share_;
+  // Squared cosine to the normal: of a facet in proportion to its projected area, or of a diffuse direction.
+  const float c2 = mirror ? (1 - u.x) / (1 + (alpha_ * alpha_ - 1) * u.x) : 1 - u.x;
+  const float c = std::sqrt(c2), s = std::sqrt(max(1 - c2, 0.0f)), turn = 2 * kPi * u.y;
+  const Vec3f d =
+      normalize(tangents_.x * (s * std::cos(turn)) + tangents_.y * (s * std::sin(turn)) + normal_ * c);
+  return mirror ? normalize(d * (2 * dot(view_, d)) - view_) : d;
+}
+
+}  // namespace cei3d
