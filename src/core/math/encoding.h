@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Encodings of a point in [-1, 1]^3: one level of a multi-resolution hash grid (trilinear) and the frequency
-// encoding. [Mueller et al. 2022, sec. 3; paper sec. 3.1; reference-facts 2.1]
+// encoding. [Mueller et al. 2022, sec. 3]
 #pragma once
 
 #include "core/math/vec.h"

@@ -20,7 +20,7 @@ HD LossValue<T> huber(T e, T width) {
           select(small, e / width, select(e > T(0.0f), T(1.0f), T(-1.0f)))};
 }
 
-// (|g| - 1)^2 and its gradient by g. [Gropp et al. 2020; paper eq. 6]
+// (|g| - 1)^2 and its gradient by g. [Gropp et al. 2020; paper eq. 16]
 template <class T>
 HD T eikonal(Vec3<T> g, Vec3<T>& d_g) {
   const T n = sqrt(dot(g, g) + T(1e-12f));

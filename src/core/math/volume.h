@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Volume rendering of a signed distance field, so that a surface can be found by descent. [Wang et al. 2021
-// (NeuS), eq. 13 and its discrete form; reference-facts: preliminaries]
+// Volume rendering of a signed distance field, so that a surface can be found by descent. [Wang et al. 2021,
+// eq. 13; paper sec. 3]
 #pragma once
 
 #include "core/math/activation.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `edit deform`: a point of the surface is dragged, and the surface around it, or the part it is on, follows
-// as rigidly as it can. [paper sec. 3.3]
+// as rigidly as it can. [paper sec. 4.3]
 #pragma once
 
 #include <optional>

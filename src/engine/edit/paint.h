@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `edit paint`: a scribble on one view becomes a layer with a region and an albedo branch of its own.
-// [paper sec. 3.3; architecture 1.2]
+// [paper sec. 4.3, eq. 17]
 #pragma once
 
 #include <string>

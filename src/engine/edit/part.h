@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `edit part`: what clicks or a mask in one view mean becomes a part of the object, seen from everywhere; its
-// colour and material may change in the same edit. [paper sec. 3.4, CPS]
+// colour and material may change in the same edit. [paper sec. 4.3, CPS]
 #pragma once
 
 #include <functional>

@@ -25,7 +25,7 @@ ColorSamples batch_of(const ColorSamples& painted, const ColorSamples& beside, u
   return b;
 }
 
-// d/d(out) of the mean absolute difference. [paper eq. 12]
+// d/d(out) of the mean absolute difference. [paper eq. 17]
 FieldTrainer::Loss absolute_difference(const std::vector<Vec3f>& target) {
   return [&target](int begin, int end, const float* out, float* d_out) {
     for (int i = begin; i < end; ++i)

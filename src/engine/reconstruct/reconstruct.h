@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photos to an editable object: the geometry stage, then the appearance stage. [architecture 1.2]
+// Photos to an editable object: the geometry stage, then the appearance stage. See docs/method.md.
 #pragma once
 
 #include <optional>

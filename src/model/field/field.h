@@ -20,7 +20,7 @@ namespace cei3d {
 
 struct EncodingConfig {
   int frequencies =
-      0;           // L of the frequency encoding, sin and cos of 2^k x, k < L [reference-facts 2.1]; 0: none
+      0;           // L of the frequency encoding, sin and cos of 2^k x, k < L; 0: none
   int levels = 0;  // of the hash grid; 0: none
   int base_resolution = 16;     // cells along [-1, 1] at level 0
   int finest_resolution = 256;  // ... and at the last level; geometric in between

@@ -10,7 +10,7 @@ namespace cei3d {
 // Which way row 0 of the picture looks.
 enum class EnvUp {
   z,  // row 0 = +Z; centre = +X, column W/4 = +Y, 3W/4 = -Y, borders = -X
-  y,  // row 0 = +Y; left border -Z, column W/4 = +X, centre = +Z, 3W/4 = -X (Mitsuba) [reference-facts 7]
+  y,  // row 0 = +Y; left border -Z, column W/4 = +X, centre = +Z, 3W/4 = -X (Mitsuba)
 };
 
 // Unit direction towards the light at the continuous pixel position (u, v) of a width x height picture; pixel

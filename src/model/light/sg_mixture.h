@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distant light as a sum of spherical Gaussians. [paper eq. 3; reference-facts 3.2]
+// Distant light as a sum of spherical Gaussians. [paper eq. 12]
 #pragma once
 
 #include <span>

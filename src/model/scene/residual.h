@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What light and material cannot explain: a small network over features of the point, the normal and the
 // view, whose output is added to what the physical model sends out. It belongs to the object as it was
-// photographed: an edit's region, another light and the base colour never see it. [architecture 1.2]
+// photographed: an edit's region, another light and the base colour never see it. See docs/method.md#correction-network.
 #pragma once
 
 #include <memory>

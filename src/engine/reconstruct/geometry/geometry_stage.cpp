@@ -114,7 +114,7 @@ GeometryStage::Schedule GeometryStage::schedule_at(double u) const {
   s.step = std::clamp(options_.step_width / s.sharpness, options_.step_min, options_.step_max);
   s.band = std::max(4 / s.sharpness, 1.5f * s.step);
   // Before, the surface moves and bends between two looks at the grid: as little slack from the start costs
-  // lego400 half a decibel (decisions/0013).
+  // lego400 half a decibel (docs/notebook/0013).
   s.slack = rests_at(u) ? 0.25f : 1;
   s.levels = levels_at(u);
   s.views = u >= matte_until_;
@@ -323,7 +323,7 @@ void GeometryStage::backward(const Schedule& s, const RayBatch& batch, Work& w, 
       stats.squared_error += e * e / 3;
     }
     // Watched, but no loss: it would never rest, since coverage is always a little below one
-    // (decisions/0004).
+    // (docs/decisions/0020).
     stats.mask += std::abs(w.coverage[r] - batch.targets[r].alpha);
     const float push = batch.empty[r] ? options_.empty_weight * s.sharpness * per_ray : 0;
     float behind = 0;  // sum of weight x d_weight over the samples behind

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The geometry stage (EIR): volume rendering of the signed distance field with a small radiance network,
-// until the surface stands. [architecture 1.2; prototype-findings "Geometry stage that worked"; paper
-// sec. 3.1]
+// until the surface stands. [paper sec. 3 and 4.1; docs/method.md#geometry-stage]
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Handler points: the explicit half of the representation. Sampled at the ray hits of the training views,
-// thinned to a known spacing. [paper sec. 3.1; reference-facts 4.2]
+// thinned to a known spacing. [paper sec. 4.1]
 #pragma once
 
 #include <span>

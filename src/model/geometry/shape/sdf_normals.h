@@ -11,7 +11,7 @@
 namespace cei3d {
 
 // Steps of the central differences that normals are taken from, unit-sphere units. Wide ones even out a
-// trilinear grid, whose own gradient jumps at every cell face (prototype-findings, trap 6); narrow ones do
+// trilinear grid, whose own gradient jumps at every cell face (docs/method.md#surface); narrow ones do
 // not round off edges. Equal without a grid.
 struct NormalSteps {
   float wide, narrow;
