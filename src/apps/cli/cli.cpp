@@ -29,7 +29,7 @@ constexpr const char* kFooter =
     "pictures, or PhySG\n"
     "cam_dict_norm.json with image/ and mask/. CAPTURE:test means one split of it. A PROJECT is a folder "
     "this program writes.\n"
-    "Pixels are (column,row) from the top-left corner, centres at +0.5. Positions and lengths are in the "
+    "Pixels are (column,row) from the top-left corner, centers at +0.5. Positions and lengths are in the "
     "capture's own frame.\n"
     "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (state saved).";
 

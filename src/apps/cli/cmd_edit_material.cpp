@@ -21,8 +21,8 @@ void add_effects(CLI::App* verb, MaterialEffects& e) {
   add_material_values(verb, e);
   CLI::Option* color = verb->add_option(
       "--color", e.color,
-      "'#RRGGBB', sRGB: the base colour on average; the texture that is there is scaled to it");
-  verb->add_flag("--replace", e.replace, "The colour replaces the texture")->needs(color);
+      "'#RRGGBB', sRGB: the base color on average; the texture that is there is scaled to it");
+  verb->add_flag("--replace", e.replace, "The color replaces the texture")->needs(color);
 }
 
 void add_edit_material(Commands& commands, CLI::App* edit, ProjectName project) {

@@ -24,7 +24,7 @@ PaintCommand command_of(const Options& o) {
 
 std::string text_of(const EditSummary& s) {
   const auto count = [&](const char* key) { return s.report.at(key).get<size_t>(); };
-  std::string text = fmt::format("{}: {} painted pixels on {} handler points; {}; colour error {:.4f} mean.",
+  std::string text = fmt::format("{}: {} painted pixels on {} handler points; {}; color error {:.4f} mean.",
                                  s.id, count("painted_pixels"), count("points"), stages_text(s),
                                  s.report.at("mean_error").get<double>());
   if (count("missed_pixels") > 0)
@@ -33,7 +33,7 @@ std::string text_of(const EditSummary& s) {
         count("missed_pixels"));
   if (const double share = s.report.at("out_of_reach").get<double>(); share > 0.005)
     text += fmt::format(
-        " {:.0f} % of the paint is brighter or darker than any base colour there looks in this light.",
+        " {:.0f} % of the paint is brighter or darker than any base color there looks in this light.",
         100 * share);
   return text;
 }
@@ -51,27 +51,27 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
       ->expected(1)
       ->take_all();
   verb->add_option("--scribble", o->scribbles,
-                   "RGBA PNG of the view's size. Where it is opaque, its sRGB colour becomes the base "
-                   "colour; where it is "
+                   "RGBA PNG of the view's size. Where it is opaque, its sRGB color becomes the base "
+                   "color; where it is "
                    "semi-transparent, it covers what is there by as much as its alpha says")
       ->required()
       ->expected(1)
       ->take_all();
   CLI::Option* target =
       verb->add_option("--target", o->target,
-                       "What the painted colour means: albedo, the base colour without light; "
+                       "What the painted color means: albedo, the base color without light; "
                        "appearance, what the view shows in the light there is now; radiance, what "
                        "shows in every light, as if it shone")
           ->check(CLI::IsMember({"albedo", "appearance", "radiance"}))
           ->capture_default_str();
   verb->add_flag("--erase", o->command.erase,
-                 "Show the reconstructed colours again where the scribble is opaque")
+                 "Show the reconstructed colors again where the scribble is opaque")
       ->excludes(target);
   verb->add_option(
           "--routing", o->routing,
           "What tells painted surface from the rest: both, handler points and the scribble's outline; points "
           "or "
-          "outline, one of them; none, the object's one colour field learns the scribble, for comparison: it "
+          "outline, one of them; none, the object's one color field learns the scribble, for comparison: it "
           "spills")
       ->check(CLI::IsMember({"both", "points", "outline", "none"}))
       ->capture_default_str();

@@ -43,7 +43,7 @@ void add_where(CLI::App* verb, Options& o) {
       ->check(CLI::ExistingFile);
   verb->add_option(
           "--segmenter", c.segmenter,
-          "How the part is found: grow, in 3D by colour and creases, in a second; sam, in pictures by a "
+          "How the part is found: grow, in 3D by color and creases, in a second; sam, in pictures by a "
           "network that `./run sam` installs")
       ->check(CLI::IsMember({"grow", "sam"}))
       ->capture_default_str();
@@ -62,9 +62,9 @@ void add_name(CLI::App* verb, PartCommand& c) {
 void add_part_effects(CLI::App* verb, Options& o) {
   MaterialEffects& e = o.command.effects;
   CLI::Option* color =
-      verb->add_option("--color", e.color, "'#RRGGBB', sRGB: the part's base colour from now on");
+      verb->add_option("--color", e.color, "'#RRGGBB', sRGB: the part's base color from now on");
   verb->add_flag("--replace,!--keep-texture", o.replace,
-                 "The colour replaces the texture; or it is that on average, and the texture scaled to it "
+                 "The color replaces the texture; or it is that on average, and the texture scaled to it "
                  "[--replace]")
       ->needs(color);
   add_material_values(verb, e);
@@ -79,7 +79,7 @@ void add_part_effects(CLI::App* verb, Options& o) {
 void add_edit_part(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<Options>();
   CLI::App* verb =
-      commands.add("part", "Select a part by clicks in one view; name, colour or change it", edit);
+      commands.add("part", "Select a part by clicks in one view; name, color or change it", edit);
   add_where(verb, *o);
   add_name(verb, o->command);
   add_part_effects(verb, *o);

@@ -47,7 +47,7 @@ void add_networks(CLI::App* verb, NetworkFiles& files) {
 void add_residual_switch(CLI::App* verb, bool& on) {
   verb->add_flag(
       "!--no-residual", on,
-      "Light and material alone, without what was learnt of the photographs besides (never used under "
+      "Light and material alone, without what was learned of the photographs besides (never used under "
       "another light, nor where an edit was made)");
 }
 

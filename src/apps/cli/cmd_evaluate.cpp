@@ -146,7 +146,7 @@ void add_edits(CLI::App* verb, Options& o) {
   verb->add_option("--positive", o.positive, "Clicks on the part, X,Y ...");
   verb->add_option("--negative", o.negative, "Clicks beside it, X,Y ...");
   verb->add_option("--part-color", o.color, "'#RRGGBB' that the part gets")->capture_default_str();
-  verb->add_option("--part-truth", o.part_truth.pictures, "Folder of pictures of the recoloured object")
+  verb->add_option("--part-truth", o.part_truth.pictures, "Folder of pictures of the recolored object")
       ->check(CLI::ExistingDirectory);
   verb->add_option("--part-mask", o.part_truth.masks, "Folder of masks of the part")
       ->check(CLI::ExistingDirectory);

@@ -30,7 +30,7 @@ void add_export(Commands& commands) {
   CLI::App* verb = commands.add("export", "Write the object, edits included, as a file for other programs");
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("-o,--output", o->request.out,
-                   ".glb or .ply: mesh with base colour per vertex, in the capture's frame and scale; .npy: "
+                   ".glb or .ply: mesh with base color per vertex, in the capture's frame and scale; .npy: "
                    "light lobes [M,7] "
                    "(axis, sharpness, RGB amplitude)")
       ->required();

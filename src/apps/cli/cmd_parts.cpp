@@ -43,7 +43,7 @@ void add_parts(Commands& commands) {
       "--masks", o->masks,
       "Views to write masks for: CAPTURE, CAPTURE:train, :val or :test, or a FILE.json of cameras");
   CLI::Option* out = verb->add_option(
-      "-o,--output", o->out, "Folder for the masks: DIR/VIEW.png, grey, how much of a pixel is part");
+      "-o,--output", o->out, "Folder for the masks: DIR/VIEW.png, gray, how much of a pixel is part");
   CLI::Option* part = verb->add_option("--part", o->part, "Name of the part");
   verb->add_option("--samples", o->samples,
                    "Sub-pixel samples per axis, twice as many where the silhouette passes")

@@ -64,7 +64,7 @@ void add_render(Commands& commands) {
           "--channels", o->channels,
           "Comma-separated: rgb, albedo, diffuse, specular (RGBA, sRGB, straight alpha), normal (world space "
           "of the "
-          "capture, (n+1)/2, 16-bit), depth (z-depth, 16-bit, scale in render.json), roughness, mask (grey)")
+          "capture, (n+1)/2, 16-bit), depth (z-depth, 16-bit, scale in render.json), roughness, mask (gray)")
       ->capture_default_str();
   verb->add_option("--size", o->size,
                    "Size in pixels, WxH; the field of view stays (default: the cameras' own)");

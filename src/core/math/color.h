@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour: everything is linear Rec.709 unless a name says srgb. [IEC 61966-2-1]
+// Color: everything is linear Rec.709 unless a name says srgb. [IEC 61966-2-1]
 #pragma once
 
 #include "core/math/vec.h"

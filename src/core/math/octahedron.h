@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sphere unfolded to the square [-1, 1]^2 by way of an octahedron: +Z at its centre, -Z at its corners.
+// The sphere unfolded to the square [-1, 1]^2 by way of an octahedron: +Z at its center, -Z at its corners.
 // [Engelhardt and Dachsbacher 2008]
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace cei3d {
 
-// Swaps the square's corners with its centre, where the lower half of the octahedron and the upper one lie.
+// Swaps the square's corners with its center, where the lower half of the octahedron and the upper one lie.
 inline Vec2f octahedron_folded(Vec2f p) {
   return {std::copysign(1 - std::abs(p.y), p.x), std::copysign(1 - std::abs(p.x), p.y)};
 }

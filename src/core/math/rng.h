@@ -9,7 +9,7 @@
 
 namespace cei3d {
 
-// Finaliser of splitmix64: a bijection that scatters neighbouring keys.
+// Finaliser of splitmix64: a bijection that scatters neighboring keys.
 HD uint64_t mix_bits(uint64_t x) {
   x += 0x9e3779b97f4a7c15ull;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;

@@ -80,7 +80,7 @@ template <class T>
 HD T gather(const float* p, uint32_t i) {
   return T(p[i]);
 }
-// Two neighbouring floats p[2 i], p[2 i + 1].
+// Two neighboring floats p[2 i], p[2 i + 1].
 template <class T>
 HD void gather2(const float* p, uint32_t i, T& a, T& b) {
   a = T(p[2 * i]);

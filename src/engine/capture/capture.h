@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Captures: posed photographs in the formats that people have. All conventions end here: OpenCV axes, pixel
-// centres at +0.5, the capture's own world frame.
+// centers at +0.5, the capture's own world frame.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ struct CaptureOptions {
 };
 
 // Cameras and file names; pictures are not read (but for the size of one a split). path: a folder, or its
-// .json or .npz. Missing pictures are no error here: check() lists them all. Errors: nothing recognised,
+// .json or .npz. Missing pictures are no error here: check() lists them all. Errors: nothing recognized,
 // malformed cameras, no views.
 Capture load_capture(const std::filesystem::path& path, const CaptureOptions& options = {});
 

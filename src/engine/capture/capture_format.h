@@ -20,19 +20,19 @@ struct CaptureFormat {
 const std::vector<CaptureFormat>& capture_formats();
 
 // NeRF-synthetic and its kin: transforms_{train,val,test}.json or one transforms.json (all training views),
-// OpenGL camera-to-world. A frame's own fl_x, fl_y, cx, cy, w, h win over the file's; mask_path is honoured,
+// OpenGL camera-to-world. A frame's own fl_x, fl_y, cx, cy, w, h win over the file's; mask_path is honored,
 // and nerfstudio's lists train_filenames, val_filenames, test_filenames.
 bool detect_nerf(const std::filesystem::path& path);
 Capture load_nerf(const std::filesystem::path& path);
 
 // PhySG: cam_dict_norm.json, image/, mask/, in the folder itself or in its train/ and test/. OpenCV
-// world-to-camera, integer pixel centres.
+// world-to-camera, integer pixel centers.
 bool detect_physg(const std::filesystem::path& path);
 Capture load_physg(const std::filesystem::path& path);
 
 // IDR, NeuS and their kin: cameras_sphere.npz or cameras.npz with world_mat_i = K [R | t], image/, mask/, all
-// training views. OpenCV axes, integer pixel centres. The world of world_mat is the capture's frame;
-// scale_mat_i (where their programs put the unit sphere) is not needed: our own normalisation comes from the
+// training views. OpenCV axes, integer pixel centers. The world of world_mat is the capture's frame;
+// scale_mat_i (where their programs put the unit sphere) is not needed: our own normalization comes from the
 // masks.
 bool detect_idr(const std::filesystem::path& path);
 Capture load_idr(const std::filesystem::path& path);

@@ -33,7 +33,7 @@ struct CaptureReport {
   std::vector<SplitReport> splits;             // those that have views
   std::optional<Normalization> normalization;  // nothing when it could not be found
   double distance_min = 0, distance = 0,
-         distance_max = 0;        // training cameras to the object's centre, input units
+         distance_max = 0;        // training cameras to the object's center, input units
   std::vector<Finding> findings;  // errors first
 
   bool usable() const;

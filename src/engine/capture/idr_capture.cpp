@@ -175,7 +175,7 @@ Capture load_idr(const fs::path& path) {
     if (!masks.empty()) view.mask_path = masks[i];
     const std::string where = fmt::format("{} of {}", name, file.string());
     view.camera = camera_from_projection(read_matrix(entries.at(name + ".npy"), where), where);
-    view.camera.cx += 0.5;  // the format's pixel centres are at whole numbers
+    view.camera.cx += 0.5;  // the format's pixel centers are at whole numbers
     view.camera.cy += 0.5;
     view.camera.width = size.width;
     view.camera.height = size.height;

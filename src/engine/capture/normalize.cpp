@@ -25,7 +25,7 @@ Vec3d solve(const Mat3d& a, Vec3d b) {  // symmetric, by Cramer's rule
 // One silhouette: its leftmost and rightmost pixel in each row, which hold its outline's extremes.
 struct Silhouette {
   const HullMask* view;
-  std::vector<Vec2<double>> outline;  // pixel centres
+  std::vector<Vec2<double>> outline;  // pixel centers
   Vec3d axis;                         // unit, from the camera through the middle of the silhouette's box
 };
 
@@ -101,7 +101,7 @@ Normalization first_box(const std::vector<Silhouette>& silhouettes) {
 }
 
 struct Vote {
-  std::vector<Vec3d> cells;  // centres of inside cells, input frame
+  std::vector<Vec3d> cells;  // centers of inside cells, input frame
   double half_diagonal = 0;  // of a cell
 };
 

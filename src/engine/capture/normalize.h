@@ -18,7 +18,7 @@ inline constexpr double kObjectRadius = 0.9;  // of the hull's bounding sphere a
 // Loads the training masks (on all threads). Errors: as normalization_from_masks; unreadable pictures.
 Normalization find_normalization(const Capture& capture);
 
-// masks: cameras in the input frame. A box from rays through the silhouettes' centres and their widths, a
+// masks: cameras in the input frame. A box from rays through the silhouettes' centers and their widths, a
 // coarse hull in it, a finer one in the coarse hull's box; the transform puts that one's bounding sphere to
 // radius kObjectRadius. Some wrong masks (one in twenty) are outvoted, and a sentence about it is added to
 // warnings. region (input frame): what lies outside is no part of the object; pictures that cut it off leave

@@ -121,7 +121,8 @@ TEST(Normalize, FromFiles) {
               HasSubstr("neither masks nor an alpha"));
 }
 
-// The sample was rendered with the object in the unit sphere, bounding radius 0.97. Hulls are a little larger.
+// The sample was rendered with the object in the unit sphere, bounding radius 0.97. Hulls are a little
+// larger.
 TEST(Normalize, SampleCapture) {
   const Normalization n = find_normalization(load_capture("samples/spot"));
   EXPECT_NEAR(n.scale, 0.9 / 0.97, 0.06);

@@ -34,7 +34,7 @@ Camera read_camera(const Json& j, const std::string& where) {
   c.fx = k.m[0][0];
   c.fy = k.m[1][1];
   c.skew = k.m[0][1];
-  c.cx = k.m[0][2] + 0.5;  // the format's pixel centres are at whole numbers
+  c.cx = k.m[0][2] + 0.5;  // the format's pixel centers are at whole numbers
   c.cy = k.m[1][2] + 0.5;
   if (!(c.fx > 0 && c.fy > 0) || !std::isfinite(c.fx * c.fy * c.cx * c.cy * c.skew))
     fail("The intrinsics of {} are impossible.", where);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The base colour that the object shows, edits included: at its handler points, and as a picture. What parts
+// The base color that the object shows, edits included: at its handler points, and as a picture. What parts
 // are told apart by: no light, shadow or highlight disturbs there.
 #pragma once
 

@@ -15,11 +15,11 @@ void check_share(const std::optional<float>& value, const char* name) {
 
 void check_request(const MaterialRequest& r) {
   if (r.change.empty() && !r.color)
-    fail_usage("Nothing to change: give a roughness, a specular, a metalness or a colour.");
+    fail_usage("Nothing to change: give a roughness, a specular, a metalness or a color.");
   check_share(r.change.roughness, "Roughness");
   check_share(r.change.specular, "Specular");
   check_share(r.change.metalness, "Metalness");
-  for (int c = 0; r.color && c < 3; ++c) check_share((*r.color)[c], "A channel of the colour,");
+  for (int c = 0; r.color && c < 3; ++c) check_share((*r.color)[c], "A channel of the color,");
 }
 
 // A third of the area of the triangles around each vertex.

@@ -39,7 +39,7 @@ void check_stroke(const Stroke& s) {
 // What all scribbles together want where.
 struct Paint {
   std::vector<Hit> hits;
-  std::vector<Vec3f> targets;   // #hits, linear base colour
+  std::vector<Vec3f> targets;   // #hits, linear base color
   std::vector<uint8_t> inside;  // #hits, 1 in the painted region, 0 just beside it
   float pixel = 1e9f;           // of the finest scribble, on the surface, unit-sphere units
 };
@@ -64,7 +64,7 @@ void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
   }
 }
 
-// The base colours that show the targets in the light, and the share of them that is out of reach.
+// The base colors that show the targets in the light, and the share of them that is out of reach.
 float solve_for_base_color(const Device& device, const Scene& scene, const SceneLight& light, Paint& paint) {
   Appearance look = appearance_at(device, scene, paint.hits);
   std::fill(look.albedo.begin(), look.albedo.end(), Vec3f{0, 0, 0});
@@ -89,7 +89,7 @@ float solve_for_base_color(const Device& device, const Scene& scene, const Scene
 }
 
 // Cells of half a pixel on the finest level, a table that holds those on the stroke: borders between
-// two colours stay as sharp as the scribble shows them.
+// two colors stay as sharp as the scribble shows them.
 FieldConfig branch_config(const Paint& paint) {
   FieldConfig c;
   c.encoding.levels = 8;
@@ -119,7 +119,7 @@ struct Batch {
 };
 
 // d/d(out) of the mean cross entropy: with the sigmoid behind it, the slope before it is out - target, so
-// that dark and saturated colours, where the sigmoid is flat, are learnt as fast as the others.
+// that dark and saturated colors, where the sigmoid is flat, are learned as fast as the others.
 FieldTrainer::Loss cross_entropy(const std::vector<Vec3f>& target) {
   return [&target](int begin, int end, const float* out, float* d_out) {
     for (int i = begin; i < end; ++i)

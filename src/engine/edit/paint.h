@@ -17,7 +17,7 @@ class SceneLight;  // engine/render/scene_light.h
 struct Scribble {
   Camera camera;  // of the painted view, unit-sphere frame
   // RGBA, sRGB, straight alpha, of the camera's size. Painted where alpha >= 0.5; with semi-transparent
-  // strokes (alpha that is not just that of smooth edges) alpha says how much of the colour covers what lies
+  // strokes (alpha that is not just that of smooth edges) alpha says how much of the color covers what lies
   // below.
   Image image;
 };
@@ -26,11 +26,11 @@ struct PaintRequest {
   std::vector<Scribble> scribbles;  // where two overlap, the later one counts
   std::string id;                   // of the new layer
   uint64_t seed = 1;                // of the branch's weights and batches
-  bool erase = false;               // the base's own colour shows again; the scribbles' colours mean nothing
+  bool erase = false;               // the base's own color shows again; the scribbles' colors mean nothing
   Routing routing = Routing::both;
-  bool unlit =
-      false;  // the painted surface shows the colour itself, whatever the light: as if radiance were painted
-  const SceneLight* seen_in = nullptr;  // null: colours are display colours of the base colour wanted; else
+  // The painted surface shows the color itself, whatever the light: as if radiance were painted
+  bool unlit = false;
+  const SceneLight* seen_in = nullptr;  // null: colors are display colors of the base color wanted; else
                                         // of what the painted view shows in this light
 };
 
@@ -39,7 +39,7 @@ struct PaintReport {
   int missed_pixels = 0;                // painted, but not on a surface that faces the view
   size_t points = 0;                    // edited handler points
   float mean_error = 0, max_error = 0;  // of the branch on the painted surface, linear
-  float out_of_reach = 0;               // share of the paint whose colour no base colour shows in the light
+  float out_of_reach = 0;               // share of the paint whose color no base color shows in the light
   double trace_seconds = 0, train_seconds = 0;  // stages
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // `edit part`: what clicks or a mask in one view mean becomes a part of the object, seen from everywhere; its
-// colour and material may change in the same edit. [paper sec. 4.3, CPS]
+// color and material may change in the same edit. [paper sec. 4.3, CPS]
 #pragma once
 
 #include <functional>
@@ -36,7 +36,7 @@ struct PartRequest {
   std::optional<PartCombination> combination;
   MaterialChange change;
   std::optional<Vec3f> color;  // linear
-  bool keep_texture = false;   // of the colour: scale what is there to it, instead of replacing it
+  bool keep_texture = false;   // of the color: scale what is there to it, instead of replacing it
 };
 
 struct PartReport {

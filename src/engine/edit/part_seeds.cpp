@@ -37,7 +37,7 @@ std::vector<SurfacePoint> clicked_points(const Device& device, const Scene& scen
 }
 
 // Points that the view shows well, a pixel or so away from the mask's border: what lies on it is left to
-// colour.
+// color.
 std::vector<Seed> mask_seeds(const Scene& scene, const PartRequest& r) {
   if (r.mask.width != r.camera.width || r.mask.height != r.camera.height)
     fail_usage("The mask is {}x{} pixels, view {} is {}x{}; draw it on a picture of the view's own size.",

@@ -9,7 +9,7 @@ enum class Routing {
   points,   // those within reach of edited handler points, as in the paper: the outline is as soft as their
             // reach
   outline,  // those that the painted view sees in the scribble
-  none      // all: the object's one colour field learns the scribble (relearn.h)
+  none      // all: the object's one color field learns the scribble (relearn.h)
 };
 
 }  // namespace cei3d

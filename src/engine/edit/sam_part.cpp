@@ -12,11 +12,11 @@ namespace {
 
 constexpr float kSure = 0.9f;  // scores from which the views' verdict stands; one minus it likewise
 
-// Prior of points that no view told anything about: they follow their neighbours of like colour, and what has
+// Prior of points that no view told anything about: they follow their neighbors of like color, and what has
 // none is not of the part.
 constexpr float kUntold = 0.49f;
 
-// The network on base-colour pictures, each encoded once.
+// The network on base-color pictures, each encoded once.
 class BaseColorViews : public ViewSegmenter {
  public:
   BaseColorViews(const Device& device, const Scene& scene, const SamPartRequest& request)

@@ -17,8 +17,8 @@ struct SamPartRequest {
 };
 
 // Scores as grow() gives them: #handlers of the scene, [0, 1], to be interpolated (ScoredPoints); and which
-// views were used. The network sees the base colour in each view, which has no shadows and highlights to be
-// mistaken for borders; its votes then end where the colour does (random_walk). Pure, and the same for any
+// views were used. The network sees the base color in each view, which has no shadows and highlights to be
+// mistaken for borders; its votes then end where the color does (random_walk). Pure, and the same for any
 // number of threads. Errors: no network here (what to do), nothing found at the clicks, cancelled.
 PropagateResult sam_part(const Device&, const Scene&, const SamPartRequest&, Progress&);
 

@@ -49,7 +49,7 @@ void cut_out(const Image& rgba, const PixelBox& box, Stroke& stroke) {
   }
 }
 
-// Colour of the painted pixel whose centre is nearest to (u, v), in pixels of the crop; null: none is
+// Color of the painted pixel whose center is nearest to (u, v), in pixels of the crop; null: none is
 // adjacent.
 const float* nearest_color(const Stroke& s, float u, float v) {
   const float* best = nullptr;
@@ -67,7 +67,7 @@ const float* nearest_color(const Stroke& s, float u, float v) {
   return best;
 }
 
-// How far apart neighbouring rays meet the surface; slopes count up to a factor of 4, where the rays get
+// How far apart neighboring rays meet the surface; slopes count up to a factor of 4, where the rays get
 // sparse anyway.
 float footprint(const Camera& camera, const Hit& hit, float depth) {
   return depth / float(camera.fx) / max(dot(hit.normal, hit.to_camera), 0.25f);

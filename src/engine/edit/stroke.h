@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A scribble laid on the surface: which points it paints, and in which colours.
+// A scribble laid on the surface: which points it paints, and in which colors.
 #pragma once
 
 #include <vector>
@@ -33,11 +33,11 @@ struct Stroke {
   int painted_pixels = 0;
   int missed_pixels = 0;        // of them: those that meet no surface, or one that turns away (cosine <= 0.1)
   std::vector<Hit> hits;        // in and just around the paint, facing the camera
-  std::vector<Vec3f> targets;   // #hits, linear base colour: that of the painted pixel nearest to the hit
+  std::vector<Vec3f> targets;   // #hits, linear base color: that of the painted pixel nearest to the hit
   std::vector<float> coverage;  // #hits, interpolated alpha; >= least_alpha: painted
-  std::vector<float>
-      footprints;  // #hits, distance between neighbouring rays on the surface, unit-sphere units
-  Image depth;     // of the crop at its finer scale, 0: nothing hit
+  // #hits, distance between neighboring rays on the surface, unit-sphere units
+  std::vector<float> footprints;
+  Image depth;  // of the crop at its finer scale, 0: nothing hit
 };
 
 // camera: unit-sphere frame; rgba: sRGB, straight alpha, of the camera's size.

@@ -19,7 +19,7 @@ struct EditTruth {
   std::filesystem::path pictures, masks;
 };
 struct PartTrial {
-  PartCommand command;  // with a colour
+  PartCommand command;  // with a color
   EditTruth truth;
 };
 
@@ -52,8 +52,8 @@ EvaluationRow evaluation_row_from_json(const Json&);  // throws Json::exception
 struct EvaluationReport {
   std::string capture;
   EvaluationRow object;  // all views, full size
-  std::vector<EvaluationRow>
-      paint;  // the method, then without handler points, without disentangled properties
+  // The method, then without handler points, without disentangled properties
+  std::vector<EvaluationRow> paint;
   std::vector<EvaluationRow> part;  // the method, then without propagation to other views
   std::vector<EvaluationRow> views,
       sizes;  // objects from fewer, from smaller photographs; painted where there is paint

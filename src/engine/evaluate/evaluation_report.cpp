@@ -178,7 +178,7 @@ std::string EvaluationReport::markdown() const {
       "The same scribble on one view, scored in all held-out views. Pictures: photograph, before, after.",
       paint, columns({{kEditTime, kPoints}, kFidelity, kRest}));
   text += section("A part by clicks, with and without propagation",
-                  "The same clicks in one view; the part is recoloured.", part,
+                  "The same clicks in one view; the part is recolored.", part,
                   columns({{kEditTime, kPoints, kShare}, kFidelity, kRest}));
   const std::vector<Column> trials = columns({{kMadeIn}, kNovelViews, kFidelity, kRest});
   text += section("Fewer photographs",

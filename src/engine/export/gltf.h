@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes as binary glTF 2.0 (.glb) with vertex colours and a metallic-roughness material. [Khronos glTF 2.0]
+// Meshes as binary glTF 2.0 (.glb) with vertex colors and a metallic-roughness material. [Khronos glTF 2.0]
 #pragma once
 
 #include <filesystem>

@@ -83,7 +83,7 @@ std::vector<std::string> wanted_channels(const Imf::ChannelList& list) {
   } else if (channel_count(list) == 1) {
     names = {list.begin().name()};
   } else {
-    throw std::runtime_error("it has neither R, G and B nor one grey channel");
+    throw std::runtime_error("it has neither R, G and B nor one gray channel");
   }
   for (const std::string& name : names)
     if (list[name].xSampling != 1 || list[name].ySampling != 1)

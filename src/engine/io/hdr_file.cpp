@@ -57,7 +57,7 @@ Header read_header(Reader& in) {
   if (in.line().rfind("#?", 0) != 0) in.broken("it does not start with #?RADIANCE");
   for (std::string text = in.line(); !text.empty(); text = in.line()) {
     if (text.rfind("FORMAT=", 0) == 0 && text.rfind("FORMAT=32-bit_rle_rgbe", 0) != 0)
-      in.broken("its colours are not RGBE");
+      in.broken("its colors are not RGBE");
     if (text.rfind("EXPOSURE=", 0) == 0) header.exposure *= std::atof(text.c_str() + 9);
   }
   if (!(header.exposure > 0) || !std::isfinite(header.exposure)) in.broken("its exposure is impossible");
@@ -152,8 +152,8 @@ std::string encode_hdr(const Image& image) {
     fail("Cannot write an HDR picture with {} channels.", image.channels);
   std::string out =
       fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
-  const bool coded =
-      image.width >= 8 && image.width < 32768;  // else a flat row could be taken for a coded one
+  // Else a flat row could be taken for a coded one
+  const bool coded = image.width >= 8 && image.width < 32768;
   for (int y = 0; y < image.height; ++y) {
     std::vector<Rgbe> row(size_t(image.width));
     for (int x = 0; x < image.width; ++x) row[x] = encode(image.at(x, y));

@@ -9,7 +9,7 @@
 
 namespace cei3d {
 
-// x y z, nx ny nz where the mesh has normals, red green blue (sRGB, 8 bits) where it has colours, and
+// x y z, nx ny nz where the mesh has normals, red green blue (sRGB, 8 bits) where it has colors, and
 // triangles. Coordinates go out as they are: transform to the capture's frame first.
 std::string encode_ply(const Mesh& mesh);
 void write_ply(const std::filesystem::path& path, const Mesh& mesh);  // atomically

@@ -29,7 +29,7 @@ Spread spread_of(const FeatureSet& s) {
   return out;
 }
 
-// The two pixels that a position between pixel centres lies between, and how near it is to the second.
+// The two pixels that a position between pixel centers lies between, and how near it is to the second.
 struct Between {
   int first, second;
   float share;

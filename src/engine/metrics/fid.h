@@ -39,7 +39,7 @@ class FeatureNetwork {
   std::filesystem::path file_;
 };
 
-// Bilinear between pixel centres, as the published figures are made; the border's value beyond it.
+// Bilinear between pixel centers, as the published figures are made; the border's value beyond it.
 Image resized_for_features(const Image& rgb, int width, int height);
 
 // |m1 - m2|^2 + tr(S1 + S2 - 2 (S1 S2)^(1/2)) of the sets' means and unbiased covariances; >= 0. With few

@@ -10,7 +10,7 @@
 
 namespace cei3d {
 
-// RGB over a grey background, in the values' own space (display space: as the NeRF papers do). 4 channels:
+// RGB over a gray background, in the values' own space (display space: as the NeRF papers do). 4 channels:
 // straight alpha; 1 channel is repeated.
 Image over_background(const Image& image, float background);
 

@@ -27,8 +27,8 @@ struct Border {
 // What became of the patches in one round.
 struct Round {
   std::vector<uint32_t> next;  // of each, the patch that it is afterwards
-  std::vector<float>
-      joined;  // of each, the cost at which it went over to the positive side; kNever: it did not
+  // Of each, the cost at which it went over to the positive side; kNever: it did not
+  std::vector<float> joined;
 };
 
 // Stable, in O(borders + patches).
@@ -171,8 +171,8 @@ class Competition {
 
   std::vector<Patch> patches_;
   std::vector<Border> borders_;  // ordered by a, then b
-  std::vector<std::pair<float, uint32_t>>
-      best_;  // of each patch: its cheapest border's cost, who is beyond it
+  // Of each patch: its cheapest border's cost, who is beyond it
+  std::vector<std::pair<float, uint32_t>> best_;
   std::vector<Round> rounds_;
   float highest_ = 0;  // cost so far at which something joined the positive side
 };

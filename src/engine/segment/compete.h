@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Regions of like colour grow, merge and compete for what the user did not click on.
+// Regions of like color grow, merge and compete for what the user did not click on.
 //
-// Every point begins as a region of its own. Again and again the two neighbours merge that differ least: by
-// the squared difference of their mean colours, times the smaller one's size, over the length of their common
+// Every point begins as a region of its own. Again and again the two neighbors merge that differ least: by
+// the squared difference of their mean colors, times the smaller one's size, over the length of their common
 // border [Mumford and Shah 1989; Koepfler et al. 1994]. Small islands are swallowed early, noise averages
 // out, a blurred border has no gaps. A region that holds a positive click never merges with one that holds a
 // negative one; so in the end everything belongs to one or the other.

@@ -33,8 +33,8 @@ class Clicks {
     float least = 1e30f;
     for (uint32_t i = 0; i < points_.positions.size(); ++i) {
       const Vec3f d = points_.positions[i] - click.position;
-      const float distance =
-          dot(d, d) + (dot(points_.normals[i], click.normal) > 0 ? 0 : 4);  // far: other side
+      // Far: other side
+      const float distance = dot(d, d) + (dot(points_.normals[i], click.normal) > 0 ? 0 : 4);
       if (distance < least) least = distance, best = i;
     }
     return best;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part from clicks, in 3D and without a network: colour, creases and distance on the handler points.
+// A part from clicks, in 3D and without a network: color, creases and distance on the handler points.
 #pragma once
 
 #include <span>

@@ -16,7 +16,7 @@ constexpr float kLeast = 1e-6f;  // weight of an edge that no walker takes
 constexpr double kPrior = 1e-5;  // weight of the prior at a point
 constexpr double kSeed = 1e3;    // weight of a seed
 constexpr float kLeastTypical =
-    0.005f;  // Oklab; objects of flat colours have smaller steps, which mean nothing
+    0.005f;  // Oklab; objects of flat colors have smaller steps, which mean nothing
 
 float typical_step(const PointGraph& graph) {
   if (graph.edges.empty()) return kLeastTypical;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where exactly a part ends: the probability that a random walker from a point meets a positive seed before a
-// negative one, where it is loath to cross steps of colour. [Grady 2006]
+// negative one, where it is loath to cross steps of color. [Grady 2006]
 #pragma once
 
 #include <span>

@@ -22,7 +22,7 @@ std::filesystem::path network(const std::filesystem::path& folder, const char* n
   return file;
 }
 
-// Normalised, with zeros beside the picture.
+// Normalized, with zeros beside the picture.
 OnnxTensor encoder_input(const Image& rgb) {
   OnnxTensor t{{1, 3, kFrame, kFrame}, std::vector<float>(size_t(3) * kFrame * kFrame, 0.0f)};
   for (int y = 0; y < std::min(rgb.height, kFrame); ++y)
@@ -86,7 +86,7 @@ void blur(std::vector<float>& plane) {
   pass(rows, plane, 0, 1);
 }
 
-// Bilinear between the centres of the low-resolution pixels.
+// Bilinear between the centers of the low-resolution pixels.
 Image to_picture(const std::vector<float>& plane, const SamPicture& p) {
   Image out(p.width, p.height, 1, kOutside);
   constexpr float kStep = float(kFrame) / kLowRes;

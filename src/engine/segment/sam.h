@@ -47,7 +47,7 @@ class Sam {
   OnnxModel encoder_, decoder_;
 };
 
-// The frame's contents before they are normalised: RGB, sRGB in [0, 255], of `scale` times the size of the
+// The frame's contents before they are normalized: RGB, sRGB in [0, 255], of `scale` times the size of the
 // box, its longest side 1024. Exposed for tests.
 struct SamFrame {
   Image rgb;

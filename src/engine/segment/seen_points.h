@@ -24,7 +24,7 @@ struct SeenPoint {
 std::vector<SeenPoint> seen_points(const Surface&, const Camera& camera, std::span<const Vec3f> positions,
                                    std::span<const Vec3f> normals, float min_facing, float tolerance);
 
-// Bilinear between the centres of the pixels of a one-channel picture, the border's value beyond it.
+// Bilinear between the centers of the pixels of a one-channel picture, the border's value beyond it.
 float sample(const Image& image, Vec2f pixel);
 
 }  // namespace cei3d

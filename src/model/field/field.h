@@ -19,9 +19,8 @@
 namespace cei3d {
 
 struct EncodingConfig {
-  int frequencies =
-      0;           // L of the frequency encoding, sin and cos of 2^k x, k < L; 0: none
-  int levels = 0;  // of the hash grid; 0: none
+  int frequencies = 0;          // L of the frequency encoding, sin and cos of 2^k x, k < L; 0: none
+  int levels = 0;               // of the hash grid; 0: none
   int base_resolution = 16;     // cells along [-1, 1] at level 0
   int finest_resolution = 256;  // ... and at the last level; geometric in between
   int log2_table = 15;          // entries a level, 2 features each
@@ -36,8 +35,8 @@ struct FieldConfig {
   float softplus_beta = 100;
   int outputs = 3;
   Activation output_activation = Activation::none;
-  float sphere_radius =
-      0;  // > 0: |x| - sphere_radius is added to output 0, so that an untrained SDF is a sphere
+  // > 0: |x| - sphere_radius is added to output 0, so that an untrained SDF is a sphere
+  float sphere_radius = 0;
 };
 Json to_json(const FieldConfig&);
 FieldConfig field_config_from_json(const Json&);  // error on unknown keys

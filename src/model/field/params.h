@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named parameters of a model. The only owner of weights: saving, hashing and optimising need no code per
+// Named parameters of a model. The only owner of weights: saving, hashing and optimizing need no code per
 // network.
 #pragma once
 
@@ -14,8 +14,8 @@ namespace cei3d {
 struct Param {
   std::string name;
   std::vector<int64_t> shape;
-  std::vector<float>
-      value;  // padded with zeros to a multiple of 32 floats, so that kernels need no remainder
+  // Padded with zeros to a multiple of 32 floats, so that kernels need no remainder
+  std::vector<float> value;
 
   size_t count() const;  // product of the shape
 };

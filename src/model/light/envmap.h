@@ -9,12 +9,12 @@ namespace cei3d {
 
 // Which way row 0 of the picture looks.
 enum class EnvUp {
-  z,  // row 0 = +Z; centre = +X, column W/4 = +Y, 3W/4 = -Y, borders = -X
-  y,  // row 0 = +Y; left border -Z, column W/4 = +X, centre = +Z, 3W/4 = -X (Mitsuba)
+  z,  // row 0 = +Z; center = +X, column W/4 = +Y, 3W/4 = -Y, borders = -X
+  y,  // row 0 = +Y; left border -Z, column W/4 = +X, center = +Z, 3W/4 = -X (Mitsuba)
 };
 
 // Unit direction towards the light at the continuous pixel position (u, v) of a width x height picture; pixel
-// centres are at +0.5.
+// centers are at +0.5.
 Vec3f env_direction(float u, float v, int width, int height, EnvUp up = EnvUp::z);
 // ... and back, u in [0, width), v in [0, height].
 Vec2f env_pixel(Vec3f direction, int width, int height, EnvUp up = EnvUp::z);

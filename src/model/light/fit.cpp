@@ -10,7 +10,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kRows = 7;  // axis, sharpness, colour
+constexpr int kRows = 7;  // axis, sharpness, color
 constexpr float kRate = 0.03f, kBeta1 = 0.9f, kBeta2 = 0.99f;
 
 int padded(int n) { return (n + kPanel - 1) / kPanel * kPanel; }
@@ -45,7 +45,7 @@ SgLobe unblurred(SgLobe seen, float sharpness) {
   return {seen.axis, lambda, seen.mu * (sg_integral(seen.lambda) / sg_integral(lambda))};
 }
 
-// Unknowns: raw axis (normalised on use), logarithm of the sharpness, square root of the colour. Planes
+// Unknowns: raw axis (normalized on use), logarithm of the sharpness, square root of the color. Planes
 // [7][padded].
 class LobeFit {
  public:
@@ -72,7 +72,7 @@ class LobeFit {
       const Vec3f c = env_radiance(map, axis, up);
       for (int j = 0; j < 3; ++j) {
         row(raw_, j)[k] = axis[j];
-        row(raw_, 4 + j)[k] = std::sqrt(max(0.6f * c[j], 1e-3f));  // neighbours overlap
+        row(raw_, 4 + j)[k] = std::sqrt(max(0.6f * c[j], 1e-3f));  // neighbors overlap
       }
       row(raw_, 3)[k] = std::log(min(0.5f * float(lobes), 0.5f * sharpest));
     }
@@ -143,7 +143,7 @@ class LobeFit {
 }  // namespace
 
 SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOptions& options, EnvUp up) {
-  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a colour picture");
+  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a color picture");
   for (const float x : lat_long.data)
     if (!std::isfinite(x)) fail("light map: a value is not finite");
   Image map = env_resample(lat_long, std::min(options.height, lat_long.height));

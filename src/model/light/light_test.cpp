@@ -59,7 +59,7 @@ TEST(Envmap, SolidAnglesFillTheSphereAndResamplingKeepsTheIntegral) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(integral(small, c), integral(map, c), 1e-4);
 }
 
-TEST(Envmap, BilinearLookupHitsPixelCentresAndWraps) {
+TEST(Envmap, BilinearLookupHitsPixelCentersAndWraps) {
   Image map(8, 4, 3);
   for (size_t i = 0; i < map.data.size(); ++i) map.data[i] = Rng(2, 0, i).uniform();
   expect_near(env_radiance(map, env_direction(3.5f, 1.5f, 8, 4)), map.rgb(3, 1), 1e-5f);

@@ -27,7 +27,7 @@ Vec3f radiance(const SgMixture& light, Vec3f direction);
 SgMixture rotated(SgMixture light, const Mat3f& rotation);  // every axis becomes rotation * axis
 SgMixture scaled(SgMixture light, Vec3f factor);
 
-// [M][7] rows of axis, lambda, mu, as light files store them. Reading normalises the axis and takes the
+// [M][7] rows of axis, lambda, mu, as light files store them. Reading normalizes the axis and takes the
 // magnitude of lambda and mu. Errors: no rows, not rows of 7, not finite, a zero axis.
 std::vector<float> to_array(const SgMixture& light);
 SgMixture light_from_array(std::span<const float> rows);

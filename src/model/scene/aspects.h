@@ -10,7 +10,7 @@ namespace cei3d {
 
 struct Aspects {
   bool shape = false;  // the surface
-  bool look = false;   // base colour or material
+  bool look = false;   // base color or material
   bool light = false;
   bool parts = false;  // what names of parts mean
   bool operator==(const Aspects&) const = default;

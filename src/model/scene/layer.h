@@ -29,16 +29,16 @@ struct EditLayer {
   // kLatestPose: the one that with_layer() puts the layer on.
   int pose = kLatestPose;
   std::string part;                     // name of the part that the region is; empty: none
-  std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: base colour of the layers below
-  bool unlit = false;                   // its colours are what shows, in every light: no light falls on them
-  bool erase = false;                   // the base's own colour instead, whatever lies below
+  std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: base color of the layers below
+  bool unlit = false;                   // its colors are what shows, in every light: no light falls on them
+  bool erase = false;                   // the base's own color instead, whatever lies below
   std::optional<Tint> tint;             // on top of that
   MaterialChange material;
   std::optional<SgMixture> light;          // in place of the object's, whatever the region
   std::shared_ptr<const Reshape> reshape;  // null: the shape stays
 
   bool contains(Vec3f position, Vec3f normal) const { return weight(position, normal) > 0; }
-  // How much of the edit's colour is there, [0, 1]; strokes may be semi-transparent. Material is all or
+  // How much of the edit's color is there, [0, 1]; strokes may be semi-transparent. Material is all or
   // nothing.
   float weight(Vec3f position, Vec3f normal) const;
 };

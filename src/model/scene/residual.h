@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What light and material cannot explain: a small network over features of the point, the normal and the
 // view, whose output is added to what the physical model sends out. It belongs to the object as it was
-// photographed: an edit's region, another light and the base colour never see it. See docs/method.md#correction-network.
+// photographed: an edit's region, another light and the base color never see it. See
+// docs/method.md#correction-network.
 #pragma once
 
 #include <memory>
@@ -17,7 +18,7 @@
 namespace cei3d {
 
 struct Residual {
-  // Outputs 1.. describe a point: those of the distance field, or a copy of it that has learnt further.
+  // Outputs 1.. describe a point: those of the distance field, or a copy of it that has learned further.
   std::shared_ptr<const Field> features;
   MlpConfig network;  // 3 outputs: linear radiance
   ParamSet params;

@@ -26,7 +26,7 @@ struct Scene {
   Normalization normalization;          // between the capture's frame and the unit sphere that all else is in
   Vec3d up{0, 0, 1};                    // capture frame
   std::shared_ptr<const Field> sdf;     // output 0: signed distance, negative inside; the rest: features
-  std::shared_ptr<const Field> albedo;  // base colour, 3 outputs in [0, 1], linear
+  std::shared_ptr<const Field> albedo;  // base color, 3 outputs in [0, 1], linear
   // Zero level set as a mesh, with what each point sees of the sky; changed by edits.
   std::shared_ptr<const Surface> surface;
   SgMixture light;  // that of the last edit that has one, when the layers have been put on

@@ -17,7 +17,7 @@ enum class Split { train, val, test };
 struct View {
   std::string name;  // "train/r_055": split folder and stem, unique in the capture
   Split split = Split::train;
-  Camera camera;                     // input frame; pixel centres at +0.5
+  Camera camera;                     // input frame; pixel centers at +0.5
   std::filesystem::path image_path;  // empty: a camera without a photograph
   std::filesystem::path mask_path;   // empty: alpha of the image is the mask
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is next to whom in a mesh, and the weights that make sums over neighbours a Laplacian.
+// Who is next to whom in a mesh, and the weights that make sums over neighbors a Laplacian.
 #pragma once
 
 #include <array>
@@ -24,9 +24,9 @@ struct VertexLists {
 // Triangles around each vertex, ascending.
 VertexLists triangles_around(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles);
 // Vertices that share an edge with each vertex, ascending.
-VertexLists neighbours_of(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles);
+VertexLists neighbors_of(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles);
 
-// Cotangent weights, one for each item of `neighbours` (0.5 (cot a + cot b), the same both ways), and the
+// Cotangent weights, one for each item of `neighbors` (0.5 (cot a + cot b), the same both ways), and the
 // area of each vertex (a third of its triangles'). Weights are clamped to [0.05, 5], so that sums of
 // differences stay positive definite on obtuse triangles and slivers do not outweigh all else; areas are at
 // least a tenth of their mean. [Pinkall and Polthier 1993]
@@ -37,6 +37,6 @@ struct LaplaceWeights {
 };
 LaplaceWeights laplace_weights(std::span<const Vec3f> positions,
                                std::span<const std::array<uint32_t, 3>> triangles,
-                               const VertexLists& neighbours);
+                               const VertexLists& neighbors);
 
 }  // namespace cei3d

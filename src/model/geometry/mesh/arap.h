@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformation of a mesh by a dragged handle: every vertex and its neighbours move as rigidly as the handle
+// Deformation of a mesh by a dragged handle: every vertex and its neighbors move as rigidly as the handle
 // allows.
 //
 //   E(p, R) = sum_i sum_j w_ij |p_i - p_j - R_i (q_i - q_j)|^2  +  b^2 sum_i |d_i(p) - R_i d_i(q)|^2 / A_i
@@ -36,7 +36,7 @@ struct ArapResult {
   std::vector<double> energies;  // after each iteration; never rises
 };
 
-// Local-global descent: rotations by Procrustes, positions by one linear system factorised once. Its time
+// Local-global descent: rotations by Procrustes, positions by one linear system factorized once. Its time
 // follows the number of free vertices. Free vertices that no way along the mesh joins to one that is held
 // stay. Same input, same bits.
 ArapResult arap_deform(std::span<const Vec3f> positions, std::span<const std::array<uint32_t, 3>> triangles,

@@ -22,7 +22,7 @@ struct CutResult {
 // in_part: #V, 1 where a vertex belongs to the part; ragged outlines are smoothed by a few edge lengths, and
 // islands of less than a fiftieth of the part's area join what surrounds them. A triangle goes with the
 // majority of its corners. Each hole is closed by a patch as fine as the mesh that carries on the tangents
-// around it; its colour is diffused from the surroundings. colors: #V, linear base colour. The mesh has
+// around it; its color is diffused from the surroundings. colors: #V, linear base color. The mesh has
 // normals. No edge is open afterwards that was not before. Errors: a part that is nothing, or everything.
 CutResult cut(const Mesh&, std::span<const uint8_t> in_part, std::span<const Vec3f> colors);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where to cut: from a vertex-wise labelling to the triangles that go and the loops they leave.
+// Where to cut: from a vertex-wise labeling to the triangles that go and the loops they leave.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ std::vector<uint8_t> clean_labels(const Mesh&, std::span<const uint8_t> in_part)
 
 struct Outline {
   std::vector<uint8_t> removed;  // #F, 1: goes
-  std::vector<std::vector<uint32_t>>
-      loops;  // vertices around each hole, in the direction of the triangles to be put there
+  // Vertices around each hole, in the direction of the triangles to be put there
+  std::vector<std::vector<uint32_t>> loops;
 };
 // Triangles that touch the outline at a mere corner go too, so that every vertex is on one loop at most,
 // once.

@@ -42,17 +42,17 @@ class Relaxation {
 };
 
 struct Laplacian {
-  VertexLists neighbours;
+  VertexLists neighbors;
   LaplaceWeights weights;
 
   Laplacian(std::span<const Vec3f> positions, std::span<const std::array<uint32_t, 3>> triangles)
-      : neighbours(neighbours_of(positions.size(), triangles)),
-        weights(laplace_weights(positions, triangles, neighbours)) {}
+      : neighbors(neighbors_of(positions.size(), triangles)),
+        weights(laplace_weights(positions, triangles, neighbors)) {}
 
   std::vector<std::pair<uint32_t, double>> row(uint32_t v) const {
     std::vector<std::pair<uint32_t, double>> r{{v, weights.vertex[v]}};
-    for (uint32_t i = neighbours.start[v]; i < neighbours.start[v + 1]; ++i)
-      r.emplace_back(neighbours.items[i], -weights.edge[i]);
+    for (uint32_t i = neighbors.start[v]; i < neighbors.start[v + 1]; ++i)
+      r.emplace_back(neighbors.items[i], -weights.edge[i]);
     return r;
   }
 };

@@ -26,8 +26,8 @@ class Refinement {
 
   Patch run() {
     relax();
-    constexpr int kMostRounds =
-        40;  // each splits all triangles that are too large: sizes shrink geometrically
+    // Each splits all triangles that are too large: sizes shrink geometrically
+    constexpr int kMostRounds = 40;
     for (int round = 0; round < kMostRounds && split_large(); ++round) relax();
     return std::move(patch_);
   }
@@ -63,14 +63,14 @@ class Refinement {
   bool split(uint32_t t) {
     const auto [a, b, c] = patch_.triangles[t];
     const std::vector<Vec3f>& p = patch_.positions;
-    const Vec3f centre = (p[a] + p[b] + p[c]) / 3.0f;
+    const Vec3f center = (p[a] + p[b] + p[c]) / 3.0f;
     const float size = (size_[a] + size_[b] + size_[c]) / 3.0f;
     for (const uint32_t v : {a, b, c}) {
-      const float reach = kDensity * length(p[v] - centre);
+      const float reach = kDensity * length(p[v] - center);
       if (reach <= size || reach <= size_[v]) return false;
     }
     const uint32_t m = uint32_t(p.size());
-    patch_.positions.push_back(centre);
+    patch_.positions.push_back(center);
     size_.push_back(size);
     leave(t);
     replace(t, {a, b, m});

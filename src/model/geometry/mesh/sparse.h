@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sparse symmetric positive definite systems A x = b: factorised once, solved for as many right-hand sides as
+// Sparse symmetric positive definite systems A x = b: factorized once, solved for as many right-hand sides as
 // wanted.
 #pragma once
 
@@ -16,7 +16,7 @@ struct SparseEntry {
 
 class SparseSolver {
  public:
-  // Factorises the n x n matrix whose elements are the sums of the entries at their place; entries above the
+  // Factorizes the n x n matrix whose elements are the sums of the entries at their place; entries above the
   // diagonal are not looked at, so give the lower triangle or the whole matrix. One thread; same entries in
   // the same order, same bits. Time and memory on the graph of a surface: about n log n. Errors: an entry
   // outside the matrix; a matrix that is not positive definite (a Laplacian without anything fixed).

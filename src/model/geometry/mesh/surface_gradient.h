@@ -12,8 +12,8 @@
 namespace cei3d {
 
 struct SurfaceGradient {
-  std::vector<std::array<float, 9>>
-      gradients;               // #vertices, row-major F: small offsets d from the vertex become F d
+  // #vertices, row-major F: small offsets d from the vertex become F d
+  std::vector<std::array<float, 9>> gradients;
   std::vector<Vec3f> normals;  // #vertices, unit: F^-T n
 };
 

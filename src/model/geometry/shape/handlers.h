@@ -14,8 +14,8 @@ namespace cei3d {
 struct HandlerPoints {
   std::vector<Vec3f> positions;  // #N, unit-sphere frame
   std::vector<Vec3f> normals;    // #N, unit
-  std::vector<float>
-      footprints;     // #N, distance between neighbouring pixels' hits where the point was seen best
+  // #N, distance between neighboring pixels' hits where the point was seen best
+  std::vector<float> footprints;
   float spacing = 0;  // no two points are nearer than this; every hit has one within it
 };
 

@@ -24,8 +24,8 @@ struct GridIndex {
   static int axis(float t) { return int(std::floor(clamp(t, -1073741824.0f, 1073741824.0f))); }
 };
 
-// Neighbourhood of a cell, the cell itself first: most queries that succeed do so there.
-inline constexpr GridIndex kCellNeighbours[27] = {
+// Neighborhood of a cell, the cell itself first: most queries that succeed do so there.
+inline constexpr GridIndex kCellNeighbors[27] = {
     {0, 0, 0},   {-1, 0, 0},  {1, 0, 0},   {0, -1, 0}, {0, 1, 0},   {0, 0, -1},   {0, 0, 1},
     {-1, -1, 0}, {1, -1, 0},  {-1, 1, 0},  {1, 1, 0},  {-1, 0, -1}, {1, 0, -1},   {-1, 0, 1},
     {1, 0, 1},   {0, -1, -1}, {0, 1, -1},  {0, -1, 1}, {0, 1, 1},   {-1, -1, -1}, {1, -1, -1},
@@ -43,7 +43,7 @@ class PointIndex {
   bool any_within(Vec3f x, float radius, F visit) const {
     if (points_.empty()) return false;
     const GridIndex home = GridIndex::of(x, cell_);
-    for (const GridIndex& d : kCellNeighbours) {
+    for (const GridIndex& d : kCellNeighbors) {
       const GridIndex c{home.x + d.x, home.y + d.y, home.z + d.z};
       const uint32_t b = bucket(c);
       for (uint32_t k = bucket_start_[b]; k < bucket_start_[b + 1]; ++k) {

@@ -79,8 +79,8 @@ Mat3f gradient_at(const Pose& pose, const Corners& corners, const Hit& hit) {
   const float weight[3] = {1 - hit.b1 - hit.b2, hit.b1, hit.b2};
   for (int c = 0; c < 3; ++c)
     for (int i = 0; i < 3; ++i) m.row[i] += pose.gradients[corners[c]].row[i] * weight[c];
-  constexpr float kFlat =
-      0.05f;  // the surface is folded or crushed: what lies beside the mesh stays as it was
+  // The surface is folded or crushed: what lies beside the mesh stays as it was
+  constexpr float kFlat = 0.05f;
   return determinant(m) > kFlat ? m : Mat3f::identity();
 }
 

@@ -18,9 +18,9 @@ struct Pose {
   std::vector<Mat3f> gradients;  // #V, of the deformation since pose 0, or since the vertex was made
   std::vector<int> born;         // #F, the pose that the triangle was made in; 0: reconstructed
   std::vector<int> shaped;       // #F, the pose that gave the triangle its present shape; 0: as reconstructed
-  std::vector<uint32_t>
-      before;  // #F, the same triangle in the pose before; for one that was made in this pose: 0
-  std::vector<Vec3f> colors;  // #V, linear base colour that new matter has there; unused elsewhere
+  // #F, the same triangle in the pose before; for one that was made in this pose: 0
+  std::vector<uint32_t> before;
+  std::vector<Vec3f> colors;  // #V, linear base color that new matter has there; unused elsewhere
 
   int born_in(uint32_t triangle) const { return born.empty() ? 0 : born[triangle]; }
   int shaped_in(uint32_t triangle) const { return shaped.empty() ? 0 : shaped[triangle]; }

@@ -83,7 +83,7 @@ float Projector::alpha_at(double u, double v) const {
   return top * (1 - k.ty) + bottom * k.ty;
 }
 
-// The deepest of the four neighbours counts: on a slope the texels differ by more than the tolerance.
+// The deepest of the four neighbors counts: on a slope the texels differ by more than the tolerance.
 bool Projector::sees(double u, double v, double z) const {
   const Texels k(depth, camera, u, v);
   const float far = max(max(texel(depth, k.x, k.y), texel(depth, k.x + 1, k.y)),

@@ -17,13 +17,13 @@ struct Projector {
   Image alpha;               // 1 channel, [0, 1], over the whole picture
   float least_alpha = 0.5f;  // the mask is where alpha is not less
   Image depth;  // 1 channel, z-depth of the surface, over the whole picture, may be finer; 0: none
-  float tolerance =
-      0.012f;               // how far behind the stored depth a point still counts as seen, unit-sphere units
+  // How far behind the stored depth a point still counts as seen, unit-sphere units
+  float tolerance = 0.012f;
   float min_facing = 0.1f;  // least cosine between the normal and the way to the camera
 
   bool empty() const { return alpha.empty(); }
   bool soft() const { return least_alpha < 0.5f; }  // alpha says how much, not only where
-  // Alpha at the pixel position (u, v): bilinear between texel centres, 0 outside the picture.
+  // Alpha at the pixel position (u, v): bilinear between texel centers, 0 outside the picture.
   float alpha_at(double u, double v) const;
   // Whether the point is seen by the camera, faces it and lies in the mask.
   bool covers(Vec3f position, Vec3f normal) const;

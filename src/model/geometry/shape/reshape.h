@@ -25,10 +25,10 @@ struct Reshape {
 
   std::vector<uint32_t> removed;  // triangles of the mesh before that are gone, ascending
 
-  // New vertices, numbered on from the mesh's; their unit normals and base colour (linear).
+  // New vertices, numbered on from the mesh's; their unit normals and base color (linear).
   std::vector<Vec3f> added_positions, added_normals, added_colors;
   std::vector<std::array<uint32_t, 3>> added_triangles;
-  // Old vertices that the added triangles name, ascending, and the base colour that the new matter has there.
+  // Old vertices that the added triangles name, ascending, and the base color that the new matter has there.
   std::vector<uint32_t> rim;
   std::vector<Vec3f> rim_colors;
 

@@ -18,7 +18,7 @@ class ScoredPoints {
     std::vector<Vec3f> positions;  // #N, unit-sphere frame
     std::vector<Vec3f> normals;    // #N, unit, outward
     std::vector<float> scores;     // #N, [0, 1]; from 1/2 on: of the part
-    float spacing = 0;             // between neighbouring points, unit-sphere units
+    float spacing = 0;             // between neighboring points, unit-sphere units
   };
 
   ScoredPoints() = default;  // nothing scores

@@ -18,7 +18,7 @@ struct HullMask {
 struct VisualHull {
   int n = 0;  // cells an axis
   Vec3f lo{-1, -1, -1}, hi{1, 1, 1};
-  std::vector<uint8_t> inside;  // [z][y][x]: the cell's centre is inside
+  std::vector<uint8_t> inside;  // [z][y][x]: the cell's center is inside
 };
 
 // A cell is inside when every view that has it in its frame shows the object there, but for `tolerated` views
