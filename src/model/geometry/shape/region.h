@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // "Does this surface point belong to the edit": within reach of an edited handler point, on the same side of
-// the surface. [paper sec. 4.2], with reach by local
-// spacing: docs/method.md#regions-and-routing.
+// the surface. [paper sec. 4.2], with reach by local spacing: docs/method.md#regions-and-routing.
 //
 // Points alone give an outline as soft as their reach. A region that comes from a painted view therefore
 // holds the painted mask as well, with the camera and the depths of that view: a point belongs to it only if
