@@ -17,24 +17,15 @@ namespace {
 
 constexpr Split kSplits[] = {Split::train, Split::val, Split::test};
 
-std::string known_formats() {
-  std::string text;
-  for (const CaptureFormat& f : capture_formats()) text += (text.empty() ? "" : ", ") + f.name;
-  return text;
-}
-
 const CaptureFormat& format_of(const fs::path& path, const std::string& wanted) {
   for (const CaptureFormat& f : capture_formats())
     if (wanted.empty() ? f.detect(path) : f.name == wanted) {
       if (!f.detect(path)) fail("{} is not a {} capture.", path.string(), wanted);
       return f;
     }
-  if (!wanted.empty()) fail_usage("There is no capture format '{}'. Known: {}.", wanted, known_formats());
-  fail(
-      "{} is not a capture: it has neither transforms_train.json (NeRF-synthetic), transforms.json "
-      "(nerfstudio), "
-      "cam_dict_norm.json (PhySG) nor cameras_sphere.npz (IDR, NeuS).",
-      path.string());
+  if (!wanted.empty())
+    fail_usage("There is no capture format '{}'. Known: {}.", wanted, capture_format_names());
+  fail("{} is not a capture of a known format ({}).", path.string(), capture_format_layouts("; "));
 }
 
 Vec3d camera_right(const Camera& c) {
@@ -161,6 +152,18 @@ std::vector<View> views_of(const Capture& capture, Split split) {
   for (const View& v : capture.views)
     if (v.split == split) views.push_back(v);
   return views;
+}
+
+std::string capture_format_names() {
+  std::string text;
+  for (const CaptureFormat& f : capture_formats()) text += (text.empty() ? "" : ", ") + f.name;
+  return text;
+}
+
+std::string capture_format_layouts(const std::string& separator) {
+  std::string text;
+  for (const CaptureFormat& f : capture_formats()) text += (text.empty() ? "" : separator) + f.layout;
+  return text;
 }
 
 Capture load_capture(const fs::path& path, const CaptureOptions& options) {

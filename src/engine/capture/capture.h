@@ -13,7 +13,7 @@
 namespace cei3d {
 
 struct CaptureOptions {
-  std::string format;  // "nerf-synthetic", "physg" or "idr"; empty: told by the files
+  std::string format;  // one of capture_format_names(); empty: detected from the files
   int test_every = 0;  // every Nth training view becomes a test view when the capture has none; 0: never
   int views = 0;       // train on so many only, those of keep_training_views(); 0: on all
 };
@@ -22,6 +22,11 @@ struct CaptureOptions {
 // .json or .npz. Missing pictures are no error here: check() lists them all. Errors: nothing recognized,
 // malformed cameras, no views.
 Capture load_capture(const std::filesystem::path& path, const CaptureOptions& options = {});
+
+// "nerf-synthetic, physg, ...": the formats that load_capture() reads.
+std::string capture_format_names();
+// The programs and the files of each format.
+std::string capture_format_layouts(const std::string& separator);
 
 const char* split_name(Split split);
 std::optional<Split> split_from_name(const std::string& name);

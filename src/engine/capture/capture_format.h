@@ -14,6 +14,7 @@ namespace cei3d {
 
 struct CaptureFormat {
   std::string name;
+  std::string layout;                                 // its files, for help and messages
   bool (*detect)(const std::filesystem::path& path);  // path: folder or file
   Capture (*load)(const std::filesystem::path& path);
 };
