@@ -33,8 +33,7 @@ struct Camera {
   }
 };
 
-// The same camera for a picture at 1/n of the size; columns and rows that don't fill an n x n block are cut
-// off.
+// The camera of the image at 1/n of its size. Columns and rows that do not fill an n x n block are cut off.
 inline Camera scaled(Camera c, int n) {
   c.width /= n;
   c.height /= n;

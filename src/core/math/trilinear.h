@@ -8,7 +8,7 @@
 
 namespace cei3d {
 
-// value_at(x, y, z): of a cell, each in [0, n). Beyond the outermost centers: as there.
+// value_at(x, y, z): value of a cell, indices in [0, n). Positions beyond the outermost centers are clamped.
 template <class ValueAt>
 float trilinear(Vec3f p, int n, const ValueAt& value_at) {
   float f[3];

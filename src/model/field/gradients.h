@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gradients of a field from many chunks, brought together in an order that does not depend on threads.
+// Sums the gradients of many chunks of points in an order that does not depend on the number of threads.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace cei3d {
 
-// What one chunk leaves behind for the step.
+// Gradients of one chunk.
 struct ChunkGradients {
-  int padded = 0, columns = 1;      // samples (multiple of 32) and panels a group
+  int padded = 0, columns = 1;      // number of samples (a multiple of 32), and panels per group of 32
   AlignedVector<float> points;      // [padded / 32][3][32]
   AlignedVector<float> d_encoding;  // [padded / 32 * columns][encoding_rows][32]
   std::vector<float> network;       // MlpWeights::gradient_size()
@@ -20,12 +20,12 @@ struct ChunkGradients {
   void reset(const FieldConfig& config, size_t network_size, int n, int columns);
 };
 
-// Sums chunk after chunk into the optimizer's gradients: layers by parameter, tables by level (an owner a
-// level).
+// Adds the chunks, in order, to the optimizer's gradients: layers one parameter per thread, tables one level
+// per thread.
 void accumulate_gradients(const Device&, const Field&, const std::vector<ChunkGradients>&, int levels,
                           Optimizer&);
 
-// The layers alone: adds `network` gradients, in chunk order. params has "layer0/weight", ...
+// For the layers alone: adds the `network` gradients in chunk order. params: "layer0/weight", ...
 void accumulate_layers(const ParamSet& params, const std::vector<const std::vector<float>*>& network,
                        Optimizer&);
 

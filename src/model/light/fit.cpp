@@ -45,7 +45,7 @@ SgLobe unblurred(SgLobe seen, float sharpness) {
   return {seen.axis, lambda, seen.mu * (sg_integral(seen.lambda) / sg_integral(lambda))};
 }
 
-// Unknowns: raw axis (normalized on use), logarithm of the sharpness, square root of the color. Planes
+// Unknowns: raw axis (normalized on use), logarithm of the sharpness, square root of the color, as planes
 // [7][padded].
 class LobeFit {
  public:

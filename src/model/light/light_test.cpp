@@ -80,7 +80,7 @@ TEST(SgMixture, ArraysRoundTripAndBadOnesAreRefused) {
     expect_near(back.lobes[k].axis, light.lobes[k].axis, 1e-6f);
     EXPECT_EQ(back.lobes[k].lambda, light.lobes[k].lambda);
   }
-  // Files of others hold raw values: signs and lengths mean nothing.
+  // Light files of other programs hold raw values: neither signs nor lengths are normalized.
   const SgMixture raw = light_from_array(std::vector<float>{0, 0, 5, -7, 1, -2, 3});
   expect_near(raw.lobes[0].axis, {0, 0, 1}, 1e-6f);
   EXPECT_EQ(raw.lobes[0].lambda, 7);

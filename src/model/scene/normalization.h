@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one similarity transform between the capture's own frame ("input") and the unit sphere that fields live
-// in.
+// Similarity transform between the capture frame ("input") and the unit frame, in which fields live.
 #pragma once
 
 #include "core/math/camera.h"

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kLeastWeight = 0.05, kMostWeight = 5;  // an edge between equilateral triangles has 0.58
 
-// Index of v among the neighbors of u.
+// Position of v in the list of u.
 size_t slot(const VertexLists& neighbors, uint32_t u, uint32_t v) {
   const auto begin = neighbors.items.begin() + neighbors.start[u];
   const auto end = neighbors.items.begin() + neighbors.start[u + 1];

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kGrain = 1024;
 
-// Free vertices without a way to a held one have no place of their own: they are not freed.
+// Free vertices that are not connected to a held one have no defined position, so they are not freed.
 std::vector<uint8_t> anchored(const VertexLists& neighbors, const std::vector<uint8_t>& free) {
   std::vector<uint8_t> reached(free.size(), 0);
   std::vector<uint32_t> queue;
@@ -62,7 +62,7 @@ class Descent {
   const std::vector<Vec3d>& positions() const { return now_; }
   const std::vector<uint32_t>& free_list() const { return free_list_; }
 
-  // The least energy for the rotations as they are: one Newton step on a quadratic.
+  // Minimum of the energy for fixed rotations: one Newton step on a quadratic.
   void move() {
     const size_t n = free_list_.size();
     for_each(cells_, [&](uint32_t v) { bend_[v] = bending(v); });
@@ -77,7 +77,7 @@ class Descent {
     for (size_t i = 0; i < n; ++i) now_[free_list_[i]] += Vec3d{step[i], step[n + i], step[2 * n + i]};
   }
 
-  // The least energy for the positions as they are.
+  // Minimum of the energy for fixed positions.
   void rotate() {
     for_each(turning_, [&](uint32_t v) {
       Mat3d s{};
@@ -107,8 +107,8 @@ class Descent {
     });
   }
 
-  // Cells are the vertices whose share of the energy free vertices change; those of them turn that are not
-  // fixed.
+  // Cells are the vertices whose energy depends on free vertices; the rotations of those that are not fixed
+  // are unknowns.
   void list_cells(const ArapConstraints& constraints) {
     std::vector<uint8_t> fixed(free_.size());
     for (size_t v = 0; v < free_.size(); ++v) fixed[v] = !free_[v];

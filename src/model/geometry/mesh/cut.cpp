@@ -14,8 +14,8 @@
 namespace cei3d {
 namespace {
 
-// Rings of the mesh around a hole that take part in closing it. Base colors next to the outline are mixed
-// with those of the part; the patch gets its own from kMixedRings farther on.
+// Rings of the mesh around a hole that take part in closing it. Albedo next to the outline is mixed with that
+// of the part; the patch takes its own from kMixedRings rings away.
 constexpr int kRings = 5, kMixedRings = 3;
 constexpr float kBendingShare = 0.25f;  // of the hole's radius, over which its rim is rounded
 
@@ -27,7 +27,7 @@ Vec3f corner_normal(std::span<const Vec3f> positions, const Triangle& t, int k) 
   return normalize(n) * std::atan2(length(n), dot(u, v));
 }
 
-// A hole with the mesh around it, as a mesh of its own.
+// A hole and the rings around it, as a mesh of its own.
 class Hole {
  public:
   Hole(const Mesh& rest, const VertexLists& around, std::span<const Vec3f> colors,
@@ -44,8 +44,8 @@ class Hole {
       if (ids_[i] != kNew) colors_[i] = colors[ids_[i]];
   }
 
-  // Puts the closed hole into the reshape of a mesh of `vertices` vertices, those already added included.
-  // rim: base colors of the patch at vertices of the outline.
+  // Adds the closed hole to the reshape of a mesh of `vertices` vertices, including those already added. rim:
+  // albedo of the patch at vertices of the outline.
   void close(size_t vertices, Reshape& out, std::map<uint32_t, Vec3f>& rim) {
     std::vector<uint8_t> is_new(positions_.size());
     for (size_t i = 0; i < ids_.size(); ++i) is_new[i] = ids_[i] == kNew;
@@ -90,7 +90,7 @@ class Hole {
     ring_of_.assign(ids_.size(), 0);
   }
 
-  // Of the circle as long as the outline.
+  // Radius of the circle that is as long as the outline.
   float radius() const {
     float around = 0;
     for (size_t i = 0; i < loop_size_; ++i)

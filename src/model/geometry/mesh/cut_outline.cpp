@@ -14,7 +14,7 @@ constexpr double kIslandShare = 0.02;  // of the part's area
 
 using Triangle = std::array<uint32_t, 3>;
 
-// Means over neighbors, then the majority: outlines shorten like a curve under tension.
+// Averages over neighbors, then takes the majority: outlines shorten like a curve under tension.
 std::vector<uint8_t> smooth(const VertexLists& neighbors, std::span<const uint8_t> labels) {
   std::vector<float> now(labels.begin(), labels.end()), next(now.size());
   for (int round = 0; round < kSmoothingRounds; ++round) {
@@ -40,7 +40,7 @@ std::vector<double> vertex_areas(const Mesh& mesh) {
   return area;
 }
 
-// Flips connected sets of that label whose area is below `least` and which border on the other label.
+// Flips connected components of that label whose area is below `least` and that border on the other label.
 void flip_islands(const VertexLists& neighbors, const std::vector<double>& area, uint8_t label, double least,
                   std::vector<uint8_t>& labels) {
   std::vector<uint8_t> seen(labels.size(), 0);
@@ -65,7 +65,7 @@ void flip_islands(const VertexLists& neighbors, const std::vector<double>& area,
   }
 }
 
-// Edges that the remaining triangles leave open and removed ones used to close, as successor of each vertex.
+// Edges that only one remaining triangle has and a removed one had, as successor of each vertex.
 std::multimap<uint32_t, uint32_t> open_edges(const Mesh& mesh, const std::vector<uint8_t>& removed) {
   std::vector<uint8_t> sides(mesh.positions.size(), 0);  // of the outline on which a vertex has triangles
   for (size_t i = 0; i < mesh.triangles.size(); ++i)

@@ -11,7 +11,7 @@ constexpr size_t kMostCorners = 200;  // time grows with the cube
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-// Dynamic programme over the sub-polygons i .. j, whose last side is the diagonal j -> i.
+// Dynamic programming over the sub-polygons i .. j, whose last side is the diagonal j -> i.
 class LeastArea {
  public:
   // corners: indices into the loop, in its order.
@@ -45,7 +45,7 @@ class LeastArea {
     cost_[i * n_ + j] = best + (!is_side && joined(corners_[i], corners_[j]) ? kJoinedCost : 0);
   }
 
-  // Area, and a little of the edges' squares: among equals, rounder triangles.
+  // Area plus a small multiple of the squared edge lengths: prefers rounder triangles among equal areas.
   double cost(size_t i, size_t k, size_t j) const {
     const Vec3d a = at(i), b = at(k), c = at(j);
     const Vec3d u = b - a, v = c - b, w = a - c;

@@ -26,7 +26,7 @@ class Refinement {
 
   Patch run() {
     relax();
-    // Each splits all triangles that are too large: sizes shrink geometrically
+    // Each round splits all triangles that are too large, so sizes shrink geometrically.
     constexpr int kMostRounds = 40;
     for (int round = 0; round < kMostRounds && split_large(); ++round) relax();
     return std::move(patch_);
@@ -78,15 +78,16 @@ class Refinement {
       patch_.triangles.push_back(more);
       enter(uint32_t(patch_.triangles.size() - 1));
     }
-    // At once: the centroids of two slivers along one edge would come too near to each other.
+    // Splits all at once; otherwise the centroids of two slivers along one edge would come too close to each
+    // other.
     improve(a, b);
     improve(b, c);
     improve(c, a);
     return true;
   }
 
-  // Flips edges until none is worse than the other diagonal. Bounded, since in space flips might go in
-  // circles.
+  // Flips edges until none is worse than the other diagonal. The number of rounds is bounded, because flips
+  // in space may cycle.
   void relax() {
     for (int sweep = 0; sweep < 30; ++sweep) {
       bool any = false;

@@ -23,8 +23,8 @@ struct Ring {
   std::span<const uint32_t> neighbors;
 };
 
-// The F that takes the ring's edges before to those after, in the least squares; unit normal n goes along
-// with the ring's rotation, since edges alone leave it open.
+// Least-squares F that maps the ring's edges before to those after. The unit normal n is mapped by the ring's
+// rotation, because the edges do not determine it.
 Mat3d fit(const Ring& ring, uint32_t v, Vec3d n) {
   Mat3d moments{}, products{};
   double size = 0;

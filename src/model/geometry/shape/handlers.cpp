@@ -8,7 +8,7 @@
 namespace cei3d {
 namespace {
 
-// The kept points, in a hash grid that grows: chains of points a bucket.
+// The kept points in a growing hash grid: one chain of points per bucket.
 class Thinning {
  public:
   Thinning(float spacing, size_t n_hits)
@@ -16,7 +16,7 @@ class Thinning {
     kept.spacing = spacing;
   }
 
-  // Index of a kept point within the spacing of the hit and on its side of the surface; -1: there is none.
+  // Index of a kept point within the spacing of the hit and on its side of the surface; -1: none.
   int neighbor(const Hit& hit) const {
     const GridIndex home = GridIndex::of(hit.position, spacing_);
     for (const GridIndex& d : kCellNeighbors) {

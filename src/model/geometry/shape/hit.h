@@ -7,16 +7,16 @@
 
 namespace cei3d {
 
-// Where a camera ray meets the surface. Unit-sphere frame.
+// A point where a camera ray meets the surface. Unit frame.
 struct Hit {
   Vec3f position;
-  Vec3f normal;       // unit, outward, of the SDF at the scale that shading uses
+  Vec3f normal;       // unit, outward; sdf_normals()
   Vec3f to_camera;    // unit, from the hit to the camera
-  uint32_t triangle;  // of the surface mesh nearest along the ray ...
-  float b1, b2;       // ... and its barycentrics: p = (1 - b1 - b2) v0 + b1 v1 + b2 v2
+  uint32_t triangle;  // of the surface mesh, nearest along the ray
+  float b1, b2;       // barycentric coordinates: p = (1 - b1 - b2) v0 + b1 v1 + b2 v2
 };
 
-// Where the light comes from that the camera sees mirrored there. Unit.
+// Mirror direction of the hit, towards the light: unit.
 inline Vec3f mirror_direction(const Hit& h) {
   return normalize(h.normal * (2 * dot(h.normal, h.to_camera)) - h.to_camera);
 }

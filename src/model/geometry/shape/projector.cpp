@@ -22,7 +22,7 @@ struct Texels {
   }
 };
 
-// Beyond the border of the picture its outermost texels go on.
+// Clamped at the border of the image.
 float texel(const Image& image, int x, int y) {
   return *image.at(min(max(x, 0), image.width - 1), min(max(y, 0), image.height - 1));
 }
@@ -83,7 +83,7 @@ float Projector::alpha_at(double u, double v) const {
   return top * (1 - k.ty) + bottom * k.ty;
 }
 
-// The deepest of the four neighbors counts: on a slope the texels differ by more than the tolerance.
+// Compares with the deepest of the four neighbors: on a slope the texels differ by more than the tolerance.
 bool Projector::sees(double u, double v, double z) const {
   const Texels k(depth, camera, u, v);
   const float far = max(max(texel(depth, k.x, k.y), texel(depth, k.x + 1, k.y)),
