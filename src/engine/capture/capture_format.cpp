@@ -11,7 +11,7 @@
 namespace cei3d {
 namespace {
 
-// Python writes NaN and Infinity bare, which is not JSON; outside strings they become null.
+// Replaces bare NaN and Infinity outside strings, which Python writes but JSON does not have, by null.
 std::string without_nan(const std::string& text) {
   std::string out;
   bool in_string = false;

@@ -25,8 +25,8 @@ void require_size(const View& view, const Image& image, const std::filesystem::p
         path.string(), image.width, image.height, view.name, c.width, c.height);
 }
 
-// How much of each pixel is the object, by the mask file. What scaling and compression leave of plain black
-// and white counts as such.
+// Coverage of each pixel by the mask file. Values near black and white, from scaling and compression, count
+// as black and white.
 std::vector<float> read_mask_file(const View& view) {
   constexpr float kPlain = 0.05f;
   const Image mask = read_image(view.mask_path);

@@ -15,7 +15,7 @@
 namespace cei3d {
 namespace {
 
-// What can be wrong with a single view, in the order of reporting.
+// Problems of a single view, in the order of reporting.
 enum Problem { kNoFile, kBroken, kBadPose, kEmptyMask, kNoMask, kFullMask, kCut, kAway, kProblems };
 
 struct ProblemText {

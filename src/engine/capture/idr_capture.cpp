@@ -52,7 +52,7 @@ Matrix34 read_matrix(const std::string& npy, const std::string& where) {
   return m;
 }
 
-// The ball that scale_mat takes to the unit ball's place. It is the same for all views.
+// The ball that scale_mat maps the unit ball to; the same for all views.
 std::optional<ObjectBall> stated_region(const Entries& entries, int64_t camera, const std::string& where,
                                         Capture& capture) {
   const auto entry = entries.find(fmt::format("scale_mat_{}.npy", camera));
@@ -66,8 +66,8 @@ std::optional<ObjectBall> stated_region(const Entries& entries, int64_t camera, 
   return std::nullopt;
 }
 
-// The files of the cameras: by the number that is their name where each camera finds a file, or each file a
-// camera; else by sorted order, as the format's own loaders do.
+// The file of each camera: by the number in its name if every camera finds a file or every file a camera;
+// else by sorted order, as the format's own loaders do.
 Files match(std::span<const int64_t> cameras, const Files& files, const fs::path& folder, Capture& capture) {
   std::map<int64_t, fs::path> by_number;
   for (const fs::path& file : files)
@@ -100,7 +100,7 @@ Files match_folder(const fs::path& root, std::initializer_list<const char*> name
   return {};
 }
 
-// A camera whose principal point is not in the picture belongs to a picture of another size.
+// A principal point outside the image means that the camera belongs to an image of another size.
 void warn_of_other_sizes(Capture& capture) {
   for (const View& v : capture.views) {
     const Camera& c = v.camera;
@@ -116,7 +116,8 @@ void warn_of_other_sizes(Capture& capture) {
 
 }  // namespace
 
-// Gram-Schmidt on the rows of K R from the last one up, K being upper triangular with a positive diagonal.
+// RQ decomposition by Gram-Schmidt on the rows of K R, last row first; K is upper triangular with a positive
+// diagonal.
 Camera camera_from_projection(const Matrix34& p, const std::string& where) {
   Mat3d m;
   Vec3d last;

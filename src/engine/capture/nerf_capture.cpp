@@ -35,7 +35,7 @@ std::vector<CameraFile> camera_files(const fs::path& path) {
   return files;
 }
 
-// The picture that file_path means: as it stands, or with a suffix; the first guess when there is none.
+// The image that file_path names, as written or with a suffix; the first guess when no file exists.
 fs::path picture_path(const fs::path& folder, const std::string& file_path) {
   const fs::path base = folder / fs::path(file_path).lexically_normal();
   if (has_image_suffix(base)) return base;
@@ -44,7 +44,7 @@ fs::path picture_path(const fs::path& folder, const std::string& file_path) {
   return base.string() + ".png";
 }
 
-// Names become paths below an output folder, so they never lead out of it.
+// View names become paths below an output folder and must not lead out of it.
 std::string view_name(const std::string& file_path, Split split) {
   fs::path name = fs::path(file_path).lexically_normal();
   if (has_image_suffix(name)) name.replace_extension();
@@ -67,7 +67,7 @@ double focal_from_angle(double angle, int pixels, const std::string& where) {
   return 0.5 * pixels / std::tan(0.5 * angle);
 }
 
-// Lists of file_path in nerfstudio's transforms.json; a frame that is on none of them is a training view.
+// The split of a frame by nerfstudio's lists of file_path; a frame on no list is a training view.
 std::map<std::string, Split> listed_splits(const Json& file, const std::string& name) {
   std::map<std::string, Split> splits;
   for (const Split split : {Split::train, Split::val, Split::test}) {

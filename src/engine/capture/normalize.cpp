@@ -22,7 +22,7 @@ Vec3d solve(const Mat3d& a, Vec3d b) {  // symmetric, by Cramer's rule
   return (c0 * b.x + c1 * b.y + c2 * b.z) / det;
 }
 
-// One silhouette: its leftmost and rightmost pixel in each row, which hold its outline's extremes.
+// A silhouette: the leftmost and rightmost pixel of each row, which include the extremes of its outline.
 struct Silhouette {
   const HullMask* view;
   std::vector<Vec2<double>> outline;  // pixel centers
@@ -64,8 +64,8 @@ std::vector<Silhouette> find_silhouettes(std::span<const HullMask> masks) {
   return out;
 }
 
-// Largest distance from `center` to a line of sight through the silhouette: the object's width about that
-// point.
+// Largest distance from `center` to a line of sight through the silhouette: half the width of the object
+// around that point.
 double reach(const Silhouette& s, Vec3d center) {
   double best = 0;
   const Vec3d to_center = center - s.view->camera.center;
@@ -93,7 +93,7 @@ Normalization first_box(const std::vector<Silhouette>& silhouettes) {
         "object from several sides, and check the poses.");
   std::vector<double> reaches;
   for (const Silhouette& s : silhouettes) reaches.push_back(reach(s, center));
-  // A mask with a stray pixel far out must not inflate the box: long objects are within 3 medians, specks
+  // One mask with a stray pixel must not enlarge the box: long objects are within 3 medians, stray pixels
   // mostly not.
   const double half = std::min(*std::max_element(reaches.begin(), reaches.end()), 3 * median(reaches)) * 1.05;
   if (!(half > 0)) fail("The object's size could not be told from the masks.");
@@ -105,7 +105,7 @@ struct Vote {
   double half_diagonal = 0;  // of a cell
 };
 
-// Hull in the cube [-1, 1]^3 of `box`, as far as it lies in the region.
+// Hull in the cube [-1, 1]^3 of `box`, clipped to the region.
 Vote vote(std::span<const HullMask> masks, const Normalization& box, int n, int tolerated,
           const std::optional<ObjectBall>& region = {}) {
   std::vector<HullMask> local(masks.begin(), masks.end());
@@ -123,7 +123,7 @@ Vote vote(std::span<const HullMask> masks, const Normalization& box, int n, int 
   return out;
 }
 
-// The cube around points, as the transform that makes it [-1, 1]^3.
+// Bounding cube of points, as the transform that maps it to [-1, 1]^3.
 Normalization cube_around(const Vote& v) {
   Vec3d lo = v.cells[0], hi = v.cells[0];
   for (const Vec3d p : v.cells)
@@ -133,7 +133,7 @@ Normalization cube_around(const Vote& v) {
   return {(lo + hi) / 2.0, 1 / half};
 }
 
-// Smallest ball around points, to 1 %: step towards the farthest, less each time. [Badoiu and Clarkson 2003]
+// Smallest enclosing ball, to 1 %: shrinking steps towards the farthest point. [Badoiu and Clarkson 2003]
 Normalization sphere_around(const Vote& v, Vec3d center) {
   double radius = 0;
   for (int i = 1; i <= 100; ++i) {

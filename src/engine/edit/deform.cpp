@@ -15,14 +15,13 @@ namespace cei3d {
 namespace {
 
 constexpr float kDefaultRadius = 0.3f, kRadiusPerDrag = 1.5f;
-constexpr float kNear = 0.05f;  // how far from the surface a handle may be given
-// Share of the radius that is held around the handle and moves with it, and over which bending is resisted. A
-// single vertex would draw out a spike; a sixth or so leaves most of the radius to the fall-off. (Measured on
-// the ear of spot: shares of 0 / 0.15 / 0.25 leave 0.10 / 0.06 / 0.09 of the drag to an artist's smooth
-// fall-off.)
+constexpr float kNear = 0.05f;  // maximum distance of a given handle from the surface
+// Share of the radius that moves rigidly with the handle, and over which bending is resisted. A single vertex
+// would draw out a spike; about a sixth leaves most of the radius to the fall-off. (On the ear of spot shares
+// of 0, 0.15, 0.25 differ from an artist's smooth fall-off by 0.10, 0.06, 0.09 of the drag.)
 constexpr float kHandleShare = 0.15f;
-// Descent goes on for as many iterations as some seconds allow: 60 for a region of ten thousand vertices or
-// less, fewer for larger ones, where the last dozens move the surface by a hundredth or two of the drag.
+// Iterations for a few seconds of work: 60 up to ten thousand vertices, fewer for larger regions, where the
+// last dozens move the surface by one or two hundredths of the drag.
 constexpr int kMostIterations = 60, kLeastIterations = 12, kVertexIterations = 600'000;
 
 std::string in_capture(const Scene& scene, Vec3f p) {
@@ -75,7 +74,7 @@ struct Reach {
   float radius = 0;
 };
 
-// What moves: the disc around the handle with the drag, the rest of the radius or the part as it likes.
+// Constraints: the disc around the handle moves with the drag, the rest of the radius or the part is free.
 Reach reach_of(const Mesh& mesh, const DeformRequest& r, const std::vector<uint8_t>& on_part,
                uint32_t handle) {
   GeodesicLimits limits;

@@ -22,7 +22,7 @@ void check_request(const MaterialRequest& r) {
   for (int c = 0; r.color && c < 3; ++c) check_share((*r.color)[c], "A channel of the color,");
 }
 
-// A third of the area of the triangles around each vertex.
+// Vertex areas: a third of the area of the triangles around each vertex.
 std::vector<float> vertex_areas(const Mesh& mesh) {
   std::vector<float> area(mesh.positions.size(), 0);
   for (const auto& t : mesh.triangles) {
@@ -33,7 +33,7 @@ std::vector<float> vertex_areas(const Mesh& mesh) {
   return area;
 }
 
-// Vertices of the present surface that a layer contains, and what they weigh.
+// Vertices of the present surface in the layer's region, with their areas.
 struct Inside {
   std::vector<Hit> hits;
   std::vector<float> areas;

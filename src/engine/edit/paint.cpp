@@ -36,7 +36,7 @@ void check_stroke(const Stroke& s) {
          s.painted_pixels);
 }
 
-// What all scribbles together want where.
+// Targets of all scribbles together.
 struct Paint {
   std::vector<Hit> hits;
   std::vector<Vec3f> targets;   // #hits, linear base color
@@ -50,7 +50,7 @@ float pixel_of(const Stroke& s) {
   return footprints[footprints.size() / 2] * float(s.scale);
 }
 
-// later: the regions of the strokes after this one, which cover it.
+// later: regions of the strokes after this one, which cover it.
 void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
   paint.pixel = min(paint.pixel, pixel_of(s));
   for (size_t i = 0; i < s.hits.size(); ++i) {
@@ -64,7 +64,7 @@ void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
   }
 }
 
-// The base colors that show the targets in the light, and the share of them that is out of reach.
+// Replaces the targets by the albedo that shows them in the light. Returns the share that no albedo shows.
 float solve_for_base_color(const Device& device, const Scene& scene, const SceneLight& light, Paint& paint) {
   Appearance look = appearance_at(device, scene, paint.hits);
   std::fill(look.albedo.begin(), look.albedo.end(), Vec3f{0, 0, 0});
@@ -88,8 +88,8 @@ float solve_for_base_color(const Device& device, const Scene& scene, const Scene
   return float(outside) / float(std::max<size_t>(paint.hits.size(), 1));
 }
 
-// Cells of half a pixel on the finest level, a table that holds those on the stroke: borders between
-// two colors stay as sharp as the scribble shows them.
+// Finest cells of half a pixel and a table that holds those on the stroke, so that borders between two colors
+// stay as sharp as in the scribble.
 FieldConfig branch_config(const Paint& paint) {
   FieldConfig c;
   c.encoding.levels = 8;
@@ -105,7 +105,7 @@ FieldConfig branch_config(const Paint& paint) {
 
 constexpr int kSteps = 400, kBatch = 2048;
 
-// One batch, with replacement: a function of seed and step.
+// A batch drawn with replacement, a function of seed and step.
 struct Batch {
   std::vector<Vec3f> x, target;
 
@@ -118,8 +118,8 @@ struct Batch {
   }
 };
 
-// d/d(out) of the mean cross entropy: with the sigmoid behind it, the slope before it is out - target, so
-// that dark and saturated colors, where the sigmoid is flat, are learned as fast as the others.
+// Gradient of the mean cross entropy. Through the sigmoid it becomes out - target, so dark and saturated
+// colors, where the sigmoid is flat, are learned as fast as others.
 FieldTrainer::Loss cross_entropy(const std::vector<Vec3f>& target) {
   return [&target](int begin, int end, const float* out, float* d_out) {
     for (int i = begin; i < end; ++i)
@@ -177,7 +177,7 @@ std::vector<Stroke> trace_strokes(const Device& device, const Scene& scene, cons
   return strokes;
 }
 
-// Routing::none.
+// For Routing::none.
 std::shared_ptr<const Field> relearn_all(const Device& device, const Scene& scene,
                                          const PaintRequest& request, const Paint& paint,
                                          const std::vector<Region>& regions, Progress& progress) {

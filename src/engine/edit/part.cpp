@@ -15,8 +15,8 @@
 namespace cei3d {
 namespace {
 
-constexpr float kInside = 0.5f;        // score from which on a point belongs to a part
-constexpr double kEverything = 0.995;  // share of the points from which on a part is the whole object
+constexpr float kInside = 0.5f;        // score from which a point belongs to a part
+constexpr double kEverything = 0.995;  // share of the points from which a part is the whole object
 
 double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -33,7 +33,7 @@ std::vector<float> selected(const Device& device, const Scene& scene, const Part
   return grow(*scene.handlers, handler_colors(device, scene), seeds);
 }
 
-// Of each handler point, how much it belongs to the part that there is.
+// Score of each handler point in the existing part.
 std::vector<float> existing_scores(const Scene& scene, const std::string& part) {
   const std::vector<Hit> hits = handler_hits(scene);
   const EditLayer& layer = part_layer(scene, part);
@@ -56,7 +56,7 @@ void combine(PartCombination::How how, std::span<const float> old, std::vector<f
   }
 }
 
-// Without propagation: what the view does not show is not of the part.
+// Without propagation: points that the view does not show are outside.
 void keep_seen(const Scene& scene, const Camera& camera, std::vector<float>& scores) {
   constexpr float kMinFacing = 0.1f;
   const HandlerPoints& points = *scene.handlers;
@@ -106,7 +106,7 @@ PartResult select_part(const Device& device, const Scene& scene, const PartReque
   if (!scene.handlers || scene.handlers->positions.empty())
     fail("The object has no handler points to select a part of; reconstruct it again.");
   const double start = now();
-  if (r.combination) part_layer(scene, r.combination->part);  // an error before the work
+  if (r.combination) part_layer(scene, r.combination->part);  // fail before the work
   const std::vector<Seed> seeds = part_seeds(device, scene, r);
   progress.report({"part", 0.1, -1, ""});
   const double seeded = now();

@@ -36,8 +36,8 @@ std::vector<SurfacePoint> clicked_points(const Device& device, const Scene& scen
   return points;
 }
 
-// Points that the view shows well, a pixel or so away from the mask's border: what lies on it is left to
-// color.
+// Seeds of a mask: points that the view shows well, about a pixel away from the mask's border. Points on the
+// border are decided by color.
 std::vector<Seed> mask_seeds(const Scene& scene, const PartRequest& r) {
   if (r.mask.width != r.camera.width || r.mask.height != r.camera.height)
     fail_usage("The mask is {}x{} pixels, view {} is {}x{}; draw it on a picture of the view's own size.",

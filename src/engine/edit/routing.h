@@ -3,7 +3,7 @@
 
 namespace cei3d {
 
-// How it is told which points of the surface a painted edit changes.
+// Which points of the surface a painted edit changes.
 enum class Routing {
   both,     // those within reach of edited handler points that the painted view sees in the scribble
   points,   // those within reach of edited handler points, as in the paper: the outline is as soft as their

@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kInterrupted =
     "The evaluation was interrupted; what is finished is kept, and the same command goes on.";
 
-// What happens within a row, under the row's name and by the row's clock.
+// Progress within a row, under the row's name and clock.
 class RowProgress : public Progress {
  public:
   RowProgress(Progress& whole, std::string name) : whole_(whole), name_(std::move(name)) {
@@ -92,7 +92,7 @@ class Job {
     write_file_atomic(r_.out / "report.md", report_.markdown());
   }
 
-  // The row that is kept, or a new one.
+  // The kept row, or a new one.
   EvaluationRow row(const std::string& name, const std::string& what, const Json& settings,
                     const std::function<void(EvaluationRow&, Progress&)>& work) {
     if (progress_.cancelled()) throw Error(ErrorCode::interrupted, kInterrupted);

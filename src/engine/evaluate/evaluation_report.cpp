@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The evaluation's tables.
+// Tables of the evaluation report.
 #include "core/base/error.h"
 #include "engine/evaluate/evaluation.h"
 #include "engine/session/number_text.h"
@@ -16,7 +16,7 @@ Json rows_json(const Rows& rows) {
   return list;
 }
 
-// A column: its name, and what a row has in it; empty: no row of the table has it and it is left out.
+// A column: its name, and the text of a row; columns without any text are left out.
 struct Column {
   std::string name;
   std::string (*cell)(const EvaluationRow&);
@@ -111,7 +111,7 @@ std::vector<Column> columns(std::initializer_list<std::vector<Column>> groups) {
   return all;
 }
 
-// Where the pictures of the rows are.
+// Where the images of the rows are.
 std::string pictures_of(const Rows& rows) {
   std::string text;
   for (const EvaluationRow& r : rows)

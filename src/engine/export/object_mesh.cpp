@@ -12,7 +12,7 @@ std::vector<Vec3f> in_capture_frame(std::vector<Vec3f> points, const Normalizati
   return points;
 }
 
-// Without the vertices that no triangle uses: those of parts that were removed.
+// Drops vertices without triangles, left by removed parts.
 Mesh compact(const Mesh& mesh) {
   constexpr uint32_t kUnused = ~0u;
   std::vector<uint32_t> id(mesh.positions.size(), kUnused);
@@ -31,7 +31,7 @@ Mesh compact(const Mesh& mesh) {
   return out;
 }
 
-// That of two corners of a triangle counts, else that of the first.
+// Material of a triangle: that of two of its corners, else of the first.
 std::vector<uint32_t> by_triangle(const Mesh& mesh, const std::vector<uint32_t>& of_vertex) {
   std::vector<uint32_t> out;
   for (const auto& t : mesh.triangles) {
@@ -41,7 +41,7 @@ std::vector<uint32_t> by_triangle(const Mesh& mesh, const std::vector<uint32_t>&
   return out;
 }
 
-// Without materials that no triangle has.
+// Drops materials that no triangle has.
 MeshMaterials used(const MeshMaterials& all) {
   constexpr uint32_t kUnused = ~0u;
   std::vector<uint32_t> id(all.list.size(), kUnused);

@@ -91,7 +91,7 @@ std::vector<std::string> wanted_channels(const Imf::ChannelList& list) {
   return names;
 }
 
-// The interleaved picture of a window, as the library wants to hear it: addressed from pixel (0, 0).
+// The interleaved image of a window, addressed from pixel (0, 0) as the library expects.
 Imf::FrameBuffer frame_buffer(Image& image, const std::vector<std::string>& names,
                               const Imath::Box2i& window) {
   const size_t x_step = sizeof(float) * size_t(image.channels), y_step = x_step * size_t(image.width);

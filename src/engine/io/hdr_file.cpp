@@ -69,7 +69,7 @@ Header read_header(Reader& in) {
   return header;
 }
 
-// New style: the four components one after the other, each run-length coded.
+// New style: the four components one after the other, each run-length encoded.
 void read_components(Reader& in, std::vector<Rgbe>& row) {
   for (int c = 0; c < 4; ++c)
     for (size_t x = 0; x < row.size();) {
@@ -131,8 +131,8 @@ ImageSize hdr_size(const std::string& bytes, const std::string& name) {
 Image decode_hdr(const std::string& bytes, const std::string& name) {
   Reader in(bytes, name);
   const Header header = read_header(in);
-  // A row takes at least 4 bytes (old runs) or 2 bytes a 127 pixels and component: refuse sizes the bytes
-  // cannot hold.
+  // A row takes at least 4 bytes (old runs) or 2 bytes per 127 pixels and component; larger sizes are
+  // impossible.
   if (in.left() < size_t(header.size.height) * 4) in.broken("it ends too early");
   Image image(header.size.width, header.size.height, 3);
   std::vector<Rgbe> row(size_t(header.size.width));
@@ -152,7 +152,7 @@ std::string encode_hdr(const Image& image) {
     fail("Cannot write an HDR picture with {} channels.", image.channels);
   std::string out =
       fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
-  // Else a flat row could be taken for a coded one
+  // Other rows could be mistaken for encoded ones.
   const bool coded = image.width >= 8 && image.width < 32768;
   for (int y = 0; y < image.height; ++y) {
     std::vector<Rgbe> row(size_t(image.width));

@@ -29,7 +29,7 @@ ImageSize png_size(const std::string& bytes, const std::string& name) {
   return {int(number(16)), int(number(20))};
 }
 
-// powf for the few values that 8-bit files hold is most of the loading time; a table of them is exact.
+// Decoding by powf would be most of the loading time; a table of the few values of 8-bit files is exact.
 float linear_of_stored(float v) {
   if (!(v >= 0 && v <= 1)) return linear_from_srgb(v);
   static const std::array<std::pair<float, float>, 256> table = [] {

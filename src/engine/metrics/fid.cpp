@@ -12,7 +12,7 @@
 namespace cei3d {
 namespace {
 
-// A set's mean, and its pictures' deviations from it over sqrt(n - 1): the covariance is X^T X.
+// Mean of a set, and deviations of its images from it, divided by sqrt(n - 1): the covariance is X^T X.
 struct Spread {
   Eigen::RowVectorXd mean;
   Eigen::MatrixXd x;  // #pictures x dimensions
@@ -29,7 +29,7 @@ Spread spread_of(const FeatureSet& s) {
   return out;
 }
 
-// The two pixels that a position between pixel centers lies between, and how near it is to the second.
+// The two pixels around a position, and the weight of the second.
 struct Between {
   int first, second;
   float share;
@@ -98,8 +98,8 @@ double frechet_distance(const FeatureSet& a, const FeatureSet& b) {
     fail("Features of {} and of {} numbers cannot be compared; both sets need the same network.",
          a.dimensions, b.dimensions);
   const Spread p = spread_of(a), q = spread_of(b);
-  // The symmetric square root of S1^(1/2) S2 S1^(1/2) has the trace that is wanted; with S = X^T X its
-  // eigenvalues are the singular values of X1 X2^T, which is as small as the sets are.
+  // tr (S1 S2)^(1/2) is the trace of the symmetric square root of S1^(1/2) S2 S1^(1/2); with S = X^T X its
+  // eigenvalues are the singular values of X1 X2^T, a matrix as small as the sets.
   const Eigen::MatrixXd cross = p.x * q.x.transpose();
   const double root = Eigen::BDCSVD<Eigen::MatrixXd>(cross).singularValues().sum();
   const double d = (p.mean - q.mean).squaredNorm() + p.x.squaredNorm() + q.x.squaredNorm() - 2 * root;

@@ -9,10 +9,10 @@
 namespace cei3d {
 namespace {
 
-// A step of a third of the typical one halves the weight or so: walkers take the smoothest ways, which noise
+// A step of a third of the typical one about halves the weight: walkers take the smoothest paths, which noise
 // leaves open and borders do not. Results hardly change between half and twice that.
 constexpr float kSharpness = 8;
-constexpr float kLeast = 1e-6f;  // weight of an edge that no walker takes
+constexpr float kLeast = 1e-6f;  // minimum weight of an edge
 constexpr double kPrior = 1e-5;  // weight of the prior at a point
 constexpr double kSeed = 1e3;    // weight of a seed
 constexpr float kLeastTypical =
