@@ -22,8 +22,7 @@ void add_output(CLI::App* verb, EditOutput& o) {
   };
   verb->add_option("--picture", o.picture,
                    "PNG file to write: before and after side by side, in the edited view or else the first "
-                   "held-out view. Also "
-                   "reports the number of changed pixels")
+                   "held-out view. Also reports the number of changed pixels")
       ->check(CLI::Validator(ends_in_png, "PNG"));
 }
 

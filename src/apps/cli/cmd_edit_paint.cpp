@@ -45,31 +45,28 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
   CLI::App* verb = commands.add("paint", "Paint on the surface seen in one view", edit);
   verb->add_option("--view", o->views,
                    "View that was painted on, for example train/r_055. --view and --scribble may be given "
-                   "several times, in pairs; "
-                   "later scribbles cover earlier ones")
+                   "several times, in pairs; later scribbles cover earlier ones")
       ->required()
       ->expected(1)
       ->take_all();
   verb->add_option("--scribble", o->scribbles,
                    "RGBA PNG of the view's size. Where it is opaque, its sRGB color becomes the albedo; "
-                   "semi-transparent strokes "
-                   "are blended by their alpha")
+                   "semi-transparent strokes are blended by their alpha")
       ->required()
       ->expected(1)
       ->take_all();
-  CLI::Option* target = verb->add_option("--target", o->target,
-                                         "Meaning of the painted color. albedo: color without light. "
-                                         "appearance: color that the view shows under the "
-                                         "present light. radiance: color shown under every light")
-                            ->check(CLI::IsMember({"albedo", "appearance", "radiance"}))
-                            ->capture_default_str();
+  CLI::Option* target =
+      verb->add_option("--target", o->target,
+                       "Meaning of the painted color. albedo: color without light. appearance: color that "
+                       "the view shows under the present light. radiance: color shown under every light")
+          ->check(CLI::IsMember({"albedo", "appearance", "radiance"}))
+          ->capture_default_str();
   verb->add_flag("--erase", o->command.erase, "Restore the reconstructed albedo where the scribble is opaque")
       ->excludes(target);
   verb->add_option("--routing", o->routing,
                    "How painted surface is found. both: near handler points and inside the scribble's "
-                   "outline. points, outline: one "
-                   "of them. none: retrain the object's albedo field instead, which changes other places "
-                   "too. For comparison")
+                   "outline. points, outline: one of them. none: retrain the object's albedo field instead, "
+                   "which changes other places too. For comparison")
       ->check(CLI::IsMember({"both", "points", "outline", "none"}))
       ->capture_default_str();
   verb->add_option("--seed", o->command.seed, "Random seed")->capture_default_str();

@@ -35,15 +35,13 @@ void add_where(CLI::App* verb, Options& o) {
       verb->add_option("--negative", o.negative, "Clicks that are not on the part, X,Y ...");
   verb->add_option("--mask", c.mask,
                    "Instead of clicks: a PNG of the view's size that shows the whole part, opaque, or bright "
-                   "if it is opaque "
-                   "everywhere")
+                   "if it is opaque everywhere")
       ->excludes(positive)
       ->excludes(negative)
       ->check(CLI::ExistingFile);
   verb->add_option("--segmenter", c.segmenter,
                    "How the part is found. grow: in 3D by color and creases, about a second. sam: in images "
-                   "by a network that "
-                   "`./run sam` installs")
+                   "by a network that `./run sam` installs")
       ->check(CLI::IsMember({"grow", "sam"}))
       ->capture_default_str();
 }

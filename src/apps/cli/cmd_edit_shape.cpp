@@ -61,8 +61,7 @@ void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
   verb->add_option("--drag", o->drag, "With --view: movement in pixels, DX,DY, at the depth of the point");
   verb->add_option("--radius", o->radius,
                    "Distance along the surface up to which it moves, capture units (default: 0.3 of the "
-                   "object's radius, or 1.5 "
-                   "times the drag if that is more)");
+                   "object's radius, or 1.5 times the drag if that is more)");
   verb->add_option("--part", o->part, "Move only this part");
   add_output(verb, o->output);
   commands.on(verb, o, [project](const DeformOptions& options, Session& session, Console& console) {

@@ -33,8 +33,7 @@ void evaluate(const Options& o, Session& session, Console& console) {
 void add_networks(CLI::App* verb, NetworkFiles& files) {
   verb->add_option("--lpips-model", files.lpips,
                    "ONNX network for LPIPS, from two images [1,3,H,W] in [-1,1] to a distance; see "
-                   "docs/evaluation.md (default: no "
-                   "LPIPS)")
+                   "docs/evaluation.md (default: no LPIPS)")
       ->check(CLI::ExistingFile);
   verb->add_option(
           "--fid-model", files.fid,
@@ -46,16 +45,14 @@ void add_residual_switch(CLI::App* verb, bool& on) {
   verb->add_flag_callback(
       "--no-residual", [&on] { on = false; },
       "Light and material alone, without the correction network (which is never used in edits and under "
-      "other "
-      "lights)");
+      "other lights)");
 }
 
 void add_eval(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add("eval",
                                 "Compare renders with photographs: PSNR and SSIM, on white and inside the "
-                                "object mask; LPIPS and FID with "
-                                "networks that you supply");
+                                "object mask; LPIPS and FID with networks that you supply");
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("capture", o->capture,
                    "CAPTURE or CAPTURE:split (default: the project's own held-out views)");
@@ -78,8 +75,7 @@ void add_eval(Commands& commands) {
       "Also score the area that this edit (an id of `log`) does not touch, against the photographs");
   verb->add_option("--truth", o->request.truth,
                    "With --edit and --mask: folder of true images of the edited object, named like the "
-                   "views; scores fidelity "
-                   "inside the mask and leakage outside")
+                   "views; scores fidelity inside the mask and leakage outside")
       ->check(CLI::ExistingDirectory);
   verb->add_option("--mask", o->request.masks,
                    "With --edit and --truth: folder of masks, bright where the edit should be")

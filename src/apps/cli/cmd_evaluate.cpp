@@ -156,10 +156,10 @@ void add_edits(CLI::App* verb, Options& o) {
 
 void add_evaluate(Commands& commands) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("evaluate",
-                                "The paper's evaluation of a capture: novel views, a paint and a part edit, "
-                                "ablations, fewer and smaller "
-                                "photographs; a report with images. Can be interrupted and called again");
+  CLI::App* verb = commands.add(
+      "evaluate",
+      "The paper's evaluation of a capture: novel views, a paint and a part edit, ablations, fewer and "
+      "smaller photographs; a report with images. Can be interrupted and called again");
   verb->add_option("capture", o->capture, "Folder of posed photographs, or its .json")->required();
   verb->add_option("-o,--output", o->out, "Folder for the report and everything it is made from")->required();
   add_object(verb, *o);

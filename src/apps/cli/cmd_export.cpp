@@ -31,8 +31,7 @@ void add_export(Commands& commands) {
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("-o,--output", o->request.out,
                    ".glb or .ply: mesh with albedo per vertex, in the capture's frame and scale. .npy: light "
-                   "lobes [M,7] (axis, "
-                   "sharpness, RGB peak radiance)")
+                   "lobes [M,7] (axis, sharpness, RGB peak radiance)")
       ->required();
   verb->add_flag("--points", o->request.points,
                  "With .ply: write the handler points with their normals instead of the mesh");

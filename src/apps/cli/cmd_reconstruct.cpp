@@ -37,16 +37,16 @@ void add_reconstruct(Commands& commands) {
   verb->add_option("capture", o->capture,
                    "Folder of posed photographs, or its .json or .npz; not needed with --resume");
   verb->add_option("-o,--output", o->project, "Project folder to create")->required();
-  verb->add_option("--preset", options.preset,
-                   "fast: small networks, minutes. balanced: as fast with four times the steps; with --time "
-                   "the same as fast. paper: "
-                   "the paper's network sizes; about 28 hours on two cores unless --time is given")
+  verb->add_option(
+          "--preset", options.preset,
+          "fast: small networks, minutes. balanced: as fast with four times the steps; with --time the same "
+          "as fast. paper: the paper's network sizes; about 28 hours on two cores unless --time is given")
       ->check(CLI::IsMember({"fast", "balanced", "paper"}))
       ->capture_default_str();
-  CLI::Option* time = verb->add_option("--time", o->time,
-                                       "Time for the whole reconstruction: seconds, or 90s, 10m, 1h30m; the "
-                                       "schedule is fitted to it (default: the "
-                                       "preset's number of steps, see --iterations)");
+  CLI::Option* time =
+      verb->add_option("--time", o->time,
+                       "Time for the whole reconstruction: seconds, or 90s, 10m, 1h30m; the schedule is "
+                       "fitted to it (default: the preset's number of steps, see --iterations)");
   verb->add_option("--iterations", options.iterations,
                    "Steps of the geometry stage, instead of --time; 0: the preset's, 4000 (fast), 16000 "
                    "(balanced), 200000 (paper)")

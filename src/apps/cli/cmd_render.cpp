@@ -52,19 +52,18 @@ void add_render(Commands& commands) {
       commands.add("render", "Render images of a project: DIR/CHANNEL/VIEW.png, and DIR/render.json");
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("-o,--output", o->out, "Folder for the images")->required();
-  CLI::Option* cameras = verb->add_option("--cameras", o->cameras,
-                                          "CAPTURE, CAPTURE:train, :val or :test, or a FILE.json with "
-                                          "cameras, such as a render.json (default: the "
-                                          "project's held-out views, or all views when there are none)");
+  CLI::Option* cameras = verb->add_option(
+      "--cameras", o->cameras,
+      "CAPTURE, CAPTURE:train, :val or :test, or a FILE.json with cameras, such as a render.json (default: "
+      "the project's held-out views, or all views when there are none)");
   verb->add_option("--turntable", o->turntable,
                    "N views on a circle around the up axis, at the mean distance and height of the cameras")
       ->check(CLI::Range(1, 100000))
       ->excludes(cameras);
-  verb->add_option(
-          "--channels", o->channels,
-          "Comma-separated: rgb, albedo, diffuse, specular (RGBA, sRGB, straight alpha), normal (world space "
-          "of the "
-          "capture, (n+1)/2, 16-bit), depth (z-depth, 16-bit, scale in render.json), roughness, mask (gray)")
+  verb->add_option("--channels", o->channels,
+                   "Comma-separated: rgb, albedo, diffuse, specular (RGBA, sRGB, straight alpha), normal "
+                   "(world space of the capture, (n+1)/2, 16-bit), depth (z-depth, 16-bit, scale in "
+                   "render.json), roughness, mask (gray)")
       ->capture_default_str();
   verb->add_option(
       "--size", o->size,

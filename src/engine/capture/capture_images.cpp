@@ -20,7 +20,7 @@ void require_size(const View& view, const Image& image, const std::filesystem::p
   const Camera& c = view.camera;
   if (image.width != c.width || image.height != c.height)
     fail(
-        "{} is {} x {} pixels, but view {} should have {} x {}. All pictures and masks of a split need one "
+        "{} is {} x {} pixels, but view {} should have {} x {}. All images and masks of a split need one "
         "size.",
         path.string(), image.width, image.height, view.name, c.width, c.height);
 }

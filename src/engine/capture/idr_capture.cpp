@@ -81,13 +81,13 @@ Files match(std::span<const int64_t> cameras, const Files& files, const fs::path
   }
   if (found == files.size()) return out;  // some may be missing: check() lists them
   if (found == cameras.size()) {
-    capture.warnings.push_back(fmt::format("{} of {} pictures in {} have no camera and are left out.",
+    capture.warnings.push_back(fmt::format("{} of {} images in {} have no camera and are left out.",
                                            files.size() - found, files.size(), folder.string()));
     return out;
   }
   if (files.size() == cameras.size()) return files;
   fail(
-      "The {} pictures in {} fit the {} cameras neither by name nor by number. Name them 000000, 000001, ... "
+      "The {} images in {} fit the {} cameras neither by name nor by number. Name them 000000, 000001, ... "
       "like the matrices.",
       files.size(), folder.string(), cameras.size());
 }
@@ -106,9 +106,8 @@ void warn_of_other_sizes(Capture& capture) {
     const Camera& c = v.camera;
     if (c.cx > 0 && c.cx < c.width && c.cy > 0 && c.cy < c.height) continue;
     capture.warnings.push_back(
-        fmt::format("The principal point ({:.0f}, {:.0f}) of view {} lies outside its picture of {} x {}. "
-                    "Were the pictures "
-                    "resized or cropped without the cameras? K has to be changed with them.",
+        fmt::format("The principal point ({:.0f}, {:.0f}) of view {} lies outside its image of {} x {}. Were "
+                    "the images resized or cropped without the cameras? K has to be changed with them.",
                     c.cx, c.cy, v.name, c.width, c.height));
     return;
   }
@@ -162,12 +161,12 @@ Capture load_idr(const fs::path& path) {
   const std::vector<int64_t> cameras = indices_of(entries, "world_mat_");
   if (cameras.empty()) fail("{} has no matrices world_mat_0, world_mat_1, ...", file.string());
   const Files images = match_folder(root, {"image", "images"}, cameras, capture);
-  if (images.empty()) fail("There are no pictures in {}.", (root / "image").string());
+  if (images.empty()) fail("There are no images in {}.", (root / "image").string());
   const Files masks = match_folder(root, {"mask", "masks"}, cameras, capture);
 
   ImageSize size;
   for (size_t i = 0; i < images.size() && size.width == 0; ++i) size = size_of_picture(images[i]);
-  if (size.width == 0) fail("No picture in {} can be read.", (root / "image").string());
+  if (size.width == 0) fail("No image in {} can be read.", (root / "image").string());
   for (size_t i = 0; i < cameras.size(); ++i) {
     const std::string name = fmt::format("world_mat_{}", cameras[i]);
     View view;

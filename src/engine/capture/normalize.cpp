@@ -88,15 +88,15 @@ Normalization first_box(const std::vector<Silhouette>& silhouettes) {
   const Vec3d center = nearest_point_to_lines(origins, axes);
   if (!std::isfinite(dot(center, center)))
     fail(
-        "The cameras don't say where the object is: their lines of sight are parallel, or poses are not "
-        "finite. Photograph the "
-        "object from several sides, and check the poses.");
+        "The cameras do not determine where the object is: their lines of sight are parallel, or poses are "
+        "not "
+        "finite. Photograph the object from several sides, and check the poses.");
   std::vector<double> reaches;
   for (const Silhouette& s : silhouettes) reaches.push_back(reach(s, center));
   // One mask with a stray pixel must not enlarge the box: long objects are within 3 medians, stray pixels
   // mostly not.
   const double half = std::min(*std::max_element(reaches.begin(), reaches.end()), 3 * median(reaches)) * 1.05;
-  if (!(half > 0)) fail("The object's size could not be told from the masks.");
+  if (!(half > 0)) fail("The masks do not determine the object's size.");
   return {center, 1 / half};
 }
 
@@ -195,9 +195,8 @@ Normalization normalization_from_masks(std::span<const HullMask> masks, std::vec
   const Vote coarse = vote(masks, box, 64, tolerated);
   if (coarse.cells.empty())
     fail(
-        "The masks have no volume in common: masks and camera poses disagree. Check that the pictures and "
-        "poses belong "
-        "together, and the axes convention of the poses.");
+        "The masks have no volume in common: masks and camera poses disagree. Check that the images and "
+        "poses belong together, and the axes convention of the poses.");
   box = cube_around(coarse);
   const Vote fine = vote(masks, box, 96, tolerated);
   return sphere_around(fine.cells.empty() ? coarse : fine, box.center);
@@ -213,8 +212,7 @@ Normalization find_normalization(const Capture& capture) {
   if (hull.empty())
     fail(
         "{} has neither masks nor an alpha channel, so the object cannot be told from the background. Give "
-        "PNGs with alpha, or "
-        "mask files.",
+        "PNGs with alpha, or mask files.",
         capture.root.string());
   return normalization_from_masks(hull, nullptr, capture.region);
 }

@@ -22,7 +22,7 @@ constexpr float kNear = 0.05f;  // maximum distance of a given handle from the s
 constexpr float kHandleShare = 0.15f;
 // Iterations for a few seconds of work: 60 up to ten thousand vertices, fewer for larger regions, where the
 // last dozens move the surface by one or two hundredths of the drag.
-constexpr int kMostIterations = 60, kLeastIterations = 12, kVertexIterations = 600'000;
+constexpr int kMaxIterations = 60, kMinIterations = 12, kVertexIterations = 600'000;
 
 std::string in_capture(const Scene& scene, Vec3f p) {
   Vec3d q = scene.normalization.input_from_unit(to_double(p));
@@ -126,8 +126,7 @@ Reshape reshape_to(const Scene& scene, const std::vector<Vec3f>& after) {
     if (!(length(after[v]) <= 1))
       fail(
           "The drag takes the surface to {}, outside the sphere of radius {:.4g} around {} that the object "
-          "lives in; "
-          "drag less far.",
+          "lives in; drag less far.",
           in_capture(scene, after[v]), 1 / scene.normalization.scale, in_capture(scene, {0, 0, 0}));
     reshape.moved.push_back(v);
     reshape.positions.push_back(after[v]);
@@ -153,8 +152,7 @@ DeformResult deform(const Scene& scene, const DeformRequest& request, Progress& 
   ArapOptions options;
   options.bending_length = kHandleShare * reach.radius;
   const int free = int(std::count(reach.constraints.free.begin(), reach.constraints.free.end(), 1));
-  options.most_iterations =
-      std::clamp(kVertexIterations / std::max(free, 1), kLeastIterations, kMostIterations);
+  options.max_iterations = std::clamp(kVertexIterations / std::max(free, 1), kMinIterations, kMaxIterations);
   const ArapResult moved = arap_deform(mesh.positions, mesh.triangles, reach.constraints, options);
   progress.report({"deform", 0.8, -1, ""});
   if (progress.cancelled())

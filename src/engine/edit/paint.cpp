@@ -25,7 +25,7 @@ void check_scribble(const Scribble& s) {
         "the scribble has no alpha channel; save it as RGBA, opaque where it paints and transparent "
         "elsewhere");
   if (s.image.width != s.camera.width || s.image.height != s.camera.height)
-    fail("the scribble is {}x{} pixels, the view {}x{}; paint on a picture of the view's own size",
+    fail("the scribble is {}x{} pixels, the view {}x{}; paint on an image of the view's own size",
          s.image.width, s.image.height, s.camera.width, s.camera.height);
 }
 

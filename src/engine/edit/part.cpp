@@ -76,12 +76,11 @@ size_t count_inside(std::span<const float> scores) {
 void check_size(size_t points, size_t all, const PartRequest& r) {
   if (points == 0)
     fail("Nothing is left in part '{}'; {}.", r.name,
-         r.combination ? "what was clicked and the part do not go together that way" : "click on its middle");
+         r.combination ? "check --add, --subtract and --intersect" : "click on its middle");
   if (double(points) >= kEverything * double(all))
     fail(
         "Part '{}' would be the whole object; add --negative clicks beside it, or change the whole object by "
-        "`edit "
-        "material`.",
+        "`edit material`.",
         r.name);
 }
 

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kInterrupted =
-    "The evaluation was interrupted; what is finished is kept, and the same command goes on.";
+    "The evaluation was interrupted. Finished rows are kept; run the same command again to continue.";
 
 // Progress within a row, under the row's name and clock.
 class RowProgress : public Progress {

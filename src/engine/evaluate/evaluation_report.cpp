@@ -117,7 +117,7 @@ std::string pictures_of(const Rows& rows) {
   for (const EvaluationRow& r : rows)
     if (r.skipped.empty())
       text += fmt::format("{}[{}](pictures/{}/)", text.empty() ? "" : ", ", r.name, r.name);
-  return text.empty() ? "" : fmt::format("\nPictures: {}\n", text);
+  return text.empty() ? "" : fmt::format("\nImages: {}\n", text);
 }
 
 std::string section(const std::string& title, const std::string& words, const Rows& rows,
@@ -175,7 +175,7 @@ std::string EvaluationReport::markdown() const {
   text += worst_picture(object);
   text += section(
       "A painted edit, and the method without its parts",
-      "The same scribble on one view, scored in all held-out views. Pictures: photograph, before, after.",
+      "The same scribble on one view, scored in all held-out views. Images: photograph, before, after.",
       paint, columns({{kEditTime, kPoints}, kFidelity, kRest}));
   text += section("A part by clicks, with and without propagation",
                   "The same clicks in one view; the part is recolored.", part,

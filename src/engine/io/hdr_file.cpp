@@ -21,7 +21,7 @@ class Reader {
   Reader(const std::string& bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
   [[noreturn]] void broken(const char* why) const {
-    fail("{} is a broken or unusual HDR picture: {}.", name_, why);
+    fail("{} is a broken or unusual HDR image: {}.", name_, why);
   }
 
   std::string line() {
@@ -105,7 +105,7 @@ void read_row(Reader& in, std::vector<Rgbe>& row) {
   const Rgbe head = in.pixel();
   const bool coded = head[0] == 2 && head[1] == 2 && head[2] < 128 && row.size() >= 8 && row.size() < 32768;
   if (!coded) return read_pixels(in, row, head);
-  if (size_t(head[2]) * 256 + head[3] != row.size()) in.broken("a row has another width than the picture");
+  if (size_t(head[2]) * 256 + head[3] != row.size()) in.broken("a row has another width than the image");
   read_components(in, row);
 }
 
@@ -149,7 +149,7 @@ Image decode_hdr(const std::string& bytes, const std::string& name) {
 
 std::string encode_hdr(const Image& image) {
   if (image.empty() || image.channels < 3)
-    fail("Cannot write an HDR picture with {} channels.", image.channels);
+    fail("Cannot write an HDR image with {} channels.", image.channels);
   std::string out =
       fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
   // Other rows could be mistaken for encoded ones.

@@ -59,7 +59,7 @@ Image decode(const std::string& bytes, const std::string& name, ImageFormat form
     case ImageFormat::hdr:
       return decode_hdr(bytes, name);
   }
-  fail("{}: unknown picture format.", name);
+  fail("{}: unknown image format.", name);
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ ImageFormat image_format(const std::string& bytes, const std::string& name) {
   if (bytes.rfind("\xff\xd8", 0) == 0) return ImageFormat::jpeg;
   if (bytes.rfind("\x76\x2f\x31\x01", 0) == 0) return ImageFormat::exr;
   if (bytes.rfind("#?", 0) == 0) return ImageFormat::hdr;
-  fail("{} is not a PNG, JPEG, EXR or Radiance HDR picture. Convert it to PNG.", name);
+  fail("{} is not a PNG, JPEG, EXR or Radiance HDR image. Convert it to PNG.", name);
 }
 
 Image read_image(const std::filesystem::path& path) {
@@ -98,7 +98,7 @@ ImageSize read_image_size(const std::filesystem::path& path) {
     case ImageFormat::hdr:
       return hdr_size(bytes, name);
   }
-  fail("{}: unknown picture format.", name);
+  fail("{}: unknown image format.", name);
 }
 
 bool has_image_suffix(const std::filesystem::path& path) {

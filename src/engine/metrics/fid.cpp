@@ -46,7 +46,7 @@ Between between(int out, int out_size, int in_size) {
 void FeatureSet::add(const std::vector<float>& row) {
   if (rows.empty()) dimensions = row.size();
   if (row.empty() || row.size() != dimensions)
-    fail("The feature network gave {} numbers for one picture and {} for another; it should be {} always.",
+    fail("The feature network gave {} numbers for one image and {} for another; it should be {} always.",
          dimensions, row.size(), dimensions);
   rows.insert(rows.end(), row.begin(), row.end());
 }
@@ -56,14 +56,14 @@ FeatureNetwork::FeatureNetwork(std::shared_ptr<const OnnxRuntime> runtime, const
     : network_(std::move(runtime), file, threads), file_(file) {
   if (network_.inputs().size() != 1 || network_.outputs().empty())
     fail(
-        "{} is not a network for --fid-model: it has {} inputs, and one picture goes in; see "
+        "{} is not a network for --fid-model: it has {} inputs, and one image goes in; see "
         "docs/evaluation.md.",
         file.string(), network_.inputs().size());
 }
 
 std::vector<float> FeatureNetwork::features(const Image& rgb) const {
   if (rgb.channels != 3 || rgb.empty())
-    fail("Features are of pictures with three channels, not {}.", rgb.channels);
+    fail("Features are of images with three channels, not {}.", rgb.channels);
   const std::string& output = network_.outputs().front();
   const OnnxTensor input = picture_tensor(resized_for_features(rgb, kSize, kSize), 1, 0);
   OnnxTensors out = network_.run({{network_.inputs().front(), input}}, {output});
@@ -92,7 +92,7 @@ Image resized_for_features(const Image& in, int width, int height) {
 
 double frechet_distance(const FeatureSet& a, const FeatureSet& b) {
   if (a.size() < 2 || b.size() < 2)
-    fail("The Frechet distance (FID) needs at least two pictures in each set; there are {} and {}.", a.size(),
+    fail("The Frechet distance (FID) needs at least two images in each set; there are {} and {}.", a.size(),
          b.size());
   if (a.dimensions != b.dimensions)
     fail("Features of {} and of {} numbers cannot be compared; both sets need the same network.",

@@ -23,7 +23,7 @@ constexpr size_t kPrompts = 5;           // prompts of each kind, besides those 
 constexpr size_t kSamples = 500;         // points of the part that views are chosen by
 constexpr float kEnough = 0.5f;          // votes, in frontal votes, that halve the need for more
 constexpr float kSurroundings = 0.5f;    // distance around the part, in its extents, where votes are wanted
-constexpr float kLeastGain = 0.02f;      // minimum mean gain per point for which a view is segmented
+constexpr float kMinGain = 0.02f;        // minimum mean gain per point for which a view is segmented
 constexpr float kMinSeen = 0.07f;        // minimum share of the part that a view must show
 
 // Score of each point from the votes so far.
@@ -257,7 +257,7 @@ int Propagation::choose_view() const {
       if (in[s.point]) known += s.facing;
       gain += s.facing * need[s.point];
     }
-    if (known < kMinSeen * part || gain < kLeastGain * float(need.size())) continue;
+    if (known < kMinSeen * part || gain < kMinGain * float(need.size())) continue;
     if (gain * known <= best) continue;
     best = gain * known;
     chosen = view;

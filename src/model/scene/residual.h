@@ -24,7 +24,7 @@ struct Residual {
   ParamSet params;
 };
 
-inline constexpr int kResidualLayers = 3, kMostResidualLayers = 8;
+inline constexpr int kResidualLayers = 3, kMaxResidualLayers = 8;
 
 // A network whose output is zero everywhere.
 Residual make_residual(std::shared_ptr<const Field> features, uint64_t seed, int layers = kResidualLayers);

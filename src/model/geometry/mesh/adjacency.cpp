@@ -6,7 +6,7 @@
 namespace cei3d {
 namespace {
 
-constexpr double kLeastWeight = 0.05, kMostWeight = 5;  // an edge between equilateral triangles has 0.58
+constexpr double kMinWeight = 0.05, kMaxWeight = 5;  // an edge between equilateral triangles has 0.58
 
 // Position of v in the list of u.
 size_t slot(const VertexLists& neighbors, uint32_t u, uint32_t v) {
@@ -64,7 +64,7 @@ LaplaceWeights laplace_weights(std::span<const Vec3f> positions,
       w.area[a] += twice_area / 6;
       total_area += twice_area / 6;
     }
-  for (double& e : w.edge) e = std::clamp(e, kLeastWeight, kMostWeight);
+  for (double& e : w.edge) e = std::clamp(e, kMinWeight, kMaxWeight);
   for (uint32_t v = 0; v < n; ++v) {
     w.area[v] = max(w.area[v], 0.1 * total_area / double(n));
     for (uint32_t i = neighbors.start[v]; i < neighbors.start[v + 1]; ++i) w.vertex[v] += w.edge[i];

@@ -202,7 +202,7 @@ ArapResult arap_deform(std::span<const Vec3f> positions, std::span<const std::ar
     result.positions[constraints.handles[i]] = constraints.targets[i];
   Descent descent(positions, triangles, constraints, options.bending_length);
   if (descent.free_list().empty()) return result;
-  for (int i = 0; i < options.most_iterations; ++i) {
+  for (int i = 0; i < options.max_iterations; ++i) {
     descent.move();
     descent.rotate();
     result.energies.push_back(descent.energy());

@@ -26,7 +26,7 @@ struct ArapConstraints {
 
 struct ArapOptions {
   float bending_length = 0;  // b, in units of the positions
-  int most_iterations = 60;
+  int max_iterations = 60;
   double tolerance = 1e-4;  // stop when an iteration lowers the energy by less than this fraction
 };
 

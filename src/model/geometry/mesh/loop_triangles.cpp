@@ -7,7 +7,7 @@
 namespace cei3d {
 namespace {
 
-constexpr size_t kMostCorners = 200;  // time grows with the cube
+constexpr size_t kMaxCorners = 200;  // time grows with the cube
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
@@ -65,7 +65,7 @@ class LeastArea {
 
 std::vector<std::array<uint32_t, 3>> triangulate_loop(std::span<const Vec3f> loop, const IsJoined& joined) {
   Triangles triangles;
-  const size_t n = loop.size(), stride = (n + kMostCorners - 1) / kMostCorners;
+  const size_t n = loop.size(), stride = (n + kMaxCorners - 1) / kMaxCorners;
   const auto taken = [&](size_t a, size_t b) { return b - a > 1 && joined(uint32_t(a), uint32_t(b % n)); };
   std::vector<uint32_t> chords;
   for (size_t begin = 0, end; begin < n; begin = end) {

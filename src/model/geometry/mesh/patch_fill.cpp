@@ -27,8 +27,8 @@ class Refinement {
   Patch run() {
     relax();
     // Each round splits all triangles that are too large, so sizes shrink geometrically.
-    constexpr int kMostRounds = 40;
-    for (int round = 0; round < kMostRounds && split_large(); ++round) relax();
+    constexpr int kMaxRounds = 40;
+    for (int round = 0; round < kMaxRounds && split_large(); ++round) relax();
     return std::move(patch_);
   }
 

@@ -38,7 +38,7 @@ Image image_of(const Tensors& tensors, const std::string& name) {
   const Tensor& t = it->second;
   if (t.shape.size() != 2 || t.shape[0] < 1 || t.shape[1] < 1 ||
       size_t(t.shape[0] * t.shape[1]) != t.f32.size())
-    fail("'{}' is not a picture; the project is damaged, undo or repeat the edit", name);
+    fail("'{}' is not an image; the project is damaged, undo or repeat the edit", name);
   Image image(int(t.shape[1]), int(t.shape[0]), 1);
   image.data = t.f32;
   return image;
