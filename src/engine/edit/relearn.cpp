@@ -57,7 +57,7 @@ std::shared_ptr<const Field> relearn(const Device& device, const Scene& scene, c
                                      const ColorSamples& beside, uint64_t seed, Progress& progress) {
   if (!scene.poses.empty())
     fail(
-        "The shape of the object was edited, and one field for all its color cannot follow that; use another "
+        "The shape of the object was edited, and its single albedo field cannot follow that; use another "
         "--routing.");
   auto field = std::make_shared<Field>(*scene.albedo);
   FieldTrainer trainer(*field, {.encoding_rate = 1e-2f, .network_rate = 2e-3f});
