@@ -27,7 +27,7 @@ void finish_edit(Session&, Console&, const EditSummary&, std::string text, const
 
 // --roughness, --specular, --metalness
 void add_material_values(CLI::App* verb, MaterialEffects&);
-// ..., --color, --replace
+// Those and --color, --replace.
 void add_effects(CLI::App* verb, MaterialEffects&);
 
 void add_edit_paint(Commands&, CLI::App* edit, ProjectName);

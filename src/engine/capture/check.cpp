@@ -160,7 +160,7 @@ void report_normalization(const std::vector<Checked>& all, const std::optional<O
     if (view->split == Split::train && result.mask.stated && !result.mask.object.empty() &&
         !result.has[kBadPose])
       masks.push_back({view->camera, result.mask.object});
-  if (masks.size() < 2) return;  // said by the views' own findings
+  if (masks.size() < 2) return;  // already reported as findings of the views
   std::vector<std::string> warnings;
   try {
     report.normalization = normalization_from_masks(masks, &warnings, region);

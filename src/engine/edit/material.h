@@ -20,8 +20,8 @@ struct MaterialRequest {
 
 struct MaterialReport {
   size_t points = 0;  // vertices of the present surface in the region
-  Vec3f mean{0, 0,
-             0};  // linear base color before, over the surface; only with a color that keeps the texture
+  // Mean linear albedo of the region before the edit; only with a color that keeps the texture.
+  Vec3f mean{0, 0, 0};
 };
 
 struct MaterialResult {

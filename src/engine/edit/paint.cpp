@@ -39,9 +39,9 @@ void check_stroke(const Stroke& s) {
 // Targets of all scribbles together.
 struct Paint {
   std::vector<Hit> hits;
-  std::vector<Vec3f> targets;   // #hits, linear base color
+  std::vector<Vec3f> targets;   // #hits, linear albedo
   std::vector<uint8_t> inside;  // #hits, 1 in the painted region, 0 just beside it
-  float pixel = 1e9f;           // of the finest scribble, on the surface, unit-sphere units
+  float pixel = 1e9f;           // of the finest scribble, on the surface, unit frame
 };
 
 float pixel_of(const Stroke& s) {

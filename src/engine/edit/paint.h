@@ -27,10 +27,9 @@ struct PaintRequest {
   uint64_t seed = 1;                // for the branch's weights and batches
   bool erase = false;               // restore the base's albedo; the scribbles' colors are ignored
   Routing routing = Routing::both;
-  // The painted surface shows the color itself, whatever the light: as if radiance were painted
-  bool unlit = false;
-  const SceneLight* seen_in = nullptr;  // null: colors are display colors of the base color wanted; else
-                                        // of what the painted view shows in this light
+  bool unlit = false;  // show the painted color as it is, under every light
+  // null: the painted colors are display colors of the albedo. Else: of the radiance under this light.
+  const SceneLight* seen_in = nullptr;
 };
 
 struct PaintReport {

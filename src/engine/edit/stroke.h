@@ -34,7 +34,7 @@ struct Stroke {
   std::vector<Hit> hits;        // in and just around the paint, facing the camera
   std::vector<Vec3f> targets;   // #hits, linear albedo of the nearest painted pixel
   std::vector<float> coverage;  // #hits, interpolated alpha; >= least_alpha: painted
-  // #hits, distance between neighboring rays on the surface, unit-sphere units
+  // #hits, distance between neighboring rays on the surface, unit frame
   std::vector<float> footprints;
   Image depth;  // of the crop at its finer scale, 0: nothing hit
 };

@@ -53,9 +53,9 @@ struct EvaluationReport {
   EvaluationRow object;  // all views, full size
   // The method, then without handler points, without disentangled properties.
   std::vector<EvaluationRow> paint;
-  std::vector<EvaluationRow> part;  // the method, then without propagation to other views
-  std::vector<EvaluationRow> views,
-      sizes;  // objects from fewer, from smaller photographs; painted where there is paint
+  std::vector<EvaluationRow> part;   // the method, then without propagation to other views
+  std::vector<EvaluationRow> views;  // objects from fewer photographs, with the paint edit if there is one
+  std::vector<EvaluationRow> sizes;  // objects from smaller photographs, likewise
   Json json() const;
   std::string markdown() const;
 };

@@ -8,7 +8,7 @@ namespace cei3d {
 
 struct Normalization {
   Vec3d center{0, 0, 0};  // input units
-  double scale = 1;       // unit-sphere units per input unit
+  double scale = 1;       // unit-frame lengths per input length
 
   Vec3d unit_from_input(Vec3d p) const { return (p - center) * scale; }
   Vec3d input_from_unit(Vec3d p) const { return p / scale + center; }

@@ -34,8 +34,7 @@ struct Scene {
   // Correction network; null: none, or the light was changed.
   std::shared_ptr<const Residual> residual;
   std::shared_ptr<const HandlerPoints> handlers;  // on the present shape
-  Poses poses;  // of the object, the last one being `surface`; empty while it has the shape it was
-                // reconstructed in
+  Poses poses;  // shape versions, the last one with `surface`; empty while the shape is the reconstructed one
   std::vector<EditLayer> layers;  // in order; later layers cover earlier ones
 };
 

@@ -12,7 +12,7 @@
 namespace cei3d {
 
 struct HandlerPoints {
-  std::vector<Vec3f> positions;  // #N, unit-sphere frame
+  std::vector<Vec3f> positions;  // #N, unit frame
   std::vector<Vec3f> normals;    // #N, unit
   // #N, distance on the surface between the hits of neighboring pixels, in the view that sees the point best.
   std::vector<float> footprints;

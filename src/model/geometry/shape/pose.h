@@ -35,7 +35,7 @@ using Poses = std::vector<std::shared_ptr<const Pose>>;
 Poses with_pose(Poses poses, std::shared_ptr<const Surface> surface, const Reshape& change);
 
 struct SurfacePoint {
-  Vec3f position, normal;  // unit-sphere frame; unit
+  Vec3f position, normal;  // unit frame; unit
 };
 // Position and normal in version k of a hit on the present surface; k must not be earlier than the hit's
 // triangle. A hit on a triangle that has not changed since then keeps its bits.

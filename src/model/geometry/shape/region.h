@@ -24,9 +24,9 @@ class Region {
  public:
   Region() = default;  // contains nothing
   struct Points {
-    std::vector<Vec3f> positions;  // #N edited points (H+), unit-sphere frame
+    std::vector<Vec3f> positions;  // #N edited points (H+), unit frame
     std::vector<Vec3f> normals;    // #N, unit
-    std::vector<float> reach;      // #N, unit-sphere units
+    std::vector<float> reach;      // #N, unit frame
   };
   // projector empty: by the points alone. No points: by the mask alone.
   explicit Region(Points points, Projector projector = {});

@@ -15,10 +15,10 @@ namespace cei3d {
 class ScoredPoints {
  public:
   struct Data {
-    std::vector<Vec3f> positions;  // #N, unit-sphere frame
+    std::vector<Vec3f> positions;  // #N, unit frame
     std::vector<Vec3f> normals;    // #N, unit, outward
     std::vector<float> scores;     // #N, [0, 1]; >= 1/2: in the part
-    float spacing = 0;             // between neighboring points, unit-sphere units
+    float spacing = 0;             // between neighboring points, unit frame
   };
 
   ScoredPoints() = default;  // nothing scores
