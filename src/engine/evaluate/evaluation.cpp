@@ -66,7 +66,7 @@ class Job {
       };
       ablation("paint-points", "handler points without the scribble's outline", kBase, Routing::points);
       ablation("paint-outline", "the scribble's outline without handler points", kBase, Routing::outline);
-      ablation("paint-none", "no handler points: one color field learns the scribble", kBase, Routing::none);
+      ablation("paint-none", "no handler points: the albedo field is retrained", kBase, Routing::none);
       ablation("paint-radiance", "RGB in place of disentangled properties", PaintTarget::radiance,
                Routing::both);
     }

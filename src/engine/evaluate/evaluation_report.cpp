@@ -75,8 +75,8 @@ const std::vector<Column> kNovelViews{
     {"PSNR in the mask", [](const EvaluationRow& r) { return db(r.scores.psnr_masked); }},
     {"LPIPS", [](const EvaluationRow& r) { return or_nothing(r.scores.lpips, "{:.4f}"); }},
     {"FID", [](const EvaluationRow& r) { return or_nothing(r.scores.fid, "{:.1f}"); }},
-    {"pictures by", [](const EvaluationRow& r) {
-       return std::string(r.scores.residual ? "light, material, residual" : "light, material");
+    {"rendered with", [](const EvaluationRow& r) {
+       return std::string(r.scores.residual ? "light, material, correction network" : "light, material");
      }}};
 const std::vector<Column> kFidelity{
     {"PSNR inside the edit",
@@ -168,7 +168,7 @@ Json EvaluationReport::json() const {
 
 std::string EvaluationReport::markdown() const {
   std::string text = fmt::format(
-      "# Evaluation of {}\n\nBy cei3d {}. docs/evaluation.md says what each figure is.\n", capture, kVersion);
+      "# Evaluation of {}\n\nBy cei3d {}. docs/evaluation.md defines the scores.\n", capture, kVersion);
   text += section("Novel views",
                   "Held-out views, rendered and compared with their photographs; the worst one is shown.",
                   {object}, columns({{kMadeIn}, kNovelViews}));
