@@ -64,7 +64,7 @@ void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
   }
 }
 
-// Replaces the targets by the albedo that shows them in the light. Returns the share that no albedo shows.
+// The base colours that show the targets in the light, and the share of them that is out of reach.
 float solve_for_base_color(const Device& device, const Scene& scene, const SceneLight& light, Paint& paint) {
   Appearance look = appearance_at(device, scene, paint.hits);
   std::fill(look.albedo.begin(), look.albedo.end(), Vec3f{0, 0, 0});

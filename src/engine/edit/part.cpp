@@ -105,7 +105,7 @@ PartResult select_part(const Device& device, const Scene& scene, const PartReque
   if (!scene.handlers || scene.handlers->positions.empty())
     fail("The object has no handler points to select a part of; reconstruct it again.");
   const double start = now();
-  if (r.combination) part_layer(scene, r.combination->part);  // fail before the work
+  if (r.combination) part_layer(scene, r.combination->part);  // an error before the work
   const std::vector<Seed> seeds = part_seeds(device, scene, r);
   progress.report({"part", 0.1, -1, ""});
   const double seeded = now();

@@ -31,7 +31,7 @@ Mesh compact(const Mesh& mesh) {
   return out;
 }
 
-// Material of a triangle: that of two of its corners, else of the first.
+// That of two corners of a triangle counts, else that of the first.
 std::vector<uint32_t> by_triangle(const Mesh& mesh, const std::vector<uint32_t>& of_vertex) {
   std::vector<uint32_t> out;
   for (const auto& t : mesh.triangles) {
@@ -41,7 +41,7 @@ std::vector<uint32_t> by_triangle(const Mesh& mesh, const std::vector<uint32_t>&
   return out;
 }
 
-// Drops materials that no triangle has.
+// Without materials that no triangle has.
 MeshMaterials used(const MeshMaterials& all) {
   constexpr uint32_t kUnused = ~0u;
   std::vector<uint32_t> id(all.list.size(), kUnused);

@@ -26,7 +26,7 @@ struct Preset {
 };
 
 // "fast" (hash grids), "balanced" (the same for longer), "paper" (the paper's networks: 8x512 SDF, 4x512
-// albedo, frequency encodings): docs/method.md#fields. Usage error for any other name.
+// albedo, frequency encodings). Usage error for any other name.
 Preset preset_by_name(const std::string& name);
 
 // Sets the grids of a preset from the size of a pixel on the object (unit-sphere units).

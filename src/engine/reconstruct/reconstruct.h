@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photos to an editable object: the geometry stage, then the appearance stage. See docs/method.md.
+// Photographs to an editable object. The stages are in engine/reconstruct/stages.h.
 #pragma once
 
 #include <optional>

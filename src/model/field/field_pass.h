@@ -32,7 +32,7 @@ class FieldPass {
 void scatter_encoding(const Device&, const FieldConfig&, int level, const float* points,
                       const float* d_encoding, int n, int columns, float* d_table);
 
-// Packs points into panels [panels][3][32]; the last panel is padded with the origin.
+// SoA panels [panels][3][32] of points; the last panel is padded with the origin.
 void points_to_panels(const Vec3f* points, int n, float* panels);
 
 }  // namespace cei3d

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sums the gradients of many chunks of points in an order that does not depend on the number of threads.
+// Gradients of a field from many chunks, brought together in an order that does not depend on threads.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,9 @@
 
 namespace cei3d {
 
-// Gradients of one chunk.
+// What one chunk leaves behind for the step.
 struct ChunkGradients {
-  int padded = 0, columns = 1;      // number of samples (a multiple of 32), and panels per group of 32
+  int padded = 0, columns = 1;      // samples (multiple of 32) and panels a group
   AlignedVector<float> points;      // [padded / 32][3][32]
   AlignedVector<float> d_encoding;  // [padded / 32 * columns][encoding_rows][32]
   std::vector<float> network;       // MlpWeights::gradient_size()
@@ -20,8 +20,8 @@ struct ChunkGradients {
   void reset(const FieldConfig& config, size_t network_size, int n, int columns);
 };
 
-// Adds the chunks, in order, to the optimizer's gradients: layers one parameter per thread, tables one level
-// per thread.
+// Sums chunk after chunk into the optimizer's gradients: layers by parameter, tables by level (an owner a
+// level).
 void accumulate_gradients(const Device&, const Field&, const std::vector<ChunkGradients>&, int levels,
                           Optimizer&);
 

@@ -62,8 +62,7 @@ class MlpPass {
   // to compute.
   void forward(const Device&, const MlpWeights&, int n, int active_inputs, int outputs);
   const float* output() const { return y_.data(); }  // [panels * columns][outputs of the config][32]
-  // Same shape as output(); filled by the caller, overwritten by backward()
-  float* d_output() { return d_y_.data(); }
+  float* d_output() { return d_y_.data(); }  // same shape; filled by the caller; overwritten by backward
   // gradient: [MlpWeights::gradient_size()], added to. d_input: same shape as input, written; may be null.
   void backward(const Device&, const MlpWeights&, int n, int active_inputs, float* gradient, float* d_input);
 

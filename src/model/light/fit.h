@@ -19,8 +19,8 @@ struct LobeFitOptions {
   float seen_through = 0;
 };
 
-// Lobes fitted by descent on the squared error of square roots, weighted by solid angle. They start on a
-// Fibonacci sphere with sharpness lobes / 2.
+// Lobes that start on a Fibonacci sphere with sharpness lobes / 2 and descend on the squared error of square
+// roots, weighted by solid angle.
 SgMixture fit_lobes(const Device&, const Image& lat_long, const LobeFitOptions& = {}, EnvUp up = EnvUp::z);
 
 }  // namespace cei3d

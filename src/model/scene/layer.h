@@ -21,7 +21,7 @@ inline constexpr int kLatestPose = -1;
 
 struct EditLayer {
   std::string id;            // "0001-paint"
-  bool everywhere = false;   // the whole object, instead of `region`
+  bool everywhere = false;   // the whole object; else `region`
   Region region;             // contains nothing by default
   std::vector<Region> also;  // further regions of the same edit, from scribbles in other views
   // Shape version that region and branch refer to: the number of changes of shape before the edit.

@@ -29,9 +29,9 @@ struct Scene {
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear
   // Mesh of the zero level set with its visibility table; replaced by changes of shape.
   std::shared_ptr<const Surface> surface;
-  SgMixture light;  // the last edit's that has one, else the reconstructed light
+  SgMixture light;  // that of the last edit that has one, when the layers have been put on
   Material material;
-  // Correction network; null: none, or the light was changed.
+  // What they cannot explain; null: nothing, or not any more, since the light was changed.
   std::shared_ptr<const Residual> residual;
   std::shared_ptr<const HandlerPoints> handlers;  // on the present shape
   Poses poses;  // shape versions, the last one with `surface`; empty while the shape is the reconstructed one

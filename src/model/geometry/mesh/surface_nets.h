@@ -14,8 +14,8 @@ struct MeshingOptions {
   float smallest_part = 0.002f;  // connected components with a smaller share of all triangles are dropped
 };
 
-// Vertices lie on the zero set to about 1e-4; normals are sdf_normals(). Error: the field has no zero set in
-// the unit sphere.
+// Vertices lie on the zero set to about 1e-4; normals are sdf_normals(). Error when the field has no zero set
+// in the unit sphere.
 Mesh extract_mesh(const Device&, const Field& sdf, const MeshingOptions& options);
 
 }  // namespace cei3d

@@ -16,7 +16,7 @@ struct Hit {
   float b1, b2;       // barycentric coordinates: p = (1 - b1 - b2) v0 + b1 v1 + b2 v2
 };
 
-// Mirror direction of the hit, towards the light: unit.
+// Where the light comes from that the camera sees mirrored there. Unit.
 inline Vec3f mirror_direction(const Hit& h) {
   return normalize(h.normal * (2 * dot(h.normal, h.to_camera)) - h.to_camera);
 }

@@ -28,7 +28,7 @@ Mesh plate() {
   return m;
 }
 
-// The vertices with x > 0 rotated about the y axis and lifted: an affine map of half the plate.
+// The vertices with x > 0 turned about the y axis and lifted: an affine map of half the plate.
 struct Bend {
   Mat3f turn;
   Vec3f lift;
