@@ -35,7 +35,7 @@ inline Camera look_at(Vec3d eye, Vec3d target, Vec3d up, int width, int height, 
   return c;
 }
 
-// n cameras on a spiral around the ball, z up, each aimed a little beside its center.
+// n cameras on a spiral around the ball, z up, each aimed a little beside its centre.
 inline std::vector<TestView> test_views(const TestBall& ball, int n, int width = 64, int height = 48) {
   std::vector<TestView> views;
   for (int i = 0; i < n; ++i) {
