@@ -24,8 +24,8 @@ HTML
   for v in r_004 r_034; do
     cp "$sample/test/$v.png" "$out/photo_$v.png"
     { figure "photo_$v.png" "photograph, held out"; figure "before/rgb/$v.png" "our render"
-      figure "before/albedo/$v.png" "base colour"; figure "before/normal/$v.png" "normals"; } | row "Reconstruction, view $v"
-    { figure "painted/rgb/$v.png" "painted"; figure "painted/albedo/$v.png" "its base colour"
+      figure "before/albedo/$v.png" "albedo"; figure "before/normal/$v.png" "normals"; } | row "Reconstruction, view $v"
+    { figure "painted/rgb/$v.png" "painted"; figure "painted/albedo/$v.png" "its albedo"
       figure "relit/rgb/$v.png" "another light"; figure "turned/rgb/$v.png" "the same light, turned by 90 degrees"; } |
       row "Edits, view $v"
   done

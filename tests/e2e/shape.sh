@@ -15,17 +15,17 @@ refused_edit() {
 seen=(--view train/r_055 --pixel 96,96)
 refused_edit 2 'from|view' edit "$project" deform
 refused_edit 2 'from|view' edit "$project" deform --from 0,0,0 --view train/r_055
-refused_edit 2 'from.*3 numbers' edit "$project" deform --from 0,zero,0 --to 0,0,1
-refused_edit 2 'drag.*2 numbers' edit "$project" deform "${seen[@]}" --drag 1,2,3
-refused_edit 1 'no surface' edit "$project" deform --from 0,0,0 --to 0,0,0.5
+refused_edit 2 '--from' edit "$project" deform --from 0,zero,0 --to 0,0,1
+refused_edit 2 '--drag' edit "$project" deform "${seen[@]}" --drag 1,2,3
+refused_edit 1 'surface' edit "$project" deform --from 0,0,0 --to 0,0,0.5
 refused_edit 1 'background' edit "$project" deform --view train/r_055 --pixel 1,1 --drag 9,0
-refused_edit 2 'not in view' edit "$project" deform --view train/r_055 --pixel 1000,1 --drag 9,0
-refused_edit 1 'outside the sphere' edit "$project" deform "${seen[@]}" --drag 5000,0
-refused_edit 2 'no length' edit "$project" deform "${seen[@]}" --drag 0,0
-refused_edit 2 'more than 0' edit "$project" deform "${seen[@]}" --drag 9,0 --radius -1
-refused_edit 1 'whole object' edit "$project" deform "${seen[@]}" --drag 9,0 --radius 50
-refused_edit 2 'no part' edit "$project" deform "${seen[@]}" --drag 9,0 --part ear
-refused_edit 2 'no part' edit "$project" remove --part ear
+refused_edit 2 'r_055' edit "$project" deform --view train/r_055 --pixel 1000,1 --drag 9,0
+refused_edit 1 'sphere' edit "$project" deform "${seen[@]}" --drag 5000,0
+refused_edit 2 'drag' edit "$project" deform "${seen[@]}" --drag 0,0
+refused_edit 2 '--radius' edit "$project" deform "${seen[@]}" --drag 9,0 --radius -1
+refused_edit 1 'whole|radius' edit "$project" deform "${seen[@]}" --drag 9,0 --radius 50
+refused_edit 2 'ear' edit "$project" deform "${seen[@]}" --drag 9,0 --part ear
+refused_edit 2 'ear' edit "$project" remove --part ear
 
 views "$out/before"
 cei3d edit "$project" paint --view train/r_055 --scribble "$sample/edits/paint/scribble.png"

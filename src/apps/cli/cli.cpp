@@ -9,32 +9,36 @@
 
 #include "apps/cli/command.h"
 #include "core/base/error.h"
+#include "engine/capture/capture.h"
 #include "engine/session/version.h"
 
 namespace cei3d {
 namespace {
 
 constexpr const char* kAbout =
-    "cei3d: photographs of an object become an editable, relightable object.\n"
+    "cei3d: reconstructs an editable, relightable 3D object from posed photographs.\n"
     "\n"
-    "  cei3d check CAPTURE                                    is this folder of photographs usable?\n"
+    "  cei3d check CAPTURE                                    check that a capture can be used\n"
     "  cei3d reconstruct CAPTURE -o PROJECT                   photographs to object\n"
     "  cei3d edit PROJECT paint --view NAME --scribble S.png  paint on one view, see it in all\n"
-    "  cei3d render PROJECT -o DIR                            pictures, also under another light\n"
+    "  cei3d render PROJECT -o DIR                            images, also under another light\n"
     "  cei3d export PROJECT -o OBJECT.glb                     a model file\n"
-    "  cei3d VERB -h                                          everything about a verb";
+    "  cei3d COMMAND -h                                       the options of a command";
 
 constexpr const char* kFooter =
-    "A CAPTURE is a folder (or its .json): NeRF-synthetic transforms_{train,val,test}.json with RGBA "
-    "pictures, or PhySG\n"
-    "cam_dict_norm.json with image/ and mask/. CAPTURE:test means one split of it. A PROJECT is a folder "
-    "this program writes.\n"
-    "Pixels are (column,row) from the top-left corner, centres at +0.5. Positions and lengths are in the "
-    "capture's own frame.\n"
+    "CAPTURE:train, :val or :test is one split of a capture. A PROJECT is the folder that `reconstruct` "
+    "writes.\n"
+    "Pixels are (column,row) from the top left corner, centers at +0.5. Positions and lengths are in the\n"
+    "capture's own frame and unit.\n"
     "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (state saved).";
 
-constexpr const char* kVerbFooter =
-    "Also, as everywhere: --quiet, --json, --log-level, --device, --threads (see `cei3d -h`).";
+constexpr const char* kCommandFooter =
+    "Options of every command: --quiet, --json, --log-level, --device, --threads (see `cei3d -h`).";
+
+std::string footer() {
+  return "A CAPTURE is a folder of posed images with object masks, or its .json or .npz:\n  " +
+         capture_format_layouts("\n  ") + "\n" + kFooter;
+}
 
 const std::pair<const char*, LogLevel> kLevels[] = {{"error", LogLevel::error},
                                                     {"warn", LogLevel::warn},
@@ -51,17 +55,17 @@ LogLevel level_of(const CommonOptions& o) {
 void add_common(CLI::App& app, CommonOptions& o) {
   app.set_version_flag("--version", std::string("cei3d ") + kVersion, "Print the version");
   app.set_help_flag("-h,--help", "Print this help");
-  app.add_flag("-q,--quiet", o.quiet, "Print nothing but answers and errors")->group("Everywhere");
-  app.add_flag("--json", o.json, "Print the result as JSON on standard output, nothing else there")
+  app.add_flag("-q,--quiet", o.quiet, "Print only answers and errors")->group("Everywhere");
+  app.add_flag("--json", o.json, "Print the result as JSON; nothing else goes to standard output")
       ->group("Everywhere");
-  app.add_option("--log-level", o.log_level, "How much to tell on standard error")
+  app.add_option("--log-level", o.log_level, "What to report on standard error")
       ->check(CLI::IsMember({"error", "warn", "info", "debug"}))
       ->capture_default_str()
       ->group("Everywhere");
-  app.add_option("--device", o.device, "What computes: auto, cpu, cpu/scalar, cpu/avx2, cpu/avx512")
+  app.add_option("--device", o.device, "Device to compute on: auto, cpu, cpu/scalar, cpu/avx2, cpu/avx512")
       ->capture_default_str()
       ->group("Everywhere");
-  app.add_option("--threads", o.threads, "Threads to use; 0: every core. Results do not depend on it")
+  app.add_option("--threads", o.threads, "Number of threads; 0: all cores. Results do not depend on it")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str()
       ->group("Everywhere");
@@ -89,7 +93,7 @@ void wrap_help(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands({})) wrap_help(*verb);
 }
 
-// Runs, and turns everything thrown into a sentence and an exit code.
+// Runs the command; turns an exception into a message and an exit code.
 template <class F>
 int guarded(Console& console, F run) {
   try {
@@ -99,15 +103,29 @@ int guarded(Console& console, F run) {
     console.error(e.what(), e.hint(), int(e.code()));
     return int(e.code());
   } catch (const std::bad_alloc&) {
-    console.error("Out of memory; close other programs, or use fewer or smaller pictures (--downscale).", "",
-                  1);
+    console.error(
+        "Out of memory. Close other programs, or use fewer or smaller images (--views, --downscale).", "", 1);
   } catch (const std::exception& e) {
     console.error(e.what(), "", 1);
   }
   return 1;
 }
 
-// What CLI11 found wrong, after `cei3d VERB`.
+// Names the project in the usage line of the commands of `edit`.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_usage(const CLI::App* app, std::string name) const override {
+    const CLI::App* parent = app->get_parent();
+    if (parent != nullptr && parent->get_name() == "edit") name = "cei3d edit PROJECT " + app->get_name();
+    return CLI::Formatter::make_usage(app, name);
+  }
+};
+
+bool is_command(CLI::App& app, const std::string& name) {
+  return !app.get_subcommands([&](CLI::App* command) { return command->get_name() == name; }).empty();
+}
+
+// Prints an error of the command line that CLI11 found, with the help to call.
 int usage_error(const CLI::App& app, const CLI::ParseError& e, Console& console) {
   std::string verb;
   const CLI::App* at = &app;
@@ -125,7 +143,8 @@ int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostrea
             bool err_is_terminal) {
   CommonOptions common;
   CLI::App app(kAbout, "cei3d");
-  app.footer(kVerbFooter);  // verbs inherit it
+  app.footer(kCommandFooter);  // commands inherit it
+  app.formatter(std::make_shared<HelpFormatter>());
   app.get_formatter()->column_width(kNameColumn);
   add_common(app, common);
   app.require_subcommand(0, 1);
@@ -133,12 +152,17 @@ int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostrea
   for (const auto add : {add_check, add_reconstruct, add_render, add_edit, add_parts, add_history, add_export,
                          add_eval, add_evaluate, add_info, add_bench, add_synth})
     add(commands);
-  app.footer(kFooter);
+  app.footer(footer());
   wrap_help(app);
 
   Console console(out, err, err_is_terminal);
+  if (!args.empty() && !args[0].starts_with('-') && !is_command(app, args[0])) {
+    console.set_json(std::find(args.begin(), args.end(), "--json") != args.end());
+    console.error(fmt::format("There is no command '{}'", args[0]), "See `cei3d -h`.", 2);
+    return 2;
+  }
   try {
-    std::vector<std::string> reversed(args.rbegin(), args.rend());  // as CLI11 wants them
+    std::vector<std::string> reversed(args.rbegin(), args.rend());  // CLI11 takes them in reverse
     app.parse(reversed);
   } catch (const CLI::Success& e) {  // help, version
     return app.exit(e, out, err);

@@ -12,6 +12,7 @@
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "core/base/temp_folder.h"
+#include "engine/capture/capture.h"
 
 namespace cei3d {
 namespace {
@@ -57,6 +58,22 @@ TEST(Cli, EveryVerbHasHelp) {
 TEST(Cli, HelpShowsDefaults) {  // as the installed CLI11 writes them
   EXPECT_THAT(type({"reconstruct", "-h"}).out, AnyOf(HasSubstr("[fast]"), HasSubstr("=fast")));
   EXPECT_THAT(type({"render", "-h"}).out, AnyOf(HasSubstr("[rgb]"), HasSubstr("=rgb")));
+}
+
+TEST(Cli, HelpOfAnUnknownCommandIsAnError) {
+  const Typed t = type({"frobnicate", "-h"});
+  EXPECT_EQ(t.code, 2);
+  EXPECT_EQ(t.out, "");
+}
+
+TEST(Cli, HelpOfAnEditNamesTheProject) {
+  EXPECT_THAT(type({"edit", "paint", "-h"}).out, HasSubstr("edit PROJECT paint"));
+}
+
+TEST(Cli, HelpNamesEveryCaptureFormat) {
+  const std::string help = type({"-h"}).out;
+  EXPECT_THAT(help, HasSubstr(capture_format_layouts("\n  ")));
+  EXPECT_THAT(type({"check", "-h"}).out, HasSubstr(capture_format_names()));
 }
 
 TEST(Cli, Version) {

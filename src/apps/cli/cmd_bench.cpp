@@ -25,15 +25,16 @@ void add_bench(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add(
       "bench",
-      "Speed of kernels as a fraction of this machine's measured peak, of training, a frame and an edit");
+      "Measure the speed of kernels (as fractions of this machine's peak), training, a frame and an edit");
   verb->add_option("--capture", o->capture,
-                   "CAPTURE whose training is measured (default: samples/spot, else a ball that is made up)");
+                   "Capture to train on (default: samples/spot, else a synthetic ball)");
   verb->add_option("--project", o->request.project,
-                   "PROJECT of which a 512 x 512 frame and a paint edit are measured; it is not changed "
-                   "(default: neither is measured)");
-  verb->add_option("--time", o->time, "How long training is measured: seconds, or 90s, 10m")
+                   "Project to measure a 512 x 512 frame and a paint edit on; it is not changed (default: "
+                   "neither is measured)");
+  verb->add_option("--time", o->time, "Duration of the training measurement: seconds, or 90s, 10m")
       ->capture_default_str();
-  verb->add_option("--repeats", o->request.repeats, "Of every kernel; frames and edits take a third of them")
+  verb->add_option("--repeats", o->request.repeats,
+                   "Repetitions of every kernel; frames and edits are repeated a third as often")
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();
   commands.on(verb, o, bench);

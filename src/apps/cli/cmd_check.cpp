@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/command.h"
 #include "core/base/error.h"
+#include "engine/capture/capture.h"
 
 namespace cei3d {
 namespace {
@@ -11,10 +12,9 @@ struct Options {
 };
 
 std::string split_text(const SplitReport& s) {
-  return fmt::format(
-      "{:<12}{} views of {} x {}; the object covers {:.0f} % of a picture ({:.0f} to {:.0f})\n",
-      split_name(s.split), s.views, s.size.width, s.size.height, 100 * s.coverage, 100 * s.coverage_min,
-      100 * s.coverage_max);
+  return fmt::format("{:<12}{} views of {} x {}; the object covers {:.0f} % of an image ({:.0f} to {:.0f})\n",
+                     split_name(s.split), s.views, s.size.width, s.size.height, 100 * s.coverage,
+                     100 * s.coverage_min, 100 * s.coverage_max);
 }
 
 std::string finding_text(const Finding& f) {
@@ -46,7 +46,8 @@ void run_check(const Options& o, Session& session, Console& console) {
   const CheckReport r = session.check(request);
   console.answer(r.json(), report_text(r));
   if (!r.report.usable())
-    throw Error(ErrorCode::failed, o.capture + " is not usable yet.", "The problems above say what to do.");
+    throw Error(ErrorCode::failed, o.capture + " cannot be used yet.",
+                "The problems listed above say what to do.");
 }
 
 }  // namespace
@@ -54,15 +55,16 @@ void run_check(const Options& o, Session& session, Console& console) {
 void add_check(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add(
-      "check", "Load a capture as `reconstruct` would and say what is understood and what is wrong");
+      "check",
+      "Load a capture as `reconstruct` does; report what was understood and every problem with its fix");
   verb->add_option("capture", o->capture, "Folder of posed photographs, or its .json or .npz")->required();
   verb->add_option("--format", o->request.options.format,
-                   "nerf-synthetic, physg or idr (default: told by the files)");
+                   capture_format_names() + " (default: detected from the files)");
   verb->add_option("--test-every", o->request.options.test_every,
-                   "Hold out every Nth view when the capture has no test split; 0: none")
+                   "Hold out every Nth view for testing when the capture has no test split; 0: none")
       ->capture_default_str();
   verb->add_option("-o,--output", o->request.picture,
-                   "Draw the cameras and the object's bounding sphere into this PNG");
+                   "PNG file to write: the cameras and the object's bounding sphere");
   commands.on(verb, o, run_check);
 }
 

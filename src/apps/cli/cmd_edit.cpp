@@ -4,7 +4,7 @@
 namespace cei3d {
 
 void open_for_edit(Session& session, const std::string& project, const char* example) {
-  if (project.empty()) fail_usage("edit needs a PROJECT: cei3d edit PROJECT {}.", example);
+  if (project.empty()) fail_usage("edit needs a PROJECT, for example: cei3d edit PROJECT {}.", example);
   session.open(project, Session::Access::write);
 }
 
@@ -17,12 +17,12 @@ std::string stages_text(const EditSummary& s) {
 
 void add_output(CLI::App* verb, EditOutput& o) {
   const auto ends_in_png = [](const std::string& file) {
-    return file.ends_with(".png") ? std::string() : file + ": the picture is a PNG; end its name in .png";
+    return file.ends_with(".png") ? std::string()
+                                  : file + ": the image is written as PNG; give a name that ends in .png";
   };
   verb->add_option("--picture", o.picture,
-                   "PNG to write: before and after side by side, in the view that the edit was made in or "
-                   "else the first "
-                   "held-out one; counts the pixels that changed, too")
+                   "PNG file to write: before and after side by side, in the edited view or else the first "
+                   "held-out view. Also reports the number of changed pixels")
       ->check(CLI::Validator(ends_in_png, "PNG"));
 }
 
@@ -40,7 +40,7 @@ void finish_edit(Session& session, Console& console, const EditSummary& s, std::
 
 void add_edit(Commands& commands) {
   auto project = std::make_shared<std::string>();
-  CLI::App* edit = commands.add("edit", "Change the object; every edit is a layer that `undo` takes back");
+  CLI::App* edit = commands.add("edit", "Change the object; every edit is a layer that `undo` removes");
   // Not ->required(): CLI11 would take the operation's name for it in `cei3d edit paint -h`.
   edit->add_option("project", *project, "Project folder")->option_text("TEXT REQUIRED");
   edit->require_subcommand(1);

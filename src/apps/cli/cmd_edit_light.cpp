@@ -15,18 +15,18 @@ struct Options {
 
 void add_edit_light(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("light", "Light the object otherwise", edit);
+  CLI::App* verb = commands.add("light", "Replace, rotate or scale the light", edit);
   CLI::Option* env =
-      verb->add_option("--env", o->env,
-                       "Latitude-longitude picture (.hdr, .exr), or lobes as `export` writes them (.npy), "
-                       "instead of the light there is")
+      verb->add_option(
+              "--env", o->env,
+              "New light: a latitude-longitude image (.hdr, .exr), or lobes as `export` writes them (.npy)")
           ->check(CLI::ExistingFile);
   verb->add_option("--env-convention", o->convention,
-                   "Axes of the picture: zup, yup, mitsuba, blender (default: by the capture's up axis)")
+                   "Axes of the image: zup, yup, mitsuba, blender (default: from the capture's up axis)")
       ->needs(env);
   verb->add_option("--rotate", o->light.rotate_degrees,
-                   "Turn the light about the up axis, degrees, counter-clockwise seen from above");
-  verb->add_option("--scale", o->light.scale, "Multiply the light by this");
+                   "Rotate the light around the up axis, degrees, counter-clockwise seen from above");
+  verb->add_option("--scale", o->light.scale, "Multiply the light by this factor");
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {
     LightChoice choice = options.light;
@@ -36,7 +36,7 @@ void add_edit_light(Commands& commands, CLI::App* edit, ProjectName project) {
     const EditSummary s = session.change_light(choice, console);
     finish_edit(
         session, console, s,
-        fmt::format("{}: a light of {} lobes; {}.", s.id, s.report.at("lobes").get<size_t>(), stages_text(s)),
+        fmt::format("{}: light of {} lobes; {}.", s.id, s.report.at("lobes").get<size_t>(), stages_text(s)),
         options.output);
   });
 }

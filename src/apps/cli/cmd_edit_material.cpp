@@ -12,24 +12,26 @@ struct Options {
 }  // namespace
 
 void add_material_values(CLI::App* verb, MaterialEffects& e) {
-  verb->add_option("--roughness", e.roughness, "0 (mirror) to 1; GGX alpha is its square");
-  verb->add_option("--specular", e.specular, "0 to 1; 0.5 is the 4 % of most dielectrics. Metals have none");
-  verb->add_option("--metalness", e.metalness, "0 to 1");
+  verb->add_option("--roughness", e.roughness, "0 (mirror) to 1; the square root of GGX alpha");
+  verb->add_option(
+      "--specular", e.specular,
+      "Strength of the reflection of dielectrics, 0 to 1; 0.5 reflects 4 % along the normal, as most do");
+  verb->add_option("--metalness", e.metalness, "0 (dielectric) to 1 (metal)");
 }
 
 void add_effects(CLI::App* verb, MaterialEffects& e) {
   add_material_values(verb, e);
   CLI::Option* color = verb->add_option(
-      "--color", e.color,
-      "'#RRGGBB', sRGB: the base colour on average; the texture that is there is scaled to it");
-  verb->add_flag("--replace", e.replace, "The colour replaces the texture")->needs(color);
+      "--color", e.color, "'#RRGGBB', sRGB: new mean albedo; the present texture is scaled to it");
+  verb->add_flag("--replace", e.replace, "Replace the texture by --color")->needs(color);
 }
 
 void add_edit_material(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("material", "Change what the object, or a part of it, is made of", edit);
+  CLI::App* verb = commands.add(
+      "material", "Change roughness, specular, metalness or color of the object or of a part", edit);
   verb->add_option("--part", o->command.part,
-                   "Name of a part, as `edit part` gave it (default: the whole object)");
+                   "Name of a part, made by `edit part` (default: the whole object)");
   add_effects(verb, o->command.effects);
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {

@@ -13,7 +13,7 @@ struct Options {
 
 PaintCommand command_of(const Options& o) {
   if (o.views.size() != o.scribbles.size())
-    fail_usage("There are {} --view and {} --scribble: each scribble needs the view it was painted on.",
+    fail_usage("There are {} --view and {} --scribble options; give one --view for each scribble.",
                o.views.size(), o.scribbles.size());
   PaintCommand c = o.command;
   c.target = *paint_target_from_name(o.target);
@@ -24,17 +24,17 @@ PaintCommand command_of(const Options& o) {
 
 std::string text_of(const EditSummary& s) {
   const auto count = [&](const char* key) { return s.report.at(key).get<size_t>(); };
-  std::string text = fmt::format("{}: {} painted pixels on {} handler points; {}; colour error {:.4f} mean.",
+  std::string text = fmt::format("{}: {} painted pixels, {} handler points; {}; mean color error {:.4f}.",
                                  s.id, count("painted_pixels"), count("points"), stages_text(s),
                                  s.report.at("mean_error").get<double>());
   if (count("missed_pixels") > 0)
     text += fmt::format(
-        " {} painted pixels are beside the object or on surface that turns away; they paint nothing.",
+        " {} painted pixels have no effect: they are beside the object or on a surface that faces away.",
         count("missed_pixels"));
   if (const double share = s.report.at("out_of_reach").get<double>(); share > 0.005)
-    text += fmt::format(
-        " {:.0f} % of the paint is brighter or darker than any base colour there looks in this light.",
-        100 * share);
+    text +=
+        fmt::format(" {:.0f} % of the paint is brighter or darker than any albedo can appear in this light.",
+                    100 * share);
   return text;
 }
 
@@ -42,40 +42,34 @@ std::string text_of(const EditSummary& s) {
 
 void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("paint", "Paint on the surface that one view shows", edit);
-  verb->add_option(
-          "--view", o->views,
-          "The view painted on: train/r_055, or r_055 (then the training view). --view and --scribble may be "
-          "given several times, in pairs: one edit, and a later scribble covers an earlier one")
+  CLI::App* verb = commands.add("paint", "Paint on the surface seen in one view", edit);
+  verb->add_option("--view", o->views,
+                   "View that was painted on, for example train/r_055. --view and --scribble may be given "
+                   "several times, in pairs; later scribbles cover earlier ones")
       ->required()
       ->expected(1)
       ->take_all();
   verb->add_option("--scribble", o->scribbles,
-                   "RGBA PNG of the view's size. Where it is opaque, its sRGB colour becomes the base "
-                   "colour; where it is "
-                   "semi-transparent, it covers what is there by as much as its alpha says")
+                   "RGBA PNG of the view's size. Where it is opaque, its sRGB color becomes the albedo; "
+                   "semi-transparent strokes are blended by their alpha")
       ->required()
       ->expected(1)
       ->take_all();
   CLI::Option* target =
       verb->add_option("--target", o->target,
-                       "What the painted colour means: albedo, the base colour without light; "
-                       "appearance, what the view shows in the light there is now; radiance, what "
-                       "shows in every light, as if it shone")
+                       "Meaning of the painted color. albedo: color without light. appearance: color that "
+                       "the view shows under the present light. radiance: color shown under every light")
           ->check(CLI::IsMember({"albedo", "appearance", "radiance"}))
           ->capture_default_str();
-  verb->add_flag("--erase", o->command.erase,
-                 "Show the reconstructed colours again where the scribble is opaque")
+  verb->add_flag("--erase", o->command.erase, "Restore the reconstructed albedo where the scribble is opaque")
       ->excludes(target);
-  verb->add_option(
-          "--routing", o->routing,
-          "What tells painted surface from the rest: both, handler points and the scribble's outline; points "
-          "or "
-          "outline, one of them; none, the object's one colour field learns the scribble, for comparison: it "
-          "spills")
+  verb->add_option("--routing", o->routing,
+                   "How painted surface is found. both: near handler points and inside the scribble's "
+                   "outline. points, outline: one of them. none: retrain the object's albedo field instead, "
+                   "which changes other places too. For comparison")
       ->check(CLI::IsMember({"both", "points", "outline", "none"}))
       ->capture_default_str();
-  verb->add_option("--seed", o->command.seed, "Of everything random in the edit")->capture_default_str();
+  verb->add_option("--seed", o->command.seed, "Random seed")->capture_default_str();
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {
     const PaintCommand command = command_of(options);

@@ -28,49 +28,48 @@ std::string text_of(const EditSummary& s) {
 
 void add_where(CLI::App* verb, Options& o) {
   PartCommand& c = o.command;
-  verb->add_option("--view", c.view, "The view clicked in: train/r_055, or r_055 (then the training view)")
-      ->required();
+  verb->add_option("--view", c.view, "View of the clicks, for example train/r_055")->required();
   CLI::Option* positive = verb->add_option(
-      "--positive", o.positive, "Clicks on the part, X,Y (column, row from the top left corner) ...");
+      "--positive", o.positive, "Clicks on the part, X,Y ... (column, row from the top left corner)");
   CLI::Option* negative =
-      verb->add_option("--negative", o.negative, "Clicks beside it, where it goes too far ...");
-  verb->add_option(
-          "--mask", c.mask,
-          "In place of clicks a PNG of the view's size: the part is where it is opaque, or bright if it is "
-          "opaque everywhere")
+      verb->add_option("--negative", o.negative, "Clicks that are not on the part, X,Y ...");
+  verb->add_option("--mask", c.mask,
+                   "Instead of clicks: a PNG of the view's size that shows the whole part, opaque, or bright "
+                   "if it is opaque everywhere")
       ->excludes(positive)
       ->excludes(negative)
       ->check(CLI::ExistingFile);
-  verb->add_option(
-          "--segmenter", c.segmenter,
-          "How the part is found: grow, in 3D by colour and creases, in a second; sam, in pictures by a "
-          "network that `./run sam` installs")
+  verb->add_option("--segmenter", c.segmenter,
+                   "How the part is found. grow: in 3D by color and creases, about a second. sam: in images "
+                   "by a network that `./run sam` installs")
       ->check(CLI::IsMember({"grow", "sam"}))
       ->capture_default_str();
 }
 
 void add_name(CLI::App* verb, PartCommand& c) {
   verb->add_flag("--in-view", c.in_view,
-                 "Only what this view shows of the part, not carried on to what other views show of it");
-  verb->add_option("--name", c.name,
-                   "Name of the part (default: part1, part2, ... or that of the part combined with)");
-  CLI::Option* add = verb->add_option("--add", c.add, "What was clicked is added to the part of this name");
-  CLI::Option* subtract = verb->add_option("--subtract", c.subtract, "... is taken off it")->excludes(add);
-  verb->add_option("--intersect", c.intersect, "Only what is in both")->excludes(add)->excludes(subtract);
+                 "Select only what this view shows of the part; do not propagate to other views");
+  verb->add_option(
+      "--name", c.name,
+      "Name of the part (default: part1, part2, ..., or the name given to --add, --subtract or --intersect)");
+  CLI::Option* add = verb->add_option("--add", c.add, "Add the selection to this part");
+  CLI::Option* subtract =
+      verb->add_option("--subtract", c.subtract, "Subtract the selection from this part")->excludes(add);
+  verb->add_option("--intersect", c.intersect, "Intersect the selection with this part")
+      ->excludes(add)
+      ->excludes(subtract);
 }
 
 void add_part_effects(CLI::App* verb, Options& o) {
   MaterialEffects& e = o.command.effects;
-  CLI::Option* color =
-      verb->add_option("--color", e.color, "'#RRGGBB', sRGB: the part's base colour from now on");
-  verb->add_flag("--replace,!--keep-texture", o.replace,
-                 "The colour replaces the texture; or it is that on average, and the texture scaled to it "
-                 "[--replace]")
+  CLI::Option* color = verb->add_option("--color", e.color, "'#RRGGBB', sRGB: new albedo of the part");
+  verb->add_flag_callback(
+          "--keep-texture", [&o] { o.replace = false; },
+          "With --color: scale the texture so that its mean is the color, instead of replacing it")
       ->needs(color);
   add_material_values(verb, e);
-  verb->add_flag(
-          "--remove", o.remove,
-          "The part is taken off and the surface behind it closed: a second edit, as `edit remove` makes it")
+  verb->add_flag("--remove", o.remove,
+                 "Also remove the part and close the surface behind it, as a second edit")
       ->excludes(color);
 }
 
@@ -78,8 +77,8 @@ void add_part_effects(CLI::App* verb, Options& o) {
 
 void add_edit_part(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb =
-      commands.add("part", "Select a part by clicks in one view; name, colour or change it", edit);
+  CLI::App* verb = commands.add(
+      "part", "Select a part by clicks in one view; name it, recolor it, change its material", edit);
   add_where(verb, *o);
   add_name(verb, o->command);
   add_part_effects(verb, *o);

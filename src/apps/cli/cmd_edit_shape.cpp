@@ -33,8 +33,7 @@ DeformCommand command_of(const DeformOptions& o) {
   const bool any_point = !o.from.empty() || !o.to.empty();
   const bool any_pixel = !o.view.empty() || !o.pixel.empty() || !o.drag.empty();
   if (any_point == any_pixel || points == pixels)
-    fail_usage(
-        "Say what is dragged where: --from X,Y,Z --to X,Y,Z, or --view NAME --pixel X,Y --drag DX,DY.");
+    fail_usage("Give --from X,Y,Z --to X,Y,Z, or --view NAME --pixel X,Y --drag DX,DY.");
   DeformCommand c;
   if (points)
     c.drag = PointDrag{point_of(o.from, "--from"), point_of(o.to, "--to")};
@@ -46,25 +45,24 @@ DeformCommand command_of(const DeformOptions& o) {
 }
 
 std::string deform_text(const EditSummary& s) {
-  return fmt::format("{}: {} vertices within {:.3g} of the handle moved, at most by {:.3g}; {}.", s.id,
+  return fmt::format("{}: moved {} vertices within {:.3g} of the handle by at most {:.3g}; {}.", s.id,
                      s.report.at("vertices").get<size_t>(), s.report.at("radius").get<double>(),
                      s.report.at("farthest").get<double>(), stages_text(s));
 }
 
 void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<DeformOptions>();
-  CLI::App* verb = commands.add("deform", "Drag a point of the surface; what is around it follows", edit);
-  verb->add_option("--from", o->from, "Point on the surface, X,Y,Z in the capture's frame");
-  verb->add_option("--to", o->to, "Where it goes, likewise");
-  verb->add_option("--view", o->view, "Or in the picture of a view: its name ...");
+  CLI::App* verb = commands.add("deform", "Drag a point of the surface; its surroundings follow", edit);
+  verb->add_option("--from", o->from, "Point on the surface to drag, X,Y,Z in the capture's frame");
+  verb->add_option("--to", o->to, "Where the point goes, X,Y,Z in the capture's frame");
+  verb->add_option("--view", o->view, "Instead of --from and --to: name of a view to drag in");
   verb->add_option("--pixel", o->pixel,
-                   "... the point seen at X,Y (column, row from the top left corner) ...");
-  verb->add_option("--drag", o->drag, "... and by how many pixels DX,DY it moves, at its depth");
-  verb->add_option(
-      "--radius", o->radius,
-      "What is farther along the surface stays, capture units [0.3 of the object's radius, or 1.5 times the "
-      "drag if that is more]");
-  verb->add_option("--part", o->part, "What is not on this part stays");
+                   "With --view: pixel of the point to drag, X,Y (column, row from the top left corner)");
+  verb->add_option("--drag", o->drag, "With --view: movement in pixels, DX,DY, at the depth of the point");
+  verb->add_option("--radius", o->radius,
+                   "Distance along the surface up to which it moves, capture units (default: 0.3 of the "
+                   "object's radius, or 1.5 times the drag if that is more)");
+  verb->add_option("--part", o->part, "Move only this part");
   add_output(verb, o->output);
   commands.on(verb, o, [project](const DeformOptions& options, Session& session, Console& console) {
     const DeformCommand command = command_of(options);
@@ -76,8 +74,8 @@ void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
 
 void add_remove(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<RemoveOptions>();
-  CLI::App* verb = commands.add("remove", "Take a part off and close the surface behind it", edit);
-  verb->add_option("--part", o->command.part, "The part's name; `cei3d parts` lists them")->required();
+  CLI::App* verb = commands.add("remove", "Remove a part and close the surface behind it", edit);
+  verb->add_option("--part", o->command.part, "Name of the part; `cei3d parts` lists them")->required();
   add_output(verb, o->output);
   commands.on(verb, o, [project](const RemoveOptions& options, Session& session, Console& console) {
     open_for_edit(session, *project, "remove --part NAME");
@@ -93,7 +91,7 @@ std::string remove_text(const EditSummary& s) {
   std::string text =
       fmt::format("{}: {} triangles removed, {} holes closed by {} new ones; {}.", s.id,
                   count("removed_triangles"), count("holes"), count("added_triangles"), stages_text(s));
-  if (count("pieces") > 1) text += fmt::format(" The object is in {} pieces now.", count("pieces"));
+  if (count("pieces") > 1) text += fmt::format(" The object now has {} pieces.", count("pieces"));
   return text;
 }
 

@@ -15,10 +15,7 @@ struct Options {
 void evaluate(const Options& o, Session& session, Console& console) {
   EvalRequest request = o.request;
   if (request.truth.empty() != request.masks.empty() || (request.edit.empty() && !request.truth.empty()))
-    fail_usage(
-        "--truth and --mask belong together and to --edit: which edit, how it should look, and where it "
-        "should "
-        "be.");
+    fail_usage("--truth and --mask need each other and --edit.");
   if (!o.capture.empty()) {
     const CaptureSpec spec = parse_capture_spec(o.capture);
     request.capture = spec.path;
@@ -34,60 +31,58 @@ void evaluate(const Options& o, Session& session, Console& console) {
 }  // namespace
 
 void add_networks(CLI::App* verb, NetworkFiles& files) {
-  verb->add_option(
-          "--lpips-model", files.lpips,
-          "ONNX network for LPIPS: two pictures [1,3,H,W] in [-1,1] to one distance; docs/evaluation.md says "
-          "how to get one (default: no LPIPS)")
+  verb->add_option("--lpips-model", files.lpips,
+                   "ONNX network for LPIPS, from two images [1,3,H,W] in [-1,1] to a distance; see "
+                   "docs/evaluation.md (default: no LPIPS)")
       ->check(CLI::ExistingFile);
-  verb->add_option("--fid-model", files.fid,
-                   "ONNX network for FID: a picture [1,3,299,299] in [0,1] to its features (default: no FID)")
+  verb->add_option(
+          "--fid-model", files.fid,
+          "ONNX network for FID, from an image [1,3,299,299] in [0,1] to its features (default: no FID)")
       ->check(CLI::ExistingFile);
 }
 
 void add_residual_switch(CLI::App* verb, bool& on) {
-  verb->add_flag(
-      "!--no-residual", on,
-      "Light and material alone, without what was learnt of the photographs besides (never used under "
-      "another light, nor where an edit was made)");
+  verb->add_flag_callback(
+      "--no-residual", [&on] { on = false; },
+      "Light and material alone, without the correction network (which is never used in edits and under "
+      "other lights)");
 }
 
 void add_eval(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add("eval",
-                                "Compare rendered with real views: PSNR and SSIM, on white and inside the "
-                                "object mask; LPIPS and FID with "
-                                "networks of yours");
+                                "Compare renders with photographs: PSNR and SSIM, on white and inside the "
+                                "object mask; LPIPS and FID with networks that you supply");
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("capture", o->capture,
                    "CAPTURE or CAPTURE:split (default: the project's own held-out views)");
-  // Here --json may name a file; without one it is the flag that it is everywhere.
+  // Here --json may name a file; without one it is the same flag as in other commands.
   verb->add_option_function<std::vector<std::string>>(
           "--json",
           [o](const std::vector<std::string>& values) {
             o->json = values.empty() || values[0].empty();
             if (!o->json) o->json_file = values[0];
           },
-          "Write the scores to this file as JSON; without a file: print them")
+          "Write the scores as JSON to this file, or print them when no file is given")
       ->expected(0, 1);
   verb->add_option("--samples", o->request.samples,
-                   "Sub-pixel samples per axis, twice as many where the silhouette passes")
+                   "Samples per pixel and axis; twice as many at the silhouette")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   add_residual_switch(verb, o->request.residual);
   verb->add_option(
       "--edit", o->request.edit,
-      "Also score this edit (an id of `log`): the area that it does not touch against the photographs");
-  verb->add_option(
-          "--truth", o->request.truth,
-          "With --edit: folder of pictures of the edited object, named like the views: fidelity inside its "
-          "mask, leakage outside")
+      "Also score the area that this edit (an id of `log`) does not touch, against the photographs");
+  verb->add_option("--truth", o->request.truth,
+                   "With --edit and --mask: folder of true images of the edited object, named like the "
+                   "views; scores fidelity inside the mask and leakage outside")
       ->check(CLI::ExistingDirectory);
   verb->add_option("--mask", o->request.masks,
-                   "With --edit: folder of masks, bright where the edit should be")
+                   "With --edit and --truth: folder of masks, bright where the edit should be")
       ->check(CLI::ExistingDirectory);
   verb->add_option(
       "--pictures", o->request.pictures,
-      "Folder of PNGs to write: photograph, render and, with --edit, edited render, side by side");
+      "Folder to write: photograph, render and, with --edit, edited render, side by side as PNG");
   add_networks(verb, o->request.networks);
   commands.on(verb, o, evaluate);
 }

@@ -27,7 +27,7 @@ std::vector<int> counts(const std::string& text, const std::string& option) {
   const size_t n = size_t(std::count(text.begin(), text.end(), ',')) + 1;
   for (const double v : parse_numbers(text, n, option)) {
     if (!(v >= 1 && v <= 100000) || v != double(int(v)))
-      fail_usage("{} '{}' should be whole numbers from 1 on.", option, text);
+      fail_usage("{} '{}' must be whole numbers of 1 or more.", option, text);
     out.push_back(int(v));
   }
   return out;
@@ -42,29 +42,27 @@ void check_sections(const std::string& text) {
     const size_t end = std::min(text.find(',', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
     if (std::find(std::begin(kSections), std::end(kSections), word) == std::end(kSections))
-      fail_usage("--only '{}': there is no section '{}'; there are paint, part, views, sizes.", text, word);
+      fail_usage("--only '{}': unknown section '{}'. Sections are paint, part, views, sizes.", text, word);
     begin = end + 1;
   }
 }
 
 void check_truth(const EditTruth& t, const char* which) {
   if (t.pictures.empty() != t.masks.empty())
-    fail_usage("--{0}truth and --{0}mask belong together: how the edit should look, and where it should be.",
+    fail_usage("--{0}truth and --{0}mask need each other: true images of the edit, and masks of where it is.",
                which);
 }
 
 std::optional<PaintStroke> paint_of(const Options& o) {
-  if (o.paint.view.empty() != o.paint.scribble.empty())
-    fail_usage("--view and --scribble belong together: what is painted, and on which view.");
+  if (o.paint.view.empty() != o.paint.scribble.empty()) fail_usage("--view and --scribble need each other.");
   if (!o.request.paint_truth.pictures.empty() && o.paint.view.empty())
-    fail_usage("--truth and --mask are of a scribble; give --view and --scribble.");
+    fail_usage("--truth and --mask score a scribble; give --view and --scribble, too.");
   if (o.paint.view.empty()) return std::nullopt;
   return o.paint;
 }
 
 std::optional<PartTrial> part_of(const Options& o) {
-  if (o.part_view.empty() != o.positive.empty())
-    fail_usage("--part-view and --positive belong together: where the part is clicked, and in which view.");
+  if (o.part_view.empty() != o.positive.empty()) fail_usage("--part-view and --positive need each other.");
   if (o.part_view.empty()) return std::nullopt;
   PartTrial t;
   t.command.view = o.part_view;
@@ -108,45 +106,47 @@ void add_object(CLI::App* verb, Options& o) {
   ReconstructOptions& options = o.request.options;
   options.test_every = 8;
   verb->add_option("--project", o.request.project,
-                   "A finished project of this capture to evaluate (default: make one)")
+                   "Existing project of this capture to evaluate (default: reconstruct one)")
       ->check(CLI::ExistingDirectory);
-  verb->add_option("--preset", options.preset, "Of every reconstruction")
+  verb->add_option("--preset", options.preset, "Preset of every reconstruction, see `cei3d reconstruct -h`")
       ->check(CLI::IsMember({"fast", "balanced", "paper"}))
       ->capture_default_str();
   CLI::Option* time = verb->add_option(
-      "--time", o.time, "Of making the object: seconds, or 90s, 10m, 1h30m (default: the preset's own)");
+      "--time", o.time,
+      "Time to reconstruct the object: seconds, or 90s, 10m, 1h30m (default: the preset's number of steps)");
   verb->add_option("--trial-time", o.trial_time,
-                   "Of making each object from fewer or smaller photographs (default: --time)");
+                   "Time for each object from fewer or smaller photographs (default: --time)");
   verb->add_option("--iterations", options.iterations,
-                   "Length of every geometry stage in steps, in place of --time; 0: unset")
+                   "Steps of every geometry stage, instead of --time; 0: the preset's")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->excludes(time);
-  verb->add_option("--seed", options.seed, "Of everything random")->capture_default_str();
+  verb->add_option("--seed", options.seed, "Random seed")->capture_default_str();
   verb->add_option("--test-every", options.test_every,
-                   "Hold out every Nth view when the capture has no test split")
+                   "Hold out every Nth view for testing when the capture has no test split")
       ->capture_default_str();
-  verb->add_option("--format", o.request.format, "Of the capture (default: told by the files)");
+  verb->add_option("--format", o.request.format,
+                   "Format of the capture, see `cei3d check -h` (default: detected from the files)");
   verb->add_option("--views", o.views,
-                   "Numbers of photographs to try; those that the capture does not have are skipped")
+                   "Numbers of photographs to try; numbers larger than the capture are skipped")
       ->capture_default_str();
   verb->add_option("--downscales", o.downscales, "Sizes of photographs to try: 1/N")->capture_default_str();
 }
 
 void add_edits(CLI::App* verb, Options& o) {
-  verb->add_option("--view", o.paint.view, "View of the scribble; without one no edit is scored");
+  verb->add_option("--view", o.paint.view, "View of the scribble (default: no paint edit is scored)");
   verb->add_option("--scribble", o.paint.scribble, "RGBA PNG to paint, as in `edit paint`")
       ->check(CLI::ExistingFile);
   verb->add_option("--truth", o.request.paint_truth.pictures,
-                   "Folder of pictures of the painted object, named like the views")
+                   "Folder of true images of the painted object, named like the views")
       ->check(CLI::ExistingDirectory);
   verb->add_option("--mask", o.request.paint_truth.masks, "Folder of masks, bright where the paint should be")
       ->check(CLI::ExistingDirectory);
   verb->add_option("--part-view", o.part_view, "View of the clicks on a part");
   verb->add_option("--positive", o.positive, "Clicks on the part, X,Y ...");
-  verb->add_option("--negative", o.negative, "Clicks beside it, X,Y ...");
-  verb->add_option("--part-color", o.color, "'#RRGGBB' that the part gets")->capture_default_str();
-  verb->add_option("--part-truth", o.part_truth.pictures, "Folder of pictures of the recoloured object")
+  verb->add_option("--negative", o.negative, "Clicks that are not on the part, X,Y ...");
+  verb->add_option("--part-color", o.color, "New albedo of the part, '#RRGGBB'")->capture_default_str();
+  verb->add_option("--part-truth", o.part_truth.pictures, "Folder of true images of the recolored object")
       ->check(CLI::ExistingDirectory);
   verb->add_option("--part-mask", o.part_truth.masks, "Folder of masks of the part")
       ->check(CLI::ExistingDirectory);
@@ -156,17 +156,18 @@ void add_edits(CLI::App* verb, Options& o) {
 
 void add_evaluate(Commands& commands) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("evaluate",
-                                "The paper's evaluation of a capture: novel views, a painted edit, the "
-                                "method without its parts, fewer and smaller "
-                                "photographs; a report with pictures. Can be interrupted and called again");
+  CLI::App* verb = commands.add(
+      "evaluate",
+      "The paper's evaluation of a capture: novel views, a paint and a part edit, ablations, fewer and "
+      "smaller photographs; a report with images. Can be interrupted and called again");
   verb->add_option("capture", o->capture, "Folder of posed photographs, or its .json")->required();
-  verb->add_option("-o,--output", o->out, "Folder for the report and what it is made from")->required();
+  verb->add_option("-o,--output", o->out, "Folder for the report and everything it is made from")->required();
   add_object(verb, *o);
   add_edits(verb, *o);
-  verb->add_option("--only", o->sections, "Beside novel views only these sections: paint,part,views,sizes");
+  verb->add_option("--only", o->sections,
+                   "Sections to run beside the novel views: paint,part,views,sizes (default: all)");
   verb->add_option("--samples", o->request.samples,
-                   "Sub-pixel samples per axis, twice as many where the silhouette passes")
+                   "Samples per pixel and axis; twice as many at the silhouette")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   add_networks(verb, o->request.networks);

@@ -27,15 +27,14 @@ void export_object(const Options& o, Session& session, Console& console) {
 
 void add_export(Commands& commands) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("export", "Write the object, edits included, as a file for other programs");
+  CLI::App* verb = commands.add("export", "Write the edited object as a file for other programs");
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("-o,--output", o->request.out,
-                   ".glb or .ply: mesh with base colour per vertex, in the capture's frame and scale; .npy: "
-                   "light lobes [M,7] "
-                   "(axis, sharpness, RGB amplitude)")
+                   ".glb or .ply: mesh with albedo per vertex, in the capture's frame and scale. .npy: light "
+                   "lobes [M,7] (axis, sharpness, RGB peak radiance)")
       ->required();
   verb->add_flag("--points", o->request.points,
-                 "With .ply: the handler points with their normals instead of the mesh");
+                 "With .ply: write the handler points with their normals instead of the mesh");
   commands.on(verb, o, export_object);
 }
 

@@ -29,7 +29,7 @@ std::string project_text(const ProjectInfo& i) {
     text += fmt::format("light       {} lobes\n", i.lobes);
     text += fmt::format("edits       {}, {} of them on\n", i.edits, i.edits_active);
   } else {
-    text += "object      not finished; go on with `cei3d reconstruct --resume`\n";
+    text += "object      not finished; continue with `cei3d reconstruct -o PROJECT --resume`\n";
   }
   return text + fmt::format("disk        {:.1f} MB\n", double(i.bytes) / 1e6);
 }
@@ -65,10 +65,11 @@ void doctor(const Options&, Session&, Console& console) {
 
 void add_info(Commands& commands) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("info", "What is in a project or a capture");
-  verb->add_option("what", o->what, "Project folder, or a capture")->required();
+  CLI::App* verb = commands.add("info", "Describe a project or a capture");
+  verb->add_option("what", o->what, "Project folder or capture")->required();
   commands.on(verb, o, info);
-  commands.on(commands.add("doctor", "What this machine can do"), std::make_shared<Options>(), doctor);
+  commands.on(commands.add("doctor", "Describe this machine: processor, memory, devices"),
+              std::make_shared<Options>(), doctor);
 }
 
 }  // namespace cei3d

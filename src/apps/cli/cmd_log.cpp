@@ -12,7 +12,7 @@ struct Options {
 
 std::string state_of(const LogEntry& e) { return !e.done ? "undone" : e.enabled ? "on" : "off"; }
 
-// "part ear, roughness 0.5": what was asked for.
+// The edit's parameters: "part ear, roughness 0.5".
 std::string what_of(const LogEntry& e) {
   std::string text;
   for (const auto& [key, value] : e.params.items()) {
@@ -41,13 +41,13 @@ void show_log(const Options& o, Session& session, Console& console) {
 void undo(const Options& o, Session& session, Console& console) {
   session.open(o.project, Session::Access::write);
   const std::string id = session.undo(console);
-  console.done({{"undone", id}}, id + " is undone; `cei3d redo` brings it back.");
+  console.done({{"undone", id}}, id + " was undone; `cei3d redo` does it again.");
 }
 
 void redo(const Options& o, Session& session, Console& console) {
   session.open(o.project, Session::Access::write);
   const std::string id = session.redo(console);
-  console.done({{"redone", id}}, id + " is done again.");
+  console.done({{"redone", id}}, id + " was done again.");
 }
 
 void toggle(const Options& o, Session& session, Console& console) {
@@ -59,7 +59,7 @@ void toggle(const Options& o, Session& session, Console& console) {
 void replay(const Options& o, Session& session, Console& console) {
   session.open(o.project, Session::Access::read);
   const ReplayReport r = session.replay(o.on, console);
-  std::string text = fmt::format("{} edits of {} were made on {}.", r.edits.size(), o.project, o.on);
+  std::string text = fmt::format("Made {} edits of {} on {}.", r.edits.size(), o.project, o.on);
   for (const auto& [from, to] : r.edits) text += fmt::format("\n{:<20} as {}", from, to);
   for (const std::string& note : r.notes) console.warn(note);
   console.done(r.json(), text);
@@ -71,9 +71,10 @@ CLI::App* add_verb(Commands& commands, const char* name, const char* help, F run
   CLI::App* verb = commands.add(name, help);
   verb->add_option("project", o->project, "Project folder")->required();
   if (std::string(name) == "toggle")
-    verb->add_option("id", o->id, "Name of the edit, as `log` lists it")->required();
+    verb->add_option("id", o->id, "Id of the edit, as `log` lists it")->required();
   if (std::string(name) == "replay")
-    verb->add_option("--on", o->on, "Project to make the edits on, a reconstruction of the same capture")
+    verb->add_option("--on", o->on,
+                     "Project to make the edits on: another reconstruction of the same capture")
         ->required();
   commands.on(verb, o, run);
   return verb;
@@ -82,11 +83,11 @@ CLI::App* add_verb(Commands& commands, const char* name, const char* help, F run
 }  // namespace
 
 void add_history(Commands& commands) {
-  add_verb(commands, "log", "List the edits, oldest first: on, off or undone", show_log);
-  add_verb(commands, "undo", "Take the last edit back", undo);
-  add_verb(commands, "redo", "Do the last undone edit again", redo);
-  add_verb(commands, "toggle", "Switch one edit off or on, wherever it stands in the history", toggle);
-  add_verb(commands, "replay", "Make the edits of a project on another one", replay);
+  add_verb(commands, "log", "List the edits, oldest first, as on, off or undone", show_log);
+  add_verb(commands, "undo", "Undo the last edit", undo);
+  add_verb(commands, "redo", "Redo the last undone edit", redo);
+  add_verb(commands, "toggle", "Switch one edit off or on; later edits stay", toggle);
+  add_verb(commands, "replay", "Make the edits of a project on another project", replay);
 }
 
 }  // namespace cei3d

@@ -16,10 +16,10 @@ void list(Session& session, Console& console) {
   std::string text;
   for (const PartInfo& p : session.parts()) {
     json.push_back(p.json());
-    text += fmt::format("{}{:<16} {:5.1f} % of the surface, by {}", text.empty() ? "" : "\n", p.name,
+    text += fmt::format("{}{:<16} {:5.1f} % of the surface, made by {}", text.empty() ? "" : "\n", p.name,
                         100 * p.share, p.edit);
   }
-  console.done({{"parts", json}}, text.empty() ? "No parts; `cei3d edit PROJECT part` makes one." : text);
+  console.done({{"parts", json}}, text.empty() ? "No parts. `cei3d edit PROJECT part` makes one." : text);
 }
 
 void masks(const Options& o, Session& session, Console& console) {
@@ -29,24 +29,23 @@ void masks(const Options& o, Session& session, Console& console) {
   request.part = o.part;
   request.samples = o.samples;
   const PartMasksReport r = session.part_masks(request, console);
-  console.done(r.json(), fmt::format("{}: part {} in {} views, {} of them show it; {:.1f} s.", o.out, o.part,
-                                     r.views, r.shown, r.seconds));
+  console.done(r.json(), fmt::format("{}: masks of part {} in {} views; {} of them show it; {:.1f} s.", o.out,
+                                     o.part, r.views, r.shown, r.seconds));
 }
 
 }  // namespace
 
 void add_parts(Commands& commands) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("parts", "List the parts that edits have named, or write a part's masks");
+  CLI::App* verb = commands.add("parts", "List the named parts, or write the masks of one");
   verb->add_option("project", o->project, "Project folder")->required();
   CLI::Option* masks_option = verb->add_option(
       "--masks", o->masks,
-      "Views to write masks for: CAPTURE, CAPTURE:train, :val or :test, or a FILE.json of cameras");
+      "Views to write masks for: CAPTURE, CAPTURE:train, :val or :test, or a FILE.json with cameras");
   CLI::Option* out = verb->add_option(
-      "-o,--output", o->out, "Folder for the masks: DIR/VIEW.png, grey, how much of a pixel is part");
+      "-o,--output", o->out, "Folder for the masks: DIR/VIEW.png, gray, coverage of each pixel by the part");
   CLI::Option* part = verb->add_option("--part", o->part, "Name of the part");
-  verb->add_option("--samples", o->samples,
-                   "Sub-pixel samples per axis, twice as many where the silhouette passes")
+  verb->add_option("--samples", o->samples, "Samples per pixel and axis; twice as many at the silhouette")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   masks_option->needs(out)->needs(part);

@@ -2,6 +2,7 @@
 #include "apps/cli/command.h"
 #include "apps/cli/parse.h"
 #include "core/base/error.h"
+#include "engine/capture/capture.h"
 
 namespace cei3d {
 namespace {
@@ -14,7 +15,7 @@ struct Options {
 void run_reconstruct(const Options& o, Session& session, Console& console) {
   ReconstructRequest request = o.request;
   if (o.capture.empty() && !request.resume)
-    fail_usage("reconstruct needs a CAPTURE, or --resume to go on with a project.");
+    fail_usage("reconstruct needs a CAPTURE, or --resume to continue a project.");
   if (!o.capture.empty()) request.capture = parse_capture_spec(o.capture).path;
   request.project = o.project;
   if (!o.time.empty()) request.options.seconds = parse_duration(o.time);
@@ -35,39 +36,42 @@ void add_reconstruct(Commands& commands) {
   CLI::App* verb = commands.add("reconstruct", "Make an editable object (a project) from posed photographs");
   verb->add_option("capture", o->capture,
                    "Folder of posed photographs, or its .json or .npz; not needed with --resume");
-  verb->add_option("-o,--output", o->project, "Folder of the project to make")->required();
-  verb->add_option("--preset", options.preset, "Size of the networks and length of the schedule")
+  verb->add_option("-o,--output", o->project, "Project folder to create")->required();
+  verb->add_option(
+          "--preset", options.preset,
+          "fast: small networks, minutes. balanced: as fast with four times the steps; with --time the same "
+          "as fast. paper: the paper's network sizes; about 28 hours on two cores unless --time is given")
       ->check(CLI::IsMember({"fast", "balanced", "paper"}))
       ->capture_default_str();
-  CLI::Option* time = verb->add_option(
-      "--time", o->time, "Stop training after: seconds, or 90s, 10m, 1h30m (default: the preset's own)");
+  CLI::Option* time =
+      verb->add_option("--time", o->time,
+                       "Time for the whole reconstruction: seconds, or 90s, 10m, 1h30m; the schedule is "
+                       "fitted to it (default: the preset's number of steps, see --iterations)");
   verb->add_option("--iterations", options.iterations,
-                   "Length of the geometry stage in steps, in place of --time; 0: unset")
+                   "Steps of the geometry stage, instead of --time; 0: the preset's, 4000 (fast), 16000 "
+                   "(balanced), 200000 (paper)")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->excludes(time);
   verb->add_option("--seed", options.seed,
-                   "Of everything random; the same seed and --iterations give the same object")
+                   "Random seed. Without --time the same seed gives the same object, bit for bit")
       ->capture_default_str();
-  verb->add_option("--downscale", options.downscale, "Use the pictures at 1/N of their size")
+  verb->add_option("--downscale", options.downscale, "Use the images at 1/N of their size")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  verb->add_option("--test-every", options.test_every,
-                   "Hold out every Nth view when the capture has no test split; 0: none")
-      ->capture_default_str();
   verb->add_option(
-          "--views", options.views,
-          "Train on N views only, spread evenly, to see how many are needed; the others are validation "
-          "views; 0: all")
+          "--test-every", options.test_every,
+          "Hold out every Nth view for testing when the capture has no test split; 0: train on all views")
+      ->capture_default_str();
+  verb->add_option("--views", options.views,
+                   "Train on N views only, spread evenly; the others become validation views. 0: all")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   verb->add_option("--format", o->request.format,
-                   "nerf-synthetic, physg or idr (default: told by the files)");
-  CLI::Option* resume =
-      verb->add_flag("--resume", o->request.resume,
-                     "Go on where the project's training was interrupted, with its own options");
-  verb->add_flag("--force", o->request.replace,
-                 "Replace the project that is in the folder, its edits included")
+                   capture_format_names() + " (default: detected from the files)");
+  CLI::Option* resume = verb->add_flag("--resume", o->request.resume,
+                                       "Continue an interrupted reconstruction, with its own options");
+  verb->add_flag("--force", o->request.replace, "Replace the project in that folder, including its edits")
       ->excludes(resume);
   commands.on(verb, o, run_reconstruct);
 }

@@ -49,39 +49,38 @@ void render(const Options& o, Session& session, Console& console) {
 void add_render(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb =
-      commands.add("render", "Render pictures of a project: DIR/CHANNEL/VIEW.png, and DIR/render.json");
+      commands.add("render", "Render images of a project: DIR/CHANNEL/VIEW.png, and DIR/render.json");
   verb->add_option("project", o->project, "Project folder")->required();
-  verb->add_option("-o,--output", o->out, "Folder for the pictures")->required();
-  CLI::Option* cameras = verb->add_option("--cameras", o->cameras,
-                                          "CAPTURE, CAPTURE:train, :val or :test, or a FILE.json of cameras "
-                                          "such as a render.json (default: the project's held-out "
-                                          "views, all views when it has none)");
+  verb->add_option("-o,--output", o->out, "Folder for the images")->required();
+  CLI::Option* cameras = verb->add_option(
+      "--cameras", o->cameras,
+      "CAPTURE, CAPTURE:train, :val or :test, or a FILE.json with cameras, such as a render.json (default: "
+      "the project's held-out views, or all views when there are none)");
   verb->add_option("--turntable", o->turntable,
-                   "N views on a circle about the up axis, as far and as high as the cameras were")
+                   "N views on a circle around the up axis, at the mean distance and height of the cameras")
       ->check(CLI::Range(1, 100000))
       ->excludes(cameras);
-  verb->add_option(
-          "--channels", o->channels,
-          "Comma-separated: rgb, albedo, diffuse, specular (RGBA, sRGB, straight alpha), normal (world space "
-          "of the "
-          "capture, (n+1)/2, 16-bit), depth (z-depth, 16-bit, scale in render.json), roughness, mask (grey)")
+  verb->add_option("--channels", o->channels,
+                   "Comma-separated: rgb, albedo, diffuse, specular (RGBA, sRGB, straight alpha), normal "
+                   "(world space of the capture, (n+1)/2, 16-bit), depth (z-depth, 16-bit, scale in "
+                   "render.json), roughness, mask (gray)")
       ->capture_default_str();
-  verb->add_option("--size", o->size,
-                   "Size in pixels, WxH; the field of view stays (default: the cameras' own)");
-  verb->add_option("--samples", o->samples,
-                   "Sub-pixel samples per axis, twice as many where the silhouette passes")
+  verb->add_option(
+      "--size", o->size,
+      "Image size, WxH pixels; the horizontal field of view is kept (default: that of the cameras)");
+  verb->add_option("--samples", o->samples, "Samples per pixel and axis; twice as many at the silhouette")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
   CLI::Option* env =
       verb->add_option(
               "--env", o->env,
-              "Light the object by this latitude-longitude picture (.hdr, .exr) instead of its own light")
+              "Light the object by this latitude-longitude image (.hdr, .exr) instead of its own light")
           ->check(CLI::ExistingFile);
   verb->add_option("--env-rotate", o->rotate,
-                   "Turn the light about the up axis, degrees, counter-clockwise seen from above")
+                   "Rotate the light around the up axis, degrees, counter-clockwise seen from above")
       ->capture_default_str();
   verb->add_option("--env-convention", o->convention,
-                   "Axes of the picture: zup, yup, mitsuba, blender (default: by the capture's up axis)")
+                   "Axes of the image: zup, yup, mitsuba, blender (default: from the capture's up axis)")
       ->needs(env);
   add_residual_switch(verb, o->residual);
   commands.on(verb, o, render);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A verb: options that CLI11 fills, and what runs once they are all there.
+// A command: options that CLI11 fills, and the function that runs with them.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -23,13 +23,13 @@ class Commands {
  public:
   Commands(CLI::App& app, const CommonOptions& common) : app_(app), common_(common) {}
 
-  // Adds a verb; `parent` null: of the program itself.
+  // Adds a command. parent: the command that it belongs to; null: the program.
   CLI::App* add(const std::string& name, const std::string& help, CLI::App* parent = nullptr) {
     CLI::App* verb = (parent ? parent : &app_)->add_subcommand(name, help);
-    verb->fallthrough();  // --quiet, --json, ... may follow the verb
+    verb->fallthrough();  // --quiet, --json, ... may follow the command
     return verb;
   }
-  // What the verb does. Options: a struct that lives as long as the command line does.
+  // Sets what the command does. options: filled by CLI11, kept alive by the command.
   template <class Options, class F>
   void on(CLI::App* verb, std::shared_ptr<Options> options, F run) {
     verb->callback(

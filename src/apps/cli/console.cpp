@@ -14,14 +14,14 @@ namespace {
 
 constexpr int kBarWidth = 24;
 constexpr double kRedrawSeconds = 0.1, kLineSeconds = 10;
-constexpr double kQuietStart = 2;  // seconds: what is over by then needs no lines
+constexpr double kQuietStart = 2;  // seconds without progress lines: short commands print none
 
 std::string bar(double fraction) {
   const int full = std::clamp(int(fraction * kBarWidth + 0.5), 0, kBarWidth);
   return std::string(size_t(full), '#') + std::string(size_t(kBarWidth - full), '.');
 }
 
-// Ends in a full stop; begins with a capital when it follows another sentence.
+// The text as a sentence, with a full stop; follows: after another sentence.
 std::string sentence(std::string text, bool follows) {
   if (text.empty()) return text;
   if (follows) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));

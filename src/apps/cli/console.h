@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program says: results on standard output, progress and everything else on standard error.
+// Output of the program: results on standard output, progress and messages on standard error. For one thread.
 #pragma once
 
 #include <chrono>
@@ -22,12 +22,12 @@ class Console : public Progress {
   void set_level(LogLevel level) { level_ = level; }
   void set_json(bool json) { json_ = json; }
 
-  // The answer to a question: always printed. text may hold several lines.
+  // The result of a query, printed always. text may have several lines.
   void answer(const Json& json, const std::string& text);
-  // What was done: nothing when quiet.
+  // The result of an action, not printed with --quiet.
   void done(const Json& json, const std::string& text);
   void warn(const std::string& text);
-  // With --json also an object on standard output, unless an answer is there already.
+  // With --json also prints an object on standard output, unless an answer was printed before.
   void error(const std::string& text, const std::string& hint, int code);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the verbs below `edit` have in common.
+// What the commands of `edit` have in common.
 #pragma once
 
 #include "apps/cli/command.h"
@@ -17,17 +17,17 @@ std::string stages_text(const EditSummary&);
 
 std::string remove_text(const EditSummary&);
 
-// --picture: what every edit can show of itself.
+// --picture, an option of every edit.
 struct EditOutput {
   std::string picture;
 };
 void add_output(CLI::App* verb, EditOutput&);
-// Says what was done, with the picture that was asked for.
+// Prints the report of an edit and writes its --picture.
 void finish_edit(Session&, Console&, const EditSummary&, std::string text, const EditOutput&);
 
 // --roughness, --specular, --metalness
 void add_material_values(CLI::App* verb, MaterialEffects&);
-// ..., --color, --replace
+// Those and --color, --replace.
 void add_effects(CLI::App* verb, MaterialEffects&);
 
 void add_edit_paint(Commands&, CLI::App* edit, ProjectName);

@@ -3,8 +3,8 @@
 
 namespace cei3d {
 
-// From now on Ctrl-C and SIGTERM ask the running work to save and stop; the second one ends the program at
-// once.
+// After this call Ctrl-C and SIGTERM ask the running command to save and stop; a second one ends the program
+// immediately.
 void catch_interrupts();
 bool interrupted();
 

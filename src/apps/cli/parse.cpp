@@ -50,8 +50,7 @@ PictureSize parse_size(const std::string& text) {
   char x = 0, rest = 0;
   if (std::sscanf(text.c_str(), "%d%c%d%c", &size.width, &x, &size.height, &rest) != 3 || x != 'x' ||
       size.width < 1 || size.height < 1 || size.width > 65535 || size.height > 65535)
-    fail_usage("--size '{}' is not a picture size; write it as WIDTHxHEIGHT in pixels, for example 800x600.",
-               text);
+    fail_usage("--size '{}' is not an image size; write WIDTHxHEIGHT in pixels, for example 800x600.", text);
   return size;
 }
 
@@ -62,18 +61,19 @@ std::vector<Channel> parse_channels(const std::string& text) {
     const std::optional<Channel> c = channel_from_name(word);
     if (!c)
       fail_usage(
-          "There is no channel '{}'; there are rgb, albedo, diffuse, specular, normal, depth, roughness, "
+          "Unknown channel '{}'. Channels are rgb, albedo, diffuse, specular, normal, depth, roughness, "
           "mask.",
           word);
     channels.push_back(*c);
   }
-  if (channels.empty()) fail_usage("--channels names no channel; for example --channels rgb,normal.");
+  if (channels.empty()) fail_usage("--channels is empty; write for example --channels rgb,normal.");
   return channels;
 }
 
 EnvConvention parse_env_convention(const std::string& text) {
   const std::optional<EnvConvention> c = env_convention_from_name(text);
-  if (!c) fail_usage("There is no environment convention '{}'; there are zup, yup, mitsuba, blender.", text);
+  if (!c)
+    fail_usage("Unknown environment convention '{}'. Conventions are zup, yup, mitsuba, blender.", text);
   return *c;
 }
 
@@ -93,7 +93,7 @@ std::vector<double> parse_numbers(const std::string& text, size_t count, const s
     p = ends ? end : after + 1;
   }
   if (numbers.size() != count)
-    fail_usage("{} '{}' should be {} numbers with commas between them, for example {}.", option, text, count,
+    fail_usage("{} '{}' must be {} numbers separated by commas, for example {}.", option, text, count,
                count == 2 ? "120.5,88" : "0.1,-0.25,1");
   return numbers;
 }

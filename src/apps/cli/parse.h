@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words of the command line as values, and values as words. Errors are usage errors that name the option.
+// Values from words of the command line. Errors are usage errors that name the option.
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ struct PictureSize {
 PictureSize parse_size(const std::string& text);               // "800x600"
 std::vector<Channel> parse_channels(const std::string& text);  // "rgb,normal"
 EnvConvention parse_env_convention(const std::string& text);
-// "1.5,-2,0": finite numbers, as many as asked for. option: for the error.
+// "1.5,-2,0": exactly `count` finite numbers. option: its name, for the error.
 std::vector<double> parse_numbers(const std::string& text, size_t count, const std::string& option);
 // "120.5,88" each: (column, row).
 std::vector<Vec2<double>> parse_pixels(const std::vector<std::string>& texts, const std::string& option);
-// "FILE.json" that lists cameras of ours, else a capture with or without ":split".
+// A FILE.json with cameras as `render` writes it, or a capture with or without ":split".
 CameraChoice parse_cameras(const std::string& text);
 
 }  // namespace cei3d

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear layers over panels, the first of the three things each backend writes itself (architecture 2.4).
+// Linear layers over panels: one of the few operations that each backend implements itself, instead of as a
+// kernel.
 //
 // A panel holds 32 samples, feature-major: [feature][32]. A batch is a sequence of panels, `stride` rows of
-// 32 apart.
+// 32 floats apart.
 #pragma once
 
 namespace cei3d {
 
-inline constexpr int kPanel = 32;  // samples a panel
+inline constexpr int kPanel = 32;  // samples per panel
 
 // y[o] = sum_i weights[o][i] x[i] (+ bias[o]) for every sample of every panel.
 struct LinearArgs {
@@ -22,8 +23,7 @@ struct LinearArgs {
   int y_stride;
 };
 
-// d_weights[o][i] += sum over samples of d_y[o] x[i];  d_bias[o] += sum over the panels that the bias went
-// to.
+// d_weights[o][i] += sum over samples of d_y[o] x[i]; d_bias[o] += sum over the panels that have the bias.
 struct LinearWeightGradArgs {
   int panels, in, out;
   const float* x;

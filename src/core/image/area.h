@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Areas of a picture: [height][width], 1 inside.
+// Sets of pixels as byte masks: [height][width], 1 inside.
 #pragma once
 
 #include <cstdint>
@@ -11,10 +11,10 @@ namespace cei3d {
 
 using Area = std::vector<uint8_t>;
 
-// Grown by `radius` pixels along both axes (a square).
+// The area grown by `radius` pixels along both axes (by a square).
 Area dilated(const Area& area, int width, int height, int radius);
 
-// The picture with `background` in all channels outside the area.
+// The image with `background` in all channels outside the area.
 Image shown_in(const Image& image, const Area& area, float background);
 
 size_t pixels_in(const Area& area);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture in memory: float, row 0 on top, channels interleaved. Linear unless a name says srgb.
+// An image in memory: float, row 0 at the top, channels interleaved, linear unless a name says srgb.
 #pragma once
 
 #include <cstddef>

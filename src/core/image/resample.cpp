@@ -28,7 +28,7 @@ void mean_of_block(const Image& image, int x0, int y0, int n, float* out) {
 Image downscale(const Image& image, int n) {
   if (n == 1) return image;
   if (n < 1 || n > image.width || n > image.height)
-    fail_usage("Cannot scale a picture of {} x {} pixels down by {}: choose a factor from 1 to {}.",
+    fail_usage("Cannot scale an image of {} x {} pixels down by {}: choose a factor from 1 to {}.",
                image.width, image.height, n, std::min(image.width, image.height));
   Image out(image.width / n, image.height / n, image.channels);
   for (int y = 0; y < out.height; ++y)

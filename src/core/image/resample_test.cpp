@@ -17,7 +17,7 @@ TEST(Downscale, MeanOfBlocksAndCutBorder) {
   EXPECT_EQ(small.data, (std::vector<float>{3.5f, 5.5f}));
 }
 
-TEST(Downscale, TransparentPixelsDoNotDarkenColour) {
+TEST(Downscale, TransparentPixelsDoNotDarkenColor) {
   Image image(2, 2, 4);
   image.at(0, 0)[0] = 0.8f;
   image.at(0, 0)[3] = 1;

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// An object of the library, released by its function.
+// Owns an object of the library; released by the library's function.
 template <class T, class Release>
 class Owned {
  public:
@@ -32,7 +32,7 @@ class Owned {
   T* p_ = nullptr;
 };
 
-// The table of functions; a call throws what the library complains about.
+// The library's table of functions. A failed call throws the library's message.
 class Api {
  public:
   explicit Api(const void* const* table) : table_(table) {}
@@ -55,8 +55,8 @@ class Api {
   const void* const* table_;
 };
 
-// Under the names that releases and distributions give it. It stays open to the end of the process: it has
-// threads of its own.
+// Opens the library under the names that releases and distributions use. It stays open until the process
+// ends, because it has threads of its own.
 void* open_library(const fs::path& folder) {
   const std::string own = (folder / "libonnxruntime.so.1").string();
   for (const std::string& name : {own, std::string("libonnxruntime.so.1"),
@@ -154,7 +154,8 @@ OnnxModel::OnnxModel(std::shared_ptr<const OnnxRuntime> runtime, const fs::path&
   Owned<ort::SessionOptions, ort::ReleaseSessionOptions> options(api.table());
   api.call<ort::CreateSessionOptions>(what, options.out());
   api.call<ort::SetIntraOpNumThreads>(what, options.get(), threads);
-  // Idle threads must not fight the program's own; reserved patterns cost memory and save no time here.
+  // No spinning: idle threads would compete with the program's own. No memory patterns: they cost memory and
+  // save no time here.
   api.call<ort::AddSessionConfigEntry>(what, options.get(), "session.intra_op.allow_spinning", "0");
   api.call<ort::DisableMemPattern>(what, options.get());
   state_ = std::make_unique<State>(api.table());
@@ -184,7 +185,7 @@ OnnxTensors OnnxModel::run(const OnnxTensors& inputs, const std::vector<std::str
     if (t.data.size() != elements(t.shape))
       fail("{}: input {} has a shape that its data do not fill.", what, name);
     owned.push_back(std::make_unique<Owned<ort::Value, ort::ReleaseValue>>(api.table()));
-    // The library takes non-const data and does not write to inputs.
+    // The library takes non-const pointers but does not write to inputs.
     api.call<ort::CreateTensorWithData>(what, runtime_->state_->memory.get(),
                                         static_cast<void*>(const_cast<float*>(t.data.data())),
                                         t.data.size() * sizeof(float), t.shape.data(), t.shape.size(),

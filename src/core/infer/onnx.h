@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Neural networks that others have trained: files in ONNX format, run by ONNX Runtime. The library is opened
-// when it is first needed; the program builds and runs without it, and then says what to install.
+// Pre-trained networks in ONNX format, run by ONNX Runtime. The library is opened at run time when it is
+// first needed, so the program builds and runs without it; the error then says what to install.
 #pragma once
 
 #include <filesystem>
@@ -20,14 +20,14 @@ using OnnxTensors = std::map<std::string, OnnxTensor>;  // by name
 
 class OnnxRuntime {
  public:
-  // folder: where the library is looked for first, as libonnxruntime.so.1; then where the system keeps
-  // libraries. Error: it is nowhere, or older than 1.11.
+  // folder: searched first for libonnxruntime.so.1, then the system's library folders. Error: not found, or
+  // older than 1.11.
   explicit OnnxRuntime(const std::filesystem::path& folder);
   ~OnnxRuntime();
   OnnxRuntime(const OnnxRuntime&) = delete;
   OnnxRuntime& operator=(const OnnxRuntime&) = delete;
 
-  // Whether the library is there.
+  // Whether the library can be loaded.
   static bool available(const std::filesystem::path& folder);
   const std::string& version() const { return version_; }
 
@@ -40,8 +40,8 @@ class OnnxRuntime {
 
 class OnnxModel {
  public:
-  // threads: of one run; 0: as many as there are cores. Results do not depend on it. Error: a file that is
-  // missing or no network.
+  // threads: used by a run; 0: all cores. Results do not depend on it. Error: the file is missing or not a
+  // network.
   OnnxModel(std::shared_ptr<const OnnxRuntime>, const std::filesystem::path& file, int threads = 0);
   ~OnnxModel();
   OnnxModel(const OnnxModel&) = delete;
@@ -51,8 +51,8 @@ class OnnxModel {
   const std::vector<std::string>& outputs() const { return outputs_; }
   bool has_input(const std::string& name) const;
 
-  // inputs: one for each name of inputs(). wanted: names of outputs. Errors: a missing input, a shape that
-  // does not fit its data or the network, an output that is not there or not of floats.
+  // inputs: one for each name in inputs(). wanted: names of outputs. Errors: a missing input, a shape that
+  // does not fit its data or the network, an output that does not exist or does not hold floats.
   OnnxTensors run(const OnnxTensors& inputs, const std::vector<std::string>& wanted) const;
 
  private:

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of ONNX Runtime's C interface that is called here. The library is opened at run time if it is
-// there, so neither it nor its headers are needed to build.
+// The part of ONNX Runtime's C interface that is used here. The library is opened at run time, so neither it
+// nor its headers are needed to build.
 //
-// The interface is one table of function pointers. Its order is a promise of the library ("the ordering of
-// the fields must not change", onnxruntime_c_api.h): functions are only ever appended. The positions below
-// hold for every release from 1.11 on; they were compared with offsetof() on the headers of 1.21.
+// The interface is one table of function pointers. The library promises to keep its order ("the ordering of
+// the fields must not change", onnxruntime_c_api.h) and only appends. The positions below hold for every
+// release from 1.11 on; they were compared with offsetof() on the headers of 1.21.
 #pragma once
 
 #include <cstddef>
@@ -30,11 +30,11 @@ struct ShapeInfo;
 struct Allocator;
 
 struct ApiBase {
-  const void* const* (*get_api)(uint32_t version);  // null: the library is older
+  const void* const* (*get_api)(uint32_t version);  // null: the library is too old
   const char* (*version)();
 };
 
-// A function of the table: its position and its type.
+// A function of the table, by position and type.
 template <size_t N, class F>
 struct Entry {
   using Function = F*;

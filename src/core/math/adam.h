@@ -6,12 +6,12 @@
 namespace cei3d {
 
 struct AdamStep {
-  float rate;               // learning rate, bias correction included: lr sqrt(1 - beta2^t) / (1 - beta1^t)
+  float rate;               // learning rate with bias correction: lr sqrt(1 - beta2^t) / (1 - beta1^t)
   float beta1, beta2, eps;  // [Kingma and Ba 2015]
-  bool skip_zero;  // leave entries without gradient alone (hash tables: most are untouched in a step)
+  bool skip_zero;           // skip entries without gradient (hash tables: most are untouched in a step)
 };
 
-// One parameter's update.
+// Updates one parameter.
 template <class T>
 HD void adam_update(const AdamStep& s, T gradient, T& value, T& m, T& v) {
   const T m1 = m * T(s.beta1) + gradient * T(1.0f - s.beta1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pinhole camera. OpenCV axes: x right, y down, z into the scene. Pixel (column, row) covers [c, c+1) x [r,
-// r+1); its centre is at +0.5. Loaders convert other conventions on the way in.
+// r+1); its center is at +0.5. Loaders convert other conventions on the way in.
 #pragma once
 
 #include "core/math/vec.h"
@@ -15,7 +15,7 @@ struct Camera {
   int width = 0, height = 0;                        // pixels
   double fx = 0, fy = 0, cx = 0, cy = 0, skew = 0;  // pixels
   Mat3d world_from_cam = Mat3d::identity();         // rotation
-  Vec3d center{0, 0, 0};                            // camera centre in world units
+  Vec3d center{0, 0, 0};                            // camera center in world units
 
   // Ray through the continuous pixel position (u, v).
   Ray ray(double u, double v) const {
@@ -33,8 +33,7 @@ struct Camera {
   }
 };
 
-// The same camera for a picture at 1/n of the size; columns and rows that don't fill an n x n block are cut
-// off.
+// The camera of the image at 1/n of its size. Columns and rows that do not fill an n x n block are cut off.
 inline Camera scaled(Camera c, int n) {
   c.width /= n;
   c.height /= n;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Colour: everything is linear Rec.709 unless a name says srgb. [IEC 61966-2-1]
+// Color spaces. Colors are linear with sRGB primaries (Rec. 709) unless a name says srgb. [IEC 61966-2-1]
 #pragma once
 
 #include "core/math/vec.h"
@@ -22,7 +22,8 @@ inline Vec3f srgb_from_linear(Vec3f c) {
 inline Vec3f linear_from_srgb(Vec3f c) {
   return {linear_from_srgb(c.x), linear_from_srgb(c.y), linear_from_srgb(c.z)};
 }
-// Oklab: distances are about equal to the eye; the first component is lightness, 1 for white. [Ottosson 2020]
+// Oklab: Euclidean distances are approximately perceptual; the first component is lightness, 1 for white.
+// [Ottosson 2020]
 inline Vec3f oklab_from_linear(Vec3f c) {
   const float l = ::cbrtf(max(0.4122214708f * c.x + 0.5363325363f * c.y + 0.0514459929f * c.z, 0.0f));
   const float m = ::cbrtf(max(0.2119034982f * c.x + 0.6806995451f * c.y + 0.1073969566f * c.z, 0.0f));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Encodings of a point in [-1, 1]^3: one level of a multi-resolution hash grid (trilinear) and the frequency
-// encoding. [Mueller et al. 2022, sec. 3; paper sec. 3.1; reference-facts 2.1]
+// encoding. [Mueller et al. 2022, sec. 3]
 #pragma once
 
 #include "core/math/vec.h"
@@ -22,7 +22,7 @@ HD Index<T> corner_index(const GridLevel& g, Index<T> x, Index<T> y, Index<T> z)
   return (x ^ (y * I(2654435761u)) ^ (z * I(805459861u))) & I(g.hash_mask);
 }
 
-// The cell that a point is in, and where in it.
+// The grid cell of a point, and the point's position in it.
 template <class T>
 struct GridCell {
   Index<T> x, y, z;  // lowest corner
@@ -43,7 +43,7 @@ struct GridCell {
     return corner_index<T>(g, x + I(uint32_t(k & 1)), y + I(uint32_t(k >> 1 & 1)), z + I(uint32_t(k >> 2)));
   }
   HD T weight(int k) const { return axis(t.x, k & 1) * axis(t.y, k >> 1 & 1) * axis(t.z, k >> 2); }
-  // d weight / d p
+  // derivatives of the weight with respect to p
   HD Vec3<T> weight_gradient(const GridLevel& g, int k) const {
     const T half = T(0.5f * g.resolution);
     const T wx = axis(t.x, k & 1), wy = axis(t.y, k >> 1 & 1), wz = axis(t.z, k >> 2);
@@ -55,7 +55,7 @@ struct GridCell {
   HD static T sign(int upper, T s) { return upper ? s : -s; }
 };
 
-// Two features of a level at p. table: [corners][2]
+// The two interpolated features of a level at p. table: [corners][2]
 template <class T>
 HD void grid_eval(const GridLevel& g, const float* table, Vec3<T> p, T out[2]) {
   const GridCell<T> cell(g, p);
@@ -69,7 +69,7 @@ HD void grid_eval(const GridLevel& g, const float* table, Vec3<T> p, T out[2]) {
   }
 }
 
-// The same with spatial derivatives: out[feature][value, d/dx, d/dy, d/dz].
+// grid_eval() with spatial derivatives: out[feature][value, d/dx, d/dy, d/dz].
 template <class T>
 HD void grid_eval_jet(const GridLevel& g, const float* table, Vec3<T> p, T out[2][4]) {
   const GridCell<T> cell(g, p);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// W floats in one register, with the vocabulary of scalar.h. Included only by files that are compiled for one
-// instruction set (core/compute/cpu/run.cpp); W is the native width there, since wider vectors are lowered
+// W floats in one SIMD register, with the functions of scalar.h. Include only in files that are compiled for
+// one instruction set (core/compute/cpu/run.cpp). W must be the native width: GCC compiles wider vectors
 // badly.
 #pragma once
 
@@ -11,7 +11,7 @@
 namespace cei3d {
 
 template <int W>
-struct Reg;  // spelled out: GCC drops vector_size silently when it depends on a template argument
+struct Reg;  // specialized below: GCC silently drops vector_size when it depends on a template argument
 template <>
 struct Reg<8> {
   typedef float f __attribute__((vector_size(32)));
@@ -27,7 +27,7 @@ struct Reg<16> {
 
 template <int W>
 struct LaneMask {
-  typename Reg<W>::i v;  // all ones or all zeros a lane
+  typename Reg<W>::i v;  // all ones or all zeros in each lane
 };
 
 template <int W>
@@ -124,7 +124,8 @@ HD void gather2(const float* p, LaneIndex<8> i, Lanes<8>& a, Lanes<8>& b) {
 }
 #ifdef __AVX512F__
 HD Lanes<16> sqrt(Lanes<16> a) { return Reg<16>::f(_mm512_sqrt_ps(__m512(a.v))); }
-// Relative error 1e-7, as division's, in a third of its time: 14 bits and one step of Newton's.
+// Reciprocal with relative error 1e-7, in a third of the time of a division: 14-bit estimate and one Newton
+// step.
 HD Lanes<16> reciprocal(Lanes<16> a) {
   const Lanes<16> r = Reg<16>::f(_mm512_rcp14_ps(__m512(a.v)));
   return r + r * (Lanes<16>(1.0f) - a * r);
@@ -149,7 +150,7 @@ HD typename Reg<W>::i truncate(Lanes<W> a) {
   return __builtin_convertvector(a.v, typename Reg<W>::i);
 }
 
-// e^x to 2 ulp or so: x = n ln 2 + r, |r| <= ln 2 / 2, Taylor polynomial of e^r. Saturates at about 1e-38 and
+// e^x to about 2 ulp: x = n ln 2 + r, |r| <= ln 2 / 2, Taylor polynomial of e^r. Saturates at about 1e-38 and
 // 2e38.
 template <int W>
 HD Lanes<W> exp(Lanes<W> x) {

@@ -29,7 +29,7 @@ HD LossValue<T, Vec3<T>> huber(Vec3<T> e, T width) {
   return {x.value + y.value + z.value, {x.gradient, y.gradient, z.gradient}};
 }
 
-// (|g| - 1)^2: the gradient of a distance has unit length. [Gropp et al. 2020]
+// (|g| - 1)^2: the gradient of a distance has unit length. [Gropp et al. 2020; paper eq. 16]
 template <class T>
 HD LossValue<T, Vec3<T>> eikonal(Vec3<T> g) {
   const T n = sqrt(dot(g, g) + T(1e-12f));

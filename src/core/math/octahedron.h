@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sphere unfolded to the square [-1, 1]^2 by way of an octahedron: +Z at its centre, -Z at its corners.
+// Octahedral map between the sphere and the square [-1, 1]^2: +Z at the center, -Z at the corners.
 // [Engelhardt and Dachsbacher 2008]
 #pragma once
 
@@ -9,19 +9,19 @@
 
 namespace cei3d {
 
-// Swaps the square's corners with its centre, where the lower half of the octahedron and the upper one lie.
+// Swaps the inner and the outer half of the square, where the upper and the lower half of the octahedron lie.
 inline Vec2f octahedron_folded(Vec2f p) {
   return {std::copysign(1 - std::abs(p.y), p.x), std::copysign(1 - std::abs(p.x), p.y)};
 }
 
-// d: unit.
+// Position in the square of a unit direction d.
 inline Vec2f octahedron_from_direction(Vec3f d) {
   const float sum = std::abs(d.x) + std::abs(d.y) + std::abs(d.z);
   const Vec2f upper{d.x / sum, d.y / sum};
   return d.z < 0 ? octahedron_folded(upper) : upper;
 }
 
-// Its inverse. Unit.
+// Unit direction of a position in the square; inverse of the above.
 inline Vec3f direction_from_octahedron(Vec2f p) {
   const float z = 1 - std::abs(p.x) - std::abs(p.y);
   const Vec2f upper = z < 0 ? octahedron_folded(p) : p;

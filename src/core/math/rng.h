@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counter-based random numbers: a value is a function of (seed, step, item), so resuming equals never
-// stopping.
+// Counter-based random numbers: a value is a function of (seed, step, item), so a resumed run draws the same
+// numbers as an uninterrupted one.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace cei3d {
 
-// Finaliser of splitmix64: a bijection that scatters neighbouring keys.
+// Finalizer of splitmix64: a bijection that scatters neighboring keys.
 HD uint64_t mix_bits(uint64_t x) {
   x += 0x9e3779b97f4a7c15ull;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The vocabulary that equations are written in. A number type T is float, double, Lanes<W>
-// (core/math/lanes.h) or Dual<...> (core/math/dual.h); equations use only + - * / and the functions below,
-// never `if` on a value.
+// The functions that equations are written in. A number type T is float, double, Lanes<W> (core/math/lanes.h)
+// or Dual<...> (core/math/dual.h). Equations use only + - * / and the functions below, never `if` on a value.
 #pragma once
 
 #include <cmath>
@@ -50,11 +49,11 @@ HD void sin_cos(T x, T& s, T& c) {
 HD float floor(float a) { return ::floorf(a); }
 HD double floor(double a) { return ::floor(a); }
 
-// A plain double of any number type: the value part, for tests and for control flow outside kernels.
+// The value of any number type as a double, for tests and for control flow outside kernels.
 HD double value_of(float a) { return a; }
 HD double value_of(double a) { return a; }
 
-// The unsigned integer that goes with T (array indices).
+// The unsigned integer type that belongs to T (array indices).
 template <class T>
 struct IndexOf {
   using type = uint32_t;
@@ -67,7 +66,7 @@ HD Index<T> to_index(T a) {  // a >= 0
   return Index<T>(value_of(a));
 }
 
-// Memory. Item i is one sample for a scalar T and the first of W consecutive samples for Lanes<W>.
+// Loads and stores. Item i is one sample for a scalar T and the first of W consecutive samples for Lanes<W>.
 template <class T>
 HD T load(const float* p) {
   return T(*p);
@@ -80,13 +79,13 @@ template <class T>
 HD T gather(const float* p, uint32_t i) {
   return T(p[i]);
 }
-// Two neighbouring floats p[2 i], p[2 i + 1].
+// Two neighboring floats p[2 i], p[2 i + 1].
 template <class T>
 HD void gather2(const float* p, uint32_t i, T& a, T& b) {
   a = T(p[2 * i]);
   b = T(p[2 * i + 1]);
 }
-// Adds (a, b) to that pair; on a GPU other threads may add to it at the same time.
+// Adds (a, b) to the pair p[2 i], p[2 i + 1]; on a GPU other threads may add to it at the same time.
 HD void scatter_add2(float* p, uint32_t i, float a, float b) {
 #ifdef __CUDA_ARCH__
   atomicAdd(p + 2 * i, a);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Spherical Gaussians G(w) = mu exp(lambda (w . axis - 1)): integrals in closed form, for unit mu, and their
 // derivatives. Two axes enter by their squared distance q = |axis1 - axis2|^2 = 2 (1 - cosine), which keeps
-// sharp lobes exact in single precision. [Wang et al. 2009; Meder and Bruederlin 2018; reference-facts 3.1]
+// sharp lobes exact in single precision. [Wang et al. 2009; Meder and Bruederlin 2018; docs/method.md#light]
 #pragma once
 
 #include "core/math/vec.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interpolation between the cell centres of a grid over [-1, 1]^3.
+// Interpolation between the cell centers of a grid over [-1, 1]^3.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace cei3d {
 
-// value_at(x, y, z): of a cell, each in [0, n). Beyond the outermost centres: as there.
+// value_at(x, y, z): value of a cell, indices in [0, n). Positions beyond the outermost centers are clamped.
 template <class ValueAt>
 float trilinear(Vec3f p, int n, const ValueAt& value_at) {
   float f[3];

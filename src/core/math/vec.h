@@ -69,7 +69,7 @@ template <class T>
 HD T length(Vec3<T> a) {
   return sqrt(dot(a, a));
 }
-// Unit vector; the zero vector stays (nearly) zero instead of becoming NaN.
+// Unit vector. The zero vector stays nearly zero instead of becoming NaN.
 template <class T>
 HD Vec3<T> normalize(Vec3<T> a) {
   return a * (T(1) / sqrt(dot(a, a) + T(1e-20f)));
@@ -106,7 +106,7 @@ template <class T>
 HD T determinant(const Mat3<T>& m) {
   return dot(m.row[0], cross(m.row[1], m.row[2]));
 }
-// Transpose of the inverse: what normals turn by when points turn by m. m: not singular.
+// Inverse transpose, by which normals transform when points transform by m. m: not singular.
 template <class T>
 HD Mat3<T> inverse_transpose(const Mat3<T>& m) {
   const T s = T(1) / determinant(m);

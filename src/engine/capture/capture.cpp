@@ -18,24 +18,15 @@ namespace {
 
 constexpr Split kSplits[] = {Split::train, Split::val, Split::test};
 
-std::string known_formats() {
-  std::string text;
-  for (const CaptureFormat& f : capture_formats()) text += (text.empty() ? "" : ", ") + f.name;
-  return text;
-}
-
 const CaptureFormat& format_of(const fs::path& path, const std::string& wanted) {
   for (const CaptureFormat& f : capture_formats())
     if (wanted.empty() ? f.detect(path) : f.name == wanted) {
       if (!f.detect(path)) fail("{} is not a {} capture.", path.string(), wanted);
       return f;
     }
-  if (!wanted.empty()) fail_usage("There is no capture format '{}'. Known: {}.", wanted, known_formats());
-  fail(
-      "{} is not a capture: it has neither transforms_train.json (NeRF-synthetic), transforms.json "
-      "(nerfstudio), "
-      "cam_dict_norm.json (PhySG) nor cameras_sphere.npz (IDR, NeuS).",
-      path.string());
+  if (!wanted.empty())
+    fail_usage("There is no capture format '{}'. Known: {}.", wanted, capture_format_names());
+  fail("{} is not a capture of a known format ({}).", path.string(), capture_format_layouts("; "));
 }
 
 Vec3d camera_right(const Camera& c) {
@@ -45,7 +36,7 @@ Vec3d camera_up(const Camera& c) {
   return -Vec3d{c.world_from_cam.row[0].y, c.world_from_cam.row[1].y, c.world_from_cam.row[2].y};
 }
 
-// The axis that is nearest to a direction, where it is near.
+// The coordinate axis nearest to a direction, if the cosine is large enough.
 std::optional<Vec3d> near_axis(Vec3d direction, double cosine) {
   for (int axis = 0; axis < 3; ++axis)
     if (std::abs(direction[axis]) > cosine) {
@@ -56,9 +47,9 @@ std::optional<Vec3d> near_axis(Vec3d direction, double cosine) {
   return std::nullopt;
 }
 
-// The direction that the cameras' horizontal axes are most at right angles to: cameras are seldom rolled, but
-// often tilted, all of them the same way where the object was seen from one side. The least eigenvector of
-// A = sum of x x^T is the greatest of (trace A) I - A: power iteration. near: where it starts, and its sign.
+// The direction most perpendicular to the cameras' horizontal axes: cameras are seldom rolled, but often
+// tilted, all in the same way if the object was photographed from one side. The smallest eigenvector of A =
+// sum of x x^T is the largest of (trace A) I - A: power iteration. near: start, and decides the sign.
 Vec3d across_horizontals(const std::vector<Vec3d>& horizontals, Vec3d near) {
   Vec3d up = near;
   for (int k = 0; k < 500; ++k) {
@@ -69,9 +60,9 @@ Vec3d across_horizontals(const std::vector<Vec3d>& horizontals, Vec3d near) {
   return dot(up, near) < 0 ? -up : up;
 }
 
-// Most photographers hold the camera upright: the mean of the cameras' own "up" points to the sky. Snapped to
-// the nearest axis; the format's convention where the cameras don't say. Formats whose worlds stand anyhow
-// (IDR: that of the first camera, often) have no convention: there it stays as the cameras say.
+// Most photographs are taken upright, so the mean of the cameras' own up axes points up. It is snapped to the
+// nearest axis; without a clear mean the format's convention is used. The world frame of IDR captures is
+// arbitrary (often that of the first camera), so there the estimate is used as it is.
 Vec3d up_axis(const Capture& capture) {
   const bool any_world = capture.format == "idr";
   const Vec3d convention = capture.format == "physg" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
@@ -148,6 +139,18 @@ std::vector<View> views_of(const Capture& capture, Split split) {
   for (const View& v : capture.views)
     if (v.split == split) views.push_back(v);
   return views;
+}
+
+std::string capture_format_names() {
+  std::string text;
+  for (const CaptureFormat& f : capture_formats()) text += (text.empty() ? "" : ", ") + f.name;
+  return text;
+}
+
+std::string capture_format_layouts(const std::string& separator) {
+  std::string text;
+  for (const CaptureFormat& f : capture_formats()) text += (text.empty() ? "" : separator) + f.layout;
+  return text;
 }
 
 Capture load_capture(const fs::path& path, const CaptureOptions& options) {

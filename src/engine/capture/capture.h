@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Captures: posed photographs in the formats that people have. All conventions end here: OpenCV axes, pixel
-// centres at +0.5, the capture's own world frame.
+// Captures: posed photographs in known formats. Conventions of the input end here: afterwards axes are
+// OpenCV's, pixel centers are at +0.5, and the frame is the capture's own.
 #pragma once
 
 #include <filesystem>
@@ -13,29 +13,34 @@
 namespace cei3d {
 
 struct CaptureOptions {
-  std::string format;  // "nerf-synthetic", "physg" or "idr"; empty: told by the files
+  std::string format;  // one of capture_format_names(); empty: detected from the files
   int test_every = 0;  // every Nth training view becomes a test view when the capture has none; 0: never
-  int views = 0;       // train on so many only, those of keep_training_views(); 0: on all
+  int views = 0;       // number of training views to use, by keep_training_views(); 0: all
 };
 
-// Cameras and file names; pictures are not read (but for the size of one a split). path: a folder, or its
-// .json or .npz. Missing pictures are no error here: check() lists them all. Errors: nothing recognised,
-// malformed cameras, no views.
+// Loads cameras and file names, not images (but the size of one per split). path: a folder, or its .json or
+// .npz. Missing images are no error here; check() lists them. Errors: unknown format, malformed cameras, no
+// views.
 Capture load_capture(const std::filesystem::path& path, const CaptureOptions& options = {});
+
+// "nerf-synthetic, physg, ...": the formats that load_capture() reads.
+std::string capture_format_names();
+// The programs and the files of each format.
+std::string capture_format_layouts(const std::string& separator);
 
 const char* split_name(Split split);
 std::optional<Split> split_from_name(const std::string& name);
 std::vector<View> views_of(const Capture& capture, Split split);
 
-// "train/r_055", "./train/r_055", with a picture's suffix, or a bare "r_055" when only one split has it (else
-// the training view). Error (usage) with near names when there is none.
+// The view of a name: "train/r_055", "./train/r_055", either with an image suffix, or a bare "r_055" (that of
+// the only split that has it, else the training view). Usage error with similar names when there is none.
 const View& find_view(const Capture& capture, const std::string& name);
 
 struct CaptureSpec {
   std::filesystem::path path;
   std::optional<Split> split;
 };
-// "DIR", "DIR:train", "DIR:val", "DIR:test". Error (usage): another word after the colon.
+// Parses "DIR", "DIR:train", "DIR:val" or "DIR:test". Usage error: another word after the colon.
 CaptureSpec parse_capture_spec(const std::string& spec);
 
 }  // namespace cei3d

@@ -11,7 +11,7 @@
 namespace cei3d {
 namespace {
 
-// Python writes NaN and Infinity bare, which is not JSON; outside strings they become null.
+// Replaces bare NaN and Infinity outside strings, which Python writes but JSON does not have, by null.
 std::string without_nan(const std::string& text) {
   std::string out;
   bool in_string = false;
@@ -39,9 +39,20 @@ std::string without_nan(const std::string& text) {
 }  // namespace
 
 const std::vector<CaptureFormat>& capture_formats() {
-  static const std::vector<CaptureFormat> formats{{"nerf-synthetic", detect_nerf, load_nerf},
-                                                  {"physg", detect_physg, load_physg},
-                                                  {"idr", detect_idr, load_idr}};
+  static const std::vector<CaptureFormat> formats{
+      {.name = "nerf-synthetic",
+       .layout = "NeRF-synthetic, nerfstudio: transforms_{train,val,test}.json or transforms.json; RGBA or "
+                 "mask_path",
+       .detect = detect_nerf,
+       .load = load_nerf},
+      {.name = "physg",
+       .layout = "PhySG: cam_dict_norm.json, image/, mask/",
+       .detect = detect_physg,
+       .load = load_physg},
+      {.name = "idr",
+       .layout = "IDR, NeuS: cameras_sphere.npz or cameras.npz, image/, mask/",
+       .detect = detect_idr,
+       .load = load_idr}};
   return formats;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the capture formats share, and their list. A format is a pair detect, load.
+// The table of capture formats, and what their loaders share.
 #pragma once
 
 #include <filesystem>
@@ -14,46 +14,47 @@ namespace cei3d {
 
 struct CaptureFormat {
   std::string name;
+  std::string layout;                                 // its files, for help and messages
   bool (*detect)(const std::filesystem::path& path);  // path: folder or file
   Capture (*load)(const std::filesystem::path& path);
 };
 const std::vector<CaptureFormat>& capture_formats();
 
-// NeRF-synthetic and its kin: transforms_{train,val,test}.json or one transforms.json (all training views),
-// OpenGL camera-to-world. A frame's own fl_x, fl_y, cx, cy, w, h win over the file's; mask_path is honoured,
-// and nerfstudio's lists train_filenames, val_filenames, test_filenames. [reference-facts 1.5]
+// NeRF-synthetic, nerfstudio, instant-ngp: transforms_{train,val,test}.json or one transforms.json (all
+// training views), OpenGL camera-to-world. A frame's own fl_x, fl_y, cx, cy, w, h override the file's;
+// mask_path and nerfstudio's lists train_filenames, val_filenames, test_filenames are read.
 bool detect_nerf(const std::filesystem::path& path);
 Capture load_nerf(const std::filesystem::path& path);
 
 // PhySG: cam_dict_norm.json, image/, mask/, in the folder itself or in its train/ and test/. OpenCV
-// world-to-camera, integer pixel centres. [reference-facts 1.1]
+// world-to-camera, integer pixel centers.
 bool detect_physg(const std::filesystem::path& path);
 Capture load_physg(const std::filesystem::path& path);
 
-// IDR, NeuS and their kin: cameras_sphere.npz or cameras.npz with world_mat_i = K [R | t], image/, mask/, all
-// training views. OpenCV axes, integer pixel centres. The world of world_mat is the capture's frame;
-// scale_mat_i (where their programs put the unit sphere) is not needed: our own normalisation comes from the
-// masks. [reference-facts 1.3]
+// IDR, NeuS: cameras_sphere.npz or cameras.npz with world_mat_i = K [R | t], image/, mask/; all training
+// views. OpenCV axes, integer pixel centers. The world of world_mat is the capture frame; scale_mat_i (the
+// unit sphere of those programs) only bounds the object.
 bool detect_idr(const std::filesystem::path& path);
 Capture load_idr(const std::filesystem::path& path);
 
-// JSON as it comes out of programs: NaN and Infinity are taken for null. Errors name the file.
+// Reads JSON; NaN and Infinity, which Python writes, become null. Errors name the file.
 Json read_json_file(const std::filesystem::path& path);
-// A finite number or NaN (for null). Error: anything else. `where` is for the sentence.
+// A finite number, or NaN for null. Error: anything else. where: for the error message.
 double number_of(const Json& j, const std::string& where);
-// 3 or 4 rows of a pose or camera matrix, nested ([[...], ...]) or flat ([...], 16 numbers). Row-major 3x4.
+// Reads 3 or 4 rows of a pose or camera matrix, nested ([[...], ...]) or flat ([...], 16 numbers). Row-major
+// 3x4.
 struct Matrix34 {
   double m[3][4];
 };
 Matrix34 matrix_of(const Json& j, const std::string& where);
 
-// K [R | t] taken apart; up to a factor, so that also a negative one is understood. The picture size stays 0.
-// Errors: not finite, not a projection. `where` is for the sentence.
+// Decomposes K [R | t], which may be scaled by any factor, also a negative one. The image size stays 0.
+// Errors: not finite, not a projection. where: for the error message.
 Camera camera_from_projection(const Matrix34& p, const std::string& where);
 
-// Files with a picture's suffix, sorted; none where there is no such folder.
+// Image files in a folder, sorted; none if the folder does not exist.
 std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder);
-// {0, 0} where there is no picture, or a broken one.
+// Size of an image file; {0, 0} if it is missing or broken.
 ImageSize size_of_picture(const std::filesystem::path& path);
 
 }  // namespace cei3d

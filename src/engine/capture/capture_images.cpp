@@ -20,13 +20,13 @@ void require_size(const View& view, const Image& image, const std::filesystem::p
   const Camera& c = view.camera;
   if (image.width != c.width || image.height != c.height)
     fail(
-        "{} is {} x {} pixels, but view {} should have {} x {}. All pictures and masks of a split need one "
+        "{} is {} x {} pixels, but view {} should have {} x {}. All images and masks of a split need one "
         "size.",
         path.string(), image.width, image.height, view.name, c.width, c.height);
 }
 
-// How much of each pixel is the object, by the mask file. What scaling and compression leave of plain black
-// and white counts as such.
+// Coverage of each pixel by the mask file. Values near black and white, from scaling and compression, count
+// as black and white.
 std::vector<float> read_mask_file(const View& view) {
   constexpr float kPlain = 0.05f;
   const Image mask = read_image(view.mask_path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures and masks of a capture's views.
+// Loads images and masks of a capture's views.
 #pragma once
 
 #include <cstdint>
@@ -10,21 +10,20 @@
 
 namespace cei3d {
 
-// RGBA, linear, straight alpha. Alpha: the mask file's luminance where the view has one (near black: 0, near
-// white: 1), else the picture's own, else 1. PNG and JPEG are sRGB; EXR and HDR are linear as stored. Errors
-// name the file: missing, broken, of another size than the camera or the mask, NaN or infinite values.
+// RGBA, linear, straight alpha. Alpha: the mask file's luminance where the view has one (nearly black: 0,
+// nearly white: 1), else the image's own, else 1. PNG and JPEG are sRGB; EXR and HDR are linear as stored.
+// Errors name the file: missing, broken, other size than the camera or the mask, NaN or infinite values.
 Image load_linear_rgba(const View& view);
 
 struct Mask {
   int width = 0, height = 0;
   std::vector<uint8_t> object;  // [height][width], 1: object
-  bool stated = true;           // false: there was neither a mask nor an alpha channel, all is object
+  bool stated = true;           // false: neither a mask nor an alpha channel, all pixels are object
 };
 // alpha > 0.5. Errors as above.
 Mask load_mask(const View& view);
 
-// Loads on demand. downscale: pictures at 1/N of their size; scaled(camera, N) is the camera that goes with
-// them.
+// Loads on demand. downscale N: images at 1/N of their size, which belong to scaled(camera, N).
 class CaptureImages : public ImageSource {
  public:
   explicit CaptureImages(int downscale = 1) : downscale_(downscale) {}

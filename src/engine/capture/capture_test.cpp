@@ -53,7 +53,7 @@ TEST(Capture, SameBallInBothFormatsGivesTheSameCameras) {
   EXPECT_TRUE(b.warnings.empty());
 }
 
-// The silhouette's centre of a ball lies where its centre projects, nearly: catches half pixels and flipped
+// The silhouette's center of a ball lies where its center projects, nearly: catches half pixels and flipped
 // axes.
 TEST(Capture, PicturesAndCamerasAgree) {
   const TempFolder temp;
@@ -222,13 +222,13 @@ TEST(Capture, BadCameraFilesAreErrors) {
        "matrix"},
       {"transforms_train.json",
        "{\"frames\": [{\"file_path\": \"..\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "names no picture"},
+       "names no image"},
       {"transforms_train.json",
        "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [\"1\",0,0,0,0,1,0,0,0,0,1,0]}]}",
        "number"},
       {"transforms_train.json",
        "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "picture size"},
+       "image size"},
       {"transforms_train.json",
        "{\"w\":8,\"h\":8,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
        "[1,0,0,0,0,1,0,0,0,0,1,0]}]}",
@@ -326,11 +326,11 @@ TEST(CaptureImages, LinearStraightAlphaAndDownscale) {
   EXPECT_EQ(half.width, 2);
   EXPECT_EQ(half.project({1, 1, 8}).x * 2,
             (Camera{4, 4, 8, 8, 2, 2, 0, Mat3d::identity(), {0, 0, 0}}.project({1, 1, 8}).x));
-  View grey = v;
-  grey.image_path = temp.path() / "g.png";
-  write_png(grey.image_path, Image(4, 4, 1, 1.0f));
-  EXPECT_EQ(load_linear_rgba(grey).at(0, 0)[2], 1.0f);
-  EXPECT_FALSE(load_mask(grey).stated);
+  View gray = v;
+  gray.image_path = temp.path() / "g.png";
+  write_png(gray.image_path, Image(4, 4, 1, 1.0f));
+  EXPECT_EQ(load_linear_rgba(gray).at(0, 0)[2], 1.0f);
+  EXPECT_FALSE(load_mask(gray).stated);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 namespace cei3d {
 namespace {
 
-// What can be wrong with a single view, in the order of reporting.
+// Problems of a single view, in the order of reporting.
 enum Problem { kNoFile, kBroken, kBadPose, kEmptyMask, kNoMask, kFullMask, kCut, kAway, kProblems };
 
 struct ProblemText {
@@ -23,16 +23,16 @@ struct ProblemText {
   const char *what, *fix;
 };
 constexpr std::array<ProblemText, kProblems> kTexts{{
-    {Severity::error, "pictures are missing",
+    {Severity::error, "images are missing",
      "Copy them to where the cameras say they are, or remove these views from the camera file."},
-    {Severity::error, "pictures or masks cannot be used",
-     "Copy or render them again; all pictures of a split need one size."},
+    {Severity::error, "images or masks cannot be used",
+     "Copy or render them again; all images of a split need one size."},
     {Severity::error, "poses are not a rotation and a finite position",
      "Estimate the poses again, or remove these views."},
     {Severity::error, "masks are empty", "Remove these views, or correct their masks or alpha."},
-    {Severity::error, "pictures have neither an alpha channel nor a mask file",
+    {Severity::error, "images have neither an alpha channel nor a mask file",
      "Add mask files, or save PNGs with alpha."},
-    {Severity::error, "masks cover the whole picture",
+    {Severity::error, "masks cover the whole image",
      "Check that the masks mean the object: bright or opaque is object."},
     {Severity::warning, "views show the object cut by the frame border",
      "Step back or widen the frame; what is never seen whole is guessed."},
@@ -138,7 +138,7 @@ void report_splits(const std::vector<Checked>& all, CaptureReport& report) {
             {Severity::error,
              fmt::format("View {} is {} x {} pixels, others of its split {} x {}.", view->name,
                          view->camera.width, view->camera.height, s.size.width, s.size.height),
-             "Give all pictures of a split one size."});
+             "Give all images of a split one size."});
       if (result.mask.object.empty()) continue;
       ++with_mask;
       s.coverage += result.coverage;
@@ -160,7 +160,7 @@ void report_normalization(const std::vector<Checked>& all, const std::optional<O
     if (view->split == Split::train && result.mask.stated && !result.mask.object.empty() &&
         !result.has[kBadPose])
       masks.push_back({view->camera, result.mask.object});
-  if (masks.size() < 2) return;  // said by the views' own findings
+  if (masks.size() < 2) return;  // already reported as findings of the views
   std::vector<std::string> warnings;
   try {
     report.normalization = normalization_from_masks(masks, &warnings, region);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was understood of a capture, and everything that is wrong with it, with the fix.
+// Check of a capture: what was understood, and every problem with its fix.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace cei3d {
 
-enum class Severity { note, warning, error };  // error: reconstruct would refuse
+enum class Severity { note, warning, error };  // error: reconstruct refuses the capture
 
 struct Finding {
   Severity severity = Severity::error;
@@ -24,31 +24,32 @@ struct SplitReport {
   Split split = Split::train;
   int views = 0;
   ImageSize size;
-  double coverage = 0, coverage_min = 0, coverage_max = 0;  // object pixels / all pixels: mean, least, most
+  // Object pixels / all pixels: mean, minimum, maximum
+  double coverage = 0, coverage_min = 0, coverage_max = 0;
 };
 
 struct CaptureReport {
   std::string format;
   Vec3d up{0, 0, 1};                           // input frame
-  std::vector<SplitReport> splits;             // those that have views
-  std::optional<Normalization> normalization;  // nothing when it could not be found
+  std::vector<SplitReport> splits;             // splits with views
+  std::optional<Normalization> normalization;  // none when it could not be found
   double distance_min = 0, distance = 0,
-         distance_max = 0;        // training cameras to the object's centre, input units
+         distance_max = 0;        // training cameras to the object's center, input units
   std::vector<Finding> findings;  // errors first
 
   bool usable() const;
 };
 
-// Reads every picture of the split (all splits by default) on all threads: seconds.
+// Reads every image of the split (default: all splits) on all threads; takes seconds.
 CaptureReport check(const Capture& capture, std::optional<Split> only = std::nullopt);
 
-// Throws one Error that says all fatal findings (the first few in full).
+// Throws one Error with all fatal findings, the first few in full.
 void require_usable(const CaptureReport& report);
 void require_usable(const Capture& capture);  // checks the training views first
 
-// Cameras and the object's bounding sphere from above (left; up axis to the viewer) and from the side (right;
-// up axis up). RGB, sRGB. Training cameras blue, validation green, test orange, with their viewing
-// directions. size: pixels a panel.
+// Draws cameras and the object's bounding sphere, from above (left, up axis towards the viewer) and from the
+// side (right, up axis up). RGB, sRGB. Training cameras blue, validation green, test orange, with viewing
+// directions. size: pixels per panel.
 Image draw_cameras(const Capture& capture, const Normalization& normalization, int size = 480);
 
 }  // namespace cei3d

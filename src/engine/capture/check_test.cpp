@@ -63,7 +63,7 @@ TEST_F(Check, GoodCaptureIsUnderstood) {
 TEST_F(Check, MissingPicturesAreListed) {
   fs::remove(picture(3));
   fs::remove(picture(5));
-  EXPECT_THAT(complaint(), AllOf(HasSubstr("2 of 20 pictures are missing"), HasSubstr("train/r_003"),
+  EXPECT_THAT(complaint(), AllOf(HasSubstr("2 of 20 images are missing"), HasSubstr("train/r_003"),
                                  HasSubstr("train/r_005")));
 }
 
@@ -94,7 +94,7 @@ TEST_F(Check, NeitherAlphaNorMask) {
 
 TEST_F(Check, OpaqueAlphaIsNoMask) {
   for (int i = 0; i < 20; ++i) write_png(picture(i), Image(64, 48, 4, 1.0f));
-  EXPECT_THAT(complaint(), HasSubstr("cover the whole picture"));
+  EXPECT_THAT(complaint(), HasSubstr("cover the whole image"));
 }
 
 TEST_F(Check, BadPoses) {

@@ -52,7 +52,7 @@ Matrix34 read_matrix(const std::string& npy, const std::string& where) {
   return m;
 }
 
-// The ball that scale_mat takes to the unit ball's place. It is the same for all views.
+// The ball that scale_mat maps the unit ball to; the same for all views.
 std::optional<ObjectBall> stated_region(const Entries& entries, int64_t camera, const std::string& where,
                                         Capture& capture) {
   const auto entry = entries.find(fmt::format("scale_mat_{}.npy", camera));
@@ -66,8 +66,8 @@ std::optional<ObjectBall> stated_region(const Entries& entries, int64_t camera, 
   return std::nullopt;
 }
 
-// The files of the cameras: by the number that is their name where each camera finds a file, or each file a
-// camera; else by sorted order, as the format's own loaders do.
+// The file of each camera: by the number in its name if every camera finds a file or every file a camera;
+// else by sorted order, as the format's own loaders do.
 Files match(std::span<const int64_t> cameras, const Files& files, const fs::path& folder, Capture& capture) {
   std::map<int64_t, fs::path> by_number;
   for (const fs::path& file : files)
@@ -81,13 +81,13 @@ Files match(std::span<const int64_t> cameras, const Files& files, const fs::path
   }
   if (found == files.size()) return out;  // some may be missing: check() lists them
   if (found == cameras.size()) {
-    capture.warnings.push_back(fmt::format("{} of {} pictures in {} have no camera and are left out.",
+    capture.warnings.push_back(fmt::format("{} of {} images in {} have no camera and are left out.",
                                            files.size() - found, files.size(), folder.string()));
     return out;
   }
   if (files.size() == cameras.size()) return files;
   fail(
-      "The {} pictures in {} fit the {} cameras neither by name nor by number. Name them 000000, 000001, ... "
+      "The {} images in {} fit the {} cameras neither by name nor by number. Name them 000000, 000001, ... "
       "like the matrices.",
       files.size(), folder.string(), cameras.size());
 }
@@ -100,15 +100,14 @@ Files match_folder(const fs::path& root, std::initializer_list<const char*> name
   return {};
 }
 
-// A camera whose principal point is not in the picture belongs to a picture of another size.
+// A principal point outside the image means that the camera belongs to an image of another size.
 void warn_of_other_sizes(Capture& capture) {
   for (const View& v : capture.views) {
     const Camera& c = v.camera;
     if (c.cx > 0 && c.cx < c.width && c.cy > 0 && c.cy < c.height) continue;
     capture.warnings.push_back(
-        fmt::format("The principal point ({:.0f}, {:.0f}) of view {} lies outside its picture of {} x {}. "
-                    "Were the pictures "
-                    "resized or cropped without the cameras? K has to be changed with them.",
+        fmt::format("The principal point ({:.0f}, {:.0f}) of view {} lies outside its image of {} x {}. Were "
+                    "the images resized or cropped without the cameras? K has to be changed with them.",
                     c.cx, c.cy, v.name, c.width, c.height));
     return;
   }
@@ -116,7 +115,8 @@ void warn_of_other_sizes(Capture& capture) {
 
 }  // namespace
 
-// Gram-Schmidt on the rows of K R from the last one up, K being upper triangular with a positive diagonal.
+// RQ decomposition by Gram-Schmidt on the rows of K R, last row first; K is upper triangular with a positive
+// diagonal.
 Camera camera_from_projection(const Matrix34& p, const std::string& where) {
   Mat3d m;
   Vec3d last;
@@ -161,12 +161,12 @@ Capture load_idr(const fs::path& path) {
   const std::vector<int64_t> cameras = indices_of(entries, "world_mat_");
   if (cameras.empty()) fail("{} has no matrices world_mat_0, world_mat_1, ...", file.string());
   const Files images = match_folder(root, {"image", "images"}, cameras, capture);
-  if (images.empty()) fail("There are no pictures in {}.", (root / "image").string());
+  if (images.empty()) fail("There are no images in {}.", (root / "image").string());
   const Files masks = match_folder(root, {"mask", "masks"}, cameras, capture);
 
   ImageSize size;
   for (size_t i = 0; i < images.size() && size.width == 0; ++i) size = size_of_picture(images[i]);
-  if (size.width == 0) fail("No picture in {} can be read.", (root / "image").string());
+  if (size.width == 0) fail("No image in {} can be read.", (root / "image").string());
   for (size_t i = 0; i < cameras.size(); ++i) {
     const std::string name = fmt::format("world_mat_{}", cameras[i]);
     View view;
@@ -175,7 +175,7 @@ Capture load_idr(const fs::path& path) {
     if (!masks.empty()) view.mask_path = masks[i];
     const std::string where = fmt::format("{} of {}", name, file.string());
     view.camera = camera_from_projection(read_matrix(entries.at(name + ".npy"), where), where);
-    view.camera.cx += 0.5;  // the format's pixel centres are at whole numbers
+    view.camera.cx += 0.5;  // the format's pixel centers are at whole numbers
     view.camera.cy += 0.5;
     view.camera.width = size.width;
     view.camera.height = size.height;

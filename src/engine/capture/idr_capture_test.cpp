@@ -169,7 +169,7 @@ TEST(Idr, BadMatricesGetSentences) {
   EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr("no matrices world_mat_0"));
   fs::remove_all(temp.path() / "image");
   write_file_atomic(temp.path() / "cameras_sphere.npz", test_zip({{"world_mat_0.npy", test_npy(good)}}));
-  EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr("no pictures"));
+  EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr("no images"));
 }
 
 TEST(Idr, OtherEntriesAndFortranOrderAreFine) {

@@ -35,7 +35,7 @@ std::vector<CameraFile> camera_files(const fs::path& path) {
   return files;
 }
 
-// The picture that file_path means: as it stands, or with a suffix; the first guess when there is none.
+// The image that file_path names, as written or with a suffix; the first guess when no file exists.
 fs::path picture_path(const fs::path& folder, const std::string& file_path) {
   const fs::path base = folder / fs::path(file_path).lexically_normal();
   if (has_image_suffix(base)) return base;
@@ -44,7 +44,7 @@ fs::path picture_path(const fs::path& folder, const std::string& file_path) {
   return base.string() + ".png";
 }
 
-// Names become paths below an output folder, so they never lead out of it.
+// View names become paths below an output folder and must not lead out of it.
 std::string view_name(const std::string& file_path, Split split) {
   fs::path name = fs::path(file_path).lexically_normal();
   if (has_image_suffix(name)) name.replace_extension();
@@ -67,7 +67,7 @@ double focal_from_angle(double angle, int pixels, const std::string& where) {
   return 0.5 * pixels / std::tan(0.5 * angle);
 }
 
-// Lists of file_path in nerfstudio's transforms.json; a frame that is on none of them is a training view.
+// The split of a frame by nerfstudio's lists of file_path; a frame on no list is a training view.
 std::map<std::string, Split> listed_splits(const Json& file, const std::string& name) {
   std::map<std::string, Split> splits;
   for (const Split split : {Split::train, Split::val, Split::test}) {
@@ -90,9 +90,9 @@ void require_pinhole(const Json& frame, const Json& file, const std::string& whe
          {"OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "perspective"})
       if (model == pinhole) return;
     fail(
-        "{} has the camera model {}, of which only the pinhole kinds are supported. Undistort the "
-        "photographs "
-        "first, for example with colmap image_undistorter.",
+        "{} has the camera model {}, but only pinhole cameras are supported. Undistort the "
+        "photographs and give their cameras without distortion (as transforms.json; COLMAP models are not "
+        "read yet).",
         where, model.dump());
   }
 }
@@ -102,9 +102,9 @@ void require_no_distortion(const Json& frame, const Json& file, const std::strin
     const auto value = lookup(frame, file, {key}, where);
     if (value && std::abs(*value) > 1e-9)
       fail(
-          "{} has lens distortion ({} = {:g}), which is not supported yet. Undistort the photographs first, "
-          "for example with "
-          "colmap image_undistorter.",
+          "{} has lens distortion ({} = {:g}), which is not supported yet. Undistort the photographs and "
+          "give "
+          "their cameras without distortion (as transforms.json; COLMAP models are not read yet).",
           where, key, *value);
   }
 }
@@ -118,7 +118,7 @@ void set_pose(Camera& camera, const Matrix34& opengl) {
 }
 
 int pixels_of(double v, const std::string& where) {
-  if (!(v >= 1 && v <= 65535)) fail("{} gives an impossible picture size.", where);
+  if (!(v >= 1 && v <= 65535)) fail("{} gives an impossible image size.", where);
   return int(std::lround(v));
 }
 
@@ -128,7 +128,8 @@ void set_intrinsics(Camera& c, const Json& frame, const Json& file, ImageSize kn
   c.width = w ? pixels_of(*w, where) : known.width;
   c.height = h ? pixels_of(*h, where) : known.height;
   if (c.width == 0 || c.height == 0)
-    fail("{}: neither the cameras nor any picture tells the picture size. Are the pictures missing?", where);
+    fail("{}: the image size is unknown: neither the cameras nor any image gives it. Are the images missing?",
+         where);
   const auto focal = lookup(frame, file, {"fl_x", "focal"}, where);
   const auto angle = lookup(frame, file, {"camera_angle_x"}, where);
   if (!focal && !angle) fail("{} has no focal length: neither fl_x nor camera_angle_x.", where);
@@ -146,7 +147,7 @@ View read_frame(const Json& frame, Split split, const fs::path& folder, const st
     fail("{} lacks file_path or transform_matrix.", where);
   const std::string file_path = frame["file_path"];
   if (fs::path(file_path).lexically_normal().stem().empty() || fs::path(file_path).filename() == "..")
-    fail("The file_path of {} names no picture.", where);
+    fail("The file_path of {} names no image.", where);
   View view;
   view.split = split;
   view.name = view_name(file_path, split);

@@ -22,10 +22,10 @@ Vec3d solve(const Mat3d& a, Vec3d b) {  // symmetric, by Cramer's rule
   return (c0 * b.x + c1 * b.y + c2 * b.z) / det;
 }
 
-// One silhouette: its leftmost and rightmost pixel in each row, which hold its outline's extremes.
+// A silhouette: the leftmost and rightmost pixel of each row, which include the extremes of its outline.
 struct Silhouette {
   const HullMask* view;
-  std::vector<Vec2<double>> outline;  // pixel centres
+  std::vector<Vec2<double>> outline;  // pixel centers
   Vec3d axis;                         // unit, from the camera through the middle of the silhouette's box
 };
 
@@ -64,8 +64,8 @@ std::vector<Silhouette> find_silhouettes(std::span<const HullMask> masks) {
   return out;
 }
 
-// Largest distance from `center` to a line of sight through the silhouette: the object's width about that
-// point.
+// Largest distance from `center` to a line of sight through the silhouette: half the width of the object
+// around that point.
 double reach(const Silhouette& s, Vec3d center) {
   double best = 0;
   const Vec3d to_center = center - s.view->camera.center;
@@ -88,24 +88,24 @@ Normalization first_box(const std::vector<Silhouette>& silhouettes) {
   const Vec3d center = nearest_point_to_lines(origins, axes);
   if (!std::isfinite(dot(center, center)))
     fail(
-        "The cameras don't say where the object is: their lines of sight are parallel, or poses are not "
-        "finite. Photograph the "
-        "object from several sides, and check the poses.");
+        "The cameras do not determine where the object is: their lines of sight are parallel, or poses are "
+        "not "
+        "finite. Photograph the object from several sides, and check the poses.");
   std::vector<double> reaches;
   for (const Silhouette& s : silhouettes) reaches.push_back(reach(s, center));
-  // A mask with a stray pixel far out must not inflate the box: long objects are within 3 medians, specks
+  // One mask with a stray pixel must not enlarge the box: long objects are within 3 medians, stray pixels
   // mostly not.
   const double half = std::min(*std::max_element(reaches.begin(), reaches.end()), 3 * median(reaches)) * 1.05;
-  if (!(half > 0)) fail("The object's size could not be told from the masks.");
+  if (!(half > 0)) fail("The masks do not determine the object's size.");
   return {center, 1 / half};
 }
 
 struct Vote {
-  std::vector<Vec3d> cells;  // centres of inside cells, input frame
+  std::vector<Vec3d> cells;  // centers of inside cells, input frame
   double half_diagonal = 0;  // of a cell
 };
 
-// Hull in the cube [-1, 1]^3 of `box`, as far as it lies in the region.
+// Hull in the cube [-1, 1]^3 of `box`, clipped to the region.
 Vote vote(std::span<const HullMask> masks, const Normalization& box, int n, int tolerated,
           const std::optional<ObjectBall>& region = {}) {
   std::vector<HullMask> local(masks.begin(), masks.end());
@@ -123,7 +123,7 @@ Vote vote(std::span<const HullMask> masks, const Normalization& box, int n, int 
   return out;
 }
 
-// The cube around points, as the transform that makes it [-1, 1]^3.
+// Bounding cube of points, as the transform that maps it to [-1, 1]^3.
 Normalization cube_around(const Vote& v) {
   Vec3d lo = v.cells[0], hi = v.cells[0];
   for (const Vec3d p : v.cells)
@@ -133,7 +133,7 @@ Normalization cube_around(const Vote& v) {
   return {(lo + hi) / 2.0, 1 / half};
 }
 
-// Smallest ball around points, to 1 %: step towards the farthest, less each time. [Badoiu and Clarkson 2003]
+// Smallest enclosing ball, to 1 %: shrinking steps towards the farthest point. [Badoiu and Clarkson 2003]
 Normalization sphere_around(const Vote& v, Vec3d center) {
   double radius = 0;
   for (int i = 1; i <= 100; ++i) {
@@ -195,9 +195,8 @@ Normalization normalization_from_masks(std::span<const HullMask> masks, std::vec
   const Vote coarse = vote(masks, box, 64, tolerated);
   if (coarse.cells.empty())
     fail(
-        "The masks have no volume in common: masks and camera poses disagree. Check that the pictures and "
-        "poses belong "
-        "together, and the axes convention of the poses.");
+        "The masks have no volume in common: masks and camera poses disagree. Check that the images and "
+        "poses belong together, and the axes convention of the poses.");
   box = cube_around(coarse);
   const Vote fine = vote(masks, box, 96, tolerated);
   return sphere_around(fine.cells.empty() ? coarse : fine, box.center);
@@ -213,8 +212,7 @@ Normalization find_normalization(const Capture& capture) {
   if (hull.empty())
     fail(
         "{} has neither masks nor an alpha channel, so the object cannot be told from the background. Give "
-        "PNGs with alpha, or "
-        "mask files.",
+        "PNGs with alpha, or mask files.",
         capture.root.string());
   return normalization_from_masks(hull, nullptr, capture.region);
 }

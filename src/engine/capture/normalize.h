@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The similarity that puts the object into the unit sphere, from the silhouettes of the training views.
+// The similarity transform that puts the object into the unit sphere, from the silhouettes of the training
+// views.
 #pragma once
 
 #include <optional>
@@ -15,21 +16,20 @@ namespace cei3d {
 
 inline constexpr double kObjectRadius = 0.9;  // of the hull's bounding sphere after normalization
 
-// Loads the training masks (on all threads). Errors: as normalization_from_masks; unreadable pictures.
+// Loads the training masks (all threads). Errors: those of normalization_from_masks(), unreadable images.
 Normalization find_normalization(const Capture& capture);
 
-// masks: cameras in the input frame. A box from rays through the silhouettes' centres and their widths, a
-// coarse hull in it, a finer one in the coarse hull's box; the transform puts that one's bounding sphere to
-// radius kObjectRadius. Some wrong masks (one in twenty) are outvoted, and a sentence about it is added to
-// warnings. region (input frame): what lies outside is no part of the object; pictures that cut it off leave
-// a hull far too large otherwise. One that holds none of the hull is not believed, with a warning. Errors:
-// fewer than two views with a silhouette, all cameras on a line with the object, an empty hull (masks and
-// poses disagree).
+// masks: cameras in the input frame. First a box from the rays through the silhouettes' centers and their
+// widths, then a coarse hull in it, then a finer one in the coarse hull's box, whose bounding sphere gets the
+// radius kObjectRadius. Up to one wrong mask in twenty is outvoted, with a warning. region (input frame):
+// what lies outside is not part of the object; without it images that cut the object off give a far too large
+// hull. A region that contains none of the hull is ignored with a warning. Errors: fewer than two views with
+// a silhouette, all cameras on one line with the object, an empty hull (masks and poses disagree).
 Normalization normalization_from_masks(std::span<const HullMask> masks,
                                        std::vector<std::string>* warnings = nullptr,
                                        const std::optional<ObjectBall>& region = {});
 
-// The point nearest to all lines (least squares), NaN when the lines don't say. directions: unit.
+// The point nearest to all lines (least squares); NaN when the lines do not determine it. directions: unit.
 Vec3d nearest_point_to_lines(std::span<const Vec3d> origins, std::span<const Vec3d> directions);
 
 }  // namespace cei3d

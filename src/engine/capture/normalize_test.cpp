@@ -121,16 +121,12 @@ TEST(Normalize, FromFiles) {
               HasSubstr("neither masks nor an alpha"));
 }
 
-// The scenes were rendered with the object in the unit sphere, bounding radius 0.97. Hulls are a little
+// The sample was rendered with the object in the unit sphere, bounding radius 0.97. Hulls are a little
 // larger.
-TEST(Normalize, SharedScenes) {
-  for (const char* name : {"spot", "teapot", "penguin"}) {
-    const std::filesystem::path scene = std::filesystem::path("../shared/scenes") / name;
-    if (!std::filesystem::exists(scene)) GTEST_SKIP() << "no ../shared/scenes here";
-    const Normalization n = find_normalization(load_capture(scene));
-    EXPECT_NEAR(n.scale, 0.9 / 0.97, 0.06) << name;
-    EXPECT_LT(length(n.center), 0.15) << name;
-  }
+TEST(Normalize, SampleCapture) {
+  const Normalization n = find_normalization(load_capture("samples/spot"));
+  EXPECT_NEAR(n.scale, 0.9 / 0.97, 0.06);
+  EXPECT_LT(length(n.center), 0.15);
 }
 
 }  // namespace

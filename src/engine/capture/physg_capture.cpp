@@ -34,7 +34,7 @@ Camera read_camera(const Json& j, const std::string& where) {
   c.fx = k.m[0][0];
   c.fy = k.m[1][1];
   c.skew = k.m[0][1];
-  c.cx = k.m[0][2] + 0.5;  // the format's pixel centres are at whole numbers
+  c.cx = k.m[0][2] + 0.5;  // the format's pixel centers are at whole numbers
   c.cy = k.m[1][2] + 0.5;
   if (!(c.fx > 0 && c.fy > 0) || !std::isfinite(c.fx * c.fy * c.cx * c.cy * c.skew))
     fail("The intrinsics of {} are impossible.", where);
@@ -65,14 +65,14 @@ Files match(const std::vector<std::string>& keys, const Files& files, const fs::
     out.push_back(it != by_stem.end() ? it->second : folder / fs::path(key).filename());
   }
   if (found > 0 && found < files.size())
-    capture.warnings.push_back(fmt::format("{} of {} pictures in {} have no camera and are left out.",
+    capture.warnings.push_back(fmt::format("{} of {} images in {} have no camera and are left out.",
                                            files.size() - found, files.size(), folder.string()));
   if (found > 0) return out;
   if (files.size() != keys.size())
-    fail("The {} pictures in {} fit the {} cameras neither by name nor by number. Name them as in {}.",
+    fail("The {} images in {} fit the {} cameras neither by name nor by number. Name them as in {}.",
          files.size(), folder.string(), keys.size(), kCameras);
   capture.warnings.push_back(
-      fmt::format("The pictures in {} are not named like the cameras; they were matched by sorted order.",
+      fmt::format("The images in {} are not named like the cameras; they were matched by sorted order.",
                   folder.string()));
   return files;
 }
@@ -80,7 +80,7 @@ Files match(const std::vector<std::string>& keys, const Files& files, const fs::
 void read_part(const Part& part, Capture& capture) {
   const fs::path file = part.folder / kCameras;
   const Json j = read_json_file(file);
-  if (!j.is_object()) fail("{} is not a list of cameras by picture name.", file.string());
+  if (!j.is_object()) fail("{} is not a list of cameras by image name.", file.string());
   std::vector<std::string> keys;
   for (const auto& [key, value] : j.items()) keys.push_back(key);
   std::sort(keys.begin(), keys.end());
@@ -99,7 +99,7 @@ void read_part(const Part& part, Capture& capture) {
     view.split = part.split;
     view.camera = read_camera(j[keys[i]], where);
     if (size.width > 0) view.camera.width = size.width, view.camera.height = size.height;
-    if (view.camera.width == 0) fail("{}: neither img_size nor a picture tells the picture size.", where);
+    if (view.camera.width == 0) fail("{}: neither img_size nor an image tells the image size.", where);
     view.image_path = image_of[i];
     view.mask_path = mask_of[i];
     capture.views.push_back(std::move(view));

@@ -53,7 +53,7 @@ inline std::string test_zip(const std::map<std::string, std::string>& files) {
          number(directory.size(), 4) + number(out.size(), 4) + number(0, 2);
 }
 
-// K [R | t] times a factor, row-major 4x4; pixel centres at whole numbers, as the format has them.
+// K [R | t] times a factor, row-major 4x4; pixel centers at whole numbers, as the format has them.
 inline std::vector<double> world_mat(const Camera& c, double factor = 1) {
   const Mat3d r = transpose(c.world_from_cam);
   const Vec3d t = -(r * c.center);

@@ -12,7 +12,7 @@ namespace {
 
 bool is_local(const EditLayer& l) { return !l.everywhere && !l.light; }
 
-// By pixel: whether one of its own samples belongs to the edit.
+// For each pixel: whether one of its own samples belongs to the edit.
 std::vector<uint8_t> touched_pixels(const Device& device, const Scene& scene, const GBuffer& before,
                                     const GBuffer& after) {
   const int last = int(scene.layers.size()) - 1;
@@ -29,7 +29,7 @@ std::vector<uint8_t> touched_pixels(const Device& device, const Scene& scene, co
   return touched;
 }
 
-// A pixel's colour is made of samples up to one pixel away.
+// A pixel's color is a mean of samples up to one pixel away.
 std::vector<uint8_t> with_neighbours(const std::vector<uint8_t>& mask, int width, int height) {
   std::vector<uint8_t> out(mask.size(), 0);
   for (int y = 0; y < height; ++y)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an edit changed in one view: its own pixels, and whether it kept to them.
+// What an edit changed in one view: pixels inside its region, and pixels outside, of which there must be
+// none.
 #pragma once
 
 #include "engine/render/render.h"
@@ -9,9 +10,9 @@ namespace cei3d {
 class RenderCache;  // engine/render/render_cache.h
 
 struct ChangeReport {
-  size_t pixels_inside = 0;    // of the picture, that the edit may change: see compare_views()
-  size_t pixels_changed = 0;   // among all
-  size_t changed_outside = 0;  // 0, or something is wrong
+  size_t pixels_inside = 0;    // pixels that the edit may change: see compare_views()
+  size_t pixels_changed = 0;   // pixels that changed, anywhere
+  size_t changed_outside = 0;  // must be 0
   Frame before, after;
 };
 

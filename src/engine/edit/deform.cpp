@@ -16,15 +16,14 @@ namespace cei3d {
 namespace {
 
 constexpr float kDefaultRadius = 0.3f, kRadiusPerDrag = 1.5f;
-constexpr float kNear = 0.05f;  // how far from the surface a handle may be given
-// Share of the radius that is held around the handle and moves with it, and over which bending is resisted. A
-// single vertex would draw out a spike; a sixth or so leaves most of the radius to the fall-off. (Measured on
-// the ear of spot: shares of 0 / 0.15 / 0.25 leave 0.10 / 0.06 / 0.09 of the drag to an artist's smooth
-// fall-off.)
+constexpr float kNear = 0.05f;  // maximum distance of a given handle from the surface
+// Share of the radius that moves rigidly with the handle, and over which bending is resisted. A single vertex
+// would draw out a spike; about a sixth leaves most of the radius to the fall-off. (On the ear of spot shares
+// of 0, 0.15, 0.25 differ from an artist's smooth fall-off by 0.10, 0.06, 0.09 of the drag.)
 constexpr float kHandleShare = 0.15f;
-// Descent goes on for as many iterations as some seconds allow: 60 for a region of ten thousand vertices or
-// less, fewer for larger ones, where the last dozens move the surface by a hundredth or two of the drag.
-constexpr int kMostIterations = 60, kLeastIterations = 12, kVertexIterations = 600'000;
+// Iterations for a few seconds of work: 60 up to ten thousand vertices, fewer for larger regions, where the
+// last dozens move the surface by one or two hundredths of the drag.
+constexpr int kMaxIterations = 60, kMinIterations = 12, kVertexIterations = 600'000;
 
 std::string in_capture(const Scene& scene, Vec3f p) {
   Vec3d q = scene.normalization.input_from_unit(to_double(p));
@@ -76,7 +75,7 @@ struct Reach {
   float radius = 0;
 };
 
-// What moves: the disc around the handle with the drag, the rest of the radius or the part as it likes.
+// Constraints: the disc around the handle moves with the drag, the rest of the radius or the part is free.
 Reach reach_of(const Mesh& mesh, const DeformRequest& r, const std::vector<uint8_t>& on_part,
                uint32_t handle) {
   GeodesicLimits limits;
@@ -128,8 +127,7 @@ Reshape reshape_to(const Scene& scene, const std::vector<Vec3f>& after) {
     if (!(length(after[v]) <= 1))
       fail(
           "The drag takes the surface to {}, outside the sphere of radius {:.4g} around {} that the object "
-          "lives in; "
-          "drag less far.",
+          "lives in; drag less far.",
           in_capture(scene, after[v]), 1 / scene.normalization.scale, in_capture(scene, {0, 0, 0}));
     reshape.moved.push_back(v);
     reshape.positions.push_back(after[v]);
@@ -155,8 +153,7 @@ DeformResult deform(const Scene& scene, const DeformRequest& request, Progress& 
   ArapOptions options;
   options.bending_length = kHandleShare * reach.radius;
   const int free = int(std::count(reach.constraints.free.begin(), reach.constraints.free.end(), 1));
-  options.most_iterations =
-      std::clamp(kVertexIterations / std::max(free, 1), kLeastIterations, kMostIterations);
+  options.max_iterations = std::clamp(kVertexIterations / std::max(free, 1), kMinIterations, kMaxIterations);
   const ArapResult moved = arap_deform(mesh.positions, mesh.triangles, reach.constraints, options);
   progress.report({"deform", 0.8, -1, ""});
   check_cancelled(progress, "deforming was interrupted; nothing was changed");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `edit deform`: a point of the surface is dragged, and the surface around it, or the part it is on, follows
-// as rigidly as it can. [paper sec. 3.3]
+// `edit deform`: drags a point of the surface; the surface around it, or its part, follows as rigidly as
+// possible. [paper sec. 4.3; docs/method.md#changes-of-shape]
 #pragma once
 
 #include <optional>
@@ -14,15 +14,15 @@ namespace cei3d {
 
 struct DeformRequest {
   std::string id;               // of the new layer
-  Vec3f from, to;               // unit-sphere frame; from: on or near the surface
-  std::optional<float> radius;  // along the surface from the handle, unit-sphere units: what is farther stays
-  std::string part;             // what is not on it stays; empty: the whole object
+  Vec3f from, to;               // unit frame; from: on or near the surface
+  std::optional<float> radius;  // distance along the surface up to which vertices move, unit frame
+  std::string part;             // only this part moves; empty: the whole object
 };
 
 struct DeformReport {
-  size_t vertices = 0;  // that moved
-  float farthest = 0;   // move, unit-sphere units
-  float radius = 0;     // of what moved, along the surface from the handle, unit-sphere units
+  size_t vertices = 0;  // number of moved vertices
+  float farthest = 0;   // largest movement, unit frame
+  float radius = 0;     // distance along the surface up to which vertices moved, unit frame
   int iterations = 0;
   double seconds = 0;
 };
@@ -32,12 +32,11 @@ struct DeformResult {
   DeformReport report;
 };
 
-// Without radius and part, the radius is 0.3 of the unit sphere's, or one and a half times the drag if that
-// is more.
+// Default radius: 0.3 of the unit sphere's, or one and a half times the drag if that is more.
 //
-// On the surface's mesh rather than on the handler points: a radius takes in some thousand vertices, which
-// are solved for exactly in a fraction of a second, and nothing has to be interpolated between handlers,
-// where highlights would show their spacing. Handler points are carried by the mesh.
+// Works on the mesh instead of on handler points: a radius contains some thousand vertices, which are solved
+// for exactly in a fraction of a second, and nothing has to be interpolated between handler points, whose
+// spacing highlights would show. Handler points are carried along by the mesh.
 //
 // Pure: the scene is not changed. Errors: no surface near the handle, a handle that is not on the part, a
 // drag of no length or out of the unit sphere, nothing or everything within the radius, no such part,

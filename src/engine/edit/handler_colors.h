@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The base colour that the object shows, edits included: at its handler points, and as a picture. What parts
-// are told apart by: no light, shadow or highlight disturbs there.
+// Albedo of the edited object at its handler points and as an image. Parts are told apart by it, because it
+// has no light, shadows or highlights.
 #pragma once
 
 #include <vector>
@@ -10,14 +10,13 @@
 
 namespace cei3d {
 
-// The handler points of the scene as hits, on the triangle of the present surface that each lies on; so they
-// are known in every pose.
+// The handler points as hits on the present surface, so that they are known in every shape version.
 std::vector<Hit> handler_hits(const Scene&);
 
-// #handlers of the scene, linear.
+// #handlers, linear albedo.
 std::vector<Vec3f> handler_colors(const Device&, const Scene&);
 
-// RGBA, linear, straight alpha, of the camera's size. camera: unit-sphere frame.
+// Albedo image: RGBA, linear, straight alpha, of the camera's size. camera: unit frame.
 Image base_color_picture(const Device&, const Scene&, const Camera& camera);
 
 }  // namespace cei3d

@@ -15,14 +15,14 @@ void check_share(const std::optional<float>& value, const char* name) {
 
 void check_request(const MaterialRequest& r) {
   if (r.change.empty() && !r.color)
-    fail_usage("Nothing to change: give a roughness, a specular, a metalness or a colour.");
+    fail_usage("Nothing to change: give a roughness, a specular, a metalness or a color.");
   check_share(r.change.roughness, "Roughness");
   check_share(r.change.specular, "Specular");
   check_share(r.change.metalness, "Metalness");
-  for (int c = 0; r.color && c < 3; ++c) check_share((*r.color)[c], "A channel of the colour,");
+  for (int c = 0; r.color && c < 3; ++c) check_share((*r.color)[c], "A channel of the color,");
 }
 
-// A third of the area of the triangles around each vertex.
+// Vertex areas: a third of the area of the triangles around each vertex.
 std::vector<float> vertex_areas(const Mesh& mesh) {
   std::vector<float> area(mesh.positions.size(), 0);
   for (const auto& t : mesh.triangles) {
@@ -33,7 +33,7 @@ std::vector<float> vertex_areas(const Mesh& mesh) {
   return area;
 }
 
-// Vertices of the present surface that a layer contains, and what they weigh.
+// Vertices of the present surface in the layer's region, with their areas.
 struct Inside {
   std::vector<Hit> hits;
   std::vector<float> areas;

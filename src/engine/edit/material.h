@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `edit material`: another roughness, specular, metalness or colour, of the whole object or of a part.
+// `edit material`: changes roughness, specular, metalness or color of the object or of a part.
 #pragma once
 
 #include <optional>
@@ -15,13 +15,13 @@ struct MaterialRequest {
   std::string part;  // empty: the whole object
   MaterialChange change;
   std::optional<Vec3f> color;  // linear
-  bool keep_texture = true;    // of the colour: scale what is there to it, instead of replacing it
+  bool keep_texture = true;    // scale the present texture to the color instead of replacing it
 };
 
 struct MaterialReport {
-  size_t points = 0;  // vertices of the present surface inside
-  Vec3f mean{0, 0,
-             0};  // linear base colour before, over the surface; only with a colour that keeps the texture
+  size_t points = 0;  // vertices of the present surface in the region
+  // Mean linear albedo of the region before the edit; only with a color that keeps the texture.
+  Vec3f mean{0, 0, 0};
 };
 
 struct MaterialResult {
@@ -29,12 +29,12 @@ struct MaterialResult {
   MaterialReport report;
 };
 
-// Usage errors: nothing to change, values that are not in [0, 1] or not finite, no such part. Error: a part
-// that is nowhere on the present surface.
+// Usage errors: nothing to change, values outside [0, 1] or not finite, no such part. Error: the part has no
+// surface any more.
 MaterialResult change_material(const Device&, const Scene&, const MaterialRequest&);
 
-// The linear base colour below the layer, averaged over the part of the surface that it contains, by area.
-// Error: it contains nothing.
+// Mean linear albedo below the layer over the surface in its region, weighted by area. Error: the region is
+// empty.
 Vec3f mean_color_inside(const Device&, const Scene&, const EditLayer&);
 
 }  // namespace cei3d

@@ -22,7 +22,7 @@ void check_scribble(const Scribble& s) {
         "the scribble has no alpha channel; save it as RGBA, opaque where it paints and transparent "
         "elsewhere");
   if (s.image.width != s.camera.width || s.image.height != s.camera.height)
-    fail("the scribble is {}x{} pixels, the view {}x{}; paint on a picture of the view's own size",
+    fail("the scribble is {}x{} pixels, the view {}x{}; paint on an image of the view's own size",
          s.image.width, s.image.height, s.camera.width, s.camera.height);
 }
 
@@ -33,12 +33,12 @@ void check_stroke(const Stroke& s) {
          s.painted_pixels);
 }
 
-// What all scribbles together want where.
+// Targets of all scribbles together.
 struct Paint {
   std::vector<Hit> hits;
-  std::vector<Vec3f> targets;   // #hits, linear base colour
+  std::vector<Vec3f> targets;   // #hits, linear albedo
   std::vector<uint8_t> inside;  // #hits, 1 in the painted region, 0 just beside it
-  float pixel = 1e9f;           // of the finest scribble, on the surface, unit-sphere units
+  float pixel = 1e9f;           // of the finest scribble, on the surface, unit frame
 };
 
 float pixel_of(const Stroke& s) {
@@ -47,7 +47,7 @@ float pixel_of(const Stroke& s) {
   return footprints[footprints.size() / 2] * float(s.scale);
 }
 
-// later: the regions of the strokes after this one, which cover it.
+// later: regions of the strokes after this one, which cover it.
 void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
   paint.pixel = min(paint.pixel, pixel_of(s));
   for (size_t i = 0; i < s.hits.size(); ++i) {
@@ -78,8 +78,8 @@ float solve_for_albedo(const Device& device, const Scene& scene, const SceneLigh
   return float(outside) / float(std::max<size_t>(paint.hits.size(), 1));
 }
 
-// Cells of half a pixel on the finest level, a table that holds those on the stroke: borders between
-// two colours stay as sharp as the scribble shows them.
+// Finest cells of half a pixel and a table that holds those on the stroke, so that borders between two colors
+// stay as sharp as in the scribble.
 FieldConfig branch_config(const Paint& paint) {
   FieldConfig c;
   c.encoding.levels = 8;
@@ -95,7 +95,7 @@ FieldConfig branch_config(const Paint& paint) {
 
 constexpr int kSteps = 400, kBatch = 2048;
 
-// One batch, with replacement: a function of seed and step.
+// A batch drawn with replacement, a function of seed and step.
 struct Batch {
   std::vector<Vec3f> x, target;
 
@@ -108,8 +108,8 @@ struct Batch {
   }
 };
 
-// d/d(out) of the mean cross entropy: with the sigmoid behind it, the slope before it is out - target, so
-// that dark and saturated colours, where the sigmoid is flat, are learnt as fast as the others.
+// Gradient of the mean cross entropy. Through the sigmoid it becomes out - target, so dark and saturated
+// colors, where the sigmoid is flat, are learned as fast as others.
 FieldTrainer::Loss cross_entropy(const std::vector<Vec3f>& target) {
   return [&target](int begin, int end, const float* out, float* d_out) {
     for (int i = begin; i < end; ++i)
@@ -166,7 +166,7 @@ std::vector<Stroke> trace_strokes(const Device& device, const Scene& scene, cons
   return strokes;
 }
 
-// Routing::none.
+// For Routing::none.
 std::shared_ptr<const Field> relearn_all(const Device& device, const Scene& scene,
                                          const PaintRequest& request, const Paint& paint,
                                          const std::vector<Region>& regions, Progress& progress) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `edit paint`: a scribble on one view becomes a layer with a region and an albedo branch of its own.
-// [paper sec. 3.3; architecture 1.2]
+// `edit paint`: turns a scribble on a view into a layer with a region and an albedo branch of its own. [paper
+// sec. 4.3, eq. 17; docs/method.md#edit-layers]
 #pragma once
 
 #include <string>
@@ -15,31 +15,29 @@ namespace cei3d {
 class SceneLight;  // engine/render/scene_light.h
 
 struct Scribble {
-  Camera camera;  // of the painted view, unit-sphere frame
+  Camera camera;  // of the painted view, unit frame
   // RGBA, sRGB, straight alpha, of the camera's size. Painted where alpha >= 0.5; with semi-transparent
-  // strokes (alpha that is not just that of smooth edges) alpha says how much of the colour covers what lies
-  // below.
+  // strokes (alpha that is not only at smooth edges) alpha blends the color with what lies below.
   Image image;
 };
 
 struct PaintRequest {
-  std::vector<Scribble> scribbles;  // where two overlap, the later one counts
+  std::vector<Scribble> scribbles;  // later scribbles cover earlier ones
   std::string id;                   // of the new layer
-  uint64_t seed = 1;                // of the branch's weights and batches
-  bool erase = false;               // the base's own colour shows again; the scribbles' colours mean nothing
+  uint64_t seed = 1;                // for the branch's weights and batches
+  bool erase = false;               // restore the base's albedo; the scribbles' colors are ignored
   Routing routing = Routing::both;
-  bool unlit =
-      false;  // the painted surface shows the colour itself, whatever the light: as if radiance were painted
-  const SceneLight* seen_in = nullptr;  // null: colours are display colours of the base colour wanted; else
-                                        // of what the painted view shows in this light
+  bool unlit = false;  // show the painted color as it is, under every light
+  // null: the painted colors are display colors of the albedo. Else: of the radiance under this light.
+  const SceneLight* seen_in = nullptr;
 };
 
 struct PaintReport {
   int painted_pixels = 0;
-  int missed_pixels = 0;                // painted, but not on a surface that faces the view
-  size_t points = 0;                    // edited handler points
-  float mean_error = 0, max_error = 0;  // of the branch on the painted surface, linear
-  float out_of_reach = 0;               // share of the paint whose colour no base colour shows in the light
+  int missed_pixels = 0;                        // painted pixels without a surface that faces the view
+  size_t points = 0;                            // edited handler points
+  float mean_error = 0, max_error = 0;          // of the branch on the painted surface, linear
+  float out_of_reach = 0;                       // share of the paint whose color no albedo shows in the light
   double trace_seconds = 0, train_seconds = 0;  // stages
 };
 
@@ -48,8 +46,8 @@ struct PaintResult {
   PaintReport report;
 };
 
-// A pure function: the scene is not changed. Errors: no scribble, one of another size, without alpha or with
-// nothing painted, paint that meets no surface, cancelled.
+// Pure: the scene is not changed. Errors: no scribble, wrong size, no alpha or nothing painted, no painted
+// pixel on the surface, cancelled.
 PaintResult paint(const Device&, const Scene&, const PaintRequest&, Progress&);
 
 }  // namespace cei3d

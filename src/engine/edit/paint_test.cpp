@@ -125,7 +125,7 @@ bool same_bytes(const Image& a, const Image& b, size_t pixel) {
          0;
 }
 
-// Whether any sample within one pixel of the centre of pixel p, all that its colour is made of, lies in the
+// Whether any sample within one pixel of the center of pixel p, all that its color is made of, lies in the
 // region.
 bool touches(const GBuffer& g, size_t p, const Region& region) {
   const int x = int(p) % g.width, y = int(p) / g.width;
@@ -183,7 +183,7 @@ TEST_F(PaintTest, PaintBesideTheObjectIsLeftOut) {
   EXPECT_EQ(r.report.missed_pixels, 5);
 }
 
-// A square of one colour and alpha in the middle of the picture.
+// A square of one color and alpha in the middle of the picture.
 Image square(Vec3f srgb, float alpha, int half = 10) {
   Image s(kSize, kSize, 4);
   for (int y = kSize / 2 - half; y < kSize / 2 + half; ++y)
@@ -276,7 +276,7 @@ TEST_F(PaintTest, ErasingShowsTheBaseAgainBitForBit) {
     EXPECT_NEAR(mixed.albedo[i].x, 0.5f * (base.albedo[i].x + paint.albedo[i].x), 1e-5f);
 }
 
-TEST_F(PaintTest, TheViewShowsThePaintedColourWhereLightAllowsIt) {
+TEST_F(PaintTest, TheViewShowsThePaintedColorWhereLightAllowsIt) {
   const Device device = make_device();
   const SceneLight light(device, *before_, scene_transports(*before_));
   const Vec3f dim{0.35f, 0.3f, 0.4f};  // sRGB; within reach of the light's specular floor and white

@@ -15,8 +15,8 @@
 namespace cei3d {
 namespace {
 
-constexpr float kInside = 0.5f;        // score from which on a point belongs to a part
-constexpr double kEverything = 0.995;  // share of the points from which on a part is the whole object
+constexpr float kInside = 0.5f;        // score from which a point belongs to a part
+constexpr double kEverything = 0.995;  // share of the points from which a part is the whole object
 
 constexpr const char* kInterrupted = "Selecting the part was interrupted; nothing was changed.";
 
@@ -26,7 +26,7 @@ std::vector<float> selected(const Device& device, const Scene& scene, const Part
   return grow(*scene.handlers, handler_colors(device, scene), seeds);
 }
 
-// Of each handler point, how much it belongs to the part that there is.
+// Score of each handler point in the existing part.
 std::vector<float> existing_scores(const Scene& scene, const std::string& part) {
   const std::vector<Hit> hits = handler_hits(scene);
   const EditLayer& layer = part_layer(scene, part);
@@ -49,7 +49,7 @@ void combine(PartCombination::How how, std::span<const float> old, std::vector<f
   }
 }
 
-// Without propagation: what the view does not show is not of the part.
+// Without propagation: points that the view does not show are outside.
 void keep_seen(const Scene& scene, const Camera& camera, std::vector<float>& scores) {
   constexpr float kMinFacing = 0.1f;
   const HandlerPoints& points = *scene.handlers;
@@ -69,12 +69,11 @@ size_t count_inside(std::span<const float> scores) {
 void check_size(size_t points, size_t all, const PartRequest& r) {
   if (points == 0)
     fail("Nothing is left in part '{}'; {}.", r.name,
-         r.combination ? "what was clicked and the part do not go together that way" : "click on its middle");
+         r.combination ? "check --add, --subtract and --intersect" : "click on its middle");
   if (double(points) >= kEverything * double(all))
     fail(
         "Part '{}' would be the whole object; add --negative clicks beside it, or change the whole object by "
-        "`edit "
-        "material`.",
+        "`edit material`.",
         r.name);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `edit part`: what clicks or a mask in one view mean becomes a part of the object, seen from everywhere; its
-// colour and material may change in the same edit. [paper sec. 3.4, CPS]
+// `edit part`: turns clicks or a mask in one view into a part of the object; its color and material may
+// change in the same edit. [paper sec. 4.3, CPS; docs/method.md#parts]
 #pragma once
 
 #include <functional>
@@ -17,7 +17,7 @@
 
 namespace cei3d {
 
-// How the part is put together with one that there is already.
+// How the selection is combined with an existing part.
 struct PartCombination {
   enum class How { add, subtract, intersect } how = How::add;  // old + new, old - new, old and new
   std::string part;
@@ -26,17 +26,18 @@ struct PartCombination {
 struct PartRequest {
   std::string id;    // of the new layer
   std::string name;  // of the part
-  std::string view;  // name of the view, for messages
-  Camera camera;     // of it, unit-sphere frame
-  Prompts clicks;    // in it; positive ones unless there is a mask
-  Image mask;        // in place of clicks: 1 channel, of the view's size; inside where >= 0.5
-  // Finds the part from the clicks in place of growing it on the handler points: #handlers scores in [0, 1].
+  std::string view;  // name of the view, for error messages
+  Camera camera;     // of the view, unit frame
+  Prompts clicks;    // in the view; at least one positive unless there is a mask
+  Image mask;        // instead of clicks: 1 channel, of the view's size; inside where >= 0.5
+  // If set, finds the part from the clicks instead of growing it on the handler points. Returns #handlers
+  // scores in [0, 1].
   std::function<std::vector<float>(const Scene&, const PartRequest&, Progress&)> network;
-  bool in_view = false;  // only what the view shows of it, for comparison
+  bool in_view = false;  // only what the view shows of the part, for comparison
   std::optional<PartCombination> combination;
   MaterialChange change;
   std::optional<Vec3f> color;  // linear
-  bool keep_texture = false;   // of the colour: scale what is there to it, instead of replacing it
+  bool keep_texture = false;   // scale the present texture to the color instead of replacing it
 };
 
 struct PartReport {
@@ -50,9 +51,9 @@ struct PartResult {
   PartReport report;
 };
 
-// Pure: the scene is not changed. Usage errors: no positive click, clicks outside the picture, a positive and
-// a negative one on the same point, a mask of another size, no part to combine with. Errors: clicks on the
-// background, a mask with nothing of the object inside, a part that is nothing or everything, cancelled.
+// Pure: the scene is not changed. Usage errors: no positive click, clicks outside the image, a positive and a
+// negative click on the same point, a mask of another size, no part to combine with. Errors: clicks on the
+// background, a mask without any of the object, a part that is empty or the whole object, cancelled.
 PartResult select_part(const Device&, const Scene&, const PartRequest&, Progress&);
 
 }  // namespace cei3d

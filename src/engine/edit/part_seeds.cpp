@@ -12,8 +12,7 @@ namespace cei3d {
 namespace {
 
 void check_clicks(const PartRequest& r) {
-  if (r.clicks.positive.empty())
-    fail_usage("Nothing says what the part is: give a --positive click on it, or a --mask.");
+  if (r.clicks.positive.empty()) fail_usage("Give a --positive click on the part, or a --mask.");
   for (const auto* list : {&r.clicks.positive, &r.clicks.negative})
     for (const Vec2f p : *list)
       if (!(p.x >= 0 && p.y >= 0 && p.x <= float(r.camera.width) && p.y <= float(r.camera.height)))
@@ -36,11 +35,11 @@ std::vector<SurfacePoint> clicked_points(const Device& device, const Scene& scen
   return points;
 }
 
-// Points that the view shows well, a pixel or so away from the mask's border: what lies on it is left to
-// colour.
+// Seeds of a mask: points that the view shows well, about a pixel away from the mask's border. Points on the
+// border are decided by color.
 std::vector<Seed> mask_seeds(const Scene& scene, const PartRequest& r) {
   if (r.mask.width != r.camera.width || r.mask.height != r.camera.height)
-    fail_usage("The mask is {}x{} pixels, view {} is {}x{}; draw it on a picture of the view's own size.",
+    fail_usage("The mask is {}x{} pixels, view {} is {}x{}; draw it on an image of the view's own size.",
                r.mask.width, r.mask.height, r.view, r.camera.width, r.camera.height);
   constexpr float kMinFacing = 0.2f, kMargin = 1;
   const HandlerPoints& points = *scene.handlers;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user shows of a part in one view, as seeds on the handler points.
+// Seeds on the handler points from the clicks or the mask of one view.
 #pragma once
 
 #include "engine/edit/part.h"
@@ -7,7 +7,7 @@
 
 namespace cei3d {
 
-// #handlers, from the request's mask or else its clicks. Errors: see select_part().
+// Seeds from the request's mask, else from its clicks: #handlers. Errors: see select_part().
 std::vector<Seed> part_seeds(const Device&, const Scene&, const PartRequest&);
 
 }  // namespace cei3d

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts of a sphere: a cap of another colour, which one view shows half of.
+// Parts of a sphere: a cap of another color, which one view shows half of.
 #include "engine/edit/part.h"
 
 #include <gmock/gmock.h>
@@ -171,7 +171,7 @@ TEST_F(PartTest, EffectsStayInThePart) {
       EXPECT_EQ(after.material[i].roughness, scene_.material.mean().roughness);
     }
   }
-  r.keep_texture = true;  // the cap is of one colour: its mean becomes the new one
+  r.keep_texture = true;  // the cap is of one color: its mean becomes the new one
   const EditLayer layer = select(r).layer;
   EXPECT_NEAR(layer.tint->mean.x, 0.7f, 0.02f);
   EXPECT_NEAR(layer.tint->mean.z, 0.1f, 0.02f);

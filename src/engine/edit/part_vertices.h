@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts that edits have named, on the vertices of the present surface.
+// Named parts on the vertices of the present surface.
 #pragma once
 
 #include <cstdint>
@@ -10,8 +10,8 @@
 
 namespace cei3d {
 
-// #V, 1 where a vertex of the scene's surface belongs to the part of that name; of several layers with one
-// name the last counts. Usage error: there is no such part (those there are are named).
+// #V, 1 where a vertex belongs to the part of that name; of several layers with one name the last counts.
+// Usage error: no such part (the message lists the names).
 std::vector<uint8_t> part_vertices(const Scene&, const std::string& part);
 
 }  // namespace cei3d

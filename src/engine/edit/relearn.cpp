@@ -12,9 +12,9 @@
 namespace cei3d {
 namespace {
 
-constexpr int kSteps = 500, kBatch = 2048;  // steps: the paper's
+constexpr int kSteps = 500, kBatch = 2048;  // kSteps: the paper's
 
-// Half of the points from either set, with replacement: a function of seed and step.
+// A batch drawn with replacement, half from either set; a function of seed and step.
 ColorSamples batch_of(const ColorSamples& painted, const ColorSamples& beside, uint64_t seed, int step) {
   ColorSamples b{std::vector<Vec3f>(kBatch), std::vector<Vec3f>(kBatch)};
   for (int i = 0; i < kBatch; ++i) {
@@ -26,7 +26,7 @@ ColorSamples batch_of(const ColorSamples& painted, const ColorSamples& beside, u
   return b;
 }
 
-// d/d(out) of the mean absolute difference. [paper eq. 12]
+// Gradient of the mean absolute difference. [paper eq. 17]
 FieldTrainer::Loss absolute_difference(const std::vector<Vec3f>& target) {
   return [&target](int begin, int end, const float* out, float* d_out) {
     for (int i = begin; i < end; ++i)
@@ -58,8 +58,8 @@ std::shared_ptr<const Field> relearn(const Device& device, const Scene& scene, c
                                      const ColorSamples& beside, uint64_t seed, Progress& progress) {
   if (!scene.poses.empty())
     fail(
-        "The shape of the object was edited, and one field for all its colour cannot follow that; use "
-        "another --routing.");
+        "The shape of the object was edited, and its single albedo field cannot follow that; use another "
+        "--routing.");
   auto field = std::make_shared<Field>(*scene.albedo);
   FieldTrainer trainer(*field, {.encoding_rate = 1e-2f, .network_rate = 2e-3f});
   for (int step = 0; step < kSteps; ++step) {

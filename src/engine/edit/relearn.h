@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Paint without handler points, as the paper's ablation has it: the one colour field that the object has
-// learns the scribble itself. What the painted view shows beside the scribble is held as it was; nothing
-// holds the rest.
+// Paint without handler points, as the paper's ablation has it: the object's only albedo field is trained on
+// the scribble. The surface that the painted view shows beside the scribble is held, nothing else is.
 #pragma once
 
 #include <memory>
@@ -12,18 +11,18 @@
 
 namespace cei3d {
 
-// Where base colour is known: points and what it is there, linear.
+// Points with known albedo, linear.
 struct ColorSamples {
   std::vector<Vec3f> positions, colors;
   size_t size() const { return positions.size(); }
 };
 
-// What the strokes' views show beside the strokes, with its present base colour.
+// The surface that the strokes' views show beside the strokes, with its present albedo.
 ColorSamples beside_strokes(const Device&, const Scene&, const std::vector<Camera>& views,
                             const std::vector<Region>& painted);
 
-// A copy of the base's field that has learnt both, half of each step's points from either. Errors: the
-// object's shape was edited, cancelled.
+// A copy of the base's albedo field trained on both, half of each batch from either. Errors: the shape was
+// edited, cancelled.
 std::shared_ptr<const Field> relearn(const Device&, const Scene&, const ColorSamples& painted,
                                      const ColorSamples& beside, uint64_t seed, Progress&);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `edit remove`: a part is taken off the object and the surface behind it closed, to be seen from every side.
+// `edit remove`: removes a part and closes the surface behind it.
 #pragma once
 
 #include <string>
@@ -17,8 +17,8 @@ struct RemoveRequest {
 
 struct RemoveReport {
   size_t removed_triangles = 0, added_triangles = 0;
-  size_t holes = 0;   // that were closed
-  size_t pieces = 0;  // connected ones that are left
+  size_t holes = 0;   // closed holes
+  size_t pieces = 0;  // connected components of the result
   double seconds = 0;
 };
 
@@ -27,8 +27,7 @@ struct RemoveResult {
   RemoveReport report;
 };
 
-// Pure: the scene is not changed. Errors: no such part; a part that is nothing of the present surface, or all
-// of it.
+// Pure: the scene is not changed. Errors: no such part; a part without surface, or the whole surface.
 RemoveResult remove_part(const Device&, const Scene&, const RemoveRequest&, Progress&);
 
 }  // namespace cei3d

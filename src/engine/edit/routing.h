@@ -3,13 +3,12 @@
 
 namespace cei3d {
 
-// How it is told which points of the surface a painted edit changes.
+// Which points of the surface a painted edit changes.
 enum class Routing {
-  both,     // those within reach of edited handler points that the painted view sees in the scribble
-  points,   // those within reach of edited handler points, as in the paper: the outline is as soft as their
-            // reach
-  outline,  // those that the painted view sees in the scribble
-  none      // all: the object's one colour field learns the scribble (relearn.h)
+  both,     // points within reach of edited handler points that the painted view sees inside the scribble
+  points,   // points within reach of edited handler points, as in the paper; the outline is soft
+  outline,  // points that the painted view sees inside the scribble
+  none      // all points: the object's albedo field is retrained on the scribble (relearn.h)
 };
 
 }  // namespace cei3d

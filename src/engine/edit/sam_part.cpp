@@ -10,13 +10,12 @@
 namespace cei3d {
 namespace {
 
-constexpr float kSure = 0.9f;  // scores from which the views' verdict stands; one minus it likewise
+constexpr float kSure = 0.9f;  // scores from which (and 1 minus it, below which) the votes are kept
 
-// Prior of points that no view told anything about: they follow their neighbours of like colour, and what has
-// none is not of the part.
+// Prior of points without votes: they follow neighbors of similar color, and are outside if there are none.
 constexpr float kUntold = 0.49f;
 
-// The network on base-colour pictures, each encoded once.
+// Runs the network on albedo images, each encoded once.
 class BaseColorViews : public ViewSegmenter {
  public:
   BaseColorViews(const Device& device, const Scene& scene, const SamPartRequest& request)

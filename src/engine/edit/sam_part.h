@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part from clicks in one view, by a segmentation network.
+// Selects a part from clicks in one view by a segmentation network.
 #pragma once
 
 #include <filesystem>
@@ -13,13 +13,13 @@ namespace cei3d {
 struct SamPartRequest {
   std::filesystem::path networks;  // folder of networks and runtime: installed_sam(), or the user's own
   PropagateRequest views;          // cameras to choose from, the clicked one among them, and the clicks
-  int threads = 0;                 // of the network; 0: every core
+  int threads = 0;                 // of the network; 0: all cores
 };
 
-// Scores as grow() gives them: #handlers of the scene, [0, 1], to be interpolated (ScoredPoints); and which
-// views were used. The network sees the base colour in each view, which has no shadows and highlights to be
-// mistaken for borders; its votes then end where the colour does (random_walk). Pure, and the same for any
-// number of threads. Errors: no network here (what to do), nothing found at the clicks, cancelled.
+// Scores like those of grow() (#handlers, [0, 1], to be interpolated by ScoredPoints), and the views that
+// were used. The network sees the albedo in each view, without shadows and highlights that look like borders;
+// afterwards random_walk() moves the border of its votes to where the color changes. Pure; results do not
+// depend on threads. Errors: no network (with what to do), nothing found at the clicks, cancelled.
 PropagateResult sam_part(const Device&, const Scene&, const SamPartRequest&, Progress&);
 
 }  // namespace cei3d

@@ -99,7 +99,7 @@ TEST_F(ShapeEdits, TheHandleArrivesAndWhatIsOutsideTheRadiusStays) {
 TEST_F(ShapeEdits, TheHillHasNoSpikeAndNoCrease) {
   const DeformResult r = drag({"0001-deform", kTop, kUp, 0.4f, ""});
   const Mesh after = apply(mesh(), *r.layer.reshape);
-  // Neighbouring triangles: on the ball they meet at about 0.05, on the steepest hill some times more.
+  // Neighboring triangles: on the ball they meet at about 0.05, on the steepest hill some times more.
   float worst = 0;
   std::map<std::pair<uint32_t, uint32_t>, Vec3f> normals;
   for (const auto& t : after.triangles) {

@@ -10,10 +10,10 @@ namespace cei3d {
 namespace {
 
 constexpr float kHard = 0.5f, kSoft = 0.5f / 255;  // least_alpha
-constexpr float kMinFacing = 0.1f;  // least cosine between the normal and the way to the camera
+constexpr float kMinFacing = 0.1f;  // minimum cosine between the normal and the direction to the camera
 constexpr int kMaxScale = 4;
 constexpr int64_t kMaxRays = 300000;    // in the crop: about half a second
-constexpr int64_t kMaxPainted = 60000;  // painted rays: as many as training visits anyway
+constexpr int64_t kMaxPainted = 60000;  // painted rays: as many as training uses anyway
 
 bool beside_opaque(const Image& rgba, int x, int y) {
   for (int v = std::max(y - 1, 0); v <= std::min(y + 1, rgba.height - 1); ++v)
@@ -49,8 +49,7 @@ void cut_out(const Image& rgba, const PixelBox& box, Stroke& stroke) {
   }
 }
 
-// Colour of the painted pixel whose centre is nearest to (u, v), in pixels of the crop; null: none is
-// adjacent.
+// Color of the painted pixel nearest to (u, v), in pixels of the crop; null: none is adjacent.
 const float* nearest_color(const Stroke& s, float u, float v) {
   const float* best = nullptr;
   float best_distance = 1e9f;
@@ -67,7 +66,7 @@ const float* nearest_color(const Stroke& s, float u, float v) {
   return best;
 }
 
-// How far apart neighbouring rays meet the surface; slopes count up to a factor of 4, where the rays get
+// Distance between the hits of neighboring rays; slopes count up to a factor of 4, beyond which rays are
 // sparse anyway.
 float footprint(const Camera& camera, const Hit& hit, float depth) {
   return depth / float(camera.fx) / max(dot(hit.normal, hit.to_camera), 0.25f);
@@ -85,7 +84,7 @@ void add_hit(Stroke& s, const Projector& mask, int x, int y, const Hit& hit, flo
   s.footprints.push_back(footprint(s.camera, hit, depth));
 }
 
-// Painted pixels none of whose rays left a painted hit.
+// Number of painted pixels without any painted hit.
 int count_missed(const Stroke& s, const std::vector<uint8_t>& reached) {
   int missed = 0;
   for (size_t i = 0; i < reached.size(); ++i) missed += s.alpha.data[i] >= s.least_alpha && !reached[i];

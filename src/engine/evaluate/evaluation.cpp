@@ -15,9 +15,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* kInterrupted =
-    "The evaluation was interrupted; what is finished is kept, and the same command goes on.";
+    "The evaluation was interrupted. Finished rows are kept; run the same command again to continue.";
 
-// What happens within a row, under the row's name and by the row's clock.
+// Progress within a row, under the row's name and clock.
 class RowProgress : public Progress {
  public:
   RowProgress(Progress& whole, std::string name) : whole_(whole), name_(std::move(name)) {
@@ -68,7 +68,7 @@ class Job {
       };
       ablation("paint-points", "handler points without the scribble's outline", kBase, Routing::points);
       ablation("paint-outline", "the scribble's outline without handler points", kBase, Routing::outline);
-      ablation("paint-none", "no handler points: one colour field learns the scribble", kBase, Routing::none);
+      ablation("paint-none", "no handler points: the albedo field is retrained", kBase, Routing::none);
       ablation("paint-radiance", "RGB in place of disentangled properties", PaintTarget::radiance,
                Routing::both);
     }
@@ -94,7 +94,7 @@ class Job {
     write_file_atomic(r_.out / "report.md", report_.markdown());
   }
 
-  // The row that is kept, or a new one.
+  // The kept row, or a new one.
   EvaluationRow row(const std::string& name, const std::string& what, const Json& settings,
                     const std::function<void(EvaluationRow&, Progress&)>& work) {
     if (progress_.cancelled()) throw Error(ErrorCode::interrupted, kInterrupted);

@@ -31,7 +31,7 @@ EvaluationObjects::EvaluationObjects(Session& session, const EvaluationRequest& 
   if (!r_.project.empty()) given_ = describe_given(capture);
 }
 
-// Tells one object in that folder from another.
+// Distinguishes objects in that folder.
 Json EvaluationObjects::describe_given(const Capture& capture) {
   session_.open(r_.project, Session::Access::read);
   const ProjectInfo info = session_.info();
@@ -67,7 +67,7 @@ Json EvaluationObjects::settings(const EvaluationObject& o) const {
   return j;
 }
 
-// Its settings are written before the work: a beginning with other settings is none to go on with.
+// The settings are written before the work, so that an unfinished object with other settings is not resumed.
 double EvaluationObjects::open(const EvaluationObject& o, Progress& progress) {
   const fs::path folder = r_.out / "objects" / o.name;
   const Json settings = this->settings(o);

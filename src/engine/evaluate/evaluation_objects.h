@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The objects that an evaluation looks at, in OUT/objects: made there, gone on with there, or copied there.
+// The objects of an evaluation, in OUT/objects: reconstructed, resumed or copied there.
 #pragma once
 
 #include <string>
@@ -14,7 +14,7 @@ std::string full_path(const std::filesystem::path&);  // "" for none
 struct EvaluationObject {
   std::string name;  // of its folder
   ReconstructOptions options;
-  bool given = false;  // it is a copy of the request's project
+  bool given = false;  // a copy of the request's project
 };
 
 class EvaluationObjects {
@@ -24,9 +24,10 @@ class EvaluationObjects {
 
   int training_views() const { return training_views_; }
   EvaluationObject whole() const;                          // from all photographs
-  EvaluationObject with(const ReconstructOptions&) const;  // those that are made alike are one
-  Json settings(const EvaluationObject&) const;            // all that it depends on
-  // Opens it in the session, without edits. Returns the seconds that its making took; 0 where it was given.
+  EvaluationObject with(const ReconstructOptions&) const;  // objects with equal options are one
+  Json settings(const EvaluationObject&) const;            // everything the object depends on
+  // Opens the object in the session, without edits; reconstructs it if needed. Returns the seconds of its
+  // reconstruction, 0 if it was given.
   double open(const EvaluationObject&, Progress&);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The evaluation's tables.
+// Tables of the evaluation report.
 #include "core/base/error.h"
 #include "engine/evaluate/evaluation.h"
 #include "engine/session/number_text.h"
@@ -16,7 +16,7 @@ Json rows_json(const Rows& rows) {
   return list;
 }
 
-// A column: its name, and what a row has in it; empty: no row of the table has it and it is left out.
+// A column: its name, and the text of a row; columns without any text are left out.
 struct Column {
   std::string name;
   std::string (*cell)(const EvaluationRow&);
@@ -75,8 +75,8 @@ const std::vector<Column> kNovelViews{
     {"PSNR in the mask", [](const EvaluationRow& r) { return db(r.scores.psnr_masked); }},
     {"LPIPS", [](const EvaluationRow& r) { return or_nothing(r.scores.lpips, "{:.4f}"); }},
     {"FID", [](const EvaluationRow& r) { return or_nothing(r.scores.fid, "{:.1f}"); }},
-    {"pictures by", [](const EvaluationRow& r) {
-       return std::string(r.scores.residual ? "light, material, residual" : "light, material");
+    {"rendered with", [](const EvaluationRow& r) {
+       return std::string(r.scores.residual ? "light, material, correction network" : "light, material");
      }}};
 const std::vector<Column> kFidelity{
     {"PSNR inside the edit",
@@ -111,13 +111,13 @@ std::vector<Column> columns(std::initializer_list<std::vector<Column>> groups) {
   return all;
 }
 
-// Where the pictures of the rows are.
+// Where the images of the rows are.
 std::string pictures_of(const Rows& rows) {
   std::string text;
   for (const EvaluationRow& r : rows)
     if (r.skipped.empty())
       text += fmt::format("{}[{}](pictures/{}/)", text.empty() ? "" : ", ", r.name, r.name);
-  return text.empty() ? "" : fmt::format("\nPictures: {}\n", text);
+  return text.empty() ? "" : fmt::format("\nImages: {}\n", text);
 }
 
 std::string section(const std::string& title, const std::string& words, const Rows& rows,
@@ -168,17 +168,17 @@ Json EvaluationReport::json() const {
 
 std::string EvaluationReport::markdown() const {
   std::string text = fmt::format(
-      "# Evaluation of {}\n\nBy cei3d {}. docs/evaluation.md says what each figure is.\n", capture, kVersion);
+      "# Evaluation of {}\n\nBy cei3d {}. docs/evaluation.md defines the scores.\n", capture, kVersion);
   text += section("Novel views",
                   "Held-out views, rendered and compared with their photographs; the worst one is shown.",
                   {object}, columns({{kMadeIn}, kNovelViews}));
   text += worst_picture(object);
   text += section(
       "A painted edit, and the method without its parts",
-      "The same scribble on one view, scored in all held-out views. Pictures: photograph, before, after.",
+      "The same scribble on one view, scored in all held-out views. Images: photograph, before, after.",
       paint, columns({{kEditTime, kPoints}, kFidelity, kRest}));
   text += section("A part by clicks, with and without propagation",
-                  "The same clicks in one view; the part is recoloured.", part,
+                  "The same clicks in one view; the part is recolored.", part,
                   columns({{kEditTime, kPoints, kShare}, kFidelity, kRest}));
   const std::vector<Column> trials = columns({{kMadeIn}, kNovelViews, kFidelity, kRest});
   text += section("Fewer photographs",

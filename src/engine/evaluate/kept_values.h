@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values that took long to work out, kept in a folder with the settings that they were worked out with.
+// Results of long computations, kept in a folder together with the settings they depend on.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace cei3d {
 class KeptValues {
  public:
   explicit KeptValues(std::filesystem::path folder) : folder_(std::move(folder)) {}
-  // Null: there is none, or it was worked out with other settings.
+  // Null: no value, or one of other settings.
   Json find(const std::string& name, const Json& settings) const;
   void put(const std::string& name, const Json& settings, const Json& value) const;
 

@@ -17,7 +17,7 @@ namespace {
 constexpr int kFloat = 5126, kUint32 = 5125, kVertexTarget = 34962,
               kIndexTarget = 34963;  // OpenGL's names for them
 
-// The one binary buffer, and its views and accessors.
+// The binary buffer with its views and accessors.
 class Buffer {
  public:
   // Appends an array; returns its accessor's index.
@@ -85,7 +85,7 @@ namespace {
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-// The triangles of each material.
+// Triangles of each material.
 std::vector<Triangles> by_material(const Mesh& mesh, const MeshMaterials& materials) {
   std::vector<Triangles> groups(materials.list.size());
   for (size_t t = 0; t < mesh.triangles.size(); ++t)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Meshes as binary glTF 2.0 (.glb) with vertex colours and a metallic-roughness material. [Khronos glTF 2.0]
+// Meshes as binary glTF 2.0 (.glb) with vertex colors and a metallic-roughness material. [Khronos glTF 2.0]
 #pragma once
 
 #include <filesystem>
@@ -11,16 +11,16 @@
 
 namespace cei3d {
 
-// What a mesh is made of, triangle by triangle.
+// Materials of a mesh, per triangle.
 struct MeshMaterials {
   std::vector<Material> list;
-  std::vector<uint32_t> of_triangle;  // #F, index in the list; empty: all of the first
+  std::vector<uint32_t> of_triangle;  // #F, index in the list; empty: the first for all
 };
 
-// POSITION, NORMAL and COLOR_0 (linear, float) where the mesh has them; a primitive for each material that
-// occurs, with roughness and metalness as factors; a specular other than 0.5 as KHR_materials_specular with
-// F0 = 0.08 specular. Vertices stay in the capture's frame: a rotation of the node turns `up` (capture frame)
-// to glTF's +Y, so that viewers show the object upright.
+// Writes POSITION, NORMAL and COLOR_0 (linear, float) where the mesh has them; one primitive per used
+// material, with roughness and metalness as factors; a specular other than 0.5 as KHR_materials_specular with
+// F0 = 0.08 specular. Vertices stay in the capture frame: a rotation of the node maps `up` (capture frame) to
+// glTF's +Y, so that viewers show the object upright.
 std::string encode_glb(const Mesh& mesh, const MeshMaterials& materials, Vec3d up);
 void write_glb(const std::filesystem::path& path, const Mesh& mesh, const MeshMaterials& materials,
                Vec3d up);  // atomically

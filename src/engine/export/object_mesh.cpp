@@ -15,7 +15,7 @@ std::vector<Vec3f> in_capture_frame(std::vector<Vec3f> points, const Normalizati
   return points;
 }
 
-// Without the vertices that no triangle uses: those of parts that were removed.
+// Drops vertices without triangles, left by removed parts.
 Mesh compact(const Mesh& mesh) {
   constexpr uint32_t kUnused = ~0u;
   std::vector<uint32_t> id(mesh.positions.size(), kUnused);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The object as a mesh or a point cloud that other programs can read, in the capture's frame and units.
+// The object as a mesh or point cloud for export, in the capture frame and unit.
 #pragma once
 
 #include "core/compute/device.h"
@@ -13,7 +13,7 @@ struct ColoredMesh {
   MeshMaterials materials;
 };
 
-// The surface with all edits; vertex colors are the linear base color. Error: the scene has no surface.
+// The edited surface; vertex colors are linear albedo (glTF: base color). Error: the scene has no surface.
 ColoredMesh colored_mesh(const Device&, const Scene&);
 
 // The handler points and their normals, without triangles. Error: the scene has none.

@@ -83,7 +83,7 @@ std::vector<std::string> wanted_channels(const Imf::ChannelList& list) {
   } else if (channel_count(list) == 1) {
     names = {list.begin().name()};
   } else {
-    throw std::runtime_error("it has neither R, G and B nor one grey channel");
+    throw std::runtime_error("it has neither R, G and B nor one gray channel");
   }
   for (const std::string& name : names)
     if (list[name].xSampling != 1 || list[name].ySampling != 1)
@@ -91,7 +91,7 @@ std::vector<std::string> wanted_channels(const Imf::ChannelList& list) {
   return names;
 }
 
-// The interleaved picture of a window, as the library wants to hear it: addressed from pixel (0, 0).
+// The interleaved image of a window, addressed from pixel (0, 0) as the library expects.
 Imf::FrameBuffer frame_buffer(Image& image, const std::vector<std::string>& names,
                               const Imath::Box2i& window) {
   const size_t x_step = sizeof(float) * size_t(image.channels), y_step = x_step * size_t(image.width);

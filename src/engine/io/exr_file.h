@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenEXR, by its library (the only file that knows it).
+// OpenEXR files, read and written by the OpenEXR library.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace cei3d {
 
-// Float as stored, linear. Channels: R, G, B (and A): 3 or 4; else Y or the only channel there is: 1. The
-// picture is the display window; what the data window leaves out is zero. Errors name `name`.
+// Float values as stored, linear. Channels: R, G, B (and A): 3 or 4; else Y or the only channel: 1. The image
+// is the display window; pixels outside the data window are zero. Errors name `name`.
 Image decode_exr(const std::string& bytes, const std::string& name);
 ImageSize exr_size(const std::string& bytes, const std::string& name);
 

@@ -21,7 +21,7 @@ class Reader {
   Reader(const std::string& bytes, const std::string& name) : bytes_(bytes), name_(name) {}
 
   [[noreturn]] void broken(const char* why) const {
-    fail("{} is a broken or unusual HDR picture: {}.", name_, why);
+    fail("{} is a broken or unusual HDR image: {}.", name_, why);
   }
 
   std::string line() {
@@ -57,7 +57,7 @@ Header read_header(Reader& in) {
   if (in.line().rfind("#?", 0) != 0) in.broken("it does not start with #?RADIANCE");
   for (std::string text = in.line(); !text.empty(); text = in.line()) {
     if (text.rfind("FORMAT=", 0) == 0 && text.rfind("FORMAT=32-bit_rle_rgbe", 0) != 0)
-      in.broken("its colours are not RGBE");
+      in.broken("its colors are not RGBE");
     if (text.rfind("EXPOSURE=", 0) == 0) header.exposure *= std::atof(text.c_str() + 9);
   }
   if (!(header.exposure > 0) || !std::isfinite(header.exposure)) in.broken("its exposure is impossible");
@@ -69,7 +69,7 @@ Header read_header(Reader& in) {
   return header;
 }
 
-// New style: the four components one after the other, each run-length coded.
+// New style: the four components one after the other, each run-length encoded.
 void read_components(Reader& in, std::vector<Rgbe>& row) {
   for (int c = 0; c < 4; ++c)
     for (size_t x = 0; x < row.size();) {
@@ -105,7 +105,7 @@ void read_row(Reader& in, std::vector<Rgbe>& row) {
   const Rgbe head = in.pixel();
   const bool coded = head[0] == 2 && head[1] == 2 && head[2] < 128 && row.size() >= 8 && row.size() < 32768;
   if (!coded) return read_pixels(in, row, head);
-  if (size_t(head[2]) * 256 + head[3] != row.size()) in.broken("a row has another width than the picture");
+  if (size_t(head[2]) * 256 + head[3] != row.size()) in.broken("a row has another width than the image");
   read_components(in, row);
 }
 
@@ -131,8 +131,8 @@ ImageSize hdr_size(const std::string& bytes, const std::string& name) {
 Image decode_hdr(const std::string& bytes, const std::string& name) {
   Reader in(bytes, name);
   const Header header = read_header(in);
-  // A row takes at least 4 bytes (old runs) or 2 bytes a 127 pixels and component: refuse sizes the bytes
-  // cannot hold.
+  // A row takes at least 4 bytes (old runs) or 2 bytes per 127 pixels and component; larger sizes are
+  // impossible.
   if (in.left() < size_t(header.size.height) * 4) in.broken("it ends too early");
   Image image(header.size.width, header.size.height, 3);
   std::vector<Rgbe> row(size_t(header.size.width));
@@ -149,11 +149,11 @@ Image decode_hdr(const std::string& bytes, const std::string& name) {
 
 std::string encode_hdr(const Image& image) {
   if (image.empty() || image.channels < 3)
-    fail("Cannot write an HDR picture with {} channels.", image.channels);
+    fail("Cannot write an HDR image with {} channels.", image.channels);
   std::string out =
       fmt::format("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {} +X {}\n", image.height, image.width);
-  const bool coded =
-      image.width >= 8 && image.width < 32768;  // else a flat row could be taken for a coded one
+  // Other rows could be mistaken for encoded ones.
+  const bool coded = image.width >= 8 && image.width < 32768;
   for (int y = 0; y < image.height; ++y) {
     std::vector<Rgbe> row(size_t(image.width));
     for (int x = 0; x < image.width; ++x) row[x] = encode(image.at(x, y));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance pictures (.hdr): RGB with a shared exponent. [Ward 1991; Radiance file formats]
+// Radiance files (.hdr): RGB with a shared exponent. [Ward 1991; Radiance file formats]
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace cei3d {
 
-// 3 channels, linear; EXPOSURE lines are divided out. Flat, old and new run-length scanlines; rows from the
-// top only. Errors name `name`.
+// 3 channels, linear; EXPOSURE lines are divided out. Reads flat, old and new run-length scanlines, rows from
+// the top only. Errors name `name`.
 Image decode_hdr(const std::string& bytes, const std::string& name);
 ImageSize hdr_size(const std::string& bytes, const std::string& name);
 

@@ -29,7 +29,7 @@ ImageSize png_size(const std::string& bytes, const std::string& name) {
   return {int(number(16)), int(number(20))};
 }
 
-// powf for the few values that 8-bit files hold is most of the loading time; a table of them is exact.
+// Decoding by powf would be most of the loading time; a table of the few values of 8-bit files is exact.
 float linear_of_stored(float v) {
   if (!(v >= 0 && v <= 1)) return linear_from_srgb(v);
   static const std::array<std::pair<float, float>, 256> table = [] {
@@ -59,7 +59,7 @@ Image decode(const std::string& bytes, const std::string& name, ImageFormat form
     case ImageFormat::hdr:
       return decode_hdr(bytes, name);
   }
-  fail("{}: unknown picture format.", name);
+  fail("{}: unknown image format.", name);
 }
 
 }  // namespace
@@ -70,7 +70,7 @@ ImageFormat image_format(const std::string& bytes, const std::string& name) {
   if (bytes.rfind("\xff\xd8", 0) == 0) return ImageFormat::jpeg;
   if (bytes.rfind("\x76\x2f\x31\x01", 0) == 0) return ImageFormat::exr;
   if (bytes.rfind("#?", 0) == 0) return ImageFormat::hdr;
-  fail("{} is not a PNG, JPEG, EXR or Radiance HDR picture. Convert it to PNG.", name);
+  fail("{} is not a PNG, JPEG, EXR or Radiance HDR image. Convert it to PNG.", name);
 }
 
 Image read_image(const std::filesystem::path& path) {
@@ -98,7 +98,7 @@ ImageSize read_image_size(const std::filesystem::path& path) {
     case ImageFormat::hdr:
       return hdr_size(bytes, name);
   }
-  fail("{}: unknown picture format.", name);
+  fail("{}: unknown image format.", name);
 }
 
 bool has_image_suffix(const std::filesystem::path& path) {

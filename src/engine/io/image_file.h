@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Picture files of every kind we read. The kind is told by the first bytes, not by the name.
+// Image files. The format is detected from the first bytes, not from the name.
 #pragma once
 
 #include <filesystem>
@@ -13,20 +13,20 @@ namespace cei3d {
 enum class ImageFormat { png, jpeg, exr, hdr };
 
 // Values as stored, /255 or /65535: display-encoded for PNG and JPEG, linear for EXR and HDR. 1, 3 or 4
-// channels. Errors name the file: missing, truncated, corrupt, of an unknown kind.
+// channels. Errors name the file: missing, truncated, corrupt, unknown format.
 Image read_image(const std::filesystem::path& path);
-Image read_linear_image(const std::filesystem::path& path);    // PNG and JPEG decoded from sRGB; alpha stays
+Image read_linear_image(const std::filesystem::path& path);    // PNG and JPEG decoded from sRGB, alpha kept
 ImageSize read_image_size(const std::filesystem::path& path);  // without decoding pixels
 ImageFormat image_format(const std::string& bytes, const std::string& name);
 bool has_image_suffix(const std::filesystem::path& path);  // .png .jpg .jpeg .exr .hdr, any case
 
-// Atomically; parent folders are made. Values go into the file as they are (see encode_png, encode_exr,
+// Writes atomically and makes parent folders. Values are written as they are (see encode_png, encode_exr,
 // encode_hdr).
 void write_png(const std::filesystem::path& path, const Image& image, int bits = 8);
 void write_exr(const std::filesystem::path& path, const Image& image);
 void write_hdr(const std::filesystem::path& path, const Image& image);
 
-// Channel-wise; a fourth channel (alpha) stays.
+// Per channel; a fourth channel (alpha) is kept.
 Image srgb_from_linear(Image linear);
 Image linear_from_srgb(Image srgb);
 

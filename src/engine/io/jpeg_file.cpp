@@ -50,8 +50,7 @@ Image decode_jpeg(const std::string& bytes, const std::string& name) {
   std::unique_ptr<uint8_t[]> data(new uint8_t[size_t(size.width) * size.height * 3]);
   const int status = tjDecompress2(handle.get(), data_of(bytes), bytes.size(), data.get(), size.width, 0,
                                    size.height, TJPF_RGB, TJFLAG_ACCURATEDCT);
-  // Warnings are about damage that decoding survives. Only a missing end spoils pixels silently and for
-  // certain.
+  // Decoding survives most damage with a warning. Only a missing end certainly spoils pixels without one.
   const bool fatal = tjGetErrorCode(handle.get()) == TJERR_FATAL ||
                      std::strstr(tjGetErrorStr2(handle.get()), "remature end") != nullptr;
   if (status != 0 && fatal) broken(name, handle.get());

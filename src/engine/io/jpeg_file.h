@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JPEG, by libturbojpeg (the only file that knows it).
+// JPEG files, by libjpeg-turbo.
 #pragma once
 
 #include <string>

@@ -15,7 +15,7 @@ namespace {
   fail("{} is not a usable .npy array: {}.", name, why);
 }
 
-// The text after "'key':" in the header, a Python dictionary that writers print in one way.
+// The text after "'key':" in the header, a Python dictionary in a fixed notation.
 std::string value_of_key(const std::string& header, const std::string& key, const std::string& name) {
   const size_t at = header.find("'" + key + "'");
   const size_t colon = at == std::string::npos ? at : header.find(':', at);

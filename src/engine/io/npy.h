@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays as NumPy's .npy: float32 in C order is written, more is read. [NEP 1]
+// NumPy's .npy files. Writes float32 in C order; reads more. [NEP 1]
 #pragma once
 
 #include <cstdint>

@@ -100,7 +100,7 @@ std::vector<Element> read_header(Reader& in) {
   return elements;
 }
 
-// Where a scalar property goes: member of the mesh and component; -1: skipped.
+// Member of the mesh and component that a scalar property is stored to; -1: skipped.
 int target_of(const std::string& name) {
   const char* names[] = {"x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"};
   for (int i = 0; i < 9; ++i)

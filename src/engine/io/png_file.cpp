@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// libpng reports errors by longjmp. So every call sequence runs in a small function over plain data (no
-// destructors between setjmp and longjmp), and everything that owns memory lives in the callers.
+// libpng reports errors by longjmp. Therefore every sequence of calls runs in a small function over plain
+// data (no destructors between setjmp and longjmp), and objects that own memory live in the callers.
 #include "engine/io/png_file.h"
 
 #include <png.h>
@@ -154,8 +154,8 @@ Image decode_png(const std::string& bytes, const std::string& name) {
   Reader reader(bytes, name);
   const Header h = reader.header();
   const size_t size = size_t(h.width) * h.height * h.channels * (h.bits / 8);
-  // Deflate shrinks at most 1032:1 and expansion (1-bit palettes to RGBA) adds 32: more cannot come out of
-  // these bytes.
+  // Deflate compresses at most 1032:1 and expansion (1-bit palettes to RGBA) adds a factor of 32; larger
+  // sizes are impossible.
   if (size > bytes.size() * 33'100) fail("{} is a broken PNG: it is far too short for its size.", name);
   std::vector<uint8_t> data(size);
   reader.rows(row_pointers(data, h.height).data());

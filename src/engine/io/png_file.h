@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// PNG, by libpng (the only file that knows it).
+// PNG files, by libpng.
 #pragma once
 
 #include <string>
@@ -8,12 +8,12 @@
 
 namespace cei3d {
 
-// Values as stored, /255 or /65535. Channels: 1 (grey), 3 or 4; palettes, few bits and grey with alpha are
+// Values as stored, /255 or /65535. Channels: 1 (gray), 3 or 4; palettes, few bits and gray with alpha are
 // expanded. Errors name `name`: truncated, corrupt, larger than 65,535 pixels a side.
 Image decode_png(const std::string& bytes, const std::string& name);
 
-// image: 1, 3 or 4 channels, values as they go into the file (display-encoded for colour), clamped to [0, 1]
-// and rounded; NaN becomes 0. bits: 8 or 16.
+// image: 1, 3 or 4 channels, values as they are stored in the file (display-encoded for color), clamped to
+// [0, 1] and rounded; NaN becomes 0. bits: 8 or 16.
 std::string encode_png(const Image& image, int bits);
 
 }  // namespace cei3d

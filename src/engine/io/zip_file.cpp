@@ -29,7 +29,7 @@ struct ErrorText {
   std::string text() { return zip_error_strerror(&error); }
 };
 
-// Reads from `bytes`, which stay where they are.
+// Reads from `bytes`, without a copy.
 Archive open(const std::string& bytes, const std::string& name) {
   ErrorText e;
   zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &e.error);

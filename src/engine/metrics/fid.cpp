@@ -12,7 +12,7 @@
 namespace cei3d {
 namespace {
 
-// A set's mean, and its pictures' deviations from it over sqrt(n - 1): the covariance is X^T X.
+// Mean of a set, and deviations of its images from it, divided by sqrt(n - 1): the covariance is X^T X.
 struct Spread {
   Eigen::RowVectorXd mean;
   Eigen::MatrixXd x;  // #pictures x dimensions
@@ -29,7 +29,7 @@ Spread spread_of(const FeatureSet& s) {
   return out;
 }
 
-// The two pixels that a position between pixel centres lies between, and how near it is to the second.
+// The two pixels around a position, and the weight of the second.
 struct Between {
   int first, second;
   float share;
@@ -46,7 +46,7 @@ Between between(int out, int out_size, int in_size) {
 void FeatureSet::add(const std::vector<float>& row) {
   if (rows.empty()) dimensions = row.size();
   if (row.empty() || row.size() != dimensions)
-    fail("The feature network gave {} numbers for one picture and {} for another; it should be {} always.",
+    fail("The feature network gave {} numbers for one image and {} for another; it should be {} always.",
          dimensions, row.size(), dimensions);
   rows.insert(rows.end(), row.begin(), row.end());
 }
@@ -56,14 +56,14 @@ FeatureNetwork::FeatureNetwork(std::shared_ptr<const OnnxRuntime> runtime, const
     : network_(std::move(runtime), file, threads), file_(file) {
   if (network_.inputs().size() != 1 || network_.outputs().empty())
     fail(
-        "{} is not a network for --fid-model: it has {} inputs, and one picture goes in; see "
+        "{} is not a network for --fid-model: it has {} inputs, and one image goes in; see "
         "docs/evaluation.md.",
         file.string(), network_.inputs().size());
 }
 
 std::vector<float> FeatureNetwork::features(const Image& rgb) const {
   if (rgb.channels != 3 || rgb.empty())
-    fail("Features are of pictures with three channels, not {}.", rgb.channels);
+    fail("Features are of images with three channels, not {}.", rgb.channels);
   const std::string& output = network_.outputs().front();
   const OnnxTensor input = picture_tensor(resized_for_features(rgb, kSize, kSize), 1, 0);
   OnnxTensors out = network_.run({{network_.inputs().front(), input}}, {output});
@@ -92,14 +92,14 @@ Image resized_for_features(const Image& in, int width, int height) {
 
 double frechet_distance(const FeatureSet& a, const FeatureSet& b) {
   if (a.size() < 2 || b.size() < 2)
-    fail("The Frechet distance (FID) needs at least two pictures in each set; there are {} and {}.", a.size(),
+    fail("The Frechet distance (FID) needs at least two images in each set; there are {} and {}.", a.size(),
          b.size());
   if (a.dimensions != b.dimensions)
     fail("Features of {} and of {} numbers cannot be compared; both sets need the same network.",
          a.dimensions, b.dimensions);
   const Spread p = spread_of(a), q = spread_of(b);
-  // The symmetric square root of S1^(1/2) S2 S1^(1/2) has the trace that is wanted; with S = X^T X its
-  // eigenvalues are the singular values of X1 X2^T, which is as small as the sets are.
+  // tr (S1 S2)^(1/2) is the trace of the symmetric square root of S1^(1/2) S2 S1^(1/2); with S = X^T X its
+  // eigenvalues are the singular values of X1 X2^T, a matrix as small as the sets.
   const Eigen::MatrixXd cross = p.x * q.x.transpose();
   const double root = Eigen::BDCSVD<Eigen::MatrixXd>(cross).singularValues().sum();
   const double d = (p.mean - q.mean).squaredNorm() + p.x.squaredNorm() + q.x.squaredNorm() - 2 * root;

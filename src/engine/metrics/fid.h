@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frechet distance between two sets of pictures: of the Gaussians that their features have, by a network that
-// the user supplies. [Heusel et al. 2017]
+// Frechet inception distance (FID) between two sets of images: the Frechet distance between Gaussians fitted
+// to their features, which a network that the user supplies computes. [Heusel et al. 2017]
 #pragma once
 
 #include <filesystem>
@@ -13,10 +13,10 @@
 
 namespace cei3d {
 
-// What a network says about each picture of a set.
+// Features of a set of images.
 struct FeatureSet {
   size_t dimensions = 0;
-  std::vector<float> rows;  // #pictures x dimensions
+  std::vector<float> rows;  // #images x dimensions
 
   size_t size() const { return dimensions ? rows.size() / dimensions : 0; }
   void add(const std::vector<float>& row);  // error: of another length than those before
@@ -27,11 +27,11 @@ class FeatureNetwork {
   static constexpr int kSize = 299;
 
   // file: an ONNX network with one input, [1, 3, 299, 299] of display-encoded RGB in [0, 1]; its first output
-  // is the features, [1, D] or [1, D, 1, 1]; docs/evaluation.md says how to get one. threads: 0: every core.
+  // is the features, [1, D] or [1, D, 1, 1] (docs/evaluation.md). threads: 0: all cores.
   FeatureNetwork(std::shared_ptr<const OnnxRuntime>, const std::filesystem::path& file, int threads = 0);
 
-  // rgb: values in [0, 1], display-encoded, of any size. Error: the network does not take it or answers with
-  // something else.
+  // rgb: values in [0, 1], display-encoded, of any size. Error: the network rejects it or returns something
+  // else.
   std::vector<float> features(const Image& rgb) const;
 
  private:
@@ -39,12 +39,12 @@ class FeatureNetwork {
   std::filesystem::path file_;
 };
 
-// Bilinear between pixel centres, as the published figures are made; the border's value beyond it.
+// Bilinear between pixel centers, as for most published figures; clamped at the border.
 Image resized_for_features(const Image& rgb, int width, int height);
 
-// |m1 - m2|^2 + tr(S1 + S2 - 2 (S1 S2)^(1/2)) of the sets' means and unbiased covariances; >= 0. With few
-// pictures it is biased upwards and depends on their number: compare sets of the same size only. Errors:
-// fewer than two pictures in a set, sets of different networks.
+// |m1 - m2|^2 + tr(S1 + S2 - 2 (S1 S2)^(1/2)) of the sets' means and unbiased covariances; >= 0. Biased
+// upwards for few images: compare sets of the same size only. Errors: fewer than two images in a set, sets of
+// different networks.
 double frechet_distance(const FeatureSet& a, const FeatureSet& b);
 
 }  // namespace cei3d

@@ -21,14 +21,14 @@ Lpips::Lpips(std::shared_ptr<const OnnxRuntime> runtime, const std::filesystem::
     : network_(std::move(runtime), file, threads), file_(file) {
   if (network_.inputs().size() != 2 || network_.outputs().empty())
     fail(
-        "{} is not a network for --lpips-model: it has {} inputs, and two pictures go in; see "
+        "{} is not a network for --lpips-model: it has {} inputs, and two images go in; see "
         "docs/evaluation.md.",
         file.string(), network_.inputs().size());
 }
 
 double Lpips::distance(const Image& a, const Image& b) const {
   if (a.width != b.width || a.height != b.height || a.channels != 3 || b.channels != 3 || a.empty())
-    fail("Cannot compare a picture of {} x {} x {} with one of {} x {} x {}.", a.width, a.height, a.channels,
+    fail("Cannot compare an image of {} x {} x {} with one of {} x {} x {}.", a.width, a.height, a.channels,
          b.width, b.height, b.channels);
   const std::string& output = network_.outputs().front();
   const OnnxTensors out = network_.run(
@@ -37,7 +37,7 @@ double Lpips::distance(const Image& a, const Image& b) const {
   const std::vector<float>& value = out.at(output).data;
   if (value.size() != 1 || !std::isfinite(value[0]))
     fail(
-        "{} is not a network for --lpips-model: it answers with {} for a pair of pictures; see "
+        "{} is not a network for --lpips-model: it answers with {} for a pair of images; see "
         "docs/evaluation.md.",
         file_.string(), value.size() == 1 ? "no finite number" : fmt::format("{} numbers", value.size()));
   return value[0];

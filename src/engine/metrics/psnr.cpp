@@ -13,7 +13,7 @@ namespace {
 void require_pair(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height || a.channels != 3 || b.channels != 3 || a.empty())
     fail(
-        "Cannot compare a picture of {} x {} x {} with one of {} x {} x {}: render at the size of the "
+        "Cannot compare an image of {} x {} x {} with one of {} x {} x {}: render at the size of the "
         "photographs.",
         a.width, a.height, a.channels, b.width, b.height, b.channels);
 }
@@ -43,7 +43,7 @@ double psnr(const Image& a, const Image& b) {
 std::optional<double> psnr_in_mask(const Image& a, const Image& b, std::span<const uint8_t> mask) {
   require_pair(a, b);
   if (mask.size() != size_t(a.width) * a.height)
-    fail("A mask of {} pixels does not fit a picture of {} x {}.", mask.size(), a.width, a.height);
+    fail("A mask of {} pixels does not fit an image of {} x {}.", mask.size(), a.width, a.height);
   double sum = 0;
   size_t n = 0;
   for (size_t i = 0; i < mask.size(); ++i) {

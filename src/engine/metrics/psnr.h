@@ -10,14 +10,14 @@
 
 namespace cei3d {
 
-// RGB over a grey background, in the values' own space (display space: as the NeRF papers do). 4 channels:
-// straight alpha; 1 channel is repeated.
+// Composites over a gray background in the values' own space (display space, as the NeRF papers do). 4
+// channels: straight alpha; 1 channel is repeated to three.
 Image over_background(const Image& image, float background);
 
-// a, b: RGB of one size, values in [0, 1], display-encoded. Infinity for equal pictures. Error: sizes differ.
+// a, b: RGB of one size, values in [0, 1], display-encoded. Infinity for equal images. Error: sizes differ.
 double psnr(const Image& a, const Image& b);
 
-// Over the pixels with mask != 0; nothing when there is none. mask: [height][width].
+// PSNR of the pixels with mask != 0; none if there are none. mask: [height][width].
 std::optional<double> psnr_in_mask(const Image& a, const Image& b, std::span<const uint8_t> mask);
 
 }  // namespace cei3d

@@ -67,10 +67,8 @@ Plane ssim_map(const Image& a, const Image& b, int c) {
 void require_pair(const Image& a, const Image& b) {
   if (a.width != b.width || a.height != b.height || a.channels != 3 || b.channels != 3 || a.width < kWindow ||
       a.height < kWindow)
-    fail(
-        "SSIM needs two RGB pictures of one size, at least {} x {} pixels; got {} x {} x {} and {} x {} x "
-        "{}.",
-        kWindow, kWindow, a.width, a.height, a.channels, b.width, b.height, b.channels);
+    fail("SSIM needs two RGB images of one size, at least {} x {} pixels; got {} x {} x {} and {} x {} x {}.",
+         kWindow, kWindow, a.width, a.height, a.channels, b.width, b.height, b.channels);
 }
 
 }  // namespace
@@ -82,7 +80,7 @@ double ssim(const Image& a, const Image& b) {
 std::optional<double> ssim_in_area(const Image& a, const Image& b, const Area& area) {
   require_pair(a, b);
   if (area.size() != size_t(a.width) * a.height)
-    fail("An area of {} pixels does not fit a picture of {} x {}.", area.size(), a.width, a.height);
+    fail("An area of {} pixels does not fit an image of {} x {}.", area.size(), a.width, a.height);
   double sum = 0;
   size_t windows = 0;
   for (int c = 0; c < 3; ++c) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The project folder: a reconstructed object, its edits and what they were made from. [architecture 2.8]
+// The project folder: a reconstructed object, its edits and what they were made from.
 //
 //   project.json            format version, normalisation, options of the reconstruction
 //   dataset.json            cameras, splits, pictures (engine/project/dataset.h)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The edit history: ordered edits, each on or off, and a cursor. Undo and redo move the cursor; nothing needs
-// an inverse, because the object is the base plus the edits that are on, up to the cursor. [architecture 2.8]
+// an inverse, because the object is the base plus the edits that are on, up to the cursor.
 #pragma once
 
 #include <string>

@@ -40,7 +40,7 @@ std::vector<Hit> trace_rays(const Device&, const Scene&, std::span<const Ray> ra
 
 // camera: unit-sphere frame. samples: a pixel and axis, at most 16; where the silhouette passes twice as
 // many, unless a single one is asked for: those are few pixels, and coverage shows every missing step
-// (decisions/0015).
+// (docs/notebook/0015).
 GBuffer trace_view(const Device&, const Scene&, const Camera& camera, int samples = 2);
 
 // A pixel is the tent-weighted mean of the samples within one pixel of its centre, which is close to the

@@ -8,8 +8,7 @@ namespace cei3d {
 namespace {
 
 constexpr float kNever = std::numeric_limits<float>::infinity();
-// While there are more patches than this, the cheapest quarter may merge at once; then one pair after the
-// other.
+// Above this number of regions the cheapest quarter may merge at once; below it one pair after the other.
 constexpr size_t kFew = 1000;
 
 struct Patch {
@@ -20,15 +19,15 @@ struct Patch {
 
 struct Border {
   uint32_t a = 0, b = 0;  // patches, a < b
-  float length = 0;       // edges of the graph that cross it
+  float length = 0;       // number of graph edges that cross it
   float crease = 0;       // sum of theirs
 };
 
-// What became of the patches in one round.
+// Result of one round of merges.
 struct Round {
-  std::vector<uint32_t> next;  // of each, the patch that it is afterwards
-  std::vector<float>
-      joined;  // of each, the cost at which it went over to the positive side; kNever: it did not
+  std::vector<uint32_t> next;  // for each region, the region that it is part of afterwards
+  // For each region, the cost at which it joined the positive side; kNever: it did not.
+  std::vector<float> joined;
 };
 
 // Stable, in O(borders + patches).
@@ -51,7 +50,7 @@ class Competition {
     find_best();
   }
 
-  // False when no two patches may merge any more.
+  // Returns false when no two regions may merge any more.
   bool merge() {
     const float limit = cost_limit();
     if (!(limit < kNever)) return false;
@@ -61,8 +60,8 @@ class Competition {
     return true;
   }
 
-  // Of each point, the cost at which it went over to the positive side; 0 for those that began there, kNever
-  // for those that did not. In the order of events these costs only grow.
+  // For each point, the cost at which it joined the positive side: 0 for points that began there, kNever for
+  // points that did not. These costs grow in the order of the merges.
   std::vector<float> joined() const {
     std::vector<float> cost(patches_.size());
     for (size_t i = 0; i < cost.size(); ++i) cost[i] = patches_[i].seed == Seed::positive ? 0 : kNever;
@@ -92,7 +91,7 @@ class Competition {
     }
   }
 
-  // What costs more has to wait.
+  // Merges that cost more wait for a later round.
   float cost_limit() const {
     std::vector<float> costs(best_.size());
     for (size_t i = 0; i < costs.size(); ++i) costs[i] = best_[i].first;
@@ -101,8 +100,9 @@ class Competition {
     return costs[rank] < kNever ? costs[rank] : *std::min_element(costs.begin(), costs.end());
   }
 
-  // Of each patch, the one it becomes part of now. Two that like each other best unite, and with them whoever
-  // likes one of the two best, unless it is of the other side.
+  // For each region, the one it becomes part of in this round. Two regions that are each other's cheapest
+  // neighbor merge, together with all whose cheapest neighbor is one of the two, unless they are on the other
+  // side.
   std::vector<uint32_t> unions(float limit) const {
     std::vector<uint32_t> into(patches_.size());
     std::vector<Seed> seed(patches_.size());
@@ -124,7 +124,7 @@ class Competition {
     return into;
   }
 
-  // into: of each patch, itself or one that stays.
+  // into: for each region, itself or a region that stays.
   Round apply(const std::vector<uint32_t>& into) {
     Round round{std::vector<uint32_t>(patches_.size()), std::vector<float>(patches_.size(), kNever)};
     std::vector<Patch> merged;
@@ -171,10 +171,10 @@ class Competition {
 
   std::vector<Patch> patches_;
   std::vector<Border> borders_;  // ordered by a, then b
-  std::vector<std::pair<float, uint32_t>>
-      best_;  // of each patch: its cheapest border's cost, who is beyond it
+  // For each region: the cost of its cheapest border, and the region beyond it.
+  std::vector<std::pair<float, uint32_t>> best_;
   std::vector<Round> rounds_;
-  float highest_ = 0;  // cost so far at which something joined the positive side
+  float highest_ = 0;  // highest cost so far at which a region joined the positive side
 };
 
 // The cost before the step that is largest in proportion. Steps up to a part of a few points are noise.

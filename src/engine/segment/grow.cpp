@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kSeedReach = 2;  // spacings
 
-// Ways from a click to the handler points around it.
+// Paths from a click to the handler points around it.
 class Clicks {
  public:
   explicit Clicks(const HandlerPoints& points)
@@ -33,8 +33,8 @@ class Clicks {
     float least = 1e30f;
     for (uint32_t i = 0; i < points_.positions.size(); ++i) {
       const Vec3f d = points_.positions[i] - click.position;
-      const float distance =
-          dot(d, d) + (dot(points_.normals[i], click.normal) > 0 ? 0 : 4);  // far: other side
+      // Points on the other side count as far.
+      const float distance = dot(d, d) + (dot(points_.normals[i], click.normal) > 0 ? 0 : 4);
       if (distance < least) least = distance, best = i;
     }
     return best;

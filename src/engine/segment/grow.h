@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part from clicks, in 3D and without a network: colour, creases and distance on the handler points.
+// Selects a part from clicks in 3D, without a network: by color, creases and distance between handler points.
 #pragma once
 
 #include <span>
@@ -11,14 +11,14 @@
 
 namespace cei3d {
 
-// The handler points around clicked points of the surface (within two spacings on the same side, or the
-// nearest one). A point that clicks of both kinds reach belongs to neither. Returns #N. Usage error: two
-// clicks, one of each kind, that have the same nearest point.
+// Seeds at clicked points of the surface: the handler points within two spacings on the same side, or the
+// nearest one. A point that clicks of both kinds reach gets no seed. Returns #N. Usage error: a positive and
+// a negative click have the same nearest point.
 std::vector<Seed> click_seeds(const HandlerPoints&, std::span<const SurfacePoint> positive,
                               std::span<const SurfacePoint> negative);
 
-// How much each handler point belongs to the part, [0, 1]: to be interpolated (ScoredPoints). base_colors:
-// #N, linear. Time: about n log n in the points; 200 000 take some seconds on one core.
+// Score of each handler point, [0, 1], to be interpolated by ScoredPoints. base_colors: #N linear albedo.
+// Time: about n log n in the points; 200 000 take some seconds on one core.
 std::vector<float> grow(const HandlerPoints&, std::span<const Vec3f> base_colors,
                         std::span<const Seed> seeds);
 

@@ -10,7 +10,7 @@
 namespace cei3d {
 namespace {
 
-// How far the surface turns towards itself from p to q, radians; 0 where it is flat or bulges.
+// Angle by which the surface turns towards itself from p to q, radians; 0 where it is flat or convex.
 float concavity(Vec3f p, Vec3f normal_p, Vec3f q, Vec3f normal_q) {
   return max(-dot(normal_q - normal_p, normalize(q - p)), 0.0f);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Handler points and which of them are neighbours on the surface: what a part is grown on.
+// The graph of neighboring handler points, on which parts are grown.
 #pragma once
 
 #include <cmath>
@@ -13,10 +13,11 @@ namespace cei3d {
 
 struct GraphEdge {
   uint32_t a = 0, b = 0;  // points, a < b
-  // How unlike the two are, in Oklab units: a hue 0.01 away is just visible; black to white is kLightness.
-  float length = 0;  // spacings
-  float color = 0;   // of their colours
-  float crease = 0;  // of the surface between them, see kCreaseStep
+  // Differences of the two points in Oklab units: a change of hue by 0.01 is just visible; black to white is
+  // kLightness.
+  float length = 0;  // distance, in spacings
+  float color = 0;   // difference of colors
+  float crease = 0;  // concavity of the surface between them, see kCreaseStep
   float step() const { return std::hypot(color, crease); }
 };
 
@@ -25,14 +26,15 @@ struct PointGraph {
   std::vector<GraphEdge> edges;  // each pair once, ordered by a, then b
 };
 
-// What shading is left in reconstructed base colours is lightness: dark grooves, bright rims. Hue tells more.
+// Weight of lightness against hue: shading that remains in the reconstructed albedo (dark grooves, bright
+// rims) is mostly lightness.
 inline constexpr float kLightness = 0.4f;
 
-// A concave crease counts like a difference of colour, this much for each radian: objects are made of parts
-// that meet in creases. [the minima rule: Hoffman and Richards 1984]
+// A concave crease counts as much as this difference of color per radian, because parts of objects meet in
+// concave creases. [the minima rule: Hoffman and Richards 1984]
 inline constexpr float kCreaseStep = 0.03f;
 
-// Points are neighbours within two spacings, on the same side of the surface. base_colors: #N, linear.
+// Points within two spacings on the same side of the surface are neighbors. base_colors: #N, linear albedo.
 PointGraph point_graph(const HandlerPoints&, std::span<const Vec3f> base_colors);
 
 }  // namespace cei3d

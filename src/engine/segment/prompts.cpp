@@ -8,8 +8,8 @@
 namespace cei3d {
 namespace {
 
-constexpr size_t kCandidates = 400;  // looked at, of those that would do
-constexpr size_t kOthers = 3000;     // that they keep away from
+constexpr size_t kCandidates = 400;  // candidates that are compared
+constexpr size_t kOthers = 3000;     // points that candidates keep away from
 constexpr float kFar = 1e9f;
 
 float distance(Vec2f a, Vec2f b) { return std::hypot(a.x - b.x, a.y - b.y); }
@@ -20,7 +20,7 @@ float nearest(Vec2f p, std::span<const Vec2f> others) {
   return best;
 }
 
-// Every n-th, so that no more than `most` are left. The order of handler points is without pattern in space.
+// Every n-th element, at most `most`. The order of handler points is random in space.
 std::vector<Vec2f> thinned(std::span<const Vec2f> pixels, size_t most) {
   const size_t step = std::max<size_t>((pixels.size() + most - 1) / most, 1);
   std::vector<Vec2f> kept;
@@ -30,7 +30,7 @@ std::vector<Vec2f> thinned(std::span<const Vec2f> pixels, size_t most) {
 
 struct Candidate {
   Vec2f pixel;
-  float clearance;  // pixels to where the belief is another one
+  float clearance;  // distance in pixels to the nearest pixel of another belief
 };
 
 std::vector<Candidate> candidates(std::span<const Vec2f> pixels, std::span<const Vec2f> others) {
@@ -39,7 +39,7 @@ std::vector<Candidate> candidates(std::span<const Vec2f> pixels, std::span<const
   return result;
 }
 
-// Greedily the one that is farthest from those chosen and, by half, from the border.
+// Greedily chooses the candidate farthest from those chosen and, with half the weight, from the border.
 void choose(const std::vector<Candidate>& from, size_t count, std::vector<Vec2f>& chosen) {
   for (size_t n = 0; n < count; ++n) {
     float best = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where to click in a view, given what is believed of the points that it shows. [paper Algorithm 1, which
-// leaves open how many prompts there are and which]
+// Chooses prompts for a segmentation network in a view, from what is believed of the points that the view
+// shows. [paper Algorithm 1, which leaves the number and choice of prompts open]
 #pragma once
 
 #include <span>
@@ -14,18 +14,17 @@ struct Prompts {
   std::vector<Vec2f> positive, negative;  // continuous pixel positions
 };
 
-// Visible points of the surface by what is believed of them: in the part, out of it, or not known (which
-// keeps prompts away).
+// Visible points of the surface by belief: in the part, outside, or unknown. No prompts are placed near
+// unknown ones.
 struct BelievedPixels {
   std::vector<Vec2f> in, out, unknown;
 };
 
-// Up to `count` of each kind are added to the prompts that there are: far from each other and from where the
-// belief changes; negative ones no farther from the part than the part is large.
+// Adds up to `count` prompts of each kind: far from each other and from where the belief changes; negative
+// ones no farther from the part than its size.
 void add_prompts(const BelievedPixels&, size_t count, Prompts& prompts);
 
-// The pixel of `wrong` that lies deepest among its like: farthest from the pixels that are right. wrong must
-// not be empty.
+// The pixel of `wrong` that is farthest from the pixels that are right. wrong must not be empty.
 Vec2f deepest(std::span<const Vec2f> wrong, std::span<const Vec2f> right);
 
 }  // namespace cei3d

@@ -12,22 +12,22 @@
 namespace cei3d {
 namespace {
 
-constexpr float kMinFacing = 0.2f;       // of points that are voted on
-constexpr float kPromptFacing = 0.4f;    // of points that are prompted with
-constexpr float kBelieved = 0.7f;        // score from which a point counts as in, one minus that: as out
-constexpr float kPrior = 0.1f;           // weight of "unknown" against one frontal vote
-constexpr float kFirstWeight = 2;        // of the clicked view's vote: a person has looked at it
-constexpr float kMinAgreement = 0.6f;    // of a mask with what is known, as intersection over union
-constexpr float kGoodAgreement = 0.92f;  // from which it needs no correction
-constexpr int kCorrections = 4;          // prompts more, one at a time, where a mask is wrong
-constexpr size_t kPrompts = 5;           // of each kind, beside the user's own
+constexpr float kMinFacing = 0.2f;       // minimum cosine to the camera of points that get votes
+constexpr float kPromptFacing = 0.4f;    // minimum cosine of points that become prompts
+constexpr float kBelieved = 0.7f;        // score from which a point counts as inside; 1 - kBelieved: outside
+constexpr float kPrior = 0.1f;           // weight of the prior 1/2 relative to one frontal vote
+constexpr float kFirstWeight = 2;        // weight of the clicked view, which the user has seen
+constexpr float kMinAgreement = 0.6f;    // minimum intersection over union of a mask with what is known
+constexpr float kGoodAgreement = 0.92f;  // agreement from which a mask needs no correction
+constexpr int kCorrections = 4;          // maximum number of extra prompts, added one at a time
+constexpr size_t kPrompts = 5;           // prompts of each kind, besides those of the user
 constexpr size_t kSamples = 500;         // points of the part that views are chosen by
-constexpr float kEnough = 0.5f;          // votes (as one frontal vote) that halve the need for more
-constexpr float kSurroundings = 0.5f;    // how far around the part votes are wanted, of its extent
-constexpr float kLeastGain = 0.02f;      // mean gain of a point, below which no view is worth it
-constexpr float kMinSeen = 0.07f;        // of the part, that a view must show to be segmented
+constexpr float kEnough = 0.5f;          // votes, in frontal votes, that halve the need for more
+constexpr float kSurroundings = 0.5f;    // distance around the part, in its extents, where votes are wanted
+constexpr float kMinGain = 0.02f;        // minimum mean gain per point for which a view is segmented
+constexpr float kMinSeen = 0.07f;        // minimum share of the part that a view must show
 
-// Score of each point, from the votes so far.
+// Score of each point from the votes so far.
 class Votes {
  public:
   explicit Votes(size_t n) : sum_(n, 0.0f), weight_(n, 0.0f) {}
@@ -36,7 +36,7 @@ class Votes {
     weight_[point] += weight;
   }
   float score(size_t i) const { return (sum_[i] + 0.5f * kPrior) / (weight_[i] + kPrior); }
-  // How much a further vote would tell, [0, 1].
+  // Information that one more vote would add, [0, 1].
   float need(size_t i) const { return 1 / (1 + weight_[i] / kEnough); }
   bool in(size_t i) const { return score(i) >= kBelieved; }
   bool out(size_t i) const { return score(i) <= 1 - kBelieved; }
@@ -46,7 +46,7 @@ class Votes {
   std::vector<float> sum_, weight_;
 };
 
-// Intersection over union of the mask and the points believed in, over the points something is known of; and
+// Intersection over union of the mask and the believed points, over points of which something is known, and
 // the pixels where they differ.
 struct Comparison {
   float agreement = 0;
@@ -101,7 +101,7 @@ class Propagation {
 
   void first_view();
   void next_view(int view);
-  int choose_view() const;  // -1: none is worth it
+  int choose_view() const;  // -1: none is useful
   PropagateResult result() const;
   size_t segmented() const { return report_.views.size() + report_.refused.size(); }
 
@@ -125,7 +125,7 @@ class Propagation {
   ViewSegmenter& segmenter_;
   Votes votes_;
   float tolerance_;
-  Places positive_, negative_;  // of the surface, that the user clicked on
+  Places positive_, negative_;  // surface points that the user clicked
   PropagateReport report_;
 };
 
@@ -186,7 +186,7 @@ Prompts Propagation::prompts_for(int view, const std::vector<SeenPoint>& seen) c
   return prompts;
 }
 
-// A mask that differs from what is known gets one prompt more where it does so most, as a person would do.
+// Adds a prompt where the mask differs most from what is known, as a user would, and segments again.
 void Propagation::next_view(int view) {
   const std::vector<SeenPoint> seen = seen_by(view, handlers_.positions, handlers_.normals, kMinFacing);
   Prompts prompts = prompts_for(view, seen);
@@ -213,7 +213,7 @@ void Propagation::next_view(int view) {
   report_.views.push_back(view);
 }
 
-// Points of the part and around it, as far off as the part is large by half: those that votes are wanted for.
+// Points for which votes are wanted: the part, and its surroundings up to half of its extent.
 Propagation::Places Propagation::wanted(std::vector<float>& need, std::vector<uint8_t>& in) const {
   std::vector<size_t> part;
   for (size_t i = 0; i < votes_.size(); ++i)
@@ -241,9 +241,9 @@ bool Propagation::used(int view) const {
   return has(report_.views) || has(report_.refused);
 }
 
-// The view that would tell most and shows most of what is known of the part: without the latter, the first
-// step leads to a view from which hardly anything known is seen, whose mask then contradicts the little there
-// is.
+// The view with the largest product of new information and known share of the part. Without the second factor
+// the first step goes to a view that hardly shows anything known and whose mask then contradicts the little
+// that is.
 int Propagation::choose_view() const {
   std::vector<float> need;
   std::vector<uint8_t> in;
@@ -258,7 +258,7 @@ int Propagation::choose_view() const {
       if (in[s.point]) known += s.facing;
       gain += s.facing * need[s.point];
     }
-    if (known < kMinSeen * part || gain < kLeastGain * float(need.size())) continue;
+    if (known < kMinSeen * part || gain < kMinGain * float(need.size())) continue;
     if (gain * known <= best) continue;
     best = gain * known;
     chosen = view;

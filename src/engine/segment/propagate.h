@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A part from clicks in one view: its mask there is carried to the handler points, they say where to prompt
-// in the next view, and so on around the part. [paper Algorithm 1; with what it leaves open: hidden points
-// take no part, the views vote, a mask that contradicts what is known has no vote]
+// Propagates a part from clicks in one view: the mask there is carried to the handler points, which give
+// prompts for the next view, and so on around the part. [paper Algorithm 1] What the algorithm leaves open:
+// hidden points are ignored, the views vote, and a mask that contradicts what is known has no vote.
 #pragma once
 
 #include <span>
@@ -17,23 +17,24 @@
 namespace cei3d {
 
 struct PropagateRequest {
-  std::vector<Camera> cameras;  // of the views that the segmenter knows, unit-sphere frame
-  int first = 0;                // the clicked one
-  Prompts clicks;               // in it, at least one positive
-  int max_views = 10;           // that are segmented: the segmenter is the cost
+  std::vector<Camera> cameras;  // of the views that the segmenter knows, unit frame
+  int first = 0;                // index of the clicked view
+  Prompts clicks;               // in the clicked view, at least one positive
+  int max_views = 10;           // maximum number of views to segment, which is most of the cost
 };
 
 struct PropagateReport {
-  std::vector<int> views;    // that voted, in order; the clicked one first
-  std::vector<int> refused;  // whose masks contradicted what was known
+  std::vector<int> views;    // views that voted, in order; the clicked one first
+  std::vector<int> refused;  // views whose masks contradicted what was known
 };
 
 struct PropagateResult {
-  std::vector<float> scores;  // #handlers, [0, 1]: belongs to the part; 0.5 where no view told anything
+  std::vector<float> scores;  // #handlers, [0, 1]; 0.5 where no view gave information
   PropagateReport report;
 };
 
-// handlers: of the surface's present shape. Errors: the first view's mask holds no handler point; cancelled.
+// handlers: on the surface's present shape. Errors: the first view's mask contains no handler point;
+// cancelled.
 PropagateResult propagate(const HandlerPoints& handlers, const Surface&, const PropagateRequest&,
                           ViewSegmenter&, Progress&);
 

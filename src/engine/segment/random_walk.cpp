@@ -9,21 +9,20 @@
 namespace cei3d {
 namespace {
 
-// A step of a third of the typical one halves the weight or so: walkers take the smoothest ways, which noise
+// A step of a third of the typical one about halves the weight: walkers take the smoothest paths, which noise
 // leaves open and borders do not. Results hardly change between half and twice that.
 constexpr float kSharpness = 8;
-constexpr float kLeast = 1e-6f;  // weight of an edge that no walker takes
-constexpr double kPrior = 1e-5;  // weight of the prior at a point
-constexpr double kSeed = 1e3;    // weight of a seed
-constexpr float kLeastTypical =
-    0.005f;  // Oklab; objects of flat colours have smaller steps, which mean nothing
+constexpr float kMinWeight = 1e-6f;    // minimum weight of an edge
+constexpr double kPrior = 1e-5;        // weight of the prior at a point
+constexpr double kSeed = 1e3;          // weight of a seed
+constexpr float kMinTypical = 0.005f;  // Oklab; objects of flat colors have smaller steps, which mean nothing
 
 float typical_step(const PointGraph& graph) {
-  if (graph.edges.empty()) return kLeastTypical;
+  if (graph.edges.empty()) return kMinTypical;
   std::vector<float> steps(graph.edges.size());
   for (size_t i = 0; i < steps.size(); ++i) steps[i] = graph.edges[i].step();
   std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
-  return max(steps[steps.size() / 2], kLeastTypical);
+  return max(steps[steps.size() / 2], kMinTypical);
 }
 
 }  // namespace
@@ -37,7 +36,7 @@ std::vector<float> random_walk(const PointGraph& graph, std::span<const Seed> se
   entries.reserve(graph.edges.size() + n);
   for (const GraphEdge& e : graph.edges) {
     if (e.length > 2) continue;
-    const double w = std::exp(-kSharpness * square(e.step() / typical)) + kLeast;
+    const double w = std::exp(-kSharpness * square(e.step() / typical)) + kMinWeight;
     diagonal[e.a] += w;
     diagonal[e.b] += w;
     entries.push_back({int(e.b), int(e.a), -w});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where exactly a part ends: the probability that a random walker from a point meets a positive seed before a
-// negative one, where it is loath to cross steps of colour. [Grady 2006]
+// The exact border of a part: the probability that a random walker from a point meets a positive seed before
+// a negative one, where steps across differences of color are unlikely. [Grady 2006]
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace cei3d {
 
-// prior: #N, [0, 1], what the answer is taken to be at first; it decides what the seeds hardly reach. Returns
-// #N scores in [0, 1]; they cross one half in the middle of a blurred border, finer than the points.
+// prior: #N, [0, 1], initial belief; it decides where the seeds hardly reach. Returns #N scores in [0, 1];
+// they cross one half in the middle of a blurred border, finer than the spacing of points.
 std::vector<float> random_walk(const PointGraph&, std::span<const Seed> seeds, std::span<const float> prior);
 
 }  // namespace cei3d

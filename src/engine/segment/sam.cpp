@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kFrame = 1024;
 constexpr int kLowRes = 256;
-constexpr float kOutside = -20;  // log-odds of what the frame does not show
+constexpr float kOutside = -20;  // log-odds outside the frame
 constexpr float kMean[3] = {123.675f, 116.28f, 103.53f}, kDeviation[3] = {58.395f, 57.12f, 57.375f};
 
 std::filesystem::path network(const std::filesystem::path& folder, const char* name) {
@@ -23,7 +23,7 @@ std::filesystem::path network(const std::filesystem::path& folder, const char* n
   return file;
 }
 
-// Normalised, with zeros beside the picture.
+// The normalized frame, with zeros beside the image.
 OnnxTensor encoder_input(const Image& rgb) {
   OnnxTensor t{{1, 3, kFrame, kFrame}, std::vector<float>(size_t(3) * kFrame * kFrame, 0.0f)};
   for (int y = 0; y < std::min(rgb.height, kFrame); ++y)
@@ -37,7 +37,7 @@ OnnxTensors decoder_input(const SamPicture& picture, std::span<const Vec2f> posi
                           std::span<const Vec2f> negative) {
   OnnxTensor coords, labels;
   const auto add = [&](Vec2f p, float label) {
-    // The network adds half a frame pixel itself.
+    // The network itself adds half a frame pixel.
     coords.data.push_back((p.x - float(picture.x0)) * picture.scale - 0.5f);
     coords.data.push_back((p.y - float(picture.y0)) * picture.scale - 0.5f);
     labels.data.push_back(label);
@@ -57,14 +57,14 @@ OnnxTensors decoder_input(const SamPicture& picture, std::span<const Vec2f> posi
           {"orig_im_size", {{2}, {64, 64}}}};  // its full-size masks are not used: small
 }
 
-// Several prompts are answered by mask 0. A single click has three answers, part, whole and surrounding: the
-// one that the network thinks best of.
+// For several prompts mask 0 is the answer. For a single click there are three masks (part, whole,
+// surroundings): the one with the best predicted quality is taken.
 size_t best_mask(const OnnxTensor& quality, size_t prompts) {
   if (prompts > 1 || quality.data.size() < 2) return 0;
   return size_t(std::max_element(quality.data.begin() + 1, quality.data.end()) - quality.data.begin());
 }
 
-// Small networks leave a dotted pattern of a few pixels.
+// Smooths the dotted pattern of a few pixels that small networks produce.
 void blur(std::vector<float>& plane) {
   constexpr float kKernel[4] = {0.2660f, 0.2130f, 0.1095f, 0.0361f};  // Gaussian of 1.5 pixels, cut at 3
   std::vector<float> rows(plane.size());
@@ -87,7 +87,7 @@ void blur(std::vector<float>& plane) {
   pass(rows, plane, 0, 1);
 }
 
-// Bilinear between the centres of the low-resolution pixels.
+// Bilinear between the centers of the low-resolution pixels.
 Image to_picture(const std::vector<float>& plane, const SamPicture& p) {
   Image out(p.width, p.height, 1, kOutside);
   constexpr float kStep = float(kFrame) / kLowRes;

@@ -9,8 +9,8 @@ namespace cei3d {
 namespace {
 
 constexpr int kFrame = 1024;
-constexpr float kBackground = 0.5f;  // sRGB, where there is no object
-constexpr float kMargin = 0.08f;     // around the object, of its longer side
+constexpr float kBackground = 0.5f;  // sRGB value where there is no object
+constexpr float kMargin = 0.08f;     // around the object, as a share of its longer side
 
 struct Box {
   int x0, y0, x1, y1;  // x1, y1: past the end
@@ -30,7 +30,7 @@ Box object_box(const Image& rgba) {
           std::min(b.y1 + margin, rgba.height)};
 }
 
-// What the eye sees: sRGB over a plain background.
+// The image in sRGB over a uniform background.
 Image displayed(const Image& rgba, const Box& b) {
   Image out(b.x1 - b.x0, b.y1 - b.y0, 3);
   for (int y = b.y0; y < b.y1; ++y) {
@@ -50,7 +50,7 @@ struct Taps {
   std::vector<float> weights;  // sum 1
 };
 
-// Linear interpolation when enlarging, a tent over the pixels that are merged when not.
+// Linear interpolation when enlarging, a tent over the merged pixels when shrinking.
 std::vector<Taps> tent(int from, int to) {
   const float step = float(from) / float(to), reach = std::max(step, 1.0f);
   std::vector<Taps> taps(to);

@@ -11,7 +11,7 @@ namespace {
 const std::filesystem::path kFolder =
     "build/sam";  // tests run in the repository's root; `./run sam` fills it
 
-// A disc of one colour on a square of another, on nothing.
+// A disc of one color on a square of another, on nothing.
 Image disc(float cx, float cy, float radius) {
   Image image(200, 160, 4);
   for (int y = 20; y < 140; ++y) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which points of a surface a camera sees, and where in its picture.
+// Visibility of surface points in a camera.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@ namespace cei3d {
 
 struct SeenPoint {
   uint32_t point;  // index into the positions asked about
-  Vec2f pixel;     // continuous position in the picture
-  float facing;    // cosine between the normal and the way to the camera
+  Vec2f pixel;     // continuous position in the image
+  float facing;    // cosine between the normal and the direction to the camera
 };
 
-// Those that lie in the picture, face the camera by at least min_facing and that no other part of the surface
-// hides, in order. camera, positions: unit-sphere frame. tolerance: how far behind the surface a point still
-// counts as on it.
+// The points, in order, that lie in the image, face the camera by at least min_facing and are not hidden by
+// another part of the surface. camera, positions: unit frame. tolerance: distance behind the surface up to
+// which a point counts as on it.
 std::vector<SeenPoint> seen_points(const Surface&, const Camera& camera, std::span<const Vec3f> positions,
                                    std::span<const Vec3f> normals, float min_facing, float tolerance);
 
-// Bilinear between the centres of the pixels of a one-channel picture, the border's value beyond it.
+// Bilinear between pixel centers of a one-channel image, clamped at the border.
 float sample(const Image& image, Vec2f pixel);
 
 }  // namespace cei3d

@@ -28,7 +28,7 @@ Vec3f random_direction(uint64_t seed, int i) {
   return normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()});
 }
 
-// Points of spheres of radius 0.5, without what lies inside another one; colours with noise.
+// Points of spheres of radius 0.5, without what lies inside another one; colors with noise.
 Object spheres(std::span<const Vec3f> centers, const std::function<Vec3f(Vec3f)>& color) {
   std::vector<Hit> hits;
   for (int i = 0; i < 40000; ++i) {
@@ -77,7 +77,7 @@ Object capped_sphere() {
   });
 }
 
-TEST(Grow, TakesThePartThatItsColourEndsAndTheIslandInIt) {
+TEST(Grow, TakesThePartThatItsColorEndsAndTheIslandInIt) {
   const Object o = capped_sphere();
   const auto scores = grown(o, {on_sphere(kOrigin, {-0.2f, 0, 1})}, {on_sphere(kOrigin, {1, 0, -0.2f})});
   EXPECT_GT(right_share(o, scores, cap_depth), 0.995);
@@ -99,7 +99,7 @@ TEST(Grow, SelectsSeveralPiecesAndLeavesAlikeOnesAlone) {
   EXPECT_GT(right_share(o, grown(o, {top}, {belt}), [](Vec3f p) { return p.z - 0.3f; }), 0.99);
 }
 
-TEST(Grow, EndsAtACreaseWhereColourSaysNothing) {
+TEST(Grow, EndsAtACreaseWhereColorSaysNothing) {
   const Vec3f centers[] = {{0, 0, -0.4f}, {0, 0, 0.4f}};
   const Object o = spheres(centers, [](Vec3f) { return kWhite; });
   const auto scores = grown(o, {on_sphere(centers[1], {1, 0, 1})}, {on_sphere(centers[0], {1, 0, -1})});
@@ -140,7 +140,7 @@ TEST(ClickSeeds, ContradictingClicksAreAUsageError) {
   }
 }
 
-TEST(PointGraph, JoinsNeighboursOnOneSide) {
+TEST(PointGraph, JoinsNeighborsOnOneSide) {
   HandlerPoints points = capped_sphere().points;
   const size_t n = points.positions.size();
   for (size_t i = 0; i < n; ++i) {  // a second, inner side of the same sheet

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Something that finds an object's part in one picture from a few points: a network, or in tests the truth.
+// Finds a part of the object in one image from a few points: a network, or the truth in tests.
 #pragma once
 
 #include <span>
@@ -12,9 +12,8 @@ namespace cei3d {
 class ViewSegmenter {
  public:
   virtual ~ViewSegmenter() = default;
-  // positive, negative: continuous pixel positions in and out of the part, at least one of the former.
-  // Returns one channel of the picture's size: log-odds of belonging to the part, above 0 where it rather
-  // does.
+  // positive, negative: continuous pixel positions inside and outside the part, at least one positive.
+  // Returns log-odds of belonging to the part, 1 channel of the image's size.
   virtual Image mask(int view, std::span<const Vec2f> positive, std::span<const Vec2f> negative) = 0;
 };
 

@@ -120,7 +120,7 @@ Activation activation_from(const std::string& name) {
   fail("field: unknown activation '{}'", name);
 }
 
-// Visits every member under its JSON name: the one list that writing and reading share.
+// Visits every member under its JSON name; writing and reading share this list.
 template <class C, class V>
 void describe(C& c, V visit) {
   visit("frequencies", c.encoding.frequencies);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forward and backward of one chunk of points through a field. Trainers compose these; everyone else calls
-// Field::eval.
+// Forward and backward pass of one chunk of points through a field, for trainers. Others call Field::eval.
 #pragma once
 
 #include "model/field/field.h"
@@ -11,7 +10,7 @@ class FieldPass {
  public:
   FieldPass(const FieldConfig& config, int capacity, int columns);
 
-  // points: [panels][3][32]. levels: hash levels in use (coarse to fine); the others count as zero.
+  // points: [panels][3][32]. levels: hash levels in use, coarse to fine; features of the others are zero.
   void forward(const Device&, const Field&, const MlpWeights&, const float* points, int n, int levels,
                int outputs);
   const float* output() const { return mlp_.output(); }

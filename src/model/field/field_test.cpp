@@ -202,7 +202,7 @@ TEST_P(FieldOnDevice, JetAndItsGradientEqualDoublePrecision) {
   }
 }
 
-TEST_P(FieldOnDevice, AValueDoesNotDependOnItsNeighbours) {
+TEST_P(FieldOnDevice, AValueDoesNotDependOnItsNeighbors) {
   const auto [name, kind] = GetParam();
   const Device device = make_device(name);
   Field field(config(kind), 1);

@@ -27,7 +27,7 @@ struct ChunkGradients {
 void accumulate_gradients(const Device&, const Field&, const std::vector<ChunkGradients>&, int levels,
                           Optimizer&);
 
-// The layers alone: adds `network` gradients, in chunk order. params has "layer0/weight", ...
+// For the layers alone: adds the `network` gradients in chunk order. params: "layer0/weight", ...
 void accumulate_layers(const ParamSet& params, const std::vector<const std::vector<float>*>& network,
                        Optimizer&);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small fully connected network over panels of samples: values, or jets whose four columns are four panels.
+// A small fully connected network over panels of samples: values, or jets, whose four columns are four
+// panels.
 #pragma once
 
 #include <vector>
@@ -15,7 +16,7 @@ enum class Activation { none, relu, elu, softplus, sigmoid };
 struct MlpConfig {
   int inputs = 3;
   int hidden_layers = 1, width = 64;
-  int skip_layer = -1;  // the input enters again before this hidden layer, divided by sqrt 2; -1: never
+  int skip_layer = -1;  // hidden layer before which the input is appended again, divided by sqrt 2; -1: none
   Activation activation = Activation::relu;
   float softplus_beta = 100;
   int outputs = 3;
@@ -24,16 +25,15 @@ struct MlpConfig {
 
 struct MlpLayer {
   int in, out;
-  bool concat;  // the network's input is appended to this layer's
+  bool concat;  // the network's input is appended to this layer's input
 };
 std::vector<MlpLayer> mlp_layers(const MlpConfig&);
 
-// Adds "layer0/weight" [out][in], "layer0/bias" [out], ... to params; weights uniform in +-sqrt(6 / in) /
-// sqrt(3) (He for rectifiers would be 2/in; this is the variance 2/(3 in) that keeps softplus and ELU nets
-// calm), biases zero.
+// Adds "layer0/weight" [out][in], "layer0/bias" [out], ... to params. Weights are uniform with variance 2 /
+// (3 in), a third of He's initialization, which keeps softplus and ELU networks calm; biases are zero.
 void add_mlp_params(const MlpConfig&, ParamSet& params, uint64_t seed);
 
-// Weights in the shapes that the passes need, made once a step.
+// Weights in the layouts that the passes need, made once per step.
 class MlpWeights {
  public:
   MlpWeights(const MlpConfig& config, const ParamSet& params);
@@ -42,7 +42,7 @@ class MlpWeights {
   const float* weight(int layer) const { return weights_[layer].data(); }         // [out][in]
   const float* transposed(int layer) const { return transposed_[layer].data(); }  // [in][out]
   const float* bias(int layer) const { return biases_[layer].data(); }
-  size_t gradient_size() const;  // floats: per layer weight [out][in], then bias [out]
+  size_t gradient_size() const;  // floats: for each layer weight [out][in], then bias [out]
 
  private:
   MlpConfig config_;
@@ -53,12 +53,13 @@ class MlpWeights {
 // Work memory and the two passes of one chunk of samples.
 class MlpPass {
  public:
-  // capacity: samples, a multiple of 32. columns: 1 values, 4 jets. Of a jet's outputs, only output 0 has
-  // derivative columns; those of the others are left zero.
+  // capacity: samples, a multiple of 32. columns: 1 for values, 4 for jets. Of a jet's outputs only output 0
+  // has derivative columns; those of the others stay zero.
   MlpPass(const MlpConfig& config, int capacity, int columns);
 
   float* input() { return x_.data(); }  // [panels * columns][inputs][32], filled by the caller
-  // active_inputs: rows after these are zero and skipped. outputs: how many of the first outputs are wanted.
+  // active_inputs: input rows that may be non-zero; the others are skipped. outputs: number of first outputs
+  // to compute.
   void forward(const Device&, const MlpWeights&, int n, int active_inputs, int outputs);
   const float* output() const { return y_.data(); }  // [panels * columns][outputs of the config][32]
   float* mutable_output() { return y_.data(); }      // for what is added to the outputs of the network

@@ -20,7 +20,7 @@ void Optimizer::add(ParamSet& params, const std::string& prefix, const Group& gr
 std::span<float> Optimizer::gradient(const Param& param) {
   for (Slot& s : slots_)
     if (s.param == &param) return s.gradient;
-  fail("parameter '{}' is not being optimised", param.name);
+  fail("parameter '{}' is not being optimized", param.name);
 }
 
 void Optimizer::step(const Device& device, float rate_scale) {

@@ -16,11 +16,11 @@ class Optimizer {
     float rate = 1e-3f, beta1 = 0.9f, beta2 = 0.99f, eps = 1e-15f;
     bool skip_zero = false;  // see AdamStep
   };
-  // params must outlive the optimizer. Which parameters belong to the group is said by a name prefix ("":
+  // params must outlive the optimizer. The group has the parameters whose names begin with `prefix` ("":
   // all).
   void add(ParamSet& params, const std::string& prefix, const Group& group);
 
-  std::span<float> gradient(const Param& param);  // accumulated into by the caller; step() clears it
+  std::span<float> gradient(const Param& param);  // the caller adds to it; step() clears it
   void step(const Device&, float rate_scale);     // rate_scale multiplies every group's rate (schedule)
 
   void save(Tensors& out, const std::string& prefix) const;  // moments and the step count

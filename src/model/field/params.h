@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named parameters of a model. The only owner of weights: saving, hashing and optimising need no code per
+// Named parameters of a model, the only owner of weights: saving, hashing and optimizing need no code per
 // network.
 #pragma once
 
@@ -14,8 +14,8 @@ namespace cei3d {
 struct Param {
   std::string name;
   std::vector<int64_t> shape;
-  std::vector<float>
-      value;  // padded with zeros to a multiple of 32 floats, so that kernels need no remainder
+  // Padded with zeros to a multiple of 32 floats, so that kernels need no remainder
+  std::vector<float> value;
 
   size_t count() const;  // product of the shape
 };
@@ -35,7 +35,7 @@ class ParamSet {
   std::vector<Param> params_;
 };
 
-// One array out of a tensor file, checked: error when it is missing or has another shape.
+// An array of a tensor file. Error: it is missing or has another shape.
 const Tensor& require_tensor(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape);
 
 }  // namespace cei3d

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lat-long pictures of distant light.
+// Latitude-longitude images of distant light. Conventions: docs/method.md#environment-maps.
 #pragma once
 
 #include "core/image/image.h"
@@ -7,16 +7,15 @@
 
 namespace cei3d {
 
-// Which way row 0 of the picture looks.
+// Direction of row 0 of the image.
 enum class EnvUp {
-  z,  // row 0 = +Z; centre = +X, column W/4 = +Y, 3W/4 = -Y, borders = -X
-  y,  // row 0 = +Y; left border -Z, column W/4 = +X, centre = +Z, 3W/4 = -X (Mitsuba) [reference-facts 7]
+  z,  // row 0 = +Z; center = +X, column W/4 = +Y, 3W/4 = -Y, borders = -X
+  y,  // row 0 = +Y; left border -Z, column W/4 = +X, center = +Z, 3W/4 = -X (Mitsuba)
 };
 
-// Unit direction towards the light at the continuous pixel position (u, v) of a width x height picture; pixel
-// centres are at +0.5.
+// Unit direction towards the light at the continuous pixel position (u, v) of a width x height image.
 Vec3f env_direction(float u, float v, int width, int height, EnvUp up = EnvUp::z);
-// ... and back, u in [0, width), v in [0, height].
+// Pixel position of a direction, the inverse of env_direction(): u in [0, width), v in [0, height].
 Vec2f env_pixel(Vec3f direction, int width, int height, EnvUp up = EnvUp::z);
 // Solid angle of each pixel of row v, in steradians.
 float env_solid_angle(int v, int width, int height);
@@ -30,8 +29,7 @@ EnvTaps env_taps(Vec3f direction, int width, int height, EnvUp up = EnvUp::z);
 // Bilinear lookup. map: 3 or more channels.
 Vec3f env_radiance(const Image& map, Vec3f direction, EnvUp up = EnvUp::z);
 
-// The picture resampled to height rows and 2 height columns, each pixel the mean radiance over its solid
-// angle.
+// The image resampled to height rows and 2 height columns, each pixel the mean radiance over its solid angle.
 Image env_resample(const Image& map, int height);
 
 }  // namespace cei3d

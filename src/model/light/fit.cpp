@@ -13,7 +13,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kRows = 7;  // axis, sharpness, colour
+constexpr int kRows = 7;  // axis, sharpness, color
 constexpr float kRate = 0.03f, kBeta1 = 0.9f, kBeta2 = 0.99f;
 
 int padded(int n) { return (n + kPanel - 1) / kPanel * kPanel; }
@@ -48,7 +48,7 @@ SgLobe unblurred(SgLobe seen, float sharpness) {
   return {seen.axis, lambda, seen.mu * (sg_integral(seen.lambda) / sg_integral(lambda))};
 }
 
-// Unknowns: raw axis (normalised on use), logarithm of the sharpness, square root of the colour. Planes
+// Unknowns: raw axis (normalized on use), logarithm of the sharpness, square root of the color, as planes
 // [7][padded].
 class LobeFit {
  public:
@@ -75,7 +75,7 @@ class LobeFit {
       const Vec3f c = env_radiance(map, axis, up);
       for (int j = 0; j < 3; ++j) {
         row(raw_, j)[k] = axis[j];
-        row(raw_, 4 + j)[k] = std::sqrt(max(0.6f * c[j], 1e-3f));  // neighbours overlap
+        row(raw_, 4 + j)[k] = std::sqrt(max(0.6f * c[j], 1e-3f));  // neighbors overlap
       }
       row(raw_, 3)[k] = std::log(min(0.5f * float(lobes), 0.5f * sharpest));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distant light as a picture to distant light as lobes.
+// Fits light lobes to an environment image.
 #pragma once
 
 #include "core/base/progress.h"
@@ -12,11 +12,11 @@ namespace cei3d {
 
 struct LobeFitOptions {
   int lobes = 128;
-  int steps = 800;  // of Adam
-  int height = 32;  // the picture is averaged down to this many rows first
-  // Sharpness of the lobe that the light will be seen through; 0: a mirror. The fit then looks at the light
-  // blurred by that lobe, so that detail nobody can see (the spikes of a deconvolved light) takes no lobes
-  // away.
+  int steps = 800;  // steps of Adam
+  int height = 32;  // the image is averaged down to this number of rows first
+  // Sharpness of the reflection lobe through which the light will be seen; 0: a mirror. The fit then compares
+  // both lights blurred by that lobe, so that invisible detail (spikes of a deconvolved light) takes no
+  // lobes.
   float seen_through = 0;
 };
 

@@ -59,7 +59,7 @@ TEST(Envmap, SolidAnglesFillTheSphereAndResamplingKeepsTheIntegral) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(integral(small, c), integral(map, c), 1e-4);
 }
 
-TEST(Envmap, BilinearLookupHitsPixelCentresAndWraps) {
+TEST(Envmap, BilinearLookupHitsPixelCentersAndWraps) {
   Image map(8, 4, 3);
   for (size_t i = 0; i < map.data.size(); ++i) map.data[i] = Rng(2, 0, i).uniform();
   expect_near(env_radiance(map, env_direction(3.5f, 1.5f, 8, 4)), map.rgb(3, 1), 1e-5f);
@@ -80,7 +80,7 @@ TEST(SgMixture, ArraysRoundTripAndBadOnesAreRefused) {
     expect_near(back.lobes[k].axis, light.lobes[k].axis, 1e-6f);
     EXPECT_EQ(back.lobes[k].lambda, light.lobes[k].lambda);
   }
-  // Files of others hold raw values: signs and lengths mean nothing.
+  // Light files of other programs hold raw values: neither signs nor lengths are normalized.
   const SgMixture raw = light_from_array(std::vector<float>{0, 0, 5, -7, 1, -2, 3});
   expect_near(raw.lobes[0].axis, {0, 0, 1}, 1e-6f);
   EXPECT_EQ(raw.lobes[0].lambda, 7);

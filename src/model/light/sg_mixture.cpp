@@ -33,7 +33,7 @@ std::vector<float> to_array(const SgMixture& light) {
 
 SgMixture light_from_array(std::span<const float> rows) {
   if (rows.empty() || rows.size() % 7)
-    fail("light: {} numbers are no rows of 7 (axis, sharpness, colour)", rows.size());
+    fail("light: {} numbers are no rows of 7 (axis, sharpness, color)", rows.size());
   for (const float x : rows)
     if (!std::isfinite(x)) fail("light: a number is not finite");
   SgMixture light;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distant light as a sum of spherical Gaussians. [paper eq. 3; reference-facts 3.2]
+// Distant light as a sum of spherical Gaussians. [paper eq. 12]
 #pragma once
 
 #include <span>
@@ -10,7 +10,7 @@
 namespace cei3d {
 
 struct SgLobe {
-  Vec3f axis;    // unit, towards the light, capture's axes
+  Vec3f axis;    // unit, towards the light, capture frame
   float lambda;  // sharpness, > 0
   Vec3f mu;      // linear radiance at the peak, >= 0
 };
@@ -20,15 +20,15 @@ struct SgMixture {
   std::vector<SgLobe> lobes;
 };
 
-inline constexpr float kSharpestLobe = 20000,
-                       kBroadestLobe = 0.1f;  // what shading in single precision can take
+// Range of lambda that shading in single precision can represent.
+inline constexpr float kSharpestLobe = 20000, kBroadestLobe = 0.1f;
 
 Vec3f radiance(const SgMixture& light, Vec3f direction);
 SgMixture rotated(SgMixture light, const Mat3f& rotation);  // every axis becomes rotation * axis
 SgMixture scaled(SgMixture light, Vec3f factor);
 
-// [M][7] rows of axis, lambda, mu, as light files store them. Reading normalises the axis and takes the
-// magnitude of lambda and mu. Errors: no rows, not rows of 7, not finite, a zero axis.
+// [M][7] rows of axis, lambda, mu, as in light files. Reading normalizes the axis and takes the absolute
+// values of lambda and mu. Errors: no rows, rows of another length, values that are not finite, a zero axis.
 std::vector<float> to_array(const SgMixture& light);
 SgMixture light_from_array(std::span<const float> rows);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the surface is like where rays meet it: base colour and material, edits included. Base colour is
-// "dual": the base field, and in the regions of edits the branch of the edit. [paper eq. 9]
+// "dual": the base field, and in the regions of edits the branch of the edit. [paper sec. 4.2]
 #pragma once
 
 #include <span>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a scene an edit changes, and what of the scene below it its result depends on: an edit has to be
-// made anew when, and only when, an edit before it that changes what it depends on has come or gone.
+// Aspects of a scene that an edit reads and writes: its dependency mask. An edit is remade when, and only
+// when, an edit before it that changes an aspect it reads has appeared or disappeared.
 #pragma once
 
 #include "core/base/json.h"
@@ -9,15 +9,15 @@
 namespace cei3d {
 
 struct Aspects {
-  bool shape = false;  // the surface
-  bool look = false;   // base colour or material
+  bool shape = false;  // surface
+  bool look = false;   // albedo or material
   bool light = false;
-  bool parts = false;  // what names of parts mean
+  bool parts = false;  // meaning of part names
   bool operator==(const Aspects&) const = default;
 };
 
 Aspects changed_by(const EditLayer&);
-bool meet(Aspects, Aspects);  // have one in common
+bool meet(Aspects, Aspects);  // whether they have one in common
 
 // A list of names: ["shape", "parts"]. Error: an unknown one.
 Json to_json(Aspects);

@@ -40,7 +40,7 @@ MaterialChange change_from(JsonReader reader) {
   return change;
 }
 
-// Regions name their tensors alike: each gets a prefix of its own.
+// Regions use the same tensor names, so each gets a prefix of its own.
 Json save_further(const std::vector<Region>& regions, Tensors& tensors) {
   Json heads = Json::array();
   for (const Region& region : regions) {
@@ -76,8 +76,8 @@ float EditLayer::weight(Vec3f position, Vec3f normal) const {
   return w;
 }
 
-// A member that is at its default leaves no key: edits of the first format, which knew region and albedo
-// only, are stored as they were.
+// Members with their default value are not written, so that edits of the first format, which knew only region
+// and albedo, are stored as before.
 void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
   head["id"] = layer.id;
   if (layer.everywhere)

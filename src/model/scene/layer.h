@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One edit: where it is, and what it puts in place of what lies below it. Every member but the id is
-// optional.
+// One edit: a region, and what it replaces there. Every member but the id is optional.
 #pragma once
 
 #include <memory>
@@ -25,21 +24,21 @@ struct EditLayer {
   std::string content;       // hash of what is stored of it: equal hashes, equal layers; empty: not stored
   bool everywhere = false;   // the whole object; else `region`
   Region region;             // contains nothing by default
-  std::vector<Region> also;  // further regions of the same edit: those of scribbles in other views
-  // The shape of the object that region and branch live in: the number of changes of geometry before it.
-  // kLatestPose: the one that with_layer() puts the layer on.
+  std::vector<Region> also;  // further regions of the same edit, from scribbles in other views
+  // Shape version that region and branch refer to: the number of changes of shape before the edit.
+  // kLatestPose: set by with_layer().
   int pose = kLatestPose;
-  std::string part;                     // name of the part that the region is; empty: none
-  std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: base colour of the layers below
-  bool unlit = false;                   // its colours are what shows, in every light: no light falls on them
-  bool erase = false;                   // the base's own colour instead, whatever lies below
-  std::optional<Tint> tint;             // on top of that
+  std::string part;                     // name of the part that the region defines; empty: none
+  std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: albedo of the layers below
+  bool unlit = false;                   // the color is shown as it is, without light
+  bool erase = false;                   // restores the base's albedo, whatever lies below
+  std::optional<Tint> tint;             // recolors the result of the above
   MaterialChange material;
-  std::optional<SgMixture> light;          // in place of the object's, whatever the region
-  std::shared_ptr<const Reshape> reshape;  // null: the shape stays
+  std::optional<SgMixture> light;          // replaces the object's light, everywhere
+  std::shared_ptr<const Reshape> reshape;  // null: no change of shape
 
   bool contains(Vec3f position, Vec3f normal) const { return weight(position, normal) > 0; }
-  // How much of the edit's colour is there, [0, 1]; strokes may be semi-transparent. Material is all or
+  // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. Material is all or
   // nothing.
   float weight(Vec3f position, Vec3f normal) const;
 };

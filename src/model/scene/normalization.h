@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one similarity transform between the capture's own frame ("input") and the unit sphere that fields live
-// in.
+// Similarity transform between the capture frame ("input") and the unit frame, in which fields live.
 #pragma once
 
 #include "core/math/camera.h"
@@ -9,7 +8,7 @@ namespace cei3d {
 
 struct Normalization {
   Vec3d center{0, 0, 0};  // input units
-  double scale = 1;       // unit-sphere units per input unit
+  double scale = 1;       // unit-frame lengths per input length
 
   Vec3d unit_from_input(Vec3d p) const { return (p - center) * scale; }
   Vec3d input_from_unit(Vec3d p) const { return p / scale + center; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parts: regions that edits have named.
+// Named parts of the object.
 #pragma once
 
 #include <string>
@@ -9,13 +9,13 @@
 
 namespace cei3d {
 
-// The layer that says where the part of that name is: the last one that does. Its region lives in its pose.
-// Usage error: there is none (the names that there are are listed).
+// The last layer that defines the part of that name. Its region refers to the layer's shape version. Usage
+// error: there is none (the message lists the names).
 const EditLayer& part_layer(const Scene&, const std::string& part);
 
 std::vector<std::string> part_names(const Scene&);  // sorted
 
-// #hits, 1 where a hit of the present surface belongs to the layer; matter made after the layer does not.
+// #hits, 1 where a hit of the present surface is in the layer's region; surface that was added later is not.
 std::vector<uint8_t> inside_layer(const Scene&, const EditLayer&, std::span<const Hit> hits);
 
 }  // namespace cei3d

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What light and material cannot explain: a small network over features of the point, the normal and the
-// view, whose output is added to what the physical model sends out. It belongs to the object as it was
-// photographed: an edit's region, another light and the base colour never see it. [architecture 1.2]
+// The correction network: what light and material cannot explain of the photographs. A small network over
+// features of the point, the normal and the view direction; its output is added to the shaded radiance, on
+// surface as it was photographed only. It is not used in the regions of edits or under another light, and the
+// albedo does not depend on it. docs/method.md#correction-network
 #pragma once
 
 #include <memory>
@@ -17,15 +18,15 @@
 namespace cei3d {
 
 struct Residual {
-  // Outputs 1.. describe a point: those of the distance field, or a copy of it that has learnt further.
+  // Its outputs 1.. are features of a point: those of the SDF, or of a copy that was trained further.
   std::shared_ptr<const Field> features;
   MlpConfig network;  // 3 outputs: linear radiance
   ParamSet params;
 };
 
-inline constexpr int kResidualLayers = 3, kMostResidualLayers = 8;
+inline constexpr int kResidualLayers = 3, kMaxResidualLayers = 8;
 
-// Starts as nothing: zero everywhere.
+// A network whose output is zero everywhere.
 Residual make_residual(std::shared_ptr<const Field> features, uint64_t seed, int layers = kResidualLayers);
 
 // Work memory of one chunk of hits.
@@ -34,7 +35,7 @@ class ResidualPass {
   static constexpr int kMost = 512;  // hits
   ResidualPass(const FieldConfig& features, const MlpConfig& network);
 
-  // Returns the number of samples, hits rounded up to a panel. hits: in the shape that was photographed.
+  // Returns the number of samples: hits rounded up to a panel. hits: in shape version 0.
   int forward(const Device&, const Field& features, const MlpWeights& feature_weights,
               const MlpWeights& weights, std::span<const Hit> hits);
   Vec3f output(int hit) const;

@@ -77,9 +77,9 @@ void save_residual(const Residual& residual, const std::shared_ptr<const Field>&
 
 std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const std::shared_ptr<const Field>& sdf,
                                               const Json& head) {
-  // Objects of project version 2: two layers over the distance field's own features.
+  // Objects of project version 2 have two layers over the SDF's own features.
   const int layers = head.at("residual").is_object() ? head.at("residual").at("layers").get<int>() : 2;
-  if (layers < 1 || layers > kMostResidualLayers) fail("the residual's network has {} layers", layers);
+  if (layers < 1 || layers > kMaxResidualLayers) fail("the residual's network has {} layers", layers);
   const std::shared_ptr<const Field> own = load_field("residual_features", tensors, head);
   auto residual = std::make_shared<Residual>(make_residual(own ? own : sdf, 0, layers));
   residual->params.load(tensors, "residual");

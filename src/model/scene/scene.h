@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The object as it stands: what reconstruct makes, edits extend and render shows. Immutable by convention: an
-// edit copies the struct (cheap: tensors are shared) and adds a layer.
+// The object: reconstruct makes it, edits extend it, render shows it. Immutable by convention: an edit copies
+// the struct, which shares its tensors, and adds a layer.
 #pragma once
 
 #include <memory>
@@ -23,28 +23,26 @@
 namespace cei3d {
 
 struct Scene {
-  Normalization normalization;          // between the capture's frame and the unit sphere that all else is in
+  Normalization normalization;          // between the capture frame and the unit frame of everything else
   Vec3d up{0, 0, 1};                    // capture frame
   std::shared_ptr<const Field> sdf;     // output 0: signed distance, negative inside; the rest: features
-  std::shared_ptr<const Field> albedo;  // base colour, 3 outputs in [0, 1], linear
-  // Zero level set as a mesh, with what each point sees of the sky; changed by edits.
+  std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear
+  // Mesh of the zero level set with its visibility table; replaced by changes of shape.
   std::shared_ptr<const Surface> surface;
   SgMixture light;  // that of the last edit that has one, when the layers have been put on
   MaterialField material;
   // What they cannot explain; null: nothing, or not any more, since the light was changed.
   std::shared_ptr<const Residual> residual;
-  std::shared_ptr<const HandlerPoints> handlers;  // of the present shape
-  Poses poses;  // of the object, the last one being `surface`; empty while it has the shape it was
-                // reconstructed in
-  std::vector<EditLayer> layers;  // in the order of their making; a later one covers an earlier one
+  std::shared_ptr<const HandlerPoints> handlers;  // on the present shape
+  Poses poses;  // shape versions, the last one with `surface`; empty while the shape is the reconstructed one
+  std::vector<EditLayer> layers;  // in order; later layers cover earlier ones
 };
 
-// The scene with one edit more, on top of those it has. Error: a change of geometry that does not fit the
-// surface.
+// The scene with one more edit on top. Error: a change of shape that does not fit the surface.
 Scene with_layer(Scene scene, EditLayer layer);
 
-// A scene as named tensors plus a small JSON head (sizes, material, transform), and back. The layers are not
-// part of it: the project's stack keeps them. Errors: missing tensor, wrong shape.
+// Writes a scene as named tensors and a small JSON head (sizes, material, transform). Layers are not part of
+// it: the project's stack keeps them. Errors of loading: missing tensor, wrong shape.
 void save_scene(const Scene&, Tensors& tensors, Json& head);
 Scene load_scene(const Tensors& tensors, const Json& head);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What scenes and edits have in common on disk: fields and lights as tensors plus a JSON head.
+// Storage that scenes and edits share: fields and lights as tensors with a JSON head.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,8 @@
 
 namespace cei3d {
 
-// head[name] and tensors "name/..."; nothing for a null field, and null when there is nothing.
+// Writes head[name] and tensors "name/..."; nothing for a null field. load_field() returns null when there is
+// nothing.
 void save_field(const std::shared_ptr<const Field>&, const std::string& name, Tensors& tensors, Json& head);
 std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& tensors, const Json& head);
 
@@ -21,7 +22,7 @@ std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& 
 void save_light(const SgMixture&, Tensors& tensors, Json& head);
 SgMixture load_light(const Tensors& tensors, const Json& light_head);
 
-// A key that is missing or of another type, said as the damage it is.
+// Runs load(); a missing or wrong JSON key becomes an error that says the description is damaged.
 template <class F>
 auto checked_load(const char* what, F load) {
   try {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a capture says: cameras, files and splits, in the capture's own frame ("input").
+// A capture: cameras, files and splits, in the capture frame ("input").
 #pragma once
 
 #include <filesystem>
@@ -17,12 +17,12 @@ enum class Split { train, val, test };
 struct View {
   std::string name;  // "train/r_055": split folder and stem, unique in the capture
   Split split = Split::train;
-  Camera camera;                     // input frame; pixel centres at +0.5
+  Camera camera;                     // input frame; pixel centers at +0.5
   std::filesystem::path image_path;  // empty: a camera without a photograph
-  std::filesystem::path mask_path;   // empty: alpha of the image is the mask
+  std::filesystem::path mask_path;   // empty: the mask is the alpha of the image
 };
 
-// A ball that holds the object, as some formats state it.
+// A ball that contains the object, as some formats state it.
 struct ObjectBall {
   Vec3d center;
   double radius;
@@ -30,15 +30,15 @@ struct ObjectBall {
 
 struct Capture {
   std::filesystem::path root;
-  std::string format;                 // "nerf-synthetic", "physg", "idr"
-  std::vector<View> views;            // train first, then val, test; each sorted as the capture lists them
+  std::string format;                 // one of capture_format_names()
+  std::vector<View> views;            // train first, then val, test; each in the order of the capture
   std::optional<ObjectBall> region;   // input frame
-  Vec3d up{0, 0, 1};                  // world axis that points to the sky, input frame
-  std::vector<std::string> warnings;  // what the loader had to guess, one sentence each
+  Vec3d up{0, 0, 1};                  // world axis that points up, input frame
+  std::vector<std::string> warnings;  // one sentence for each thing that the loader had to guess
 };
 
-// Pictures by view. Behind an interface because files are engine/io's business (CaptureImages there reads
-// them). May be called from several threads.
+// Loads the image of a view. An interface, because files are the business of engine/capture (CaptureImages).
+// Called from several threads.
 class ImageSource {
  public:
   virtual ~ImageSource() = default;

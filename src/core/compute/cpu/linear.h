@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear layers as register tiles: 4 or 8 outputs x 2 registers of samples share every load. Included by
-// run.cpp only.
+// Linear layers as register tiles: 4 or 8 outputs times 2 registers of samples share every load. Included
+// only by run.cpp.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace cei3d {
 
-// y[o..o+R) for the 2 W samples at x (R outputs a tile, W samples a register).
+// y[o .. o+R) for the 2 W samples at x: R outputs per tile, W samples per register.
 template <int R, class T, int W>
 HD void linear_rows(const LinearArgs& a, const float* x, const float* bias, int o, float* y) {
   const float* w = a.weights + size_t(o) * a.weight_stride;
@@ -92,9 +92,9 @@ inline __attribute__((always_inline)) void bias_grad(const LinearWeightGradArgs&
   }
 }
 
-// Blocks of panels and of inputs, which stay in the first level while all outputs pass by: 32 inputs of a
-// panel are a page, as is one of its 12 ways (48 KiB), and two are left to the outputs. The more panels, the
-// less the sums across lanes weigh.
+// Block sizes in panels and inputs, so that a block stays in the first-level cache while all outputs are
+// computed: 32 inputs of a panel are a page, as is one of the cache's 12 ways (48 KiB); two ways are left to
+// the outputs. More panels per block mean fewer sums across lanes.
 template <class T, int W>
 inline __attribute__((always_inline)) void weight_grad_run(const LinearWeightGradArgs& all) {
   constexpr int kPanels = 10, kInputs = 32;

@@ -20,7 +20,7 @@ struct Activate {
   using Args = ActivateArgs;
   template <class T>
   static HD void run(const Args& a, int i) {
-    const float beta = a.beta;  // stores might change what `a` holds, for all the compiler knows
+    const float beta = a.beta;  // a copy: the compiler must assume that stores change a.beta
     for (int r = 0; r < a.rows; ++r) {
       const auto s = A::eval(load<T>(a.z + panel_at(i, a.columns, 0, a.z_stride, r)), beta);
       store<T>(a.y + panel_at(i, a.columns, 0, a.y_stride, r), s.value);
@@ -36,7 +36,7 @@ struct ActivateGrad {
   using Args = ActivateArgs;
   template <class T>
   static HD void run(const Args& a, int i) {
-    const float beta = a.beta;  // stores might change what `a` holds, for all the compiler knows
+    const float beta = a.beta;  // a copy: the compiler must assume that stores change a.beta
     for (int r = 0; r < a.rows; ++r) {
       const auto s = A::eval(load<T>(a.z + panel_at(i, a.columns, 0, a.z_stride, r)), beta);
       float* value = a.y + panel_at(i, a.columns, 0, a.y_stride, r);

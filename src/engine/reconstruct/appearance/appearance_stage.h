@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The appearance stage (PPD): light and material of a standing surface, started by the linear split.
-// [architecture 1.2]
+// [paper sec. 4.2; docs/method.md#appearance-stage]
 #pragma once
 
 #include <memory>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surface after the light is known: reflections tell normals better than the radiance network does, which
 // can blame its colours. The field is moved by what the shading model says about its normals, while the
-// geometry stage's own loss holds the silhouettes. [paper sec. 3.2, joint optimisation]
+// geometry stage's own loss holds the silhouettes. See docs/method.md#polishing.
 #pragma once
 
 #include "core/base/clock.h"

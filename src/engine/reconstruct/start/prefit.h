@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A starting surface: the field is fitted to the distance to the visual hull of the masks, carved by the
-// colours. Descent from a sphere can lose the object for good (prototype-findings, trap 1).
+// colours. Descent from a sphere can lose the object for good (docs/method.md#start-shape).
 #pragma once
 
 #include "core/base/progress.h"

@@ -6,13 +6,13 @@
 namespace cei3d {
 namespace {
 
-constexpr double kLeastWeight = 0.05, kMostWeight = 5;  // an edge between equilateral triangles has 0.58
+constexpr double kMinWeight = 0.05, kMaxWeight = 5;  // an edge between equilateral triangles has 0.58
 
-// Index of v among the neighbours of u.
-size_t slot(const VertexLists& neighbours, uint32_t u, uint32_t v) {
-  const auto begin = neighbours.items.begin() + neighbours.start[u];
-  const auto end = neighbours.items.begin() + neighbours.start[u + 1];
-  return size_t(std::lower_bound(begin, end, v) - neighbours.items.begin());
+// Position of v in the list of u.
+size_t slot(const VertexLists& neighbors, uint32_t u, uint32_t v) {
+  const auto begin = neighbors.items.begin() + neighbors.start[u];
+  const auto end = neighbors.items.begin() + neighbors.start[u + 1];
+  return size_t(std::lower_bound(begin, end, v) - neighbors.items.begin());
 }
 
 }  // namespace
@@ -30,7 +30,7 @@ VertexLists triangles_around(size_t vertices, std::span<const std::array<uint32_
   return lists;
 }
 
-VertexLists neighbours_of(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles) {
+VertexLists neighbors_of(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles) {
   const VertexLists around = triangles_around(vertices, triangles);
   VertexLists lists;
   lists.start.assign(vertices + 1, 0);
@@ -49,9 +49,9 @@ VertexLists neighbours_of(size_t vertices, std::span<const std::array<uint32_t, 
 
 LaplaceWeights laplace_weights(std::span<const Vec3f> positions,
                                std::span<const std::array<uint32_t, 3>> triangles,
-                               const VertexLists& neighbours) {
+                               const VertexLists& neighbors) {
   const size_t n = positions.size();
-  LaplaceWeights w{std::vector<double>(neighbours.items.size(), 0.0), std::vector<double>(n, 0.0),
+  LaplaceWeights w{std::vector<double>(neighbors.items.size(), 0.0), std::vector<double>(n, 0.0),
                    std::vector<double>(n, 0.0)};
   double total_area = 0;
   for (const auto& t : triangles)
@@ -59,15 +59,15 @@ LaplaceWeights laplace_weights(std::span<const Vec3f> positions,
       const uint32_t a = t[k], b = t[(k + 1) % 3], c = t[(k + 2) % 3];
       const Vec3d u = to_double(positions[b] - positions[a]), v = to_double(positions[c] - positions[a]);
       const double twice_area = length(cross(u, v)), cotangent = dot(u, v) / max(twice_area, 1e-12);
-      w.edge[slot(neighbours, b, c)] += 0.5 * cotangent;
-      w.edge[slot(neighbours, c, b)] += 0.5 * cotangent;
+      w.edge[slot(neighbors, b, c)] += 0.5 * cotangent;
+      w.edge[slot(neighbors, c, b)] += 0.5 * cotangent;
       w.area[a] += twice_area / 6;
       total_area += twice_area / 6;
     }
-  for (double& e : w.edge) e = std::clamp(e, kLeastWeight, kMostWeight);
+  for (double& e : w.edge) e = std::clamp(e, kMinWeight, kMaxWeight);
   for (uint32_t v = 0; v < n; ++v) {
     w.area[v] = max(w.area[v], 0.1 * total_area / double(n));
-    for (uint32_t i = neighbours.start[v]; i < neighbours.start[v + 1]; ++i) w.vertex[v] += w.edge[i];
+    for (uint32_t i = neighbors.start[v]; i < neighbors.start[v + 1]; ++i) w.vertex[v] += w.edge[i];
   }
   return w;
 }

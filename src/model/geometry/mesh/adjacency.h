@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who is next to whom in a mesh, and the weights that make sums over neighbours a Laplacian.
+// Neighbors of mesh vertices, and the cotangent weights of the discrete Laplacian.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace cei3d {
 
-// A list for every vertex, one after the other.
+// One list per vertex, stored one after the other.
 struct VertexLists {
   std::vector<uint32_t> start;  // #V + 1
-  std::vector<uint32_t> items;  // those of v: items[start[v] .. start[v + 1])
+  std::vector<uint32_t> items;  // list of v: items[start[v] .. start[v + 1])
 
   std::span<const uint32_t> of(uint32_t v) const {
     return std::span(items).subspan(start[v], start[v + 1] - start[v]);
@@ -24,12 +24,12 @@ struct VertexLists {
 // Triangles around each vertex, ascending.
 VertexLists triangles_around(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles);
 // Vertices that share an edge with each vertex, ascending.
-VertexLists neighbours_of(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles);
+VertexLists neighbors_of(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles);
 
-// Cotangent weights, one for each item of `neighbours` (0.5 (cot a + cot b), the same both ways), and the
-// area of each vertex (a third of its triangles'). Weights are clamped to [0.05, 5], so that sums of
-// differences stay positive definite on obtuse triangles and slivers do not outweigh all else; areas are at
-// least a tenth of their mean. [Pinkall and Polthier 1993]
+// Cotangent weights, one for each item of `neighbors` (0.5 (cot a + cot b), the same in both directions), and
+// the area of each vertex (a third of its triangles' areas). [Pinkall and Polthier 1993] Weights are clamped
+// to [0.05, 5], so that the Laplacian stays positive definite on obtuse triangles and slivers do not
+// dominate; areas are at least a tenth of their mean.
 struct LaplaceWeights {
   std::vector<double> edge;    // #items
   std::vector<double> vertex;  // #V, sum of the vertex's edge weights
@@ -37,6 +37,6 @@ struct LaplaceWeights {
 };
 LaplaceWeights laplace_weights(std::span<const Vec3f> positions,
                                std::span<const std::array<uint32_t, 3>> triangles,
-                               const VertexLists& neighbours);
+                               const VertexLists& neighbors);
 
 }  // namespace cei3d

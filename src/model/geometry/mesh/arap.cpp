@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kGrain = 1024;
 
-// Free vertices without a way to a held one have no place of their own: they are not freed.
-std::vector<uint8_t> anchored(const VertexLists& neighbours, const std::vector<uint8_t>& free) {
+// Free vertices that are not connected to a held one have no defined position, so they are not freed.
+std::vector<uint8_t> anchored(const VertexLists& neighbors, const std::vector<uint8_t>& free) {
   std::vector<uint8_t> reached(free.size(), 0);
   std::vector<uint32_t> queue;
   const auto visit = [&](uint32_t v) {
@@ -26,11 +26,11 @@ std::vector<uint8_t> anchored(const VertexLists& neighbours, const std::vector<u
   };
   for (uint32_t v = 0; v < free.size(); ++v)
     if (!free[v])
-      for (const uint32_t u : neighbours.of(v)) visit(u);
+      for (const uint32_t u : neighbors.of(v)) visit(u);
   while (!queue.empty()) {
     const uint32_t v = queue.back();
     queue.pop_back();
-    for (const uint32_t u : neighbours.of(v)) visit(u);
+    for (const uint32_t u : neighbors.of(v)) visit(u);
   }
   return reached;
 }
@@ -45,9 +45,9 @@ class Descent {
  public:
   Descent(std::span<const Vec3f> positions, std::span<const std::array<uint32_t, 3>> triangles,
           const ArapConstraints& constraints, double bending_length)
-      : neighbours_(neighbours_of(positions.size(), triangles)),
-        weights_(laplace_weights(positions, triangles, neighbours_)),
-        free_(anchored(neighbours_, constraints.free)),
+      : neighbors_(neighbors_of(positions.size(), triangles)),
+        weights_(laplace_weights(positions, triangles, neighbors_)),
+        free_(anchored(neighbors_, constraints.free)),
         bending_(bending_length * bending_length) {
     for (const Vec3f p : positions) rest_.push_back(to_double(p));
     now_ = rest_;
@@ -62,7 +62,7 @@ class Descent {
   const std::vector<Vec3d>& positions() const { return now_; }
   const std::vector<uint32_t>& free_list() const { return free_list_; }
 
-  // The least energy for the rotations as they are: one Newton step on a quadratic.
+  // Minimum of the energy for fixed rotations: one Newton step on a quadratic.
   void move() {
     const size_t n = free_list_.size();
     for_each(cells_, [&](uint32_t v) { bend_[v] = bending(v); });
@@ -77,12 +77,12 @@ class Descent {
     for (size_t i = 0; i < n; ++i) now_[free_list_[i]] += Vec3d{step[i], step[n + i], step[2 * n + i]};
   }
 
-  // The least energy for the positions as they are.
+  // Minimum of the energy for fixed positions.
   void rotate() {
     for_each(turning_, [&](uint32_t v) {
       Mat3d s{};
-      for (uint32_t i = neighbours_.start[v]; i < neighbours_.start[v + 1]; ++i) {
-        const uint32_t u = neighbours_.items[i];
+      for (uint32_t i = neighbors_.start[v]; i < neighbors_.start[v + 1]; ++i) {
+        const uint32_t u = neighbors_.items[i];
         add(s, outer(now_[v] - now_[u], rest_[v] - rest_[u]), weights_.edge[i]);
       }
       add(s, outer(laplacian(now_, v), laplacian(rest_, v)), bending_ / weights_.area[v]);
@@ -107,15 +107,15 @@ class Descent {
     });
   }
 
-  // Cells are the vertices whose share of the energy free vertices change; those of them turn that are not
-  // fixed.
+  // Cells are the vertices whose energy depends on free vertices; the rotations of those that are not fixed
+  // are unknowns.
   void list_cells(const ArapConstraints& constraints) {
     std::vector<uint8_t> fixed(free_.size());
     for (size_t v = 0; v < free_.size(); ++v) fixed[v] = !free_[v];
     for (const uint32_t v : constraints.handles) fixed[v] = 0;
     index_.assign(free_.size(), -1);
     for (uint32_t v = 0; v < free_.size(); ++v) {
-      const auto ring = neighbours_.of(v);
+      const auto ring = neighbors_.of(v);
       if (free_[v]) {
         index_[v] = int(free_list_.size());
         free_list_.push_back(v);
@@ -129,8 +129,8 @@ class Descent {
 
   Vec3d laplacian(const std::vector<Vec3d>& p, uint32_t v) const {
     Vec3d sum{0, 0, 0};
-    for (uint32_t i = neighbours_.start[v]; i < neighbours_.start[v + 1]; ++i)
-      sum += (p[v] - p[neighbours_.items[i]]) * weights_.edge[i];
+    for (uint32_t i = neighbors_.start[v]; i < neighbors_.start[v + 1]; ++i)
+      sum += (p[v] - p[neighbors_.items[i]]) * weights_.edge[i];
     return sum;
   }
 
@@ -141,8 +141,8 @@ class Descent {
 
   Vec3d half_gradient(uint32_t v) const {
     Vec3d g = bend_[v] * weights_.vertex[v];
-    for (uint32_t i = neighbours_.start[v]; i < neighbours_.start[v + 1]; ++i) {
-      const uint32_t u = neighbours_.items[i];
+    for (uint32_t i = neighbors_.start[v]; i < neighbors_.start[v + 1]; ++i) {
+      const uint32_t u = neighbors_.items[i];
       const Vec3d edge = rest_[v] - rest_[u];
       const Vec3d strain = (now_[v] - now_[u]) * 2.0 - rotation_[v] * edge - rotation_[u] * edge;
       g += (strain - bend_[u]) * weights_.edge[i];
@@ -152,8 +152,8 @@ class Descent {
 
   double cell_energy(uint32_t v) const {
     double e = 0;
-    for (uint32_t i = neighbours_.start[v]; i < neighbours_.start[v + 1]; ++i) {
-      const uint32_t u = neighbours_.items[i];
+    for (uint32_t i = neighbors_.start[v]; i < neighbors_.start[v + 1]; ++i) {
+      const uint32_t u = neighbors_.items[i];
       const Vec3d strain = now_[v] - now_[u] - rotation_[v] * (rest_[v] - rest_[u]);
       e += weights_.edge[i] * dot(strain, strain);
     }
@@ -172,8 +172,8 @@ class Descent {
     std::vector<std::pair<uint32_t, double>> row;  // of L
     for (const uint32_t v : cells_) {
       row.assign(1, {v, weights_.vertex[v]});
-      for (uint32_t i = neighbours_.start[v]; i < neighbours_.start[v + 1]; ++i)
-        row.emplace_back(neighbours_.items[i], -weights_.edge[i]);
+      for (uint32_t i = neighbors_.start[v]; i < neighbors_.start[v + 1]; ++i)
+        row.emplace_back(neighbors_.items[i], -weights_.edge[i]);
       for (const auto& [u, w] : row) put(v, u, 2 * w);
       if (bending_ == 0) continue;
       for (const auto& [a, wa] : row)
@@ -182,7 +182,7 @@ class Descent {
     return entries;
   }
 
-  VertexLists neighbours_;
+  VertexLists neighbors_;
   LaplaceWeights weights_;
   std::vector<uint8_t> free_;
   double bending_;  // b^2
@@ -202,7 +202,7 @@ ArapResult arap_deform(std::span<const Vec3f> positions, std::span<const std::ar
     result.positions[constraints.handles[i]] = constraints.targets[i];
   Descent descent(positions, triangles, constraints, options.bending_length);
   if (descent.free_list().empty()) return result;
-  for (int i = 0; i < options.most_iterations; ++i) {
+  for (int i = 0; i < options.max_iterations; ++i) {
     descent.move();
     descent.rotate();
     result.energies.push_back(descent.energy());

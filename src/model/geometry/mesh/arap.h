@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Deformation of a mesh by a dragged handle: every vertex and its neighbours move as rigidly as the handle
-// allows.
+// As-rigid-as-possible deformation of a mesh by dragged handles. Minimizes
 //
 //   E(p, R) = sum_i sum_j w_ij |p_i - p_j - R_i (q_i - q_j)|^2  +  b^2 sum_i |d_i(p) - R_i d_i(q)|^2 / A_i
 //
-// with q the mesh as it was, p as it becomes, R_i a rotation for each vertex, w_ij cotangent weights, A_i
-// areas and d_i(p) = sum_j w_ij (p_i - p_j). The first term is [Sorkine and Alexa 2007]. Alone it behaves
-// like a membrane: a spike at a small handle and a crease where the fixed part begins. The second term
-// resists bending over distances up to b, which leaves tangents continuous at both.
+// over positions p and rotations R_i of the vertices: q are the positions before, w_ij cotangent weights, A_i
+// vertex areas and d_i(p) = sum_j w_ij (p_i - p_j). The first term is that of [Sorkine and Alexa 2007]. Alone
+// it behaves like a membrane: a spike at a small handle and a crease where the fixed region begins. The
+// second term resists bending over distances up to b, which makes tangents continuous at both.
 #pragma once
 
 #include <array>
@@ -20,25 +19,25 @@
 namespace cei3d {
 
 struct ArapConstraints {
-  std::vector<uint8_t> free;      // #V, 1: goes where the energy is least. Others stay where they are ...
-  std::vector<uint32_t> handles;  // ... but for these, not free, which go to
-  std::vector<Vec3f> targets;     // #handles
+  std::vector<uint8_t> free;      // #V, 1: moves to minimize the energy
+  std::vector<uint32_t> handles;  // vertices that are not free and move to `targets`; all others stay
+  std::vector<Vec3f> targets;     // #handles, new positions
 };
 
 struct ArapOptions {
   float bending_length = 0;  // b, in units of the positions
-  int most_iterations = 60;
-  double tolerance = 1e-4;  // stops when an iteration lowers the energy by less than this share
+  int max_iterations = 60;
+  double tolerance = 1e-4;  // stop when an iteration lowers the energy by less than this fraction
 };
 
 struct ArapResult {
   std::vector<Vec3f> positions;  // #V; vertices that are neither free nor handles bit-identical
-  std::vector<double> energies;  // after each iteration; never rises
+  std::vector<double> energies;  // after each iteration; never increases
 };
 
-// Local-global descent: rotations by Procrustes, positions by one linear system factorised once. Its time
-// follows the number of free vertices. Free vertices that no way along the mesh joins to one that is held
-// stay. Same input, same bits.
+// Alternates rotations (Procrustes) and positions (one linear system, factorized once). Time depends on the
+// number of free vertices. Free vertices that are not connected to a held vertex stay where they are.
+// Deterministic.
 ArapResult arap_deform(std::span<const Vec3f> positions, std::span<const std::array<uint32_t, 3>> triangles,
                        const ArapConstraints&, const ArapOptions&);
 

@@ -132,7 +132,7 @@ TEST(Arap, RigidMotionOfTheHandlesIsRigidMotionOfAll) {
     EXPECT_LT(length(result.positions[v] - moved(bar.positions[v])), 2e-4f) << v;
 }
 
-// A bar of length 2 whose last quarter is turned by 90 degrees about the middle of an arc that keeps its
+// A bar of length 2 whose last quarter is rotated by 90 degrees around the center of an arc that keeps its
 // length.
 struct BentBar {
   Mesh bar = box_mesh(40, 4, 4, 0.05f);

@@ -14,8 +14,8 @@
 namespace cei3d {
 namespace {
 
-// Rings of the mesh around a hole that take part in closing it. Base colours next to the outline are mixed
-// with those of the part; the patch gets its own from kMixedRings farther on.
+// Rings of the mesh around a hole that take part in closing it. Albedo next to the outline is mixed with that
+// of the part; the patch takes its own from kMixedRings rings away.
 constexpr int kRings = 5, kMixedRings = 3;
 constexpr float kBendingShare = 0.25f;  // of the hole's radius, over which its rim is rounded
 
@@ -27,7 +27,7 @@ Vec3f corner_normal(std::span<const Vec3f> positions, const Triangle& t, int k) 
   return normalize(n) * std::atan2(length(n), dot(u, v));
 }
 
-// A hole with the mesh around it, as a mesh of its own.
+// A hole and the rings around it, as a mesh of its own.
 class Hole {
  public:
   Hole(const Mesh& rest, const VertexLists& around, std::span<const Vec3f> colors,
@@ -44,16 +44,16 @@ class Hole {
       if (ids_[i] != kNew) colors_[i] = colors[ids_[i]];
   }
 
-  // Puts the closed hole into the reshape of a mesh of `vertices` vertices, those already added included.
-  // rim: base colours of the patch at vertices of the outline.
+  // Adds the closed hole to the reshape of a mesh of `vertices` vertices, including those already added. rim:
+  // albedo of the patch at vertices of the outline.
   void close(size_t vertices, Reshape& out, std::map<uint32_t, Vec3f>& rim) {
     std::vector<uint8_t> is_new(positions_.size());
     for (size_t i = 0; i < ids_.size(); ++i) is_new[i] = ids_[i] == kNew;
     fair(positions_, triangles_, is_new, kBendingShare * radius());
-    std::vector<uint8_t> uncoloured = is_new;
+    std::vector<uint8_t> uncolored = is_new;
     const int mixed = std::min(kMixedRings, *std::max_element(ring_of_.begin(), ring_of_.end()));
-    for (size_t i = 0; i < ring_of_.size(); ++i) uncoloured[i] |= ring_of_[i] < mixed;
-    diffuse(positions_, triangles_, uncoloured, colors_);
+    for (size_t i = 0; i < ring_of_.size(); ++i) uncolored[i] |= ring_of_[i] < mixed;
+    diffuse(positions_, triangles_, uncolored, colors_);
     std::vector<Vec3f> normals(positions_.size(), Vec3f{0, 0, 0});
     for (const Triangle& t : triangles_)
       for (int k = 0; k < 3; ++k) normals[t[k]] += corner_normal(positions_, t, k);
@@ -90,7 +90,7 @@ class Hole {
     ring_of_.assign(ids_.size(), 0);
   }
 
-  // Of the circle as long as the outline.
+  // Radius of the circle that is as long as the outline.
   float radius() const {
     float around = 0;
     for (size_t i = 0; i < loop_size_; ++i)
@@ -135,17 +135,17 @@ class Hole {
 };
 
 size_t count_pieces(const Mesh& mesh) {
-  const VertexLists neighbours = neighbours_of(mesh.positions.size(), mesh.triangles);
+  const VertexLists neighbors = neighbors_of(mesh.positions.size(), mesh.triangles);
   std::vector<uint8_t> seen(mesh.positions.size(), 0);
   std::vector<uint32_t> queue;
   size_t pieces = 0;
   for (uint32_t start = 0; start < seen.size(); ++start) {
-    if (seen[start] || neighbours.of(start).empty()) continue;
+    if (seen[start] || neighbors.of(start).empty()) continue;
     ++pieces;
     for (queue.assign(1, start), seen[start] = 1; !queue.empty();) {
       const uint32_t v = queue.back();
       queue.pop_back();
-      for (const uint32_t u : neighbours.of(v))
+      for (const uint32_t u : neighbors.of(v))
         if (!seen[u]) seen[u] = 1, queue.push_back(u);
     }
   }

@@ -14,14 +14,14 @@ constexpr double kIslandShare = 0.02;  // of the part's area
 
 using Triangle = std::array<uint32_t, 3>;
 
-// Means over neighbours, then the majority: outlines shorten like a curve under tension.
-std::vector<uint8_t> smooth(const VertexLists& neighbours, std::span<const uint8_t> labels) {
+// Averages over neighbors, then takes the majority: outlines shorten like a curve under tension.
+std::vector<uint8_t> smooth(const VertexLists& neighbors, std::span<const uint8_t> labels) {
   std::vector<float> now(labels.begin(), labels.end()), next(now.size());
   for (int round = 0; round < kSmoothingRounds; ++round) {
     for (uint32_t v = 0; v < now.size(); ++v) {
       float sum = now[v];
-      for (const uint32_t u : neighbours.of(v)) sum += now[u];
-      next[v] = sum / float(1 + neighbours.of(v).size());
+      for (const uint32_t u : neighbors.of(v)) sum += now[u];
+      next[v] = sum / float(1 + neighbors.of(v).size());
     }
     now.swap(next);
   }
@@ -40,8 +40,8 @@ std::vector<double> vertex_areas(const Mesh& mesh) {
   return area;
 }
 
-// Flips connected sets of that label whose area is below `least` and which border on the other label.
-void flip_islands(const VertexLists& neighbours, const std::vector<double>& area, uint8_t label, double least,
+// Flips connected components of that label whose area is below `least` and that border on the other label.
+void flip_islands(const VertexLists& neighbors, const std::vector<double>& area, uint8_t label, double least,
                   std::vector<uint8_t>& labels) {
   std::vector<uint8_t> seen(labels.size(), 0);
   std::vector<uint32_t> island;
@@ -53,7 +53,7 @@ void flip_islands(const VertexLists& neighbours, const std::vector<double>& area
     bool borders = false;
     for (size_t i = 0; i < island.size(); ++i) {
       size += area[island[i]];
-      for (const uint32_t u : neighbours.of(island[i])) {
+      for (const uint32_t u : neighbors.of(island[i])) {
         borders |= labels[u] != label;
         if (labels[u] != label || seen[u]) continue;
         seen[u] = 1;
@@ -65,7 +65,7 @@ void flip_islands(const VertexLists& neighbours, const std::vector<double>& area
   }
 }
 
-// Edges that the remaining triangles leave open and removed ones used to close, as successor of each vertex.
+// Edges that only one remaining triangle has and a removed one had, as successor of each vertex.
 std::multimap<uint32_t, uint32_t> open_edges(const Mesh& mesh, const std::vector<uint8_t>& removed) {
   std::vector<uint8_t> sides(mesh.positions.size(), 0);  // of the outline on which a vertex has triangles
   for (size_t i = 0; i < mesh.triangles.size(); ++i)
@@ -118,7 +118,7 @@ std::vector<std::vector<uint32_t>> chain(std::multimap<uint32_t, uint32_t> next)
 }  // namespace
 
 std::vector<uint8_t> clean_labels(const Mesh& mesh, std::span<const uint8_t> in_part) {
-  const VertexLists neighbours = neighbours_of(mesh.positions.size(), mesh.triangles);
+  const VertexLists neighbors = neighbors_of(mesh.positions.size(), mesh.triangles);
   const std::vector<double> area = vertex_areas(mesh);
   const auto size_of = [&](std::span<const uint8_t> labels) {
     double sum = 0;
@@ -126,10 +126,10 @@ std::vector<uint8_t> clean_labels(const Mesh& mesh, std::span<const uint8_t> in_
     return sum;
   };
   const double size = size_of(in_part);
-  std::vector<uint8_t> labels = smooth(neighbours, in_part);
+  std::vector<uint8_t> labels = smooth(neighbors, in_part);
   if (size_of(labels) < 0.8 * size) labels.assign(in_part.begin(), in_part.end());  // thin: smoothing eats it
-  flip_islands(neighbours, area, 0, kIslandShare * size, labels);
-  flip_islands(neighbours, area, 1, kIslandShare * size, labels);
+  flip_islands(neighbors, area, 0, kIslandShare * size, labels);
+  flip_islands(neighbors, area, 1, kIslandShare * size, labels);
   return labels;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where to cut: from a vertex-wise labelling to the triangles that go and the loops they leave.
+// From a labeling of vertices to the triangles to remove and the loops around the holes.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@
 
 namespace cei3d {
 
-// Labels with smooth outlines and without small islands. #V. What is smaller than the smoothing's reach stays
-// as it is.
+// The labels with smoothed outlines and without small islands, #V. Parts smaller than the smoothing's reach
+// are not smoothed.
 std::vector<uint8_t> clean_labels(const Mesh&, std::span<const uint8_t> in_part);
 
 struct Outline {
-  std::vector<uint8_t> removed;  // #F, 1: goes
-  std::vector<std::vector<uint32_t>>
-      loops;  // vertices around each hole, in the direction of the triangles to be put there
+  std::vector<uint8_t> removed;  // #F, 1: removed
+  // Vertices around each hole, in the order of the triangles that will fill it.
+  std::vector<std::vector<uint32_t>> loops;
 };
-// Triangles that touch the outline at a mere corner go too, so that every vertex is on one loop at most,
-// once.
+// Also removes triangles that touch the outline only at a corner, so that every vertex is on at most one
+// loop, once.
 Outline outline_of(const Mesh&, std::span<const uint8_t> in_part);
 
 }  // namespace cei3d

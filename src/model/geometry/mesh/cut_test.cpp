@@ -15,13 +15,13 @@
 namespace cei3d {
 namespace {
 
-const Vec3f kGrey{0.5f, 0.5f, 0.5f};
+const Vec3f kGray{0.5f, 0.5f, 0.5f};
 
 template <class F>
 CutResult cut_where(const Mesh& mesh, F in_part) {
   std::vector<uint8_t> labels;
   for (const Vec3f p : mesh.positions) labels.push_back(in_part(p));
-  return cut(mesh, labels, std::vector<Vec3f>(mesh.positions.size(), kGrey));
+  return cut(mesh, labels, std::vector<Vec3f>(mesh.positions.size(), kGray));
 }
 
 using Edges = std::map<std::pair<uint32_t, uint32_t>, int>;
@@ -133,7 +133,7 @@ TEST(Cut, ASphereWithoutItsCapIsClosedAndAlmostASphere) {
     EXPECT_GT(p.z, 0.3f);
     EXPECT_LT(length(p), 0.72f);
     EXPECT_GT(dot(r.reshape.added_normals[i], normalize(p)), 0.8f);
-    EXPECT_LT(length(r.reshape.added_colors[i] - kGrey), 1e-5f);
+    EXPECT_LT(length(r.reshape.added_colors[i] - kGray), 1e-5f);
   }
 }
 
@@ -181,7 +181,7 @@ TEST(Cut, RaggedAndBranchedLabelsLeaveNoOpenEdge) {
       const bool star = p.z > 0.7f * (0.3f + 0.25f * std::sin(5 * std::atan2(p.y, p.x)));
       labels.push_back(rng.uniform() < 0.2f ? !star : star);
     }
-    const CutResult r = cut(m, labels, std::vector<Vec3f>(m.positions.size(), kGrey));
+    const CutResult r = cut(m, labels, std::vector<Vec3f>(m.positions.size(), kGray));
     EXPECT_TRUE(is_closed_manifold(apply(m, r.reshape))) << seed;
     EXPECT_EQ(r.report.holes, 1u) << seed;
   }
@@ -194,7 +194,7 @@ TEST(Cut, RawNoiseLeavesNoOpenEdge) {
     std::vector<uint8_t> labels;
     for (size_t v = 0; v < m.positions.size(); ++v) labels.push_back(rng.uniform() < 0.3f);
     EXPECT_TRUE(
-        is_closed_manifold(apply(m, cut(m, labels, std::vector<Vec3f>(labels.size(), kGrey)).reshape)));
+        is_closed_manifold(apply(m, cut(m, labels, std::vector<Vec3f>(labels.size(), kGray)).reshape)));
   }
 }
 
@@ -208,7 +208,7 @@ TEST(Cut, IslandsGoWithTheirSurroundings) {
   EXPECT_EQ(r.report.pieces, 1u);
 }
 
-TEST(Cut, ColourIsThatOfTheSurroundings) {
+TEST(Cut, ColorIsThatOfTheSurroundings) {
   const Mesh m = sphere_mesh(0.7f, 5);
   std::vector<uint8_t> labels;
   std::vector<Vec3f> colors;

@@ -10,8 +10,8 @@ namespace cei3d {
 namespace {
 
 // Distance of corner p from a point source that is da from corner a and db from corner b: the source is
-// laid into the triangle's plane, beyond the edge ab. Falls back to the ways along the edges where the
-// straight way would leave the triangle.
+// placed in the triangle's plane, beyond the edge ab. Uses the paths along the edges where the straight path
+// would leave the triangle.
 double unfolded_distance(Vec3d p, Vec3d a, Vec3d b, double da, double db) {
   const double along_edges = min(da + length(p - a), db + length(p - b));
   const double base = length(b - a);
@@ -21,7 +21,7 @@ double unfolded_distance(Vec3d p, Vec3d a, Vec3d b, double da, double db) {
   const double sx = (da * da - db * db + base * base) / (2 * base), sy2 = da * da - sx * sx;
   if (!(sy2 >= 0)) return along_edges;
   const double sy = -std::sqrt(sy2);
-  const double crossing = py - sy > 0 ? sx + (px - sx) * (-sy / (py - sy)) : -1;  // where the way meets ab
+  const double crossing = py - sy > 0 ? sx + (px - sx) * (-sy / (py - sy)) : -1;  // where the path crosses ab
   if (crossing < 0 || crossing > base) return along_edges;
   return min(along_edges, std::hypot(px - sx, py - sy));
 }

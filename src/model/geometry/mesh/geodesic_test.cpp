@@ -29,7 +29,7 @@ TEST(Geodesic, OnASphereItIsTheGreatCircle) {
 }
 
 TEST(Geodesic, WallsAreWalkedAround) {
-  // A wall of vertices at x = 10 with a gap at the top. The triangles at the wall are closed, too: the way
+  // A wall of vertices at x = 10 with a gap at the top. The triangles at the wall are closed, too: the path
   // turns at (9, 20), (10, 20) and (11, 19).
   const Mesh m = plane_mesh(20, 20, 1);
   const auto open = [](uint32_t v) { return v % 21 != 10 || v / 21 == 20; };

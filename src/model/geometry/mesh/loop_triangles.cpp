@@ -7,11 +7,11 @@
 namespace cei3d {
 namespace {
 
-constexpr size_t kMostCorners = 200;  // time grows with the cube
+constexpr size_t kMaxCorners = 200;  // time grows with the cube
 
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
-// Dynamic programme over the sub-polygons i .. j, whose last side is the diagonal j -> i.
+// Dynamic programming over the sub-polygons i .. j, whose last side is the diagonal j -> i.
 class LeastArea {
  public:
   // corners: indices into the loop, in its order.
@@ -45,7 +45,7 @@ class LeastArea {
     cost_[i * n_ + j] = best + (!is_side && joined(corners_[i], corners_[j]) ? kJoinedCost : 0);
   }
 
-  // Area, and a little of the edges' squares: among equals, rounder triangles.
+  // Area plus a small multiple of the squared edge lengths: prefers rounder triangles among equal areas.
   double cost(size_t i, size_t k, size_t j) const {
     const Vec3d a = at(i), b = at(k), c = at(j);
     const Vec3d u = b - a, v = c - b, w = a - c;
@@ -65,7 +65,7 @@ class LeastArea {
 
 std::vector<std::array<uint32_t, 3>> triangulate_loop(std::span<const Vec3f> loop, const IsJoined& joined) {
   Triangles triangles;
-  const size_t n = loop.size(), stride = (n + kMostCorners - 1) / kMostCorners;
+  const size_t n = loop.size(), stride = (n + kMaxCorners - 1) / kMaxCorners;
   const auto taken = [&](size_t a, size_t b) { return b - a > 1 && joined(uint32_t(a), uint32_t(b % n)); };
   std::vector<uint32_t> chords;
   for (size_t begin = 0, end; begin < n; begin = end) {

@@ -6,7 +6,7 @@
 namespace cei3d {
 namespace {
 
-// A quadratic form over values at vertices, least for the free ones given the others: free rows of A x = 0.
+// Minimizes a quadratic form over vertex values, given those of the fixed vertices: the free rows of A x = 0.
 class Relaxation {
  public:
   explicit Relaxation(std::span<const uint8_t> free) : index_(free.size(), -1) {
@@ -16,7 +16,7 @@ class Relaxation {
   bool empty() const { return list_.empty(); }
   const std::vector<uint32_t>& list() const { return list_; }
 
-  // values: gives those of the vertices that are not free.
+  // values: those of the fixed vertices are read.
   void add(uint32_t row, uint32_t column, double value, std::span<const Vec3f> values) {
     if (index_[row] < 0) return;
     if (index_[column] >= 0) {
@@ -42,17 +42,17 @@ class Relaxation {
 };
 
 struct Laplacian {
-  VertexLists neighbours;
+  VertexLists neighbors;
   LaplaceWeights weights;
 
   Laplacian(std::span<const Vec3f> positions, std::span<const std::array<uint32_t, 3>> triangles)
-      : neighbours(neighbours_of(positions.size(), triangles)),
-        weights(laplace_weights(positions, triangles, neighbours)) {}
+      : neighbors(neighbors_of(positions.size(), triangles)),
+        weights(laplace_weights(positions, triangles, neighbors)) {}
 
   std::vector<std::pair<uint32_t, double>> row(uint32_t v) const {
     std::vector<std::pair<uint32_t, double>> r{{v, weights.vertex[v]}};
-    for (uint32_t i = neighbours.start[v]; i < neighbours.start[v + 1]; ++i)
-      r.emplace_back(neighbours.items[i], -weights.edge[i]);
+    for (uint32_t i = neighbors.start[v]; i < neighbors.start[v + 1]; ++i)
+      r.emplace_back(neighbors.items[i], -weights.edge[i]);
     return r;
   }
 };

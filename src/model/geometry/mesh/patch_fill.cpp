@@ -26,9 +26,9 @@ class Refinement {
 
   Patch run() {
     relax();
-    constexpr int kMostRounds =
-        40;  // each splits all triangles that are too large: sizes shrink geometrically
-    for (int round = 0; round < kMostRounds && split_large(); ++round) relax();
+    // Each round splits all triangles that are too large, so sizes shrink geometrically.
+    constexpr int kMaxRounds = 40;
+    for (int round = 0; round < kMaxRounds && split_large(); ++round) relax();
     return std::move(patch_);
   }
 
@@ -63,14 +63,14 @@ class Refinement {
   bool split(uint32_t t) {
     const auto [a, b, c] = patch_.triangles[t];
     const std::vector<Vec3f>& p = patch_.positions;
-    const Vec3f centre = (p[a] + p[b] + p[c]) / 3.0f;
+    const Vec3f center = (p[a] + p[b] + p[c]) / 3.0f;
     const float size = (size_[a] + size_[b] + size_[c]) / 3.0f;
     for (const uint32_t v : {a, b, c}) {
-      const float reach = kDensity * length(p[v] - centre);
+      const float reach = kDensity * length(p[v] - center);
       if (reach <= size || reach <= size_[v]) return false;
     }
     const uint32_t m = uint32_t(p.size());
-    patch_.positions.push_back(centre);
+    patch_.positions.push_back(center);
     size_.push_back(size);
     leave(t);
     replace(t, {a, b, m});
@@ -78,15 +78,16 @@ class Refinement {
       patch_.triangles.push_back(more);
       enter(uint32_t(patch_.triangles.size() - 1));
     }
-    // At once: the centroids of two slivers along one edge would come too near to each other.
+    // Splits all at once; otherwise the centroids of two slivers along one edge would come too close to each
+    // other.
     improve(a, b);
     improve(b, c);
     improve(c, a);
     return true;
   }
 
-  // Flips edges until none is worse than the other diagonal. Bounded, since in space flips might go in
-  // circles.
+  // Flips edges until none is worse than the other diagonal. The number of rounds is bounded, because flips
+  // in space may cycle.
   void relax() {
     for (int sweep = 0; sweep < 30; ++sweep) {
       bool any = false;

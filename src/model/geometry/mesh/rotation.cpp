@@ -10,7 +10,7 @@ struct Symmetric4 {
   double a[4][4];
 };
 
-// Quaternion (w, x, y, z) -> w^T N w is trace(R^T m).
+// The matrix N for which q^T N q = trace(R^T m), with R the rotation of the quaternion q = (w, x, y, z).
 Symmetric4 quaternion_form(const Mat3d& m) {
   const double xx = m.row[0].x, xy = m.row[0].y, xz = m.row[0].z;
   const double yx = m.row[1].x, yy = m.row[1].y, yz = m.row[1].z;

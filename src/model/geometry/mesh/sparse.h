@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sparse symmetric positive definite systems A x = b: factorised once, solved for as many right-hand sides as
-// wanted.
+// Sparse symmetric positive definite systems A x = b, factorized once and solved for any number of right-hand
+// sides.
 #pragma once
 
 #include <memory>
@@ -16,18 +16,17 @@ struct SparseEntry {
 
 class SparseSolver {
  public:
-  // Factorises the n x n matrix whose elements are the sums of the entries at their place; entries above the
-  // diagonal are not looked at, so give the lower triangle or the whole matrix. One thread; same entries in
-  // the same order, same bits. Time and memory on the graph of a surface: about n log n. Errors: an entry
-  // outside the matrix; a matrix that is not positive definite (a Laplacian without anything fixed).
+  // Factorizes the n x n matrix whose elements are the sums of the entries at their position. Entries above
+  // the diagonal are ignored, so pass the lower triangle or the whole matrix. One thread; deterministic. Time
+  // and memory on the graph of a surface: about n log n. Errors: an entry outside the matrix; a matrix that
+  // is not positive definite (a Laplacian with nothing fixed).
   SparseSolver(int n, std::span<const SparseEntry> entries);
   SparseSolver(SparseSolver&&) noexcept;
   SparseSolver& operator=(SparseSolver&&) noexcept;
   ~SparseSolver();
 
   int size() const;
-  // right_hand_sides: [columns][n]; returns the solutions in the same layout. Columns are solved side by
-  // side.
+  // right_hand_sides: [columns][n]. Returns the solutions in the same layout.
   std::vector<double> solve(std::span<const double> right_hand_sides, int columns = 1) const;
 
  private:

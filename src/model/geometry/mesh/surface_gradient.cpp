@@ -20,15 +20,15 @@ void add_outer(Mat3d& sum, Vec3d a, Vec3d b, double scale) {
 
 struct Ring {
   std::span<const Vec3f> before, after;
-  std::span<const uint32_t> neighbours;
+  std::span<const uint32_t> neighbors;
 };
 
-// The F that takes the ring's edges before to those after, in the least squares; unit normal n goes along
-// with the ring's rotation, since edges alone leave it open.
+// Least-squares F that maps the ring's edges before to those after. The unit normal n is mapped by the ring's
+// rotation, because the edges do not determine it.
 Mat3d fit(const Ring& ring, uint32_t v, Vec3d n) {
   Mat3d moments{}, products{};
   double size = 0;
-  for (const uint32_t u : ring.neighbours) {
+  for (const uint32_t u : ring.neighbors) {
     const Vec3d e = to_double(ring.before[u] - ring.before[v]), d = to_double(ring.after[u] - ring.after[v]);
     add_outer(moments, e, e, 1);
     add_outer(products, d, e, 1);
@@ -51,14 +51,14 @@ SurfaceGradient surface_gradient(std::span<const Vec3f> before, std::span<const 
                                  std::span<const Vec3f> after,
                                  std::span<const std::array<uint32_t, 3>> triangles,
                                  std::span<const uint32_t> vertices) {
-  const VertexLists neighbours = neighbours_of(before.size(), triangles);
+  const VertexLists neighbors = neighbors_of(before.size(), triangles);
   SurfaceGradient result{std::vector<std::array<float, 9>>(vertices.size()),
                          std::vector<Vec3f>(vertices.size())};
   parallel_ranges(int(vertices.size()), 1024, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const uint32_t v = vertices[i];
       const Vec3d n = to_double(normals[v]);
-      Mat3d f = fit({before, after, neighbours.of(v)}, v, n);
+      Mat3d f = fit({before, after, neighbors.of(v)}, v, n);
       Vec3d m = normalize(cofactors(f) * n);  // F^-T n, up to the sign of det F
       if (dot(m, f * n) < 0) m = -m;
       add_outer(f, m - f * n, n, 1);

@@ -14,8 +14,8 @@ namespace cei3d {
 
 namespace {
 
-// Signed distances at the corners of a grid over [-1, 1]^3, exact near the surface, of the right sign
-// elsewhere. Made a layer at a time: the whole of a fine grid would be the largest thing in memory.
+// Signed distances at the corners of a grid over [-1, 1]^3, exact near the surface, of correct sign
+// elsewhere. Computed one layer at a time, because a fine grid would not fit in memory beside the rest.
 class Corners {
  public:
   Corners(const DistancesAt& distances, int resolution)
@@ -30,7 +30,7 @@ class Corners {
   Vec3f position(int x, int y, int z) const { return position(x, y, z, n_); }
 
   std::vector<float> layer(int z) const {  // [y][x]
-    // Two coarse diagonals: fields are not quite 1-Lipschitz.
+    // Two coarse diagonals of margin: fields are not quite 1-Lipschitz.
     const float reach = 2.0f * 3.4641f / float(coarse_n_ - 1);
     std::vector<float> values(size_t(n_) * n_);
     std::vector<size_t> wanted;
@@ -45,7 +45,7 @@ class Corners {
       }
     const std::vector<float> exact = distances_(points);
     for (size_t k = 0; k < wanted.size(); ++k) values[wanted[k]] = exact[k];
-    // Outside the unit sphere there is nothing, whatever the untrained field says.
+    // Outside the unit sphere the field is not trained; there is no surface there.
     for (int y = 0; y < n_; ++y)
       for (int x = 0; x < n_; ++x) {
         float& v = values[size_t(y) * n_ + x];
@@ -80,7 +80,7 @@ std::array<float, 8> cell_values(const std::vector<float>& bottom, const std::ve
 }
 
 // Mean of the zero crossings on the cell's edges, in cells from its low corner; false when the surface does
-// not pass.
+// not pass through the cell.
 bool cell_vertex(const std::array<float, 8>& f, Vec3f& out) {
   const auto inside = std::count_if(f.begin(), f.end(), [](float v) { return v < 0; });
   if (inside == 0 || inside == 8) return false;
@@ -99,13 +99,13 @@ bool cell_vertex(const std::array<float, 8>& f, Vec3f& out) {
   return true;
 }
 
-// Vertices by cell of two layers: the one below a layer of corners and the one above it.
+// Vertex of each cell in the two layers below and above a layer of corners.
 struct VertexLayers {
   std::vector<uint32_t> below, above;  // [y][x]
 };
 
-// Every grid edge that crosses the surface joins the four cells around it. Edges: those of the corners
-// `bottom`, and from there up to `top`.
+// Joins the four cells around every grid edge that crosses the surface: the edges in the layer `bottom` and
+// from there up to `top`.
 void join_cells(const VertexLayers& vertices, const std::vector<float>& bottom, const std::vector<float>& top,
                 int cells, Mesh& mesh) {
   const int n = cells + 1;

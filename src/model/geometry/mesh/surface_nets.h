@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The zero level set of a signed distance field as a mesh: one vertex in every cell that the surface passes
-// through, moved onto the surface. Rounder triangles than marching cubes and no case table. [Gibson 1998]
+// Surface nets: the zero level set of a signed distance field as a mesh with one vertex in every cell that
+// the surface passes through, moved onto the surface. Rounder triangles than marching cubes and no case
+// table. [Gibson 1998]
 #pragma once
 
 #include <functional>
@@ -23,7 +24,7 @@ Mesh surface_net(const DistancesAt& distances, int resolution, const Progress& p
 
 struct MeshingOptions {
   int resolution = 192;          // cells along [-1, 1]; a multiple of 4
-  float smallest_part = 0.002f;  // connected pieces with a smaller share of all triangles are dropped
+  float smallest_part = 0.002f;  // connected components with a smaller share of all triangles are dropped
 };
 
 // Vertices lie on the zero set to about 1e-4; normals are sdf_normals(). Error when the field has no zero set

@@ -7,7 +7,7 @@
 namespace cei3d {
 namespace {
 
-// Which vertex is nearest, for points near the mesh.
+// Nearest vertex, for points near the mesh.
 class NearestVertex {
  public:
   explicit NearestVertex(const Mesh& mesh)
@@ -37,7 +37,7 @@ class NearestVertex {
   PointIndex index_;
 };
 
-// Of each vertex of the mesh before: its place in change.moved, or one of these.
+// For each vertex of the mesh before: its index in change.moved, or one of these.
 constexpr int kStays = -1, kGone = -2;
 std::vector<int> fates(const Mesh& before, const Mesh& after, const Reshape& change) {
   std::vector<uint8_t> used(after.positions.size(), 0), was_used(after.positions.size(), 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Handler points follow a change of geometry.
+// Handler points after a change of shape.
 #pragma once
 
 #include "model/geometry/shape/handlers.h"
@@ -7,8 +7,8 @@
 
 namespace cei3d {
 
-// Each follows the vertex nearest to it, is gone where that vertex's triangles are, and is added on new
-// matter. before, after: the mesh before and after the change.
+// Each point moves with the nearest vertex, is dropped where that vertex's triangles were removed, and points
+// are added on new surface. before, after: the mesh before and after the change.
 HandlerPoints carried(const HandlerPoints&, const Mesh& before, const Mesh& after, const Reshape& change);
 
 }  // namespace cei3d

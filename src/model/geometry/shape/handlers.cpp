@@ -8,7 +8,7 @@
 namespace cei3d {
 namespace {
 
-// The kept points, in a hash grid that grows: chains of points a bucket.
+// The kept points in a growing hash grid: one chain of points per bucket.
 class Thinning {
  public:
   Thinning(float spacing, size_t n_hits)
@@ -16,10 +16,10 @@ class Thinning {
     kept.spacing = spacing;
   }
 
-  // Index of a kept point within the spacing of the hit and on its side of the surface; -1: there is none.
-  int neighbour(const Hit& hit) const {
+  // Index of a kept point within the spacing of the hit and on its side of the surface; -1: none.
+  int neighbor(const Hit& hit) const {
     const GridIndex home = GridIndex::of(hit.position, spacing_);
-    for (const GridIndex& d : kCellNeighbours) {
+    for (const GridIndex& d : kCellNeighbors) {
       const GridIndex c{home.x + d.x, home.y + d.y, home.z + d.z};
       for (int i = head_[bucket(c)]; i >= 0; i = next_[i]) {
         const Vec3f to_point = kept.positions[i] - hit.position;
@@ -51,7 +51,7 @@ class Thinning {
 HandlerPoints thin_hits(std::span<const Hit> hits, std::span<const float> footprints, float spacing) {
   Thinning thinning(spacing, hits.size());
   for (size_t i = 0; i < hits.size(); ++i) {
-    const int near = thinning.neighbour(hits[i]);
+    const int near = thinning.neighbor(hits[i]);
     if (near < 0) {
       thinning.add(hits[i], footprints[i]);
     } else {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Handler points: the explicit half of the representation. Sampled at the ray hits of the training views,
-// thinned to a known spacing. [paper sec. 3.1; reference-facts 4.2]
+// Handler points: explicit points of the surface, sampled at the ray hits of the training views and thinned
+// to a known spacing. [paper sec. 4.1]
 #pragma once
 
 #include <span>
@@ -12,14 +12,14 @@
 namespace cei3d {
 
 struct HandlerPoints {
-  std::vector<Vec3f> positions;  // #N, unit-sphere frame
+  std::vector<Vec3f> positions;  // #N, unit frame
   std::vector<Vec3f> normals;    // #N, unit
-  std::vector<float>
-      footprints;     // #N, distance between neighbouring pixels' hits where the point was seen best
-  float spacing = 0;  // no two points are nearer than this; every hit has one within it
+  // #N, distance on the surface between the hits of neighboring pixels, in the view that sees the point best.
+  std::vector<float> footprints;
+  float spacing = 0;  // minimum distance between points; every hit they were made from has one within it
 };
 
-// Keeps, in a fixed order, every hit that has no kept point within `spacing` on its own side of the surface.
+// Keeps, in a fixed order, every hit that has no kept point within `spacing` on the same side of the surface.
 // footprints: #hits.
 HandlerPoints thin_hits(std::span<const Hit> hits, std::span<const float> footprints, float spacing);
 

@@ -7,13 +7,13 @@
 
 namespace cei3d {
 
-// Where a camera ray meets the surface. Unit-sphere frame.
+// A point where a camera ray meets the surface. Unit frame.
 struct Hit {
   Vec3f position;
-  Vec3f normal;       // unit, outward, of the SDF at the scale that shading uses
+  Vec3f normal;       // unit, outward; sdf_normals()
   Vec3f to_camera;    // unit, from the hit to the camera
-  uint32_t triangle;  // of the surface mesh nearest along the ray ...
-  float b1, b2;       // ... and its barycentrics: p = (1 - b1 - b2) v0 + b1 v1 + b2 v2
+  uint32_t triangle;  // of the surface mesh, nearest along the ray
+  float b1, b2;       // barycentric coordinates: p = (1 - b1 - b2) v0 + b1 v1 + b2 v2
 };
 
 // Rays from a point of the surface start this far above it, unit-sphere units: less, and they would meet the

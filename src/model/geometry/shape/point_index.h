@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Uniform hash grid over points: a query looks at 27 cells however many points there are.
+// Uniform hash grid over points: a query visits 27 cells whatever the number of points.
 #pragma once
 
 #include <cmath>
@@ -24,8 +24,8 @@ struct GridIndex {
   static int axis(float t) { return int(std::floor(clamp(t, -1073741824.0f, 1073741824.0f))); }
 };
 
-// Neighbourhood of a cell, the cell itself first: most queries that succeed do so there.
-inline constexpr GridIndex kCellNeighbours[27] = {
+// The cells around a cell, the cell itself first, because most successful queries end there.
+inline constexpr GridIndex kCellNeighbors[27] = {
     {0, 0, 0},   {-1, 0, 0},  {1, 0, 0},   {0, -1, 0}, {0, 1, 0},   {0, 0, -1},   {0, 0, 1},
     {-1, -1, 0}, {1, -1, 0},  {-1, 1, 0},  {1, 1, 0},  {-1, 0, -1}, {1, 0, -1},   {-1, 0, 1},
     {1, 0, 1},   {0, -1, -1}, {0, 1, -1},  {0, -1, 1}, {0, 1, 1},   {-1, -1, -1}, {1, -1, -1},
@@ -38,12 +38,12 @@ class PointIndex {
              float cell);  // cell: the largest radius that queries will use, > 0
 
   // Calls visit(i), once each, for points with |p_i - x| < radius (radius <= cell), in ascending i within a
-  // cell, until it returns true; says whether one did.
+  // cell, until it returns true. Returns whether it did.
   template <class F>
   bool any_within(Vec3f x, float radius, F visit) const {
     if (points_.empty()) return false;
     const GridIndex home = GridIndex::of(x, cell_);
-    for (const GridIndex& d : kCellNeighbours) {
+    for (const GridIndex& d : kCellNeighbors) {
       const GridIndex c{home.x + d.x, home.y + d.y, home.z + d.z};
       const uint32_t b = bucket(c);
       for (uint32_t k = bucket_start_[b]; k < bucket_start_[b + 1]; ++k) {

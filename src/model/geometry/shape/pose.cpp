@@ -8,7 +8,7 @@ namespace {
 
 using Corners = std::array<uint32_t, 3>;
 
-// 1 at vertices that the change moved or made. #V afterwards.
+// #V of the new mesh, 1 at vertices that the change moved or added.
 std::vector<uint8_t> changed_vertices(const Mesh& before, const Reshape& change) {
   std::vector<uint8_t> mask(before.positions.size() + change.added_positions.size(), 0);
   for (const uint32_t v : change.moved) mask[v] = 1;
@@ -35,7 +35,7 @@ std::vector<Vec3f> next_colors(const Pose& before, size_t vertices, const Reshap
   return colors;
 }
 
-// Which triangles are which, and since when.
+// Sets the ids of triangles and the versions they were made and shaped in.
 void follow_triangles(const Pose& before, int index, const Reshape& change, std::span<const uint8_t> moved,
                       Pose& pose) {
   const auto& triangles = pose.surface->mesh().triangles;
@@ -79,8 +79,9 @@ Mat3f gradient_at(const Pose& pose, const Corners& corners, const Hit& hit) {
   const float weight[3] = {1 - hit.b1 - hit.b2, hit.b1, hit.b2};
   for (int c = 0; c < 3; ++c)
     for (int i = 0; i < 3; ++i) m.row[i] += pose.gradients[corners[c]].row[i] * weight[c];
-  constexpr float kFlat =
-      0.05f;  // the surface is folded or crushed: what lies beside the mesh stays as it was
+  // Determinant below which the surface is folded or crushed; offsets from the mesh are then kept as they
+  // were.
+  constexpr float kFlat = 0.05f;
   return determinant(m) > kFlat ? m : Mat3f::identity();
 }
 
@@ -88,8 +89,8 @@ Vec3f mesh_point(const Pose& pose, const Corners& corners, const Hit& hit) {
   return blend(pose.surface->mesh().positions, corners, hit);
 }
 
-// What lies beside the mesh is carried by the gradients: x_k = m_k + F_k F^-1 (x - m), and the normal by
-// their inverse transposes.
+// Offsets from the mesh are carried by the gradients, x_k = m_k + F_k F^-1 (x - m), normals by the inverse
+// transposes.
 SurfacePoint in_pose(const Poses& poses, const Hit& hit, int k) {
   if (poses.empty() || poses.back()->shaped_in(hit.triangle) <= k) return {hit.position, hit.normal};
   const Pose &now = *poses.back(), &then = *poses[k];

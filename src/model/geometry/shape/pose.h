@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The shapes that the object has had. Pose 0 is the reconstructed surface, pose k what k changes of geometry
-// made of it. Vertex ids mean the same in all poses, so a point that was hit in the last one is known in all
-// earlier ones: texture, parts and paint follow the matter.
+// Shape versions of the object (called poses here). Version 0 is the reconstructed surface, version k the
+// surface after k changes of shape. Vertex ids mean the same in all versions, so a point that is hit in the
+// last one is known in all earlier ones: texture, parts and paint follow the object.
 #pragma once
 
 #include <memory>
@@ -14,34 +14,35 @@ namespace cei3d {
 
 struct Pose {
   std::shared_ptr<const Surface> surface;
-  // The rest is empty in pose 0.
-  std::vector<Mat3f> gradients;  // #V, of the deformation since pose 0, or since the vertex was made
-  std::vector<int> born;         // #F, the pose that the triangle was made in; 0: reconstructed
-  std::vector<int> shaped;       // #F, the pose that gave the triangle its present shape; 0: as reconstructed
-  std::vector<uint32_t>
-      before;  // #F, the same triangle in the pose before; for one that was made in this pose: 0
-  std::vector<Vec3f> colors;  // #V, linear base colour that new matter has there; unused elsewhere
+  // The members below are empty in version 0.
+  std::vector<Mat3f> gradients;  // #V, deformation gradient since version 0, or since the vertex was made
+  std::vector<int> born;         // #F, version that the triangle was made in; 0: reconstructed
+  std::vector<int> shaped;       // #F, version that gave the triangle its present shape
+  // #F, id of the triangle in the version before; 0 for a triangle that was made in this version.
+  std::vector<uint32_t> before;
+  std::vector<Vec3f> colors;  // #V, linear albedo of surface that was added there; unused elsewhere
 
   int born_in(uint32_t triangle) const { return born.empty() ? 0 : born[triangle]; }
   int shaped_in(uint32_t triangle) const { return shaped.empty() ? 0 : shaped[triangle]; }
 };
 
-// Pose 0 to the present one; empty: there has been no change.
+// Version 0 to the present one; empty: the shape was never changed.
 using Poses = std::vector<std::shared_ptr<const Pose>>;
 
-// Adds the pose after a change of `surface`, the present one. Vertices that moved or are new look at the sky
-// anew; the others keep what they saw, so that what did not change looks as before. Error: the change does
-// not fit the surface.
+// Adds the version after a change of `surface`, the present one. Visibility is computed anew for vertices
+// that moved or are new; the others keep theirs, so that unchanged surface renders as before. Error: the
+// change does not fit the surface.
 Poses with_pose(Poses poses, std::shared_ptr<const Surface> surface, const Reshape& change);
 
 struct SurfacePoint {
-  Vec3f position, normal;  // unit-sphere frame; unit
+  Vec3f position, normal;  // unit frame; unit
 };
-// Where a hit on the present surface was in pose k, which must not be earlier than its triangle. A hit on a
-// triangle that has not changed since keeps its bits.
+// Position and normal in version k of a hit on the present surface; k must not be earlier than the hit's
+// triangle. A hit on a triangle that has not changed since then keeps its bits.
 SurfacePoint in_pose(const Poses&, const Hit&, int k);
 
-// The deformation since pose 0, and the point of the mesh, at a hit's place of these corners in some pose.
+// Deformation gradient since version 0, and mesh position, at the hit's barycentric coordinates in the given
+// version.
 Mat3f gradient_at(const Pose&, const std::array<uint32_t, 3>& corners, const Hit&);
 Vec3f mesh_point(const Pose&, const std::array<uint32_t, 3>& corners, const Hit&);
 

@@ -22,7 +22,7 @@ struct Texels {
   }
 };
 
-// Beyond the border of the picture its outermost texels go on.
+// Clamped at the border of the image.
 float texel(const Image& image, int x, int y) {
   return *image.at(min(max(x, 0), image.width - 1), min(max(y, 0), image.height - 1));
 }
@@ -38,7 +38,7 @@ Image image_of(const Tensors& tensors, const std::string& name) {
   const Tensor& t = it->second;
   if (t.shape.size() != 2 || t.shape[0] < 1 || t.shape[1] < 1 ||
       size_t(t.shape[0] * t.shape[1]) != t.f32.size())
-    fail("'{}' is not a picture; the project is damaged, undo or repeat the edit", name);
+    fail("'{}' is not an image; the project is damaged, undo or repeat the edit", name);
   Image image(int(t.shape[1]), int(t.shape[0]), 1);
   image.data = t.f32;
   return image;
@@ -83,7 +83,7 @@ float Projector::alpha_at(double u, double v) const {
   return top * (1 - k.ty) + bottom * k.ty;
 }
 
-// The deepest of the four neighbours counts: on a slope the texels differ by more than the tolerance.
+// Compares with the deepest of the four neighbors: on a slope the texels differ by more than the tolerance.
 bool Projector::sees(double u, double v, double z) const {
   const Texels k(depth, camera, u, v);
   const float far = max(max(texel(depth, k.x, k.y), texel(depth, k.x + 1, k.y)),

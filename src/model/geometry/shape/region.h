@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// "Does this surface point belong to the edit": within reach of an edited handler point, on the same side of
-// the surface. [paper eq. 9, with reach by local spacing: architecture 1.2]
+// A region of the surface: the points within reach of an edited handler point, on the same side of the
+// surface [paper sec. 4.2]. The reach follows the local spacing: docs/method.md#regions-and-routing.
 //
-// Points alone give an outline as soft as their reach. A region that comes from a painted view therefore
-// holds the painted mask as well, with the camera and the depths of that view: a point belongs to it only if
-// that camera sees it inside the mask. The points say which surface is meant, the mask where the edit ends:
-// the border is as sharp as the scribble (alpha 0.5, interpolated between pixels), and nothing leaks to
-// surfaces that the view does not show.
+// Points alone give an outline as soft as their reach. A region that comes from a painted view therefore also
+// holds the painted mask with the camera and the depths of that view: a point belongs to it only if that
+// camera sees it inside the mask. The points say which surface is meant, the mask where the edit ends: the
+// border is as sharp as the scribble (alpha 0.5, interpolated between pixels), and hidden surfaces are not
+// touched.
 //
 // A part of the object is a third kind: scored points (model/geometry/shape/scored_points.h).
 #pragma once
@@ -25,24 +25,24 @@ class Region {
  public:
   Region() = default;  // contains nothing
   struct Points {
-    std::vector<Vec3f> positions;  // #N edited points (H+), unit-sphere frame
+    std::vector<Vec3f> positions;  // #N edited points (H+), unit frame
     std::vector<Vec3f> normals;    // #N, unit
-    std::vector<float> reach;      // #N, unit-sphere units
+    std::vector<float> reach;      // #N, unit frame
   };
-  // An empty projector: by the points alone; no points: by the mask alone.
+  // projector empty: by the points alone. No points: by the mask alone.
   explicit Region(Points points, Projector projector = {});
   explicit Region(ScoredPoints part);
 
   // normal: unit, outward.
   bool contains(Vec3f position, Vec3f normal) const;
-  // How much of it: 1 inside, 0 outside, the mask's alpha where that is soft.
+  // Share of the edit at a point: 1 inside, 0 outside, the mask's alpha where the mask is soft.
   float weight(Vec3f position, Vec3f normal) const;
   const Points& points() const { return data_->points; }
   const Projector& projector() const { return data_->projector; }
   const ScoredPoints& scored() const { return data_->scored; }  // empty: not a part
 
-  // Tensors "region/...", the rest in the head; and back. Errors: missing tensors or keys, sizes that
-  // disagree.
+  // Writes tensors "region/..." and the rest to the head. Errors of load(): missing tensors or keys, sizes
+  // that disagree.
   void save(Tensors& tensors, Json& head) const;
   static Region load(const Tensors& tensors, const Json& head);
 

@@ -29,7 +29,7 @@ float sphere_distance(const Ray& r) {
   return b * b < c ? -1 : -b - sqrt(b * b - c);
 }
 
-// A disc painted on the sphere: mask of radius 10 pixels about the picture's centre.
+// A disc painted on the sphere: mask of radius 10 pixels about the picture's center.
 bool painted(double u, double v) { return square(u - kSize / 2) + square(v - kSize / 2) < 100; }
 
 Region painted_disc(bool with_projector) {
@@ -68,10 +68,10 @@ TEST(Region, OfPaintHoldsWhatTheCameraSeesInsideTheMask) {
     const Vec3f p = random_on_sphere(i);
     const bool front = dot(normalize(p), normalize(to_float(camera.center) - p)) > 0.1f;
     const Vec3d s = camera.project(to_double(p));
-    const double from_centre = std::hypot(s.x - kSize / 2, s.y - kSize / 2);
-    if (std::abs(from_centre - 10) < 0.75) continue;  // the outline of a mask of whole pixels
-    EXPECT_EQ(region.contains(p, normalize(p)), front && from_centre < 10) << s.x << ' ' << s.y << ' ' << s.z;
-    inside += front && from_centre < 10;
+    const double from_center = std::hypot(s.x - kSize / 2, s.y - kSize / 2);
+    if (std::abs(from_center - 10) < 0.75) continue;  // the outline of a mask of whole pixels
+    EXPECT_EQ(region.contains(p, normalize(p)), front && from_center < 10) << s.x << ' ' << s.y << ' ' << s.z;
+    inside += front && from_center < 10;
   }
   EXPECT_GT(inside, 300);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A change of geometry, as a change of the surface's mesh: vertices that moved, triangles that are gone, new
-// matter. Vertex ids mean the same before and after, so that whatever is known of a point of the mesh (a
-// triangle and barycentric coordinates) is known of it in every pose of the object, without an inverse of the
+// A change of shape as a change of the mesh: vertices that moved, triangles that were removed, new vertices
+// and triangles. Vertex ids mean the same before and after, so whatever is known of a point of the mesh (a
+// triangle and barycentric coordinates) is known of it in every shape version, without inverting the
 // deformation.
 #pragma once
 
@@ -16,19 +16,19 @@
 namespace cei3d {
 
 struct Reshape {
-  // #M vertices of the mesh before, ascending; where they are now, unit-sphere frame. The gradient of the
-  // deformation F (row-major; new from old: dx' = F dx) carries what lies off the mesh along, and normals by
-  // its inverse transpose.
+  // #M ids of moved vertices, ascending; their new positions and normals, unit frame; and deformation
+  // gradients F (row-major, dx' = F dx), which carry offsets from the mesh along, and normals by the inverse
+  // transpose.
   std::vector<uint32_t> moved;
   std::vector<Vec3f> positions, normals;
   std::vector<std::array<float, 9>> gradients;
 
-  std::vector<uint32_t> removed;  // triangles of the mesh before that are gone, ascending
+  std::vector<uint32_t> removed;  // ids of removed triangles, ascending
 
-  // New vertices, numbered on from the mesh's; their unit normals and base colour (linear).
+  // New vertices, numbered after the mesh's; unit normals and linear albedo.
   std::vector<Vec3f> added_positions, added_normals, added_colors;
   std::vector<std::array<uint32_t, 3>> added_triangles;
-  // Old vertices that the added triangles name, ascending, and the base colour that the new matter has there.
+  // Old vertices that the added triangles use, ascending, and the albedo of the added surface there.
   std::vector<uint32_t> rim;
   std::vector<Vec3f> rim_colors;
 
@@ -39,14 +39,15 @@ struct Reshape {
   bool empty() const { return moved.empty() && removed.empty() && added_triangles.empty(); }
 };
 
-// The mesh afterwards: old triangles that are left in their order, then the added ones. The mesh has normals.
-// Error: a reshape that does not belong to this mesh.
+// The mesh after the change: remaining triangles in their order, then the added ones. The mesh has normals.
+// Error: the reshape does not belong to this mesh.
 Mesh apply(const Mesh&, const Reshape&);
 
-// The triangles of the mesh before that are left, in their order: the first ones afterwards.
+// Ids of the triangles that remain, in their order: the first ones after the change.
 std::vector<uint32_t> kept_triangles(const Mesh& before, const Reshape&);
 
-// Tensors "reshape/...", sizes in the head; and back. Errors: missing tensors or keys, sizes that disagree.
+// Writes tensors "reshape/...", sizes to the head. Errors of loading: missing tensors or keys, sizes that
+// disagree.
 void save_reshape(const Reshape&, Tensors& tensors, Json& head);
 Reshape load_reshape(const Tensors& tensors, const Json& head);
 

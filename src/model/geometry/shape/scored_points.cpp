@@ -10,8 +10,8 @@ namespace {
 constexpr float kReach = 2.5f;  // spacings
 constexpr float kInside = 0.5f;
 
-// Points that lie within the reach of a place that scores at least one half: they are within two reaches of a
-// point that does.
+// Indices of the points that can affect where the score is at least one half: those within two reaches of a
+// point that scores that much.
 std::vector<uint8_t> near_part(const ScoredPoints::Data& d) {
   const float radius = 2 * kReach * d.spacing;
   const PointIndex index(d.positions, radius);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Handler points that say how much they belong to a part. Between them the scores are interpolated, so the
-// part ends where the interpolated score is one half: finer than the points' spacing, and smooth.
+// Handler points with a score, the degree to which they belong to a part. Scores are interpolated between
+// points and the part ends at one half: finer than the points' spacing, and smooth.
 #pragma once
 
 #include <vector>
@@ -15,26 +15,25 @@ namespace cei3d {
 class ScoredPoints {
  public:
   struct Data {
-    std::vector<Vec3f> positions;  // #N, unit-sphere frame
+    std::vector<Vec3f> positions;  // #N, unit frame
     std::vector<Vec3f> normals;    // #N, unit, outward
-    std::vector<float> scores;     // #N, [0, 1]; from 1/2 on: of the part
-    float spacing = 0;             // between neighbouring points, unit-sphere units
+    std::vector<float> scores;     // #N, [0, 1]; >= 1/2: in the part
+    float spacing = 0;             // between neighboring points, unit frame
   };
 
   ScoredPoints() = default;  // nothing scores
-  // Keeps only the points that can matter to `score() >= 1/2`.
+  // Keeps only the points that can affect where score() >= 1/2.
   explicit ScoredPoints(const Data&);
 
   bool empty() const { return data_.positions.empty(); }
   const Data& data() const { return data_; }
 
-  // Mean score of the points within 2.5 spacings on the same side of the surface, near ones weighing more; 0
-  // where there is none. Exact where it is at least 1/2; elsewhere some points may have been dropped, but it
-  // stays below 1/2.
+  // Weighted mean score of the points within 2.5 spacings on the same side of the surface; 0 where there is
+  // none. Exact where it is at least 1/2; elsewhere points may have been dropped, but it stays below 1/2.
   float score(Vec3f position, Vec3f normal) const;
 
-  // Tensors "region/scored/...", sizes in the head; and back. Errors: missing tensors or keys, sizes that
-  // disagree.
+  // Writes tensors "region/scored/...", sizes to the head. Errors of load(): missing tensors or keys, sizes
+  // that disagree.
   void save(Tensors& tensors, Json& head) const;
   static ScoredPoints load(const Tensors& tensors, const Json& head);
 

@@ -4,10 +4,10 @@
 namespace cei3d {
 namespace {
 
-constexpr float kWideCells = 3, kNarrowCells = 1;    // of the finest hash level
-constexpr float kSmooth = 0.9994f, kEdge = 0.9945f;  // cosines between the two, of 2 and 6 degrees
+constexpr float kWideCells = 3, kNarrowCells = 1;    // steps in cells of the finest hash level
+constexpr float kSmooth = 0.9994f, kEdge = 0.9945f;  // cosines of 2 and 6 degrees between the two normals
 
-// p moved along the axes by +step and -step, six points.
+// Calls use(point, axis, side) for the six points p +- step along the axes.
 template <class Use>
 void for_each_neighbor(Vec3f p, float step, const Use& use) {
   for (int axis = 0; axis < 3; ++axis)

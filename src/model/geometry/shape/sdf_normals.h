@@ -10,23 +10,22 @@
 
 namespace cei3d {
 
-// Steps of the central differences that normals are taken from, unit-sphere units. Wide ones even out a
-// trilinear grid, whose own gradient jumps at every cell face (prototype-findings, trap 6); narrow ones do
-// not round off edges. Equal without a grid.
+// Steps of the central differences that normals are computed by, unit frame. Wide ones smooth a trilinear
+// grid, whose own gradient jumps at every cell face; narrow ones do not round off edges
+// (docs/method.md#surface). Equal without a grid.
 struct NormalSteps {
   float wide, narrow;
 };
 NormalSteps normal_steps(const FieldConfig&);
 
-// Unit normals of the field at points x: the wide ones, but where they and the narrow ones point to different
-// sides, which only an edge makes them, these. x, out: #N. edges: empty, or #N: the share that the narrow
-// ones have, [0, 1].
+// Unit normals of the field at points x: by wide differences, but by narrow ones where the two disagree,
+// which only happens at edges. x, out: #N. edges: empty, or #N: weight of the narrow differences, [0, 1].
 void sdf_normals(const Device&, const Field& sdf, std::span<const Vec3f> x, std::span<Vec3f> out,
                  std::span<float> edges = {});
 
-// The adjoint: appends the points at which a loss with slopes d_normals (tangent to the surface) wants other
-// values of the field, and its slopes by them. Takes the length of the field's gradient for one, and `edges`,
-// #N, as given.
+// Adjoint of sdf_normals(): appends the points whose field values enter the normals, and dL/d(those values),
+// from d_normals (tangent to the surface). Assumes a field gradient of length one, and takes `edges`, #N, as
+// constant.
 void add_value_slopes(const FieldConfig&, std::span<const Vec3f> x, std::span<const Vec3f> d_normals,
                       std::span<const float> edges, std::vector<Vec3f>& points, std::vector<float>& d_values);
 

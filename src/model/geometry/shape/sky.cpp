@@ -10,7 +10,7 @@
 namespace cei3d {
 namespace {
 
-// Along a side of the octahedron's square: cells at most a third as wide as directions are apart.
+// Cells along a side of the octahedral square: at most a third as wide as the spacing of directions.
 constexpr int kCells = 64;
 
 std::vector<Vec3f> fibonacci_sphere(int n) {

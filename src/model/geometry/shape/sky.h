@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The directions in which surfaces look for the sky.
+// Fixed directions of the visibility table.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace cei3d {
 
-inline constexpr int kSkyDirections = 512;  // directions a visibility row has bits for
+inline constexpr int kSkyDirections = 512;  // bits per vertex of the visibility table
 
-// Fixed set of near-uniform directions (spherical Fibonacci), the columns of a visibility table.
+// Near-uniform directions (spherical Fibonacci), the columns of a visibility table.
 const std::vector<Vec3f>& sky_directions();
 
-// Those around a direction (unit): the nearest of them among others about as near.
+// Indices of the 4 sky directions nearest to a unit direction; approximate, by cells of the octahedral map.
 using SkyNeighbors = std::array<uint16_t, 4>;
 const SkyNeighbors& sky_around(Vec3f direction);
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays of vectors and triangles as stored tensors, and back. Reading errors: missing, another shape or
-// type.
+// Arrays of vectors and triangles as tensors. Reading errors: missing tensor, wrong shape or type.
 #pragma once
 
 #include <array>
@@ -23,11 +22,11 @@ std::vector<uint32_t> numbers_from(const Tensors&, const std::string& name, int6
 Tensor tensor_of(std::span<const std::array<uint32_t, 3>> triangles);
 std::vector<std::array<uint32_t, 3>> triangles_from(const Tensors&, const std::string& name, int64_t rows);
 
-// The tensor itself, checked.
+// The tensor of that name, checked.
 const Tensor& floats_from(const Tensors&, const std::string& name, int64_t rows, int64_t columns);
 const Tensor& bytes_from(const Tensors&, const std::string& name, int64_t rows, int64_t columns);
 
-// A number of rows as a stored description names it.
+// A number of rows from a stored description.
 int64_t rows_from(const Json&);
 
 }  // namespace cei3d

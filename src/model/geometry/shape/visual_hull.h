@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What all silhouettes together leave of space. [Laurentini 1994]
+// The visual hull: the part of space that all silhouettes allow. [Laurentini 1994]
 #pragma once
 
 #include <cstdint>
@@ -16,14 +16,14 @@ struct HullMask {
 };
 
 struct VisualHull {
-  int n = 0;  // cells an axis
+  int n = 0;  // cells per axis
   Vec3f lo{-1, -1, -1}, hi{1, 1, 1};
-  std::vector<uint8_t> inside;  // [z][y][x]: the cell's centre is inside
+  std::vector<uint8_t> inside;  // [z][y][x], 1 where the cell's center is inside
 };
 
-// A cell is inside when every view that has it in its frame shows the object there, but for `tolerated` views
-// (small mask errors), and at least `min_seen` views have it in their frame. Runs on all threads. Error: a
-// mask of another size than its camera.
+// A cell is inside when at least `min_seen` views have it in their frame and all of those show the object
+// there, except for `tolerated` views (mask errors). Uses all threads. Error: a mask of another size than its
+// camera.
 VisualHull visual_hull(std::span<const HullMask> views, int n, Vec3f lo = {-1, -1, -1}, Vec3f hi = {1, 1, 1},
                        int tolerated = 0, int min_seen = 1);
 

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Checks what comments and documents refer to: [Author Year] has an entry in docs/references.md, a link to a file or
+to a heading leads somewhere, and nothing cites a document outside the repository. Prints each fault; exit code 1."""
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCES = [p for folder in ('src', 'tests', 'tools', 'bench', 'cmake') for p in (ROOT / folder).rglob('*')
+           if p.suffix in ('.h', '.cpp', '.cu', '.py', '.sh', '.cmake') and p.resolve() != Path(__file__).resolve()]
+DOCUMENTS = [*ROOT.glob('*.md'), *(ROOT / 'docs').rglob('*.md'), *(ROOT / 'samples').rglob('*.md')]
+
+CITATION = re.compile(r'\[([^][(){}]*\b(?:1[89]|20)\d\d\b[^][]*)\]')
+KEY = re.compile(r"[A-Z][\w'-]+(?: et al\.| and [A-Z][\w'-]+)? (?:1[89]|20)\d\d")
+OUTSIDE = re.compile(r'\barchitecture \d\.\d|reference-facts|prototype-findings|goals\.md|\.\./shared')
+HEADING_LINK = re.compile(r'(docs/[\w/-]+\.md)(#[\w-]+)?')
+MARKDOWN_LINK = re.compile(r'\]\(([^)#\s]*)(#[^)\s]*)?\)')
+
+
+def anchor(heading):
+    """The anchor that GitHub gives a heading."""
+    return '#' + re.sub(r'[^\w\- ]', '', heading.strip().lower()).replace(' ', '-')
+
+
+def anchors(path):
+    return {anchor(line.lstrip('#')) for line in path.read_text().splitlines() if line.startswith('#')}
+
+
+def target_fault(path, heading):
+    if not path.exists():
+        return f'no {path.name}'
+    if heading and path.suffix == '.md' and heading not in anchors(path):
+        return f'{path.name} has no heading {heading}'
+    return None
+
+
+def source_faults(path, keys):
+    # A citation may go on in the next comment line.
+    text = re.sub(r'\n\s*(?://|#) ?', ' ', path.read_text())
+    for citation in CITATION.findall(text):
+        for key in KEY.findall(citation):
+            if key not in keys:
+                yield f'[{key}] is not in docs/references.md'
+    for match in OUTSIDE.findall(text):
+        yield f'{match!r} is not in the repository'
+    for name, heading in HEADING_LINK.findall(text):
+        if fault := target_fault(ROOT / name, heading):
+            yield fault
+
+
+def document_faults(path):
+    text = path.read_text()
+    for name, heading in MARKDOWN_LINK.findall(text):
+        if '://' in name:
+            continue
+        if fault := target_fault((path.parent / name) if name else path, heading):
+            yield fault
+    for match in OUTSIDE.findall(text):
+        yield f'{match!r} is not in the repository'
+
+
+def main():
+    keys = set(re.findall(r'^\*\*\[([^]]+)\]\*\*', (ROOT / 'docs/references.md').read_text(), re.M))
+    faults = [f'{p.relative_to(ROOT)}: {f}' for p in SOURCES for f in source_faults(p, keys)]
+    faults += [f'{p.relative_to(ROOT)}: {f}' for p in DOCUMENTS for f in document_faults(p)]
+    print('\n'.join(sorted(set(faults))) or 'docs: fine')
+    return 1 if faults else 0
+
+
+if __name__ == '__main__':
+    sys.exit(main())
