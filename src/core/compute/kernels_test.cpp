@@ -175,9 +175,8 @@ struct Parity<RadianceInputGrad> {
 };
 
 // Kernels whose cases are in shade_kernels_test.cpp.
-using ShadeKernels =
-    KernelList<SgFitResidual, SgFitGather, SgIrradiance, SgReflection, SgReflectionGrad, ReflectionLobes,
-               SgLobesGrad, Shade, ShadeGrad>;
+using ShadeKernels = KernelList<SgFitResidual, SgFitGather, SgIrradiance, SgReflection, SgReflectionGrad,
+                                ReflectionLobes, SgLobesGrad, Shade, ShadeGrad>;
 
 template <class K>
 void append_cases(Cases& out) {

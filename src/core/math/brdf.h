@@ -46,8 +46,8 @@ HD T microfacet_brdf(Vec3<T> n, Vec3<T> v, Vec3<T> l, T f0, T roughness) {
   return select((dot(n, v) > T(0.0f)) & (dot(n, l) > T(0.0f)), f, T(0.0f));
 }
 
-// Burley's diffuse term relative to a Lambertian one, for a light at cosine nl and a viewer at cosine nv; lh is the cosine
-// of light and half vector. [Burley 2012, sec. 5.3]
+// Burley's diffuse term relative to a Lambertian one, for a light at cosine nl and a viewer at cosine nv; lh
+// is the cosine of light and half vector. [Burley 2012, sec. 5.3]
 template <class T>
 HD T burley_diffuse(T nl, T nv, T lh, T roughness) {
   const T flat = T(2.0f) * roughness * lh * lh - T(0.5f), a = T(1.0f) - nl, b = T(1.0f) - nv;

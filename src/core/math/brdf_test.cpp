@@ -85,9 +85,8 @@ TEST(Brdf, DiffuseViewIsTheMeanOfBurleysTermOverUniformLight) {
   for (const double roughness : {0.1, 0.3, 0.6, 0.9})
     for (const double nv : {0.05, 0.2, 0.5, 0.8, 1.0}) {
       const Vec3d v{std::sqrt(1 - nv * nv), 0, nv};
-      const double exact = over_hemisphere([&](Vec3d l) {
-        return burley_diffuse(l.z, nv, dot(l, normalize(v + l)), roughness) * l.z / M_PI;
-      });
+      const double exact = over_hemisphere(
+          [&](Vec3d l) { return burley_diffuse(l.z, nv, dot(l, normalize(v + l)), roughness) * l.z / M_PI; });
       EXPECT_NEAR(diffuse_view(nv, roughness), exact, 0.01 * exact) << roughness << ' ' << nv;
     }
 }

@@ -125,11 +125,10 @@ std::shared_ptr<const PoseLight> light_on_pose(const Device& device, const Scene
                                                const Transport& transport, const PoseLight* before) {
   auto out = std::make_shared<PoseLight>();
   out->surface = surface_of_pose(scene, k);
-  out->vertices =
-      before ? vertex_light_after(
-                   before->vertices, transport, scene.light,
-                   with_added(before->vertices.made_of, scene.poses[k]->colors, scene.material.mean()))
-             : vertex_light(transport, scene.light, rest_materials(device, scene, *out->surface));
+  out->vertices = before ? vertex_light_after(before->vertices, transport, scene.light,
+                                              with_added(before->vertices.made_of, scene.poses[k]->colors,
+                                                         scene.material.mean()))
+                         : vertex_light(transport, scene.light, rest_materials(device, scene, *out->surface));
   out->lighting = std::make_shared<const Lighting>(device, out->surface, scene.light, out->vertices);
   return out;
 }
@@ -163,9 +162,10 @@ SeenMaterials SceneLight::materials_as_of(int layer, int pose) const {
   if (stored)
     if (const SeenMaterials kept = seen_->find(key)) return kept;
   Appearance look = appearance_at(device_, as_of(scene_, layer, pose), vertex_hits(key.surface->mesh()));
-  const auto made_of =
-      std::make_shared<const VertexMaterials>(VertexMaterials{std::move(look.albedo), std::move(look.material)});
-  if (stored) seen_->put(std::move(key), made_of, made_of->albedo.size() * (sizeof(Vec3f) + sizeof(Material)));
+  const auto made_of = std::make_shared<const VertexMaterials>(
+      VertexMaterials{std::move(look.albedo), std::move(look.material)});
+  if (stored)
+    seen_->put(std::move(key), made_of, made_of->albedo.size() * (sizeof(Vec3f) + sizeof(Material)));
   return made_of;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene's light on its surface; made once and used for every view. Each shape version of the object ("pose") is lit as
-// it was when it was made, and a hit is lit in the pose that gave its triangle its present shape: an edit changes no pixel
-// outside its region. For the same reason bounces are those of the unedited albedo, and what an edited point reflects has
-// the albedo and the material that it had when that point was edited last.
+// The scene's light on its surface; made once and used for every view. Each shape version of the object
+// ("pose") is lit as it was when it was made, and a hit is lit in the pose that gave its triangle its present
+// shape: an edit changes no pixel outside its region. For the same reason bounces are those of the unedited
+// albedo, and what an edited point reflects has the albedo and the material that it had when that point was
+// edited last.
 #pragma once
 
 #include <memory>
@@ -17,7 +18,7 @@
 namespace cei3d {
 
 using Transports = std::vector<std::shared_ptr<const Transport>>;  // by pose, pose 0 first
-using SeenMaterials = std::shared_ptr<const VertexMaterials>;     // of the vertices of a pose
+using SeenMaterials = std::shared_ptr<const VertexMaterials>;      // of the vertices of a pose
 
 // The light on one pose; does not depend on the layers, except through the shapes and the light.
 struct PoseLight {
@@ -63,14 +64,15 @@ class SceneLight {
  public:
   // transports: of the scene's poses; see scene_transports(). They can serve several lights.
   SceneLight(const Device&, const Scene&, const Transports& transports);
-  // lights: light_on_pose() of each. seen: where materials of vertices are kept; may be null, else it must outlive this.
+  // lights: light_on_pose() of each. seen: where materials of vertices are kept; may be null, else it must
+  // outlive this.
   SceneLight(const Device&, const Scene&, PoseLights lights, SeenMaterialsCache* seen);
 
   Shading shade(std::span<const Hit> hits, const Appearance&) const;
   // The radiance of every hit as a linear function of its albedo.
   std::vector<ShadingTerms<float>> terms(std::span<const Hit> hits, const Appearance&) const;
-  // before: of the same hits, in any light and with any layers of the same shape; may be null. Terms of hits that are lit as
-  // they were are taken over; the result has the same bits.
+  // before: of the same hits, in any light and with any layers of the same shape; may be null. Terms of hits
+  // that are lit as they were are taken over; the result has the same bits.
   LitHits light_hits(std::span<const Hit> hits, Appearance, const LitHits* before) const;
 
  private:

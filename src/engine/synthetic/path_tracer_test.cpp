@@ -8,9 +8,9 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/math/split_sum.h"
 #include "core/math/rng.h"
 #include "core/math/sg.h"
+#include "core/math/split_sum.h"
 #include "engine/synthetic/picture.h"
 #include "engine/synthetic/views.h"
 
@@ -60,7 +60,8 @@ TEST(PathTracer, AWhiteBallInAFurnaceReflectsItsReflectance) {
   for (const SeenPoint& s : seen_points(scene, 20)) {
     const double nv = dot(s.point.normal, s.to_viewer);
     if (nv < 0.2) continue;
-    EXPECT_NEAR(radiance_of(scene, s.point, s.to_viewer, 4096).y, 1 + split_sum_integral(nv, 0.5).bias, 0.01) << nv;
+    EXPECT_NEAR(radiance_of(scene, s.point, s.to_viewer, 4096).y, 1 + split_sum_integral(nv, 0.5).bias, 0.01)
+        << nv;
   }
 }
 

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "core/math/split_sum.h"
 #include "core/math/rng.h"
 #include "core/math/sg.h"
+#include "core/math/split_sum.h"
 #include "engine/synthetic/lamps.h"
 #include "engine/synthetic/sample_sequence.h"
 #include "engine/synthetic/scattering.h"
@@ -126,7 +126,8 @@ TEST(Scattering, BurleysBaseReflectsWhatItsMeanSays) {
     for (const float nv : {0.2f, 0.9f}) {
       const Vec3f view{std::sqrt(1 - nv * nv), 0, nv}, color{0.8f, 0.8f, 0.8f};
       const Vec3d got = reflectance(Scattering({0, 0, 1}, view, {roughness, 0, 0}, color, Diffuse::burley));
-      EXPECT_NEAR(got.x, 0.8 * diffuse_view(double(nv), double(roughness)) + split_sum_integral(nv, roughness).bias,
+      EXPECT_NEAR(got.x,
+                  0.8 * diffuse_view(double(nv), double(roughness)) + split_sum_integral(nv, roughness).bias,
                   0.02);
     }
 }

@@ -136,7 +136,7 @@ Scene load_scene(const Tensors& tensors, const Json& head) {
     scene.up = vector_from(reader, "up");
     JsonReader material = reader.object("material");
     scene.material = Material{material.require<float>("roughness"), material.require<float>("specular"),
-                      material.require<float>("metalness")};
+                              material.require<float>("metalness")};
     material.finish();
     for (const char* field : {"sdf", "albedo", "residual_features"}) reader.has(field);
     scene.sdf = load_field("sdf", tensors, head);

@@ -160,7 +160,7 @@ class Trainer {
     Vec3f out;
     for (int c = 0; c < 3; ++c)
       out[c] = display_loss_grad(sent_[sample][c] + residual[c], samples_.colors[sample][c],
-                                  samples_.is_clipped(sample, c)) /
+                                 samples_.is_clipped(sample, c)) /
                float(kBatch);
     return out;
   }
