@@ -29,7 +29,7 @@ Scene ball() {
   std::vector<uint8_t> free_sky(mesh.positions.size() * kSkyDirections / 8, 0xff);
   s.surface = std::make_shared<const Surface>(std::move(mesh), std::move(free_sky));
   s.albedo = color_field();
-  s.material.roughness = 0.4f;
+  s.material = Material{.roughness = 0.4f};
   return s;
 }
 

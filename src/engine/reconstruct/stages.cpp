@@ -74,7 +74,7 @@ void polish(const RunContext& run, RunState& state, int round) {
   brief.effort = Effort::brief;
   brief.seed = run.seed;
   const AppearanceResult appearance =
-      fit_appearance(run.device, {*all.surface, fewer.samples()}, brief, run.progress);
+      fit_appearance(run.device, {all.surface, fewer.samples()}, brief, run.progress);
   check_cancelled(run.progress);
   state.look_seconds = run.progress.elapsed() - begin;
   PolishOptions options = run.preset.polish;
@@ -124,7 +124,7 @@ AppearanceOptions appearance_options(const RunContext& run) {
 void estimate_appearance(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   Scene& scene = state.scene;
   if (state.hits.hits.empty()) state.hits = scene_hits(run, scene, {run.preset.max_hits});
-  AppearanceResult made = fit_appearance(run.device, {*scene.surface, state.hits.samples()},
+  AppearanceResult made = fit_appearance(run.device, {scene.surface, state.hits.samples()},
                                          appearance_options(run), run.progress);
   check_cancelled(run.progress);
   state.hits = {};
@@ -140,7 +140,7 @@ void refine(const RunContext& run, RunState& state, uint64_t subset) {
   Scene& scene = state.scene;
   const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, subset});
   AppearanceResult result{scene.light, scene.material.mean(), scene.albedo, {}};
-  refine_albedo(run.device, {*scene.surface, hits.samples()}, appearance_options(run), result, run.progress,
+  refine_albedo(run.device, {scene.surface, hits.samples()}, appearance_options(run), result, run.progress,
                 run.preset.refinement_steps);
   check_cancelled(run.progress);
   scene.albedo = std::move(result.albedo);

@@ -42,8 +42,8 @@ double error_of_shading(const Material& material, const std::string& light_name)
   const std::vector<Hit> hits = hits_of(ball.surface->mesh());
   const Device device = make_device();
   const std::vector<Vec3f> vertices(ball.surface->mesh().positions.size(), kColor);
-  const Shading got = Lighting(device, *ball.surface, truth.light, vertices, material)
-                          .shade(hits, std::vector<Vec3f>(hits.size(), kColor));
+  const Shading got = Lighting(device, ball.surface, truth.light, vertices, material)
+                          .shade(UniformBatch(hits, material), std::vector<Vec3f>(hits.size(), kColor));
   double error = 0, total = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
     Vec3f sum{0, 0, 0};

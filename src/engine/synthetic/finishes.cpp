@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/math/brdf.h"
 #include "core/math/color.h"
 #include "engine/synthetic/names.h"
 

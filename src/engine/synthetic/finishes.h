@@ -29,8 +29,6 @@ std::vector<std::string> finish_set_names();
 // Usage error: no such set; the names are listed.
 std::vector<Finish> finish_set(const std::string& name, const std::vector<std::string>& regions);
 
-// Below this, GGX in single precision is no longer exact.
-inline constexpr float kMinRoughness = 0.05f;
 // Usage error: a value out of range; `region` names it in the message.
 void require_valid(const Finish&, const std::string& region);
 

@@ -159,11 +159,8 @@ TEST(Picture, IsTheSameForAnyNumberOfThreads) {
   SyntheticScene scene =
       scene_of(teapot_shape(), {{0.3f, 0.5f, 0}, {0.5f, 0.3f, 0.2f}}, light_by_name("studio"));
   const Camera camera = look_at({2.5, -2, 1.5}, {0, 0, 0}, lens_of_size(32, 32));
-  set_threads(1);
-  const TrueView one = draw(scene, camera, {.samples = 4});
-  set_threads(5);
-  const TrueView five = draw(scene, camera, {.samples = 4});
-  set_threads(0);
+  const auto drawn = [&] { return draw(scene, camera, {.samples = 4}); };
+  const TrueView one = Threads(1).run(drawn), five = Threads(5).run(drawn);
   EXPECT_EQ(one.color.data, five.color.data);
   EXPECT_EQ(one.normal.data, five.normal.data);
   EXPECT_GT(mean_difference(one.color, draw(scene, camera, {.samples = 4, .seed = 2}).color), 1e-3);

@@ -104,8 +104,7 @@ TEST(SyntheticCapture, NoiseHasTheDeviationAskedFor) {
 }
 
 class Impatient : public Progress {
- public:
-  bool cancelled() const override { return true; }
+  bool is_cancelled() const override { return true; }
 };
 
 TEST(SyntheticCapture, CanBeInterrupted) {
