@@ -15,6 +15,7 @@ CITATION = re.compile(r'\[([^][(){}]*\b(?:1[89]|20)\d\d\b[^][]*)\]')
 KEY = re.compile(r"[A-Z][\w'-]+(?: et al\.| and [A-Z][\w'-]+)? (?:1[89]|20)\d\d")
 OUTSIDE = re.compile(r'\barchitecture \d\.\d|reference-facts|prototype-findings|goals\.md|\.\./shared')
 HEADING_LINK = re.compile(r'(docs/[\w/-]+\.md)(#[\w-]+)?')
+NUMBERED = re.compile(r'\b(decisions|notebook)/(\d{4})')
 MARKDOWN_LINK = re.compile(r'\]\(([^)#\s]*)(#[^)\s]*)?\)')
 
 
@@ -47,6 +48,13 @@ def source_faults(path, keys):
     for name, heading in HEADING_LINK.findall(text):
         if fault := target_fault(ROOT / name, heading):
             yield fault
+    yield from numbered_faults(text)
+
+
+def numbered_faults(text):
+    for folder, number in NUMBERED.findall(text):
+        if not any((ROOT / 'docs' / folder).glob(f'{number}-*.md')):
+            yield f'there is no docs/{folder}/{number}'
 
 
 def document_faults(path):
@@ -58,6 +66,7 @@ def document_faults(path):
             yield fault
     for match in OUTSIDE.findall(text):
         yield f'{match!r} is not in the repository'
+    yield from numbered_faults(text)
 
 
 def main():
