@@ -20,9 +20,10 @@ bool unit_sphere_span(const Ray& ray, float& near, float& far) {
   return far > near;
 }
 
-OccupancyGrid::OccupancyGrid(int resolution)
-    : n_(resolution), value_(size_t(n_) * n_ * n_, std::numeric_limits<int16_t>::max()) {
+OccupancyGrid::OccupancyGrid(int resolution) : n_(resolution), value_(size_t(n_) * n_ * n_) {
   if (n_ % 4 != 0) fail("an occupancy grid of {} cells an axis: bricks have 4", n_);
+  // As set() would: a grid that is saved and loaded is the same to the bit.
+  for (size_t i = 0; i < value_.size(); ++i) set_distance(i, std::numeric_limits<float>::max());
 }
 
 void OccupancyGrid::set_distance(size_t place, float d) {
