@@ -21,7 +21,8 @@ constexpr double kFullDescent = 2000,
 constexpr double kRefinementStep = 2;  // a step of a refinement: so many of Rates::albedo_step
 constexpr double kReserve = 3;         // reading and writing files: so many of the first surface
 
-constexpr double kMinResidualShare = 0.13;  // of the residual's steps: fewer are not worth their time
+// Shares of all steps: fewer are not worth the time.
+constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinResidualShare = 0.13;
 constexpr size_t kUntimedResidualHits = 1000000;
 
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
@@ -87,8 +88,13 @@ Plan untimed_plan(const ReconstructOptions& options, const Preset& preset) {
 void plan_polish(double t, const Preset& preset, const Costs& c, Plan& p) {
   p.look = c.look;
   p.polish_steps = preset.polish_steps;
-  p.polish = std::min(c.polish, kPolishShare * t);
-  p.polish_rounds = std::min(2, int(kPolishRoundsShare * t / (p.polish + p.look)));
+  const auto seconds = [&](int rounds) {  // of a descent
+    return std::min({c.polish, kPolishShare * t, kPolishRoundsShare * t / rounds - c.look});
+  };
+  p.polish_rounds = seconds(2) >= kMinSecondPolish * c.polish  ? 2
+                    : seconds(1) >= kMinFirstPolish * c.polish ? 1
+                                                               : 0;
+  if (p.polish_rounds > 0) p.polish = seconds(p.polish_rounds);
 }
 
 void plan_appearance(double t, const Preset& preset, const Costs& c, size_t pixels, Plan& p) {
