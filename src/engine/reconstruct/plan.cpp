@@ -9,16 +9,20 @@ namespace cei3d {
 
 namespace {
 
-// Work that is not measured by itself, in multiples of work that is (measured on spot, penguin and teapot).
-constexpr double kGeometryStep = 22;   // a step of the geometry stage: so many of Rates::sdf_step
-constexpr double kStartShapes = 4000;  // carving and stereo: so many of Rates::trial_step
-constexpr double kPolishStep = 60;     // a step of polishing: so many of Rates::sdf_step
+// Work that is not measured by itself, in multiples of work that is: ratios seen in runs on spot.
+constexpr double kMesh = 1.6;  // an object's surface: so many times the sphere's that Rates::mesh is of
+constexpr double kGeometryStep = 13;   // a step of the geometry stage: so many of Rates::sdf_step
+constexpr double kStartShapes = 3500;  // carving and stereo: so many of Rates::trial_step
+constexpr double kPolishStep = 68;     // a step of polishing: so many of Rates::sdf_step
 constexpr double kResidualStep = 8;    // a step of the residual's training: so many of Rates::sdf_step
-constexpr double kSplit = 4e6;         // the linear split: so many of Rates::hit_shaded
-constexpr double kFullSteps = 1000,
-                 kBriefSteps = 400;  // of the appearance stage: so many of Rates::albedo_step
+constexpr double kFullSplit = 1e7, kBriefSplit = 6e6;  // the linear split: so many of Rates::hit_shaded
+constexpr double kFullDescent = 2000,
+                 kBriefDescent = 750;  // lobes and descents: so many of Rates::albedo_step
+constexpr double kRefinementStep = 2;  // a step of a refinement: so many of Rates::albedo_step
+constexpr double kReserve = 3;         // reading and writing files: so many of the first surface
 
-constexpr double kMinResidualShare = 0.13;  // of the residual's steps: fewer are not worth their time
+// Shares of all steps: fewer are not worth the time.
+constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinResidualShare = 0.13;
 constexpr size_t kUntimedResidualHits = 1000000;
 
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
@@ -26,16 +30,16 @@ constexpr size_t kUntimedResidualHits = 1000000;
 constexpr double kSubsetsToRefine = 4, kSubsetsOfRefinement = 2.4;
 
 // Shares of the whole time, at most.
-constexpr double kPolishShare = 0.1;         // a round's descent
-constexpr double kPolishRoundsShare = 0.28;  // all rounds
-constexpr double kFullEffortShare = 0.36;    // the appearance stage at full effort; else it is brief
+constexpr double kPolishShare = 0.1;        // a round's descent
+constexpr double kPolishRoundsShare = 0.3;  // all rounds
+constexpr double kFullEffortShare = 0.36;   // the appearance stage at full effort; else it is brief
 constexpr double kRefinementsShare = 0.1;
-constexpr double kFinerMeshShare = 1.0 / 15;
+constexpr double kFinerMeshShare = 1.0 / 40;
 constexpr double kResidualShare = 0.1;           // the residual's training,
 constexpr double kResidualShadingShare = 0.018;  // and the shading of its pixels before
 constexpr double kTrialsShare = 0.25;            // comparing starts, of the geometry stage
-constexpr double kReserveShare = 0.03;
-constexpr double kMinGeometryShare = 0.35;
+
+constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // of the whole time, at least
 
 // Seconds.
 struct Costs {
@@ -49,16 +53,16 @@ struct Costs {
 Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
   const double hits = double(std::min(preset.max_hits, pixels)),
                brief_hits = double(std::min(preset.brief_hits, pixels)), hit = r.hit_traced + r.hit_shaded;
-  const auto mesh = [&](const MeshingOptions& m) { return r.mesh * square(double(m.resolution)); };
+  const auto mesh = [&](const MeshingOptions& m) { return kMesh * r.mesh * square(double(m.resolution)); };
   const TrialOptions& trial = preset.trial;
   Costs c{};
   c.trials = r.trial_step * (3 * (trial.geometry.prefit_steps + kGeometryStep * trial.steps) + kStartShapes);
   c.surface = mesh(preset.meshing) + hits * r.hit_traced;
-  c.full_appearance = kSplit * r.hit_shaded + hits * hit + kFullSteps * r.albedo_step;
-  c.brief_appearance = kSplit / 2 * r.hit_shaded + brief_hits * hit + kBriefSteps * r.albedo_step;
+  c.full_appearance = kFullSplit * r.hit_shaded + hits * hit + kFullDescent * r.albedo_step;
+  c.brief_appearance = kBriefSplit * r.hit_shaded + brief_hits * hit + kBriefDescent * r.albedo_step;
   c.look = c.surface + c.brief_appearance;
   c.polish = preset.polish_steps * kPolishStep * r.sdf_step;
-  c.refinement = hits * hit + preset.refinement_steps * r.albedo_step;
+  c.refinement = hits * hit + kRefinementStep * preset.refinement_steps * r.albedo_step;
   c.finer_mesh = mesh(preset.finer_meshing);
   c.residual_hit = hit;
   c.residual = preset.residual_steps * kResidualStep * r.sdf_step;
@@ -84,8 +88,13 @@ Plan untimed_plan(const ReconstructOptions& options, const Preset& preset) {
 void plan_polish(double t, const Preset& preset, const Costs& c, Plan& p) {
   p.look = c.look;
   p.polish_steps = preset.polish_steps;
-  p.polish = std::min(c.polish, kPolishShare * t);
-  p.polish_rounds = std::min(2, int(kPolishRoundsShare * t / (p.polish + p.look)));
+  const auto seconds = [&](int rounds) {  // of a descent
+    return std::min({c.polish, kPolishShare * t, kPolishRoundsShare * t / rounds - c.look});
+  };
+  p.polish_rounds = seconds(2) >= kMinSecondPolish * c.polish  ? 2
+                    : seconds(1) >= kMinFirstPolish * c.polish ? 1
+                                                               : 0;
+  if (p.polish_rounds > 0) p.polish = seconds(p.polish_rounds);
 }
 
 void plan_appearance(double t, const Preset& preset, const Costs& c, size_t pixels, Plan& p) {
@@ -107,6 +116,33 @@ void plan_residual(double t, const Costs& c, const Preset& preset, size_t pixels
   p.residual = std::min(c.residual, kResidualShare * t) + c.residual_hit * double(p.residual_hits);
 }
 
+// Seconds of all but the geometry stage.
+double rest_of(const Plan& p) {
+  return p.polish_rounds * (p.polish + p.look) + p.appearance + p.refinements * p.refinement + p.finer_mesh +
+         p.residual + p.reserve;
+}
+
+// Leaves out what is worth least; false: there is nothing more to leave out.
+bool leave_one_out(const Costs& c, Plan& p) {
+  if (p.refinements > 0) {
+    --p.refinements;
+  } else if (p.polish_rounds > 0) {
+    --p.polish_rounds;
+  } else if (p.has_finer_mesh) {
+    p.has_finer_mesh = false;
+    p.finer_mesh = 0;
+  } else if (p.residual_steps > 0) {
+    p.residual_steps = 0;
+    p.residual = 0;
+  } else if (p.effort == Effort::full) {
+    p.effort = Effort::brief;
+    p.appearance = c.brief_appearance;
+  } else {
+    return false;
+  }
+  return true;
+}
+
 Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c) {
   Plan p;
   plan_polish(t, preset, c, p);
@@ -114,10 +150,9 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c) {
   plan_residual(t, c, preset, pixels, p);
   p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
   p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
-  p.reserve = c.surface + kReserveShare * t;
-  const double rest = p.polish_rounds * (p.polish + p.look) + p.appearance + p.refinements * p.refinement +
-                      p.finer_mesh + p.residual + p.reserve;
-  p.geometry = std::max(kMinGeometryShare * t, t - rest);
+  p.reserve = std::max(kReserve * c.surface, kReserveShare * t);
+  while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
+  p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
   p.choose_start = c.trials <= kTrialsShare * p.geometry;
   return p;
 }

@@ -7,12 +7,12 @@ namespace cei3d {
 namespace {
 
 // Of "fast" on two cores.
-constexpr Rates kRates{.sdf_step = 1.1e-3,
-                       .trial_step = 1.1e-3,
-                       .albedo_step = 8.5e-3,
-                       .mesh = 1e-4,
-                       .hit_traced = 1e-6,
-                       .hit_shaded = 1.5e-6};
+constexpr Rates kRates{.sdf_step = 1.5e-3,
+                       .trial_step = 1.5e-3,
+                       .albedo_step = 3.5e-3,
+                       .mesh = 2.5e-5,
+                       .hit_traced = 1.2e-6,
+                       .hit_shaded = 6e-7};
 
 Rates times(Rates r, double factor) {
   for (double* rate : {&r.sdf_step, &r.trial_step, &r.albedo_step, &r.mesh, &r.hit_traced, &r.hit_shaded})
@@ -56,7 +56,7 @@ TEST(Plan, DependsOnTheMachinesSpeedAlone) {
     EXPECT_EQ(here.has_finer_mesh, there.has_finer_mesh);
     EXPECT_EQ(here.choose_start, there.choose_start);
     EXPECT_EQ(here.effort, there.effort);
-    EXPECT_EQ(here.residual_hits, there.residual_hits);
+    EXPECT_NEAR(double(here.residual_hits), double(there.residual_hits), 1);
     EXPECT_NEAR(3 * here.geometry, there.geometry, 1e-6 * there.geometry);
   }
 }

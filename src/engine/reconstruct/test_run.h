@@ -50,7 +50,7 @@ inline Preset shrunken(Preset p) {
     e.base_resolution = 8;
     e.finest_resolution = 24;
     e.log2_table = 10;
-    f.width = 16;
+    f.width = 24;
   };
   for (GeometryOptions* g : {&p.geometry, &p.trial.geometry}) {
     shrink(g->sdf);
@@ -63,6 +63,7 @@ inline Preset shrunken(Preset p) {
   p.appearance.batch = p.polish.batch = 64;
   p.appearance.albedo_steps = 6;
   p.appearance.joint_steps = 28;  // two refreshes of the bounce
+  p.appearance.lobe_steps = 20;
   p.appearance.roughness = 0.3f;
   p.trial.shapes.cells = p.trial.shapes.stereo_cells = 32;
   p.trial.shapes.carving.steps = 20;

@@ -180,6 +180,7 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   progress.report({"lobes", 0.5, -1, ""});
   LobeFitOptions lobes;
   lobes.height = result.split.light.height;
+  lobes.steps = options.lobe_steps;
   lobes.seen_through = 0.5f * reflection_scale(result.material.roughness);
   result.light = fit_lobes(device, result.split.light, lobes, EnvUp::z, progress);
   const bool brief = options.effort == Effort::brief;

@@ -20,9 +20,10 @@ bool unit_sphere_span(const Ray& ray, float& near, float& far) {
   return far > near;
 }
 
-OccupancyGrid::OccupancyGrid(int resolution)
-    : n_(resolution), value_(size_t(n_) * n_ * n_, std::numeric_limits<int16_t>::max()) {
+OccupancyGrid::OccupancyGrid(int resolution) : n_(resolution), value_(size_t(n_) * n_ * n_) {
   if (n_ % 4 != 0) fail("an occupancy grid of {} cells per axis: not a multiple of 4", n_);
+  // The value that set() stores for far away, so that a grid that is saved and loaded has the same bits.
+  for (size_t i = 0; i < value_.size(); ++i) set_distance(i, std::numeric_limits<float>::max());
 }
 
 void OccupancyGrid::set_distance(size_t place, float d) {
