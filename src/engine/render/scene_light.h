@@ -31,7 +31,7 @@ using PoseLights = std::vector<std::shared_ptr<const PoseLight>>;  // by pose
 std::shared_ptr<const PoseLight> light_on_pose(const Device&, const Scene&, size_t k, const Transport&,
                                                const PoseLight* before);
 
-// The colours of a pose's vertices by what they are made of.
+// The colors of a pose's vertices by what they are made of.
 struct VertexColorsKey {
   std::shared_ptr<const Surface> surface;
   std::shared_ptr<const Field> albedo;
@@ -40,7 +40,7 @@ struct VertexColorsKey {
 };
 using VertexColorsCache = LruCache<VertexColorsKey, const std::vector<Vec3f>>;
 
-// Hits by the pose that lights them and the last layer that has to do with them; -1: none.
+// Hits by the pose that lights them and the last layer that applies to them; -1: none.
 struct HitGroups {
   std::vector<std::pair<int, int>> keys;  // pose, layer
   std::vector<uint32_t> of;               // #hits, index of the hit's key
@@ -48,11 +48,11 @@ struct HitGroups {
 
 // How hits were lit, for the next time that the same hits are.
 struct LitHits {
-  Shading shading;  // of lit colours: what is unlit is not in it
+  Shading shading;  // of lit colors: what is unlit is not in it
   Appearance look;
   PoseLights lights;
   HitGroups groups;
-  std::vector<VertexColors> mirrored;  // by group: what reflections see; null: the colours as reconstructed
+  std::vector<VertexColors> mirrored;  // by group: what reflections see; null: the colors as reconstructed
   size_t kept = 0;                     // hits whose light was taken over
 };
 
@@ -60,7 +60,7 @@ class SceneLight {
  public:
   // transports: of the scene's poses; see scene_transports(). They can serve several lights.
   SceneLight(const Device&, const Scene&, const Transports& transports);
-  // lights: light_on_pose() of each. colors: where colours of vertices are kept, may be null; it has to
+  // lights: light_on_pose() of each. colors: where colors of vertices are kept, may be null; it has to
   // outlive this.
   SceneLight(const Device&, const Scene&, PoseLights lights, VertexColorsCache* colors);
 
@@ -88,7 +88,7 @@ Transports scene_transports(const Scene&);
 std::shared_ptr<const Transport> transport_of_pose(const Scene&, size_t k);
 const std::shared_ptr<const Surface>& surface_of_pose(const Scene&, size_t k);
 
-// What is shown, with the colours that no light falls on.
+// What is shown, with the colors that no light falls on.
 Shading with_unlit(Shading lit, const Appearance&);
 
 }  // namespace cei3d
