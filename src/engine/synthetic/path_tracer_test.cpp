@@ -102,7 +102,7 @@ TEST(PathTracer, ADiffuseBallUnderOneGaussianHasItsIrradiance) {
       // Seen along the normal, where microfacets of no reflectance at right angles show least.
       const Vec3d got = radiance_of(scene, p, n, 1024);
       EXPECT_NEAR(got.y, truth, 0.025 * peak) << lambda;
-      EXPECT_NEAR(got.x, 2 * got.y, 1e-3 * got.x);
+      EXPECT_NEAR(got.x, 2 * got.y, 1e-3 * got.x + 1e-6);
     }
   }
 }
@@ -181,9 +181,11 @@ TEST(Picture, OnATurntableASquareBoxLooksTheSameFromItsFourSides) {
     eye = {-eye.y, eye.x, eye.z};
     const Camera camera = look_at(eye, {0, 0, 0}, lens_of_size(32, 32));
     scene.light = turned_with(lamps, camera.center);
-    EXPECT_LT(mean_difference(draw(scene, camera, {.samples = 128}).color, truth), 3e-3) << side;
+    const double turned = mean_difference(draw(scene, camera, {.samples = 128}).color, truth);
     scene.light = turned_with(lamps, first.center);
-    EXPECT_GT(mean_difference(draw(scene, camera, {.samples = 128}).color, truth), 1e-2) << side;
+    const double still = mean_difference(draw(scene, camera, {.samples = 128}).color, truth);
+    EXPECT_LT(turned, 1.5e-3) << side;  // what is left is noise
+    EXPECT_GT(still, 4e-3) << side;
   }
 }
 
