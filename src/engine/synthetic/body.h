@@ -15,8 +15,8 @@ class Body {
   // Negative inside; outside at most the distance to the surface.
   virtual float distance(Vec3f p) const = 0;
   virtual Vec3f normal(Vec3f p) const = 0;  // unit, outward: the gradient of the distance
-  // Distance along the ray to the surface, exact to about 1e-6; negative: the ray misses. The origin lies
-  // outside.
+  // Distance along the ray to the surface, exact to about 1e-6 (to kTouch where the ray grazes it); negative:
+  // the ray misses. The origin lies outside.
   virtual float cast(const Ray& ray) const = 0;
   // Whether the ray comes nearer to the surface than `radius`.
   virtual bool passes_within(const Ray& ray, float radius) const = 0;

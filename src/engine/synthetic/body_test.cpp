@@ -35,9 +35,9 @@ TEST(Body, RaysMeetABallWhereTheQuadraticFormulaSays) {
     const float t = ball.body->cast(ray);
     ASSERT_EQ(t >= 0, inside > 0) << i;
     ASSERT_EQ(t >= 0, ball.body->passes_within(ray, 0)) << i;
-    if (inside < 0) continue;
+    if (inside < 0.05) continue;  // nearly grazing: a little less exact
     ++hits;
-    EXPECT_NEAR(t, -b - std::sqrt(inside), 2e-5) << i;
+    EXPECT_NEAR(t, -b - std::sqrt(inside), 1e-5) << i;
   }
   EXPECT_GT(hits, 500);
 }

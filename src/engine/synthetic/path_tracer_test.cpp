@@ -103,7 +103,7 @@ TEST(PathTracer, ADiffuseBallUnderOneGaussianHasItsIrradiance) {
       // Seen along the normal, where microfacets of no reflectance at right angles show least.
       const Vec3d got = radiance_of(scene, p, n, 1024);
       EXPECT_NEAR(got.y, truth, 0.025 * peak) << lambda;
-      EXPECT_NEAR(got.x, 2 * got.y, 1e-3 * got.x);
+      EXPECT_NEAR(got.x, 2 * got.y, 1e-3 * got.x + 1e-6);
     }
   }
 }
@@ -171,17 +171,19 @@ TEST(Picture, IsTheSameForAnyNumberOfThreads) {
 TEST(Picture, OnATurntableASquareBoxLooksTheSameFromItsFourSides) {
   const SgMixture lamps = light_by_name("daylight");
   SyntheticScene scene = scene_of(box_shape(), {{0.4f, 0.5f, 0}, {0.5f, 0.3f, 0.2f}}, lamps);
-  const Camera first = look_at({3, 1, 1.5}, {0, 0, 0}, lens_of_size(32, 32));
+  const Camera first = look_at({3, 1, 1.5}, {0, 0, 0}, lens_of_size(24, 24));
   scene.light = turned_with(lamps, first.center);
-  const Image truth = draw(scene, first, {.samples = 128}).color;
+  const Image truth = draw(scene, first, {.samples = 512}).color;
   Vec3d eye = first.center;
   for (int side = 1; side < 4; ++side) {
     eye = {-eye.y, eye.x, eye.z};
-    const Camera camera = look_at(eye, {0, 0, 0}, lens_of_size(32, 32));
+    const Camera camera = look_at(eye, {0, 0, 0}, lens_of_size(24, 24));
     scene.light = turned_with(lamps, camera.center);
-    EXPECT_LT(mean_difference(draw(scene, camera, {.samples = 128}).color, truth), 3e-3) << side;
+    const double turned = mean_difference(draw(scene, camera, {.samples = 512}).color, truth);
     scene.light = turned_with(lamps, first.center);
-    EXPECT_GT(mean_difference(draw(scene, camera, {.samples = 128}).color, truth), 1e-2) << side;
+    const double still = mean_difference(draw(scene, camera, {.samples = 512}).color, truth);
+    EXPECT_LT(turned, 1.5e-3) << side;  // what is left is noise
+    EXPECT_GT(still, 4e-3) << side;
   }
 }
 

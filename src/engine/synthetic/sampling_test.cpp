@@ -48,7 +48,7 @@ TEST(SampleSequence, PairsOfASampleKnowNothingOfEachOther) {
 }
 
 TEST(LightSampler, RadianceOverDensityIsTheIntegralOfTheLight) {
-  const SgMixture light{{{{0, 0, 1}, 0, {0.1f, 0.2f, 0.3f}},
+  const SgMixture light{{{{0, 0, 1}, 0, {0.01f, 0.02f, 0.03f}},
                          {normalize(Vec3f{1, 2, -1}), 5, {1, 0.5f, 0.2f}},
                          {{0, -1, 0}, 3000, {200, 300, 100}}}};
   const LightSampler sampler(light);
@@ -72,8 +72,8 @@ TEST(LightSampler, RadianceOverDensityIsTheIntegralOfTheLight) {
     true_flux += to_double(l.axis) * (double(l.mu.y) * sg_integral(x) * mean);
   }
   for (int c = 0; c < 3; ++c) {
-    EXPECT_NEAR(sum[c], truth[c], 0.003 * truth[c]);
-    EXPECT_NEAR(flux[c], true_flux[c], 0.004 * length(true_flux));
+    EXPECT_NEAR(sum[c], truth[c], 0.006 * truth[c]);
+    EXPECT_NEAR(flux[c], true_flux[c], 0.012);  // four standard deviations
   }
 }
 
