@@ -5,7 +5,7 @@ source "$(dirname "$0")/lib.sh"
 # stopped SIGNAL CODE STAGE ARGUMENTS...: reconstruct gets the signal as soon as the state after the stage is saved,
 # which is in the next stage, and exits with the code.
 stopped() {
-  local signal=$1 code=$2 finished="\"finished\":true,\"rates\":null,\"stage\":\"$3\"" pid status=0
+  local signal=$1 code=$2 finished="\"stage\":\"$3\",\"finished\":true" pid status=0
   shift 3
   "$program" reconstruct "$@" -o "$out/first" &
   pid=$!

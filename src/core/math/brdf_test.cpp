@@ -54,9 +54,9 @@ TEST(Reflection, GaussiansHoldTheEnergyOfTheExactLobeRingByRing) {
     const auto mixture = [&](double t) {
       double sum = 0;
       for (int j = 0; j < kReflectionLobes; ++j) {
-        const double s = kReflectionNodes[j] * reflection_scale(roughness);
+        const double s = reflection_node(j) * reflection_scale(roughness);
         sum +=
-            kReflectionShare[j] * s / (2 * M_PI) / (1 - std::exp(-2 * s)) * std::exp(s * (std::cos(t) - 1));
+            reflection_share(j) * s / (2 * M_PI) / (1 - std::exp(-2 * s)) * std::exp(s * (std::cos(t) - 1));
       }
       return sum;
     };
@@ -76,7 +76,7 @@ TEST(Reflection, GaussiansHoldTheEnergyOfTheExactLobeRingByRing) {
           << roughness << ' ' << x;
     }
     double all = 0;
-    for (const float share : kReflectionShare) all += double(share);
+    for (int j = 0; j < kReflectionLobes; ++j) all += double(reflection_share(j));
     EXPECT_NEAR(all, 1, 1e-6);
   }
 }

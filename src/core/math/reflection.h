@@ -16,11 +16,17 @@ namespace cei3d {
 // angle: .01 up to roughness 0.45, .07 at 0.8). The broad ones carry the sun to points whose mirror direction
 // is dark.
 inline constexpr int kReflectionLobes = 5;
-inline constexpr float kReflectionNodes[5] = {0.0073650f, 0.0354975f, 0.1154150f, 0.3714659f, 1.3242071f};
+HD constexpr float reflection_node(int j) {
+  constexpr float kNodes[kReflectionLobes] = {0.0073650f, 0.0354975f, 0.1154150f, 0.3714659f, 1.3242071f};
+  return kNodes[j];
+}
 // Fraction of the energy in each.
-inline constexpr float kReflectionShare[5] = {0.0267184f, 0.0805499f, 0.1724400f, 0.5452267f, 0.1750652f};
+HD constexpr float reflection_share(int j) {
+  constexpr float kShares[kReflectionLobes] = {0.0267184f, 0.0805499f, 0.1724400f, 0.5452267f, 0.1750652f};
+  return kShares[j];
+}
 
-// Sharpness of Gaussian j is kReflectionNodes[j] * reflection_scale(roughness).
+// Sharpness of Gaussian j is reflection_node(j) * reflection_scale(roughness).
 template <class T>
 HD T reflection_scale(T roughness) {
   const T alpha = roughness * roughness;
@@ -44,11 +50,11 @@ HD ReflectionLobe<T> reflection_lobe(T roughness) {
   ReflectionLobe<T> lobe;
   T above(0.0f);
   for (int j = 0; j < kReflectionLobes; ++j) {
-    lobe.lambda[j] = T(kReflectionNodes[j]) * scale;
-    above += T(kReflectionShare[j]) / (T(1.0f) + exp(-lobe.lambda[j]));
+    lobe.lambda[j] = T(reflection_node(j)) * scale;
+    above += T(reflection_share(j)) / (T(1.0f) + exp(-lobe.lambda[j]));
   }
   for (int j = 0; j < kReflectionLobes; ++j)
-    lobe.weight[j] = T(kReflectionShare[j]) / (sg_integral(lobe.lambda[j]) * above);
+    lobe.weight[j] = T(reflection_share(j)) / (sg_integral(lobe.lambda[j]) * above);
   return lobe;
 }
 
@@ -66,9 +72,9 @@ HD ReflectionLobeGrad<T> reflection_lobe_grad(T roughness) {
   T above(0.0f), d_above(0.0f);
   for (int j = 0; j < kReflectionLobes; ++j) {
     const T e = exp(-g.lobe.lambda[j]), inverse = T(1.0f) / (T(1.0f) + e);
-    g.d_lambda[j] = T(kReflectionNodes[j]) * d_scale;
-    above += T(kReflectionShare[j]) * inverse;
-    d_above += T(kReflectionShare[j]) * e * inverse * inverse * g.d_lambda[j];
+    g.d_lambda[j] = T(reflection_node(j)) * d_scale;
+    above += T(reflection_share(j)) * inverse;
+    d_above += T(reflection_share(j)) * e * inverse * inverse * g.d_lambda[j];
   }
   for (int j = 0; j < kReflectionLobes; ++j) {
     const T d_integral = sg_integral_slope(g.lobe.lambda[j]) * g.d_lambda[j];

@@ -178,8 +178,7 @@ TEST(Transport, AWhiteCavityGlows) {
   Mesh mesh;
   add_sphere(mesh, {0, 0, -0.4f}, 0.5f);
   add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
-  const Surface surface(mesh);
-  const Transport transport(surface);
+  const Transport transport(std::make_shared<const Surface>(mesh));
   const SkyRadiance sky(kSkyDirections, Vec3f{1, 1, 1});
   const auto seen = transport.sky(sky), open = transport.open_sky(sky);
   const std::vector<Vec3f> one(seen.size(), Vec3f{1, 1, 1});

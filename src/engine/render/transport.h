@@ -19,9 +19,6 @@ class Transport {
   // Casts a ray along every blocked direction above a vertex's horizon. which: #V, 1 for the vertices that
   // are asked for; the others get zeros. Empty: all.
   explicit Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t> which = {});
-  // Of a surface that its owner keeps for as long as the transport lives.
-  explicit Transport(const Surface& surface)
-      : Transport(std::shared_ptr<const Surface>(std::shared_ptr<void>(), &surface)) {}
 
   // Irradiance of every vertex from the sky it sees. #V
   std::vector<Vec3f> sky(const SkyRadiance&) const;

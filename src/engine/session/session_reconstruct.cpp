@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/clock.h"
 #include "core/base/error.h"
+#include "core/base/json_reader.h"
 #include "core/compute/device.h"
 #include "engine/capture/capture_images.h"
 #include "engine/capture/check.h"
@@ -35,14 +36,17 @@ Json options_json(const ReconstructRequest& r) {
 }
 
 ReconstructOptions options_from_json(const Json& j) {
+  JsonReader reader(j, "The options of the reconstruction");
   ReconstructOptions o;
-  o.preset = j.at("preset").get<std::string>();
-  o.seconds = j.at("seconds").get<double>();
-  o.iterations = j.at("iterations").get<int>();
-  o.seed = j.at("seed").get<uint64_t>();
-  o.downscale = j.at("downscale").get<int>();
-  o.test_every = j.at("test_every").get<int>();
-  o.views = j.value("views", 0);  // projects of the first days have none
+  o.preset = reader.require<std::string>("preset");
+  o.seconds = reader.require<double>("seconds");
+  o.iterations = reader.require<int>("iterations");
+  o.seed = reader.require<uint64_t>("seed");
+  o.downscale = reader.require<int>("downscale");
+  o.test_every = reader.require<int>("test_every");
+  o.views = reader.optional("views", 0);  // older projects have none
+  reader.has("format");
+  reader.finish();
   return o;
 }
 

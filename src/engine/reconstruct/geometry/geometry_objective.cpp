@@ -60,7 +60,7 @@ Vec3f GeometryObjective::color_loss(const RayBatch& batch, int r, const VolumeRe
   stats.loss += per_ray_ * loss.value;
   stats.squared_error += dot(error, error) / 3;
   // Reported, but no loss: coverage is always a little below one, so that such a loss would never come to
-  // rest (decisions/0004).
+  // rest (docs/decisions/0020).
   stats.mask += std::abs(renderer.coverage()[r] - batch.targets[r].alpha);
   return loss.gradient * per_ray_;
 }

@@ -18,7 +18,7 @@ GeometrySchedule schedule_at(const GeometryOptions& o, double u) {
   s.step = std::clamp(o.sampling.step_width / s.inv_s, o.sampling.step_min, o.sampling.step_max);
   s.band = std::max(4 / s.inv_s, 1.5f * s.step);
   // Early, the surface moves and bends between two updates of the grid: as little slack from the beginning
-  // costs half a decibel on thin rods (decisions/0013).
+  // costs half a decibel on thin rods (docs/notebook/0013).
   s.slack = u >= o.tight_grid_from ? 0.25f : 1;
   s.view_dependent = true;
   s.anchor = o.loss.anchor * s.inv_s * float(std::max(0.0, 1 - u / o.anchor_until));
