@@ -20,8 +20,8 @@ struct Chunks {
   int count;
   const std::function<void(int)>& body;
   std::atomic<int> next{0};
-  std::mutex mutex;
-  std::exception_ptr error;
+  std::mutex mutex{};
+  std::exception_ptr error{};
 
   void work() {
     const bool nested = in_parallel;
