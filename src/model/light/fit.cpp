@@ -147,7 +147,7 @@ class LobeFit {
 
 SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOptions& options, EnvUp up,
                     const Progress& progress) {
-  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a colour picture");
+  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a color picture");
   for (const float x : lat_long.data)
     if (!std::isfinite(x)) fail("light map: a value is not finite");
   Image map = env_resample(lat_long, std::min(options.height, lat_long.height));
