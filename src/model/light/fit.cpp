@@ -16,8 +16,6 @@ namespace {
 constexpr int kRows = 7;  // axis, sharpness, color
 constexpr float kRate = 0.03f, kBeta1 = 0.9f, kBeta2 = 0.99f;
 
-int padded(int n) { return (n + kPanel - 1) / kPanel * kPanel; }
-
 Image blurred(const Image& map, float sharpness, EnvUp up) {
   Image out(map.width, map.height, 3);
   std::vector<Vec3f> directions;
@@ -53,7 +51,10 @@ SgLobe unblurred(SgLobe seen, float sharpness) {
 class LobeFit {
  public:
   LobeFit(const Image& map, int lobes, float sharpest, EnvUp up)
-      : lobes_(lobes), sharpest_(sharpest), p_(padded(lobes)), cells_(padded(map.width * map.height)) {
+      : lobes_(lobes),
+        sharpest_(sharpest),
+        p_(padded_to_panels(lobes)),
+        cells_(padded_to_panels(map.width * map.height)) {
     for (auto* v : {&raw_, &gradient_, &m_, &v_, &planes_, &d_planes_}) v->assign(size_t(kRows) * p_, 0);
     directions_.assign(3 * size_t(cells_), 0);
     roots_ = d_radiance_ = directions_;
