@@ -20,7 +20,7 @@ function(cei3d_instruction_sets path)
   foreach(isa ${isas})
     add_library(${target}_${isa} OBJECT ${source})
     target_include_directories(${target}_${isa} PRIVATE ${CMAKE_SOURCE_DIR}/src)
-    # GCC 12 takes the undefined operands inside its own intrinsics headers for uninitialised variables.
+    # GCC 12 takes the undefined operands inside its own intrinsics headers for uninitialized variables.
     target_compile_options(${target}_${isa} PRIVATE ${CEI3D_FLAGS} $<$<CONFIG:Release>:-O3>
       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> -Wno-uninitialized ${flags_${isa}})
     target_compile_definitions(${target}_${isa} PRIVATE CEI3D_ISA=${isa} CEI3D_WIDTH=${width_${isa}})

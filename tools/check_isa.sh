@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # check_isa.sh CXX: no weak symbol of the AVX objects may be shared with other objects: the linker would keep one copy of
 # it, perhaps the one that this processor cannot run. A name that mentions Lanes<8> or Lanes<16> exists only there.
-# Compiled without inlining, so that what an optimiser happens to hide is seen too.
+# Compiled without inlining, so that what an optimizer happens to hide is seen too.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 cxx=${1:-g++}

@@ -6,9 +6,13 @@
 // 32 floats apart.
 #pragma once
 
+#include "core/math/scalar.h"
+
 namespace cei3d {
 
 inline constexpr int kPanel = 32;  // samples per panel
+// n rounded up to whole panels.
+HD constexpr int padded_to_panels(int n) { return (n + kPanel - 1) / kPanel * kPanel; }
 
 // y[o] = sum_i weights[o][i] x[i] (+ bias[o]) for every sample of every panel.
 struct LinearArgs {

@@ -57,15 +57,15 @@ TEST(Trilinear, ReproducesWhatIsLinearAlongEachAxis) {
   const auto f = [](double x, double y, double z) {
     return 1 + 2 * x - y + 3 * z + x * y - 2 * y * z + x * y * z;
   };
-  const auto centre = [](int i) { return 2 * (i + 0.5) / kCells - 1; };
-  const auto cell = [&](int x, int y, int z) { return float(f(centre(x), centre(y), centre(z))); };
+  const auto center = [](int i) { return 2 * (i + 0.5) / kCells - 1; };
+  const auto cell = [&](int x, int y, int z) { return float(f(center(x), center(y), center(z))); };
   for (uint64_t i = 0; i < 200; ++i) {
-    const Vec3d p = random_vector(i) * 0.8;  // between the outermost centres, at +-0.875
+    const Vec3d p = random_vector(i) * 0.8;  // between the outermost centers, at +-0.875
     EXPECT_NEAR(trilinear(to_float(p), kCells, cell), f(p.x, p.y, p.z), 2e-5);
   }
 }
 
-TEST(Trilinear, BeyondTheOutermostCentresIsAsThere) {
+TEST(Trilinear, BeyondTheOutermostCentersIsAsThere) {
   const auto cell = [](int x, int y, int z) { return float(x + 10 * y + 100 * z); };
   EXPECT_NEAR(trilinear({-1, -1, -1}, 4, cell), 0, 1e-6);
   EXPECT_NEAR(trilinear({-7, -1, -1}, 4, cell), 0, 1e-6);

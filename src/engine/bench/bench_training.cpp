@@ -27,7 +27,7 @@ constexpr double kPosition = 0.5;  // in the schedule: all levels open, the surf
 struct Subject {
   std::string name;
   PixelStore pixels;
-  double footprint = 0;  // of a pixel at the object's centre, mean over the views
+  double footprint = 0;  // of a pixel at the object's center, mean over the views
 };
 
 void add_view(Subject& s, const Camera& unit_camera, const Image& image) {
@@ -77,7 +77,7 @@ struct PartName {
   const char* name;
 };
 constexpr std::array<PartName, kStepParts> kParts{{{StepPart::march, "march and values"},
-                                                   {StepPart::forward, "jets and colours, forward"},
+                                                   {StepPart::forward, "jets and colors, forward"},
                                                    {StepPart::backward, "backward"},
                                                    {StepPart::scatter, "encoding gradients"},
                                                    {StepPart::adam, "Adam"},

@@ -26,7 +26,7 @@ struct TestView {
   Camera camera;
 };
 
-// n cameras on a spiral around the ball, z up, each aimed a little beside its centre.
+// n cameras on a spiral around the ball, z up, each aimed a little beside its center.
 inline std::vector<TestView> test_views(const TestBall& ball, int n, int width = 64, int height = 48) {
   std::vector<TestView> views;
   for (int i = 0; i < n; ++i) {

@@ -30,7 +30,7 @@ std::vector<uint8_t> touched_pixels(const Device& device, const Scene& scene, co
 }
 
 // A pixel's color is a mean of samples up to one pixel away.
-std::vector<uint8_t> with_neighbours(const std::vector<uint8_t>& mask, int width, int height) {
+std::vector<uint8_t> with_neighbors(const std::vector<uint8_t>& mask, int width, int height) {
   std::vector<uint8_t> out(mask.size(), 0);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
@@ -50,7 +50,7 @@ ChangeReport compare_views(const Device& device, RenderCache& frames, const Scen
   r.before = shade_view(device, before, frames.light(before), a->buffer);
   r.after = shade_view(device, after, frames.light(after), b->buffer);
   const std::vector<uint8_t> inside =
-      with_neighbours(touched_pixels(device, after, a->buffer, b->buffer), camera.width, camera.height);
+      with_neighbors(touched_pixels(device, after, a->buffer, b->buffer), camera.width, camera.height);
   for (size_t p = 0; p < inside.size(); ++p) {
     const bool changed =
         std::memcmp(&r.before.rgb.data[4 * p], &r.after.rgb.data[4 * p], 4 * sizeof(float)) != 0;

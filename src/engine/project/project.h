@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The project folder: a reconstructed object, its edits and what they were made from.
 //
-//   project.json            format version, normalisation, options of the reconstruction
+//   project.json            format version, normalization, options of the reconstruction
 //   dataset.json            cameras, splits, pictures (engine/project/dataset.h)
 //   base/NNNNNN.ckpt.json   the last two training states; base/latest names the newest
 //   base/scene.json         the reconstructed object

@@ -15,7 +15,7 @@ namespace cei3d {
 
 struct Pixel {
   uint16_t view, x, y;
-  std::array<uint8_t, 4> srgba;  // display-encoded colour, straight alpha
+  std::array<uint8_t, 4> srgba;  // display-encoded color, straight alpha
 };
 
 class PixelStore {
@@ -38,7 +38,7 @@ class PixelStore {
   std::vector<std::vector<uint8_t>> masks_;
 };
 
-// Colour over white and coverage, display-encoded.
+// Color over white and coverage, display-encoded.
 struct Target {
   Vec3f srgb;
   float alpha;

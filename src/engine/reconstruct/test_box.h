@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: a box with a pit in its top, and pictures of it. No silhouette shows the pit, the colours do.
+// For tests: a box with a pit in its top, and pictures of it. No silhouette shows the pit, the colors do.
 #pragma once
 
 #include <cmath>

@@ -10,7 +10,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kCells = 64, kNodes = kCells + 1;  // along a side: some 2 degrees apart
-constexpr int kCount = kNodes * kNodes, kStride = (kCount + kPanel - 1) / kPanel * kPanel;
+constexpr int kCount = kNodes * kNodes, kStride = padded_to_panels(kCount);
 
 float position_of(int node) { return float(node) * (2.0f / kCells) - 1; }
 

@@ -21,8 +21,6 @@ struct Planes {
   Vec3f get(int r, size_t i) { return load_planes<float>(row(r), kBlock, int(i)); }
 };
 
-int padded(size_t n) { return int((n + kPanel - 1) / kPanel * kPanel); }
-
 struct ReflectionPlanes {
   Planes<3> mirrors;
   Planes<1> roughness;
@@ -66,7 +64,7 @@ Planes<ShadingRows::kRows> shade_grad(const Device& device, const HitBatch& batc
                             .d_diffuse = d_out.row(0),
                             .d_specular = d_out.row(0),
                             .d_points = d_points.row(0)},
-                           padded(batch.size()));
+                           padded_to_panels(int(batch.size())));
   return d_points;
 }
 
@@ -109,7 +107,7 @@ Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface,
 
 void Lighting::set_lobes(const SgMixture& light) {
   n_lobes_ = int(light.lobes.size());
-  padded_ = padded(light.lobes.size());
+  padded_ = padded_to_panels(n_lobes_);
   lobe_planes_.assign(size_t(7) * padded_, 0);
   for (int k = 0; k < n_lobes_; ++k) {
     const SgLobe& l = light.lobes[k];
@@ -129,7 +127,7 @@ std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
                                 .mirrors = in.mirrors.row(0),
                                 .roughness = in.roughness.row(0),
                                 .out = out.row(0)},
-                               padded(batch.size()));
+                               padded_to_panels(int(batch.size())));
   std::vector<Vec3f> radiance(batch.size());
   for (size_t i = 0; i < radiance.size(); ++i) radiance[i] = out.get(0, i);
   return radiance;
@@ -168,7 +166,8 @@ std::vector<ShadingTerms<float>> Lighting::terms(const HitBatch& batch,
     const HitBatch part = batch.part(begin, end);
     Planes<ShadingRows::kRows> points = shading_points(part, light.subspan(size_t(begin), part.size()), {});
     Planes<Shade::kOutputs> terms;
-    device_.launch<Shade>({split_sum_table(), kBlock, points.row(0), terms.row(0)}, padded(part.size()));
+    device_.launch<Shade>({split_sum_table(), kBlock, points.row(0), terms.row(0)},
+                          padded_to_panels(int(part.size())));
     for (size_t i = 0; i < part.size(); ++i)
       out[size_t(begin) + i] = {terms.get(0, i), terms.get(3, i), terms.get(6, i)};
   });
@@ -214,7 +213,7 @@ Lighting::ReflectionGrad Lighting::reflection_grad(const HitBatch& batch,
                                     .d_reflected = d_reflected.row(0),
                                     .d_mirrors = d_mirrors.row(0),
                                     .d_roughness = d_roughness.row(0)},
-                                   padded(batch.size()));
+                                   padded_to_panels(int(batch.size())));
   ReflectionGrad out;
   for (size_t i = 0; i < batch.size(); ++i) {
     out.d_mirror.push_back(d_mirrors.get(0, i));

@@ -86,7 +86,7 @@ TEST(Lighting, AConvexBodyUnderAUniformSkyReflectsItsAlbedoAndItsReflectance) {
   }
 }
 
-TEST(Lighting, AHitDoesNotCareAboutItsNeighboursInTheBatch) {
+TEST(Lighting, AHitDoesNotCareAboutItsNeighborsInTheBatch) {
   Mesh mesh;
   add_sphere(mesh, {0, 0, -0.3f}, 0.5f);
   add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
@@ -318,9 +318,9 @@ class LightingGrad : public testing::Test {
   void SetUp() override {
     Mesh mesh;
     add_sphere(mesh, {0, 0, 0}, 0.7f);
-    const std::vector<Vec3f> grey(mesh.positions.size(), Vec3f{0.5f, 0.5f, 0.5f});
+    const std::vector<Vec3f> gray(mesh.positions.size(), Vec3f{0.5f, 0.5f, 0.5f});
     surface_ = std::make_shared<const Surface>(std::move(mesh));
-    lighting_ = std::make_unique<Lighting>(device_, surface_, some_sky(), grey, Material{});
+    lighting_ = std::make_unique<Lighting>(device_, surface_, some_sky(), gray, Material{});
     hits_ = some_hits(surface_->mesh(), kHits);
     for (size_t i = 0; i < kHits; ++i) {
       const auto random = [&](uint64_t k) { return Rng(1, i, k).uniform(); };

@@ -82,7 +82,7 @@ TEST(PosedScene, TurningTheObjectIsTurningCameraAndLight) {
   EXPECT_GT(difference(picture(before, camera).albedo, b.albedo), 5e-3);  // else the test says nothing
 }
 
-// A paint-like layer: a flat colour within a ball around a point of the surface.
+// A paint-like layer: a flat color within a ball around a point of the surface.
 EditLayer spot(Vec3f where, Vec3f color) {
   EditLayer layer;
   layer.id = "0002-spot";
@@ -113,7 +113,7 @@ TEST(PosedScene, PaintSticksToItsMatterWheneverTheShapeChanges) {
   EXPECT_GT(red_pixels, 60);
 }
 
-// Whether any sample within one pixel of the centre of pixel p meets something that the present pose shaped.
+// Whether any sample within one pixel of the center of pixel p meets something that the present pose shaped.
 bool near_change(const Scene& scene, const GBuffer& g, size_t p) {
   const int x = int(p) % g.width, y = int(p) / g.width;
   for (int qy = std::max(0, y - 1); qy <= std::min(g.height - 1, y + 1); ++qy)
@@ -168,7 +168,7 @@ TEST(PosedScene, PixelsThatSeeNothingOfTheChangeAreBitIdentical) {
   EXPECT_GT(other, 500);
 }
 
-// The upper cap is cut off and closed by a flat lid of its own colour.
+// The upper cap is cut off and closed by a flat lid of its own color.
 Scene with_lid(const Scene& scene, float height) {
   const Mesh& mesh = scene.surface->mesh();
   Reshape r;
@@ -191,7 +191,7 @@ Scene with_lid(const Scene& scene, float height) {
   return with_layer(scene, layer_of(std::move(r)));
 }
 
-TEST(PosedScene, NewMatterHasItsOwnColourAndNormalAndCanBePainted) {
+TEST(PosedScene, NewMatterHasItsOwnColorAndNormalAndCanBePainted) {
   const Scene cut = with_lid(sphere_scene(), 0.4f);
   const Camera camera = camera_towards_origin({0.1, -0.3, 3}, kSize);
   const auto middle = [&](const Image& i) { return i.at(kSize / 2, kSize / 2); };

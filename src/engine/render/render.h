@@ -43,7 +43,7 @@ std::vector<Hit> trace_rays(const Device&, const Scene&, std::span<const Ray> ra
 // (docs/notebook/0015).
 GBuffer trace_view(const Device&, const Scene&, const Camera& camera, int samples = 2);
 
-// A pixel is the tent-weighted mean of the samples within one pixel of its centre, which is close to the
+// A pixel is the tent-weighted mean of the samples within one pixel of its center, which is close to the
 // filters that renderers and lenses have (Blackman-Harris of 1.5 pixels, Gaussians): on ground-truth surfaces
 // its coverage comes 9 dB nearer to the truth than a box's.
 struct Frame {

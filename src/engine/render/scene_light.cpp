@@ -171,7 +171,7 @@ SeenMaterials SceneLight::materials_as_of(int layer, int pose) const {
 
 HitGroups SceneLight::groups_of(std::span<const Hit> hits, std::span<const int> layers) const {
   HitGroups groups;
-  uint32_t last = 0;  // neighbours are mostly of one group
+  uint32_t last = 0;  // neighbors are mostly of one group
   for (size_t i = 0; i < hits.size(); ++i) {
     const int pose = scene_.poses.empty() ? 0 : scene_.poses.back()->shaped_in(hits[i].triangle);
     const std::pair<int, int> key{pose, max(layers[i], everywhere_)};

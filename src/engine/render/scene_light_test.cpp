@@ -27,7 +27,7 @@ Mesh two_spheres() {
   return both;
 }
 
-// Coloured metal under a white sky.
+// Colored metal under a white sky.
 Scene metal_scene() {
   Scene s = sphere_scene();
   s.surface = std::make_shared<Surface>(two_spheres());
@@ -41,7 +41,7 @@ Scene metal_scene() {
   return s;
 }
 
-EditLayer grey(const Scene& scene, const std::string& id) {
+EditLayer gray(const Scene& scene, const std::string& id) {
   auto field = std::make_shared<Field>(scene.albedo->config(), 3);
   for (Param& p : field->params().all()) std::fill(p.value.begin(), p.value.end(), 0.0f);
   EditLayer layer;
@@ -50,14 +50,14 @@ EditLayer grey(const Scene& scene, const std::string& id) {
   return layer;
 }
 
-EditLayer grey_everywhere(const Scene& scene) {
-  EditLayer layer = grey(scene, "0001-paint");
+EditLayer gray_everywhere(const Scene& scene) {
+  EditLayer layer = gray(scene, "0001-paint");
   layer.everywhere = true;
   return layer;
 }
 
 // side: 1 the upper one, -1 the lower.
-EditLayer grey_sphere(const Scene& scene, const std::string& id, float side) {
+EditLayer gray_sphere(const Scene& scene, const std::string& id, float side) {
   Region::Points points;
   const Mesh& mesh = scene.surface->mesh();
   for (size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -66,7 +66,7 @@ EditLayer grey_sphere(const Scene& scene, const std::string& id, float side) {
     points.normals.push_back(mesh.normals[v]);
     points.reach.push_back(0.05f);
   }
-  EditLayer layer = grey(scene, id);
+  EditLayer layer = gray(scene, id);
   layer.region = Region(points);
   return layer;
 }
@@ -92,26 +92,26 @@ double mean_tint(const Shading& s) {
   return sum / double(s.specular.size());
 }
 
-TEST(SceneLight, EditedPointsMirrorEditedColours) {
+TEST(SceneLight, EditedPointsMirrorEditedColors) {
   const Device device = make_device();
-  const Scene before = metal_scene(), after = with_layer(before, grey_everywhere(before));
+  const Scene before = metal_scene(), after = with_layer(before, gray_everywhere(before));
   const std::vector<Hit> hits = mirroring_hits(before);
   ASSERT_GT(hits.size(), 300u);
   const auto transports = scene_transports(before);
-  const Appearance grey = appearance_at(device, after, hits);
+  const Appearance gray = appearance_at(device, after, hits);
   const double tint =
-      mean_tint(SceneLight(device, before, transports).shade(hits, grey));  // orange is mirrored
+      mean_tint(SceneLight(device, before, transports).shade(hits, gray));  // orange is mirrored
   EXPECT_GT(tint, 0.05);
   // What is left is the light that arrives where a second reflection ends: it bounced off the unedited
-  // colours.
-  EXPECT_LT(mean_tint(SceneLight(device, after, transports).shade(hits, grey)), 0.4 * tint);
+  // colors.
+  EXPECT_LT(mean_tint(SceneLight(device, after, transports).shade(hits, gray)), 0.4 * tint);
 }
 
 TEST(SceneLight, ALaterEditElsewhereLeavesWhatEditedPointsMirrorAlone) {
   const Device device = make_device();
   const Scene before = metal_scene();
-  const auto upper = [&](const char* id) { return grey_sphere(before, id, 1); };
-  const auto lower = [&](const char* id) { return grey_sphere(before, id, -1); };
+  const auto upper = [&](const char* id) { return gray_sphere(before, id, 1); };
+  const auto lower = [&](const char* id) { return gray_sphere(before, id, -1); };
   const Scene one = with_layer(before, upper("0001-paint")), two = with_layer(one, lower("0002-paint")),
               reversed = with_layer(with_layer(before, lower("0001-paint")), upper("0002-paint"));
   std::vector<Hit> hits = mirroring_hits(before);
@@ -166,7 +166,7 @@ EditLayer some_edit(const Scene& scene, uint32_t kind) {
   switch (kind) {
     case 0:
     case 1:
-      layer = grey_sphere(scene, "paint", kind == 0 ? 1 : -1);
+      layer = gray_sphere(scene, "paint", kind == 0 ? 1 : -1);
       break;
     case 2:
       layer.everywhere = true;
@@ -174,7 +174,7 @@ EditLayer some_edit(const Scene& scene, uint32_t kind) {
       break;
     case 3:
     case 4:
-      layer = grey_sphere(scene, "material", kind == 3 ? 1 : -1);
+      layer = gray_sphere(scene, "material", kind == 3 ? 1 : -1);
       layer.albedo = nullptr;
       layer.material.roughness = kind == 3 ? 0.5f : 0.9f;
       break;
@@ -188,12 +188,12 @@ EditLayer some_edit(const Scene& scene, uint32_t kind) {
       layer.light->lobes[0].mu = {2, 1, 0.5f};
       break;
     case 7:
-      layer = grey_sphere(scene, "erase", 1);
+      layer = gray_sphere(scene, "erase", 1);
       layer.albedo = nullptr;
       layer.erase = true;
       break;
     case 8:
-      layer = grey_sphere(scene, "unlit", -1);
+      layer = gray_sphere(scene, "unlit", -1);
       layer.unlit = true;
       break;
     default:

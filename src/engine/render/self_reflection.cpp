@@ -127,7 +127,7 @@ Vec3f SelfReflection::diffuse_radiance(const Surface::RayHit& r) const {
 // diffuse.
 std::vector<Vec3f> SelfReflection::mirrored(std::span<const Hit> hits,
                                             std::span<const Material> materials) const {
-  const size_t n = hits.size(), stride = (n + kPanel - 1) / kPanel * kPanel;
+  const size_t n = hits.size(), stride = size_t(padded_to_panels(int(n)));
   std::vector<Vec3f> from(n), mirrors(n), out(n);
   std::vector<float> mirror_planes(3 * stride, 0.0f), roughness(stride, 1.0f), sky(3 * stride);
   for (size_t k = 0; k < n; ++k) {

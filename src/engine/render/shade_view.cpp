@@ -23,7 +23,7 @@ Frame empty_frame(int width, int height) {
   return f;
 }
 
-// What the samples of a pixel and of its eight neighbours count for in it.
+// What the samples of a pixel and of its eight neighbors count for in it.
 class PixelFilter {
  public:
   explicit PixelFilter(const GBuffer& g) : g_(g) {

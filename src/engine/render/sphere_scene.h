@@ -31,7 +31,7 @@ inline Mesh sphere_mesh(int rows, int columns) {
   return m;
 }
 
-// Its field is exactly the sphere; base colour is noise, the light has a broad and a narrow lobe.
+// Its field is exactly the sphere; base color is noise, the light has a broad and a narrow lobe.
 inline Scene sphere_scene() {
   Scene s;
   FieldConfig sdf;

@@ -157,7 +157,7 @@ PixelHits trace_pixels(const Device& device, const Scene& scene, const Camera& c
   return out;
 }
 
-// Pixels that the silhouette may pass through: not all of their own and their neighbours' samples meet the
+// Pixels that the silhouette may pass through: not all of their own and their neighbors' samples meet the
 // surface, nor do all miss it.
 std::vector<uint32_t> on_silhouette(const PixelHits& view, int width, int height, int samples) {
   const uint32_t all = uint32_t(samples * samples);

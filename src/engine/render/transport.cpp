@@ -10,7 +10,6 @@ namespace cei3d {
 namespace {
 
 constexpr float kSolidAngle = 4 * kPi / kSkyDirections;
-constexpr float kStart = 2e-3f;  // as far above the surface as visibility rays start
 constexpr int kGrain = 1024;     // vertices a chunk
 constexpr uint32_t kNone = ~0u;  // a blocker that the longer ray misses
 
@@ -61,7 +60,7 @@ Transport::Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t
     directions.clear();
     for (int v = begin; v < end; ++v)
       for_blocked(v, [&](int k, float) {
-        origins.push_back(mesh.positions[v] + mesh.normals[v] * kStart);
+        origins.push_back(mesh.positions[v] + mesh.normals[v] * kRayLift);
         directions.push_back(sky_directions()[k]);
         directions_.push_back(uint16_t(k));
       });

@@ -107,7 +107,7 @@ Camera resized(Camera c, int width, int height) {
   const double sx = double(width) / c.width;
   c.cx = c.cx * sx;
   c.cy = (c.cy - c.height / 2.0) * sx +
-         height / 2.0;  // square pixels stay square: the centre of the picture stays
+         height / 2.0;  // square pixels stay square: the center of the picture stays
   c.fx *= sx;
   c.fy *= sx;
   c.skew *= sx;

@@ -23,7 +23,7 @@ Vec3f color_from_text(const std::string& text) {
       text.size() == 7 && text[0] == '#' &&
       std::all_of(text.begin() + 1, text.end(), [](unsigned char c) { return std::isxdigit(c); });
   if (!plain)
-    fail_usage("'{}' is not a colour; write '#RRGGBB', two hexadecimal digits a channel, in quotes.", text);
+    fail_usage("'{}' is not a color; write '#RRGGBB', two hexadecimal digits a channel, in quotes.", text);
   Vec3f color;
   for (int c = 0; c < 3; ++c)
     color[c] = linear_from_srgb(float(std::stoi(text.substr(1 + 2 * size_t(c), 2), nullptr, 16)) / 255);

@@ -9,18 +9,18 @@
 
 namespace cei3d {
 
-// A colour as users write it, '#RRGGBB' in sRGB, to linear. Usage error: anything else.
+// A color as users write it, '#RRGGBB' in sRGB, to linear. Usage error: anything else.
 Vec3f color_from_text(const std::string& text);
 
 // Keys "roughness", "specular", "metalness", "color" ('#rrggbb') and "replace" of the parameters of an edit.
 struct Effects {
   MaterialChange change;
   std::optional<Vec3f> color;  // linear
-  bool replace = false;        // of the colour: it replaces what is there instead of scaling it
+  bool replace = false;        // of the color: it replaces what is there instead of scaling it
 };
 Effects effects_from_params(JsonReader& params);
-// Writes the keys that the command has. Usage errors: values out of range, no colour, --replace without a
-// colour.
+// Writes the keys that the command has. Usage errors: values out of range, no color, --replace without a
+// color.
 void put_effects(const MaterialEffects&, Json& params);
 
 }  // namespace cei3d

@@ -95,7 +95,7 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
             {{"clicks", r.seed_seconds}, {"select", r.select_seconds}, {"effects", r.color_seconds}}}}};
 }
 
-// Colour decides where a part ends.
+// Color decides where a part ends.
 Aspects depends(const Json& params) {
   JsonReader reader(params, "The parameters of a part");
   return {.shape = true, .look = true, .parts = combination_from(reader).has_value()};

@@ -50,7 +50,7 @@ EditOutcome make_remove(const EditContext& context, const EditJob& job) {
 Aspects deform_depends(const Json& params) { return {.shape = true, .parts = params.contains("part")}; }
 Aspects remove_depends(const Json&) {
   return {.shape = true, .look = true, .parts = true};
-}  // new matter is coloured
+}  // new matter is colored
 
 }  // namespace
 

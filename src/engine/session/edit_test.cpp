@@ -183,7 +183,7 @@ TEST_F(EditTest, WrongMaterialsChangeNothing) {
   c.part = "cap";
   for (const char* color : {"red", "#12345", "#12345g", "123456#", "#1234567"}) {
     c.effects.color = color;
-    EXPECT_THAT(message(c).what(), HasSubstr("is not a colour"));
+    EXPECT_THAT(message(c).what(), HasSubstr("is not a color"));
   }
   EXPECT_EQ(files_of(folder("a")), before);
 }
@@ -202,8 +202,8 @@ TEST_F(EditTest, LightIsTurnedScaledAndReplaced) {
   EXPECT_TRUE(session_.toggle("0001-light", quiet_));
   EXPECT_EQ(to_array(scene("a").light), to_array(turned));
   const fs::path sky = temp_.path() / "sky.hdr";
-  Image grey(16, 8, 3, 0.5f);
-  write_hdr(sky, grey);
+  Image gray(16, 8, 3, 0.5f);
+  write_hdr(sky, gray);
   const EditSummary s = session_.change_light({sky, 0, EnvConvention::by_up_axis, 1}, quiet_);
   EXPECT_NEAR(radiance(scene("a").light, {0, 0.6f, 0.8f}).y, 0.5f, 0.1f);
   EXPECT_EQ(scene("a").light.lobes.size(), s.report.at("lobes").get<size_t>());
@@ -236,7 +236,7 @@ TEST_F(EditTest, AnEditShowsWhatItChanged) {
   const fs::path picture = temp_.path() / "change.png";
   const ChangeSummary p = session_.show_change({paint, "", picture, 2});
   EXPECT_EQ(p.view, "train/r_0");
-  // Twelve pixels each way, and the neighbours whose colours they are part of.
+  // Twelve pixels each way, and the neighbors whose colors they are part of.
   EXPECT_GE(p.pixels_inside, 12u * 12u);
   EXPECT_LE(p.pixels_inside, 14u * 14u);
   EXPECT_GT(p.pixels_changed, 12u * 12u * 9u / 10u);

@@ -19,7 +19,7 @@ Image color_picture(const Image& linear) {
   return out;
 }
 
-// No normal is the zero vector, which decodes as such: mid grey.
+// No normal is the zero vector, which decodes as such: mid gray.
 Image normal_picture(const Image& normals) {
   Image out(normals.width, normals.height, 3);
   for (size_t i = 0; i < out.data.size(); i += 3) {

@@ -35,7 +35,7 @@ Mat3f turning(Vec3f from, Vec3f to) {
   return about_axis(axis / sine, std::atan2(sine, cosine));
 }
 
-// Blender's lookup and the scenes' are one: centre +X, row 0 +Z. "yup" and "mitsuba" are one as well.
+// Blender's lookup and the scenes' are one: center +X, row 0 +Z. "yup" and "mitsuba" are one as well.
 EnvUp row_zero(EnvConvention convention, Vec3f up) {
   switch (convention) {
     case EnvConvention::zup:
@@ -54,7 +54,7 @@ void require_lat_long(const Image& map, const std::filesystem::path& path) {
   if (map.width != 2 * map.height)
     fail("{} is {}x{} pixels; a latitude-longitude picture is twice as wide as high.", path.string(),
          map.width, map.height);
-  if (map.channels < 3) fail("{} has no colours; save the environment as RGB.", path.string());
+  if (map.channels < 3) fail("{} has no colors; save the environment as RGB.", path.string());
   double sum = 0;
   for (const float v : map.data) {
     if (!std::isfinite(v)) fail("{} holds NaN or infinite values; convert it again.", path.string());
@@ -75,7 +75,7 @@ SgMixture light_of_picture(const Device& device, const LightChoice& choice, Vec3
 SgMixture read_lobes(const std::filesystem::path& path) {
   const NpyArray array = read_npy(path);
   if (array.shape.size() != 2 || array.shape[1] != 7)
-    fail("{} does not hold lobes, which are rows of 7: axis, sharpness, colour.", path.string());
+    fail("{} does not hold lobes, which are rows of 7: axis, sharpness, color.", path.string());
   return light_from_array(array.floats());
 }
 

@@ -15,7 +15,7 @@
 namespace cei3d {
 namespace {
 
-// A grey sky with one bright patch about the pixel position (u, v).
+// A gray sky with one bright patch about the pixel position (u, v).
 Image sky_with_sun(float u, float v) {
   Image map(128, 64, 3, 0.1f);
   for (int y = 0; y < 64; ++y)
@@ -48,7 +48,7 @@ class LightChoiceTest : public ::testing::Test {
   TempFolder temp_;
 };
 
-TEST_F(LightChoiceTest, CentreAndQuarterOfEachConvention) {
+TEST_F(LightChoiceTest, CenterAndQuarterOfEachConvention) {
   const Vec3d z{0, 0, 1}, y{0, 1, 0};
   expect_near(sun(64, 32, EnvConvention::by_up_axis, z), {1, 0, 0});
   expect_near(sun(32, 32, EnvConvention::by_up_axis, z), {0, 1, 0});
@@ -69,17 +69,17 @@ TEST_F(LightChoiceTest, TurnsCounterClockwiseSeenFromAbove) {
   expect_near(sun(64, 32, EnvConvention::by_up_axis, {0, 1, 0}, 90), {1, 0, 0});  // z to x about y
 }
 
-// A map whose pixels are coloured by the axis that they look along most: written from the definition of the
+// A map whose pixels are colored by the axis that they look along most: written from the definition of the
 // layout, pixel by pixel, not by the code under test.
 const Vec3f kAxes[6] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
 const Vec3f kLabels[6] = {{9, 1, 1}, {1, 9, 1}, {1, 1, 9}, {9, 9, 1}, {1, 9, 9}, {9, 1, 9}};
-Image labelled_sky(bool y_up) {
+Image labeled_sky(bool y_up) {
   Image map(128, 64, 3);
   for (int j = 0; j < 64; ++j)
     for (int i = 0; i < 128; ++i) {
       const double theta = M_PI * (j + 0.5) / 64, phi = 2 * M_PI * (0.5 - (i + 0.5) / 128);
       Vec3d d{std::sin(theta) * std::cos(phi), std::sin(theta) * std::sin(phi), std::cos(theta)};
-      if (y_up) d = {d.y, d.z, d.x};  // row 0 is +Y, the centre +Z, column W/4 +X
+      if (y_up) d = {d.y, d.z, d.x};  // row 0 is +Y, the center +Z, column W/4 +X
       int best = 0;
       for (int a = 1; a < 6; ++a)
         if (dot(d, to_double(kAxes[a])) > dot(d, to_double(kAxes[best]))) best = a;
@@ -88,11 +88,11 @@ Image labelled_sky(bool y_up) {
   return map;
 }
 
-TEST_F(LightChoiceTest, EveryAxisOfALabelledMapHasItsColour) {
+TEST_F(LightChoiceTest, EveryAxisOfALabeledMapHasItsColor) {
   const Device device = make_device();
   for (const bool y_up : {false, true}) {
-    const auto file = temp_.path() / "labelled.hdr";
-    write_hdr(file, labelled_sky(y_up));
+    const auto file = temp_.path() / "labeled.hdr";
+    write_hdr(file, labeled_sky(y_up));
     const Vec3d up = y_up ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
     const SgMixture light = chosen_light(device, {file, 0, EnvConvention::by_up_axis}, {}, up);
     for (int a = 0; a < 6; ++a) {

@@ -80,22 +80,22 @@ struct PaintStroke {
   std::filesystem::path scribble;  // RGBA PNG of the view's size
 };
 enum class PaintTarget {
-  albedo,      // the base colour
-  appearance,  // what the view is to show in the present light: the base colour that does it
+  albedo,      // the base color
+  appearance,  // what the view is to show in the present light: the base color that does it
   radiance     // what every view is to show in every light; light and material mean nothing there
 };
 struct PaintCommand {
   std::vector<PaintStroke> strokes;  // where two overlap, the later one counts
   uint64_t seed = 1;
-  PaintTarget target = PaintTarget::albedo;  // what the colours of the scribble mean
+  PaintTarget target = PaintTarget::albedo;  // what the colors of the scribble mean
   Routing routing = Routing::both;
-  bool erase = false;  // the base's own colours again where there is paint
+  bool erase = false;  // the base's own colors again where there is paint
 };
-// Another material or colour.
+// Another material or color.
 struct MaterialEffects {
   std::optional<double> roughness, specular, metalness;  // [0, 1]
   std::string color;                                     // "#RRGGBB", sRGB; empty: stays
-  bool replace = false;  // the colour replaces the texture instead of scaling it
+  bool replace = false;  // the color replaces the texture instead of scaling it
   bool empty() const { return !roughness && !specular && !metalness && color.empty(); }
 };
 struct MaterialCommand {
@@ -111,7 +111,7 @@ struct PointDrag {
 // picture.
 struct PixelDrag {
   std::string view;
-  Vec2<double> pixel, drag;  // (column, row), pixel centres at +0.5
+  Vec2<double> pixel, drag;  // (column, row), pixel centers at +0.5
 };
 struct DeformCommand {
   std::variant<PointDrag, PixelDrag> drag;
@@ -121,7 +121,7 @@ struct DeformCommand {
 // A part by clicks or a mask in one view, with or without effects on it.
 struct PartCommand {
   std::string view;
-  std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centres at +0.5
+  std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centers at +0.5
   std::filesystem::path mask;                    // PNG in place of clicks; empty: none
   std::string segmenter = "grow";                // or "sam"
   bool in_view = false;                          // only what this view shows of the part
@@ -220,7 +220,7 @@ struct RenderReport {
   Json json() const;
 };
 
-// A part's mask in each view: OUT/<view>.png, grey, how much of a pixel shows the part.
+// A part's mask in each view: OUT/<view>.png, gray, how much of a pixel shows the part.
 struct PartMasksRequest {
   std::filesystem::path out;
   CameraChoice cameras;

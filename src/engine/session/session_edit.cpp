@@ -85,7 +85,7 @@ EditSummary Session::add_edit(const char* op, Json params, EditInputs inputs, Pr
 
 EditSummary Session::paint(const PaintCommand& command, Progress& progress) {
   if (command.erase && command.target != PaintTarget::albedo)
-    fail_usage("--erase paints no colour that --target could be about.");
+    fail_usage("--erase paints no color that --target could be about.");
   if (command.erase && command.routing == Routing::none)
     fail_usage("--erase needs to know where; use another --routing.");
   Json strokes = Json::array();

@@ -57,7 +57,7 @@ Json run_json(const Project& project, const RenderRequest& request, const std::v
           {"switches", {{"samples_per_axis", request.samples}, {"residual", residual}}},
           {"depth",
            {{"scale", depth}, {"meaning", "z-depth in capture units = 16-bit value / scale; 0: nothing"}}},
-          {"axes", "OpenCV: x right, y down, z forward; world: the capture's; pixel centres at +0.5"},
+          {"axes", "OpenCV: x right, y down, z forward; world: the capture's; pixel centers at +0.5"},
           {"cameras", std::move(list)}};
 }
 

@@ -87,12 +87,12 @@ TEST(SyntheticCapture, RegionsAndRoughnessReplaceThoseOfTheSet) {
 }
 
 TEST(SyntheticCapture, NoiseHasTheDeviationAskedFor) {
-  Image grey(200, 200, 4, 0.25f);
-  for (size_t i = 3; i < grey.data.size() / 2; i += 4) grey.data[i] = 0;
-  const Image noisy = with_noise(grey, 0.02f, 1, 7);
+  Image gray(200, 200, 4, 0.25f);
+  for (size_t i = 3; i < gray.data.size() / 2; i += 4) gray.data[i] = 0;
+  const Image noisy = with_noise(gray, 0.02f, 1, 7);
   double sum = 0, squares = 0, n = 0;
-  for (size_t i = 0; i < grey.data.size(); i += 4) {
-    if (grey.data[i + 3] == 0) {
+  for (size_t i = 0; i < gray.data.size(); i += 4) {
+    if (gray.data[i + 3] == 0) {
       EXPECT_EQ(noisy.data[i], 0.25f);
       continue;
     }

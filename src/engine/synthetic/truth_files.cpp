@@ -23,10 +23,10 @@ Image encoded_depth(Image depth) {
   return depth;
 }
 
-Image grey_with_alpha(const Image& grey, const Image& rgba) {
+Image gray_with_alpha(const Image& gray, const Image& rgba) {
   Image out = rgba;
-  for (size_t i = 0; i < grey.data.size(); ++i)
-    for (size_t c = 0; c < 3; ++c) out.data[4 * i + c] = grey.data[i];
+  for (size_t i = 0; i < gray.data.size(); ++i)
+    for (size_t c = 0; c < 3; ++c) out.data[4 * i + c] = gray.data[i];
   return out;
 }
 
@@ -47,8 +47,8 @@ void write_truth(const std::filesystem::path& folder, const std::string& stem, c
   write_color(file("albedo"), view.base_color);
   write_png(file("normal"), encoded_normals(view.normal), 16);
   write_png(file("depth"), encoded_depth(view.depth), 16);
-  write_png(file("roughness"), grey_with_alpha(view.roughness, view.color));
-  write_png(file("metalness"), grey_with_alpha(view.metalness, view.color));
+  write_png(file("roughness"), gray_with_alpha(view.roughness, view.color));
+  write_png(file("metalness"), gray_with_alpha(view.metalness, view.color));
   write_png(file("mask"), alpha_of(view.color));
 }
 

@@ -82,7 +82,7 @@ void Field::eval(const Device& device, std::span<const Vec3f> x, std::span<float
     FieldPass pass(config_, kBlock, 1);
     AlignedVector<float> points(size_t(kBlock) * 3);
     for (int b = begin; b < end; b += kBlock) {
-      const int n = std::min(kBlock, end - b), padded = (n + kPanel - 1) / kPanel * kPanel;
+      const int n = std::min(kBlock, end - b), padded = padded_to_panels(n);
       points_to_panels(&x[b], n, points.data());
       pass.forward(device, *this, weights, points.data(), padded, config_.encoding.levels, outputs);
       for (int i = 0; i < n; ++i)

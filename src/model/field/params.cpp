@@ -19,7 +19,7 @@ size_t Param::count() const {
 
 Param& ParamSet::add(std::string name, std::vector<int64_t> shape) {
   Param& p = params_.emplace_back(Param{std::move(name), std::move(shape), {}});
-  p.value.assign((p.count() + kPanel - 1) / kPanel * kPanel, 0.0f);
+  p.value.assign(size_t(padded_to_panels(int(p.count()))), 0.0f);
   return p;
 }
 

@@ -16,8 +16,6 @@ namespace {
 constexpr int kRows = 7;  // axis, sharpness, color
 constexpr float kRate = 0.03f, kBeta1 = 0.9f, kBeta2 = 0.99f;
 
-int padded(int n) { return (n + kPanel - 1) / kPanel * kPanel; }
-
 Image blurred(const Image& map, float sharpness, EnvUp up) {
   Image out(map.width, map.height, 3);
   std::vector<Vec3f> directions;
@@ -53,7 +51,10 @@ SgLobe unblurred(SgLobe seen, float sharpness) {
 class LobeFit {
  public:
   LobeFit(const Image& map, int lobes, float sharpest, EnvUp up)
-      : lobes_(lobes), sharpest_(sharpest), p_(padded(lobes)), cells_(padded(map.width * map.height)) {
+      : lobes_(lobes),
+        sharpest_(sharpest),
+        p_(padded_to_panels(lobes)),
+        cells_(padded_to_panels(map.width * map.height)) {
     for (auto* v : {&raw_, &gradient_, &m_, &v_, &planes_, &d_planes_}) v->assign(size_t(kRows) * p_, 0);
     directions_.assign(3 * size_t(cells_), 0);
     roots_ = d_radiance_ = directions_;
@@ -147,7 +148,7 @@ class LobeFit {
 
 SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOptions& options, EnvUp up,
                     const Progress& progress) {
-  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a colour picture");
+  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a color picture");
   for (const float x : lat_long.data)
     if (!std::isfinite(x)) fail("light map: a value is not finite");
   Image map = env_resample(lat_long, std::min(options.height, lat_long.height));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an edit puts in place of a material or a base colour.
+// What an edit puts in place of a material or a base color.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ inline Material changed(Material m, const MaterialChange& c) {
           c.metalness.value_or(m.metalness)};
 }
 
-// Another base colour, with or without the texture that lies below it. All linear.
+// Another base color, with or without the texture that lies below it. All linear.
 struct Tint {
   Vec3f color;
   bool keep_texture = true;  // what lies below, scaled per channel so that its mean becomes `color`

@@ -10,13 +10,13 @@ namespace {
 
 constexpr int kGrain = 4096;  // hits a chunk
 
-// A step towards a hit's base colour.
+// A step towards a hit's base color.
 struct Op {
   enum class Kind { branch, base, matter, tint } kind;
   int layer;
   uint32_t hit;
-  float weight;    // of the colour, the rest being what lies below; 1: nothing of that shows
-  Vec3f position;  // of the hit in the pose of the field that has the colour
+  float weight;    // of the color, the rest being what lies below; 1: nothing of that shows
+  Vec3f position;  // of the hit in the pose of the field that has the color
   Vec3f color;     // of branch, base or new matter
 };
 
@@ -25,7 +25,7 @@ struct Route {
   int layer = -1;  // topmost that is not everywhere
   MaterialChange material;
   uint32_t op_begin = 0, op_end = 0;  // of the chunk's steps, the last one first
-  bool base = true;                   // the first step works on the base's colour
+  bool base = true;                   // the first step works on the base's color
 };
 
 struct Chunk {
@@ -61,10 +61,10 @@ class Walk {
   void visit(int l, const EditLayer& layer) {
     const int pose = max(layer.pose, 0);
     if (layer.reshape) visit_change(l, pose + 1);
-    const bool colours = r_.base && (layer.albedo || layer.erase || layer.tint);
+    const bool colors = r_.base && (layer.albedo || layer.erase || layer.tint);
     const bool marks = r_.layer < 0 && !layer.everywhere;
     const bool changes = !layer.material.empty() && !is_whole(r_.material);
-    if (!colours && !changes && !marks) return;
+    if (!colors && !changes && !marks) return;
     const bool old = born_ <= pose;  // what was made later is in no region that is older ...
     if (!old && !layer.everywhere) return;
     const SurfacePoint p = old ? in_pose(scene_.poses, hit_, pose) : SurfacePoint{};
@@ -72,10 +72,10 @@ class Walk {
     if (weight <= 0) return;
     if (marks) r_.layer = l;
     if (changes) put_below(r_.material, layer.material);
-    if (colours && old) visit_colours(l, layer, p, weight);  // ... but is of what the whole object is made of
+    if (colors && old) visit_colors(l, layer, p, weight);  // ... but is of what the whole object is made of
   }
 
-  void visit_colours(int l, const EditLayer& layer, const SurfacePoint& p, float weight) {
+  void visit_colors(int l, const EditLayer& layer, const SurfacePoint& p, float weight) {
     if (layer.tint) add(Op::Kind::tint, l, weight, {}, {});
     if (layer.albedo) add(Op::Kind::branch, l, weight, p.position, {});
     if (layer.erase && born_ == 0)
@@ -124,7 +124,7 @@ struct Routes {
   }
 };
 
-// The fields' colours, each field evaluated at its own hits only.
+// The fields' colors, each field evaluated at its own hits only.
 void eval_fields(const Device& device, const Scene& scene, Routes& routes) {
   std::vector<std::vector<Op*>> ops(scene.layers.size() + 1);  // by branch; the base last
   for (Chunk& chunk : routes.chunks)

@@ -44,7 +44,7 @@ ResidualPass::ResidualPass(const FieldConfig& features, const MlpConfig& network
 
 int ResidualPass::forward(const Device& device, const Field& features, const MlpWeights& feature_weights,
                           const MlpWeights& weights, std::span<const Hit> hits) {
-  const int n = int(hits.size()), samples = (n + kPanel - 1) / kPanel * kPanel, rows = features_.outputs;
+  const int n = int(hits.size()), samples = padded_to_panels(n), rows = features_.outputs;
   const auto hit = [&](int i) -> const Hit& { return hits[std::min(i, n - 1)]; };
   for (int i = 0; i < samples; ++i)
     for (int c = 0; c < 3; ++c) {

@@ -7,10 +7,10 @@
 
 namespace cei3d {
 
-// Light lobes as planes [7][padded]: axis (unit), sharpness, peak colour.
+// Light lobes as planes [7][padded]: axis (unit), sharpness, peak color.
 struct LobePlanes {
   const float* data;
-  int count, padded;  // padded: a multiple of 32; unused lobes have zero colour
+  int count, padded;  // padded: a multiple of 32; unused lobes have zero color
   template <class T>
   HD Vec3<T> axis(int k) const {
     return {T(data[k]), T(data[padded + k]), T(data[2 * padded + k])};

@@ -11,9 +11,6 @@
 
 namespace cei3d {
 
-// n rounded up to whole panels.
-HD constexpr int padded_to_panels(int n) { return (n + kPanel - 1) / kPanel * kPanel; }
-
 // The place of sample i in row `row` of column `column`. columns: panels per group of 32 samples; stride:
 // rows per panel.
 HD size_t panel_at(int i, int columns, int column, int stride, int row) {

@@ -37,7 +37,7 @@ int joint_steps_for(const Material& m, bool brief) {
   return m.metalness > 0 ? (brief ? 120 : 400) : (brief ? 30 : 100);
 }
 
-// Descent on the albedo field under a light, and then on both. bouncing: base colours of the mesh's vertices
+// Descent on the albedo field under a light, and then on both. bouncing: base colors of the mesh's vertices
 // to begin with.
 class Descent {
  public:
@@ -56,7 +56,7 @@ class Descent {
   }
 
   // The field alone, `rate` times the full rates, falling to a tenth: every sample's radiance is linear in
-  // its base colour, dark + a gain.
+  // its base color, dark + a gain.
   void fit_albedo(int steps, float rate) {
     const SurfaceSamples& samples = input_.samples;
     const std::vector<ShadingTerms<float>> terms =
@@ -111,7 +111,7 @@ class Descent {
     ++epoch_;
   }
 
-  // Calls use(pixel of the batch, its mean base colour, dL/d(that) to set) for the field's outputs [begin,
+  // Calls use(pixel of the batch, its mean base color, dL/d(that) to set) for the field's outputs [begin,
   // end).
   template <class Use>
   static void for_each_pixel(int begin, int end, const float* out, float* d_out, const Use& use) {

@@ -25,8 +25,8 @@ double difference(const Device& device, const Field& a, const Field& b, const st
   return std::sqrt(sum / double(of_a.size()));
 }
 
-// Shading of a known base colour, and back.
-TEST(RefineAlbedo, FindsTheBaseColourBehindShadedPixels) {
+// Shading of a known base color, and back.
+TEST(RefineAlbedo, FindsTheBaseColorBehindShadedPixels) {
   const Device device = make_device("cpu");
   const Scene scene = sphere_scene();
   const auto seen_from = [&](double turn) {

@@ -14,8 +14,6 @@ constexpr int kGrain = 512;                           // hits a chunk
 constexpr float kLogRate = 1e-2f, kAxisRate = 2e-3f;  // of Adam, on logarithms and on unit vectors
 constexpr float kDarkest = 1e-5f;                     // peak radiance that stands for black
 
-int padded_to_panels(size_t n) { return int((n + kPanel - 1) / kPanel * kPanel); }
-
 // [3][stride]
 std::vector<float> planes_of(std::span<const Vec3f> v, int stride) {
   std::vector<float> p(size_t(3) * stride, 0);
@@ -28,7 +26,7 @@ struct HitPlanes {
   int stride;
   std::vector<float> normals, mirrors, reflection_lobes;
 
-  HitPlanes(const Device& device, const HitBatch& batch) : stride(padded_to_panels(batch.size())) {
+  HitPlanes(const Device& device, const HitBatch& batch) : stride(padded_to_panels(int(batch.size()))) {
     std::vector<Vec3f> n, m;
     std::vector<float> roughness;
     for (size_t i = 0; i < batch.size(); ++i) {
@@ -75,7 +73,7 @@ std::vector<float> lobes_grad(const Device& device, const LobePlanes& lobes, con
 
 LightDescent::LightDescent(const SgMixture& light, bool keep_power)
     : count_(int(light.lobes.size())),
-      padded_(padded_to_panels(light.lobes.size())),
+      padded_(padded_to_panels(int(light.lobes.size()))),
       keep_power_(keep_power) {
   params_.add("axes", {3, padded_});
   params_.add("logs", {4, padded_});

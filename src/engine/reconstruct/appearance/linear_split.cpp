@@ -17,7 +17,7 @@ namespace {
 
 constexpr float kSmoothest = 0.12f, kRoughest = 0.95f;
 constexpr double kFar = 1.25;  // a residual this much above the best ends the scan
-// A metal explains everything by reflections; of a matte object of many colours it explains as much as a
+// A metal explains everything by reflections; of a matte object of many colors it explains as much as a
 // dielectric does (dtu24). Of a metal (teapot) it leaves a fifth.
 constexpr double kMetalBy = 0.5;
 
@@ -108,16 +108,16 @@ float search_roughness(F residual_at, const LinearSplitOptions& o) {
   return last_good()->first;
 }
 
-// Light and a metal's colour share a factor per channel that reflections leave open: the light is taken to be
-// grey on average.
-void make_light_grey(Solution& s, int height) {
+// Light and a metal's color share a factor per channel that reflections leave open: the light is taken to be
+// gray on average.
+void make_light_gray(Solution& s, int height) {
   Vec3f mean{0, 0, 0};
   for (int i = 0; i < height; ++i)
     for (int j = 0; j < 2 * height; ++j)
       mean += s.x.light[size_t(i) * 2 * height + j] * env_solid_angle(i, 2 * height, height);
-  const float grey = luminance(mean);
+  const float gray = luminance(mean);
   for (int c = 0; c < 3; ++c) {
-    const float k = grey / max(mean[c], 1e-6f * grey);
+    const float k = gray / max(mean[c], 1e-6f * gray);
     for (Vec3f& l : s.x.light) l[c] *= k;
     for (Vec3f& a : s.color) a[c] /= k;
   }
@@ -130,7 +130,7 @@ void make_light_grey(Solution& s, int height) {
   for (Vec3f& a : s.color) a = a / k;
 }
 
-// Base colours of a dielectric, unclamped: what it sends out diffusely over what reaches it.
+// Base colors of a dielectric, unclamped: what it sends out diffusely over what reaches it.
 std::vector<Vec3f> base_colors(const Transport& transport, const LinearSplit& r) {
   const std::vector<Vec3f> sky = transport.sky(sky_radiance(r.light)), bounce = transport.bounce(r.diffuse);
   std::vector<Vec3f> color(r.diffuse.size());
@@ -147,7 +147,7 @@ float percentile(std::vector<float> values, double share) {
 
 // Reflections show the product of light and specular reflectance; the split takes specular 0.5 for granted.
 // On surfaces that reflect less the light comes out too dark, and more diffuse light leaves them than
-// arrives. No base colour is above one: that bounds the light from below, and the specular reflectance from
+// arrives. No base color is above one: that bounds the light from below, and the specular reflectance from
 // above.
 void brighten_light(const Transport& transport, LinearSplit& r) {
   constexpr double kShare = 0.98;  // of the surface is believed
@@ -222,7 +222,7 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
   Solver fine(transport, samples, options, progress);
   Solution solution = is_metal ? fine.metal(roughness) : fine.dielectric(roughness);
   if (is_metal) {
-    make_light_grey(solution, options.light_height);
+    make_light_gray(solution, options.light_height);
     result.material = {roughness, 0.5f, 1};
     result.light = to_image(solution.x.light, options.light_height);
     result.albedo = clamped(solution.color, 1);

@@ -22,7 +22,7 @@ struct SurfaceSamples {
   std::span<const Vec3f> colors;  // #N linear radiance
   // #N, bit c: channel c is as bright as pictures get, and the radiance at least that; empty: no channel is.
   std::span<const uint8_t> clipped;
-  std::span<const float> footprints = {};  // #N, of pixels (pixel_points()); empty: colours of points
+  std::span<const float> footprints = {};  // #N, of pixels (pixel_points()); empty: colors of points
   bool is_clipped(size_t sample, int channel) const {
     return !clipped.empty() && (clipped[sample] >> channel & 1);
   }
@@ -45,7 +45,7 @@ struct LinearSplitOptions {
 struct LinearSplit {
   Material material;           // roughness; metalness 0 or 1
   Image light;                 // light_height rows, 2 light_height columns, RGB, linear, >= 0
-  std::vector<Vec3f> albedo;   // #V base colour, linear, [0, 1]
+  std::vector<Vec3f> albedo;   // #V base color, linear, [0, 1]
   std::vector<Vec3f> diffuse;  // #V view-independent radiance D; zero for metals
   struct Trial {
     bool metal;

@@ -242,7 +242,7 @@ TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
     EXPECT_EQ(a.albedo->params().all()[i].value, b.albedo->params().all()[i].value);
 }
 
-// Where a picture clips red, green and blue still tell the light's colour, and the darker stripes, which
+// Where a picture clips red, green and blue still tell the light's color, and the darker stripes, which
 // mirror the same light unclipped, its strength.
 TEST(AppearanceStage, TakesClippedChannelsForLowerBounds) {
   constexpr float kWhite = 0.7f;

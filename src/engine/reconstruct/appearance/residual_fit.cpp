@@ -27,7 +27,7 @@ constexpr double kLeastGain = 0.03;                                  // of the s
 constexpr double kJudging = 0.2;                                     // of the steps come before that,
 constexpr double kWarmUp = 0.05;  // and so many at rising rates: large first ones leave no unit alive
 
-// Mean base colour of each pixel: at its centre alone the texture is sharper than the picture, and the
+// Mean base color of each pixel: at its center alone the texture is sharper than the picture, and the
 // residual would learn to blur it.
 std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::span<const Hit> hits,
                                 std::span<const float> footprints) {

@@ -24,7 +24,7 @@ std::vector<Hit> seen_from(const Device& device, const Scene& scene, Vec3d cente
   return trace_view(device, scene, camera_towards_origin(center, 96), 1).hits;
 }
 
-// Hits of eight views, coloured as the physical model and the glow have them.
+// Hits of eight views, colored as the physical model and the glow have them.
 struct Photographed {
   explicit Photographed(const Device& device, const Scene& scene) {
     for (int v = 0; v < 8; ++v) {

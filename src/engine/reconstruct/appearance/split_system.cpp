@@ -396,7 +396,7 @@ std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) const {
       below[row.vertices[k]] += weights_[i] * slope * slope * row.barycentric[k];
     }
   }
-  // Unseen vertices, and to a small part all, take the mean colour.
+  // Unseen vertices, and to a small part all, take the mean color.
   Vec3f a{0, 0, 0}, b{0, 0, 0};
   for (size_t v = 0; v < n; ++v) a += above[v], b += below[v];
   const Vec3f mean = a / (b + Vec3f{1e-20f, 1e-20f, 1e-20f}),

@@ -56,14 +56,14 @@ class SplitSystem {
 
   void set_roughness(float roughness);
   float roughness() const { return roughness_; }
-  // Base colour of a metal: the specular gain becomes colour * scale + bias, D stays zero, and samples whose
+  // Base color of a metal: the specular gain becomes color * scale + bias, D stays zero, and samples whose
   // mirror ray is blocked are left out. Empty: a dielectric.
   void set_metal(std::vector<Vec3f> color);
 
   // Improves x by rounds of conjugate gradients, light kept >= 0, clipped channels at least what they show.
   void solve(SplitUnknowns& x, int rounds, int steps);
   double residual(const SplitUnknowns& x) const;  // mean of weight * error^2 over samples that mirror the sky
-  // Base colour per vertex that fits best under the light: #V. Clipped channels as of the last solve().
+  // Base color per vertex that fits best under the light: #V. Clipped channels as of the last solve().
   std::vector<Vec3f> fit_metal_color(const SplitUnknowns& x) const;
 
  private:

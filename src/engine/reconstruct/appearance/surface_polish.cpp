@@ -60,7 +60,7 @@ class Polish {
     }
   }
 
-  // One step of the albedo, so that what it had learnt of wrong normals does not hold them. Sets colors_ and
+  // One step of the albedo, so that what it had learned of wrong normals does not hold them. Sets colors_ and
   // d_radiance_.
   void fit_albedo(const std::vector<ShadingTerms<float>>& terms) {
     std::vector<Vec3f> positions(hits_.size());
@@ -91,7 +91,7 @@ class Polish {
   std::vector<Material> materials_;  // of a batch
   std::vector<uint32_t> batch_;
   std::vector<Hit> hits_;
-  std::vector<Vec3f> colors_, d_radiance_;  // base colour of the hits, dL/d(what they send out)
+  std::vector<Vec3f> colors_, d_radiance_;  // base color of the hits, dL/d(what they send out)
   std::vector<Vec3f> directions_;
   std::vector<float> edges_;  // of the hits' normals (sdf_normals)
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The surface after the light is known: reflections tell normals better than the radiance network does, which
-// can blame its colours. The field is moved by what the shading model says about its normals, while the
+// can blame its colors. The field is moved by what the shading model says about its normals, while the
 // geometry stage's own loss holds the silhouettes. See docs/method.md#polishing.
 #pragma once
 

@@ -20,8 +20,8 @@ namespace {
 constexpr int kSize = 64, kViews = 16;
 const Material kMetal{0.2f, 0.5f, 1};
 
-// Base colour 0.5 everywhere: a network without weights.
-std::shared_ptr<const Field> grey_field() {
+// Base color 0.5 everywhere: a network without weights.
+std::shared_ptr<const Field> gray_field() {
   FieldConfig c;
   c.encoding.levels = 4;
   c.output_activation = Activation::sigmoid;
@@ -112,7 +112,7 @@ TEST(SurfacePolish, BringsNormalsNearerToTheTruthThanTheSameStepsWithoutIt) {
   AppearanceResult look;
   look.light = room();
   look.material = kMetal;
-  look.albedo = grey_field();
+  look.albedo = gray_field();
   PolishOptions options;
   options.steps = 80;
   options.batch = 2048;

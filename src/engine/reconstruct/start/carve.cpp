@@ -18,7 +18,7 @@ constexpr int kRaysPerChunk = 128;
 constexpr uint32_t kNone = ~0u;
 constexpr float kDark = 0.01f;  // a ray ends where less light is left
 
-using Cell = std::array<float, 4>;  // density, display-encoded colour
+using Cell = std::array<float, 4>;  // density, display-encoded color
 
 struct Slope {
   uint32_t cell;
@@ -82,7 +82,7 @@ class Fog {
     return id_[(size_t(z) * n + y) * n + x];
   }
 
-  // One pixel's ray: its loss is |colour - picture|^2 / 2 over white, and the same of the opacity.
+  // One pixel's ray: its loss is |color - picture|^2 / 2 over white, and the same of the opacity.
   void trace(Rng rng, std::vector<Slope>& out) const {
     const Pixel& p = pixels_.pixels()[rng.below(uint32_t(pixels_.pixels().size()))];
     const float u = rng.uniform(), v = rng.uniform();
@@ -104,7 +104,7 @@ class Fog {
     const Target target = target_of(p);
     const Vec3f error = color + Vec3f{light, light, light} - target.srgb;
     const float error_opacity = options_.opacity_weight * (1 - light - target.alpha);
-    Vec3f behind{light, light, light};  // what the rest of the ray adds to the colour
+    Vec3f behind{light, light, light};  // what the rest of the ray adds to the color
     for (size_t k = out.size(); k-- > first;) {
       Slope& s = out[k];
       const Cell& c = cells_[s.cell];

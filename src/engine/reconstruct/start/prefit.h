@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A starting surface: the field is fitted to the distance to the visual hull of the masks, carved by the
-// colours. Descent from a sphere can lose the object for good (docs/method.md#start-shape).
+// colors. Descent from a sphere can lose the object for good (docs/method.md#start-shape).
 #pragma once
 
 #include "core/base/progress.h"
@@ -9,14 +9,14 @@
 
 namespace cei3d {
 
-// Signed distance to the hull's surface at every cell centre (negative inside), unit-sphere units, by two
+// Signed distance to the hull's surface at every cell center (negative inside), unit-sphere units, by two
 // exact Euclidean distance transforms. [Felzenszwalb and Huttenlocher 2012]
 std::vector<float> signed_distance(const VisualHull& hull);
 
 // A signed distance on a grid over the unit cube [-1, 1]^3.
 struct DistanceGrid {
   int n = 0;                  // cells an axis
-  std::vector<float> values;  // [z][y][x], at cell centres
+  std::vector<float> values;  // [z][y][x], at cell centers
   float at(Vec3f p) const;    // trilinear, clamped to the grid
 };
 

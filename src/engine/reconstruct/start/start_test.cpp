@@ -8,7 +8,7 @@
 namespace cei3d {
 namespace {
 
-// A ball with an upright rod beside it, thinner than a cell and as far from cell centres as can be.
+// A ball with an upright rod beside it, thinner than a cell and as far from cell centers as can be.
 constexpr float kRodRadius = 0.006f, kRodX = 0.625f, kRodHeight = 0.4f;
 
 bool on_object(const Ray& ray) {

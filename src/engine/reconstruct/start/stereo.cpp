@@ -24,7 +24,7 @@ int shrink_for(const PixelStore& pixels, size_t most) {
 }
 
 // The part of the picture that has the object; most frames are mostly empty.
-Grey cropped(const Grey& g) {
+Gray cropped(const Gray& g) {
   int x0 = g.camera.width, y0 = g.camera.height, x1 = 0, y1 = 0;
   for (int y = 0; y < g.camera.height; ++y)
     for (int x = 0; x < g.camera.width; ++x)
@@ -32,7 +32,7 @@ Grey cropped(const Grey& g) {
         x0 = std::min(x0, x), x1 = std::max(x1, x + 1);
         y0 = std::min(y0, y), y1 = std::max(y1, y + 1);
       }
-  Grey out{g.camera, {}, {}};
+  Gray out{g.camera, {}, {}};
   out.camera.width = std::max(x1 - x0, 0);
   out.camera.height = std::max(y1 - y0, 0);
   out.camera.cx -= x0;
@@ -45,16 +45,16 @@ Grey cropped(const Grey& g) {
   return out;
 }
 
-std::vector<Grey> grey_pictures(const PixelStore& pixels, int factor) {
-  std::vector<Grey> out;
+std::vector<Gray> gray_pictures(const PixelStore& pixels, int factor) {
+  std::vector<Gray> out;
   for (const Camera& c : pixels.cameras()) {
-    Grey g{scaled(c, factor), {}, {}};
+    Gray g{scaled(c, factor), {}, {}};
     g.value.assign(size_t(g.camera.width) * g.camera.height, 0);
     g.inside = g.value;
     out.push_back(std::move(g));
   }
   for (const Pixel& p : pixels.pixels()) {
-    Grey& g = out[p.view];
+    Gray& g = out[p.view];
     const int x = p.x / factor, y = p.y / factor;
     if (x >= g.camera.width || y >= g.camera.height || p.srgba[3] < 255) continue;
     g.value[g.at(x, y)] +=
@@ -62,7 +62,7 @@ std::vector<Grey> grey_pictures(const PixelStore& pixels, int factor) {
     g.inside[g.at(x, y)] += 1;
   }
   const float all = float(factor * factor);
-  for (Grey& g : out) {
+  for (Gray& g : out) {
     for (size_t i = 0; i < g.value.size(); ++i) {
       g.inside[i] = g.inside[i] == all;
       g.value[i] = g.inside[i] > 0 ? g.value[i] / all - 0.5f : 0;
@@ -73,7 +73,7 @@ std::vector<Grey> grey_pictures(const PixelStore& pixels, int factor) {
 }
 
 // The views whose angle to this one, seen from the origin, is nearest to the best.
-std::vector<int> neighbours_of(int view, const std::vector<Grey>& pictures, int most) {
+std::vector<int> neighbors_of(int view, const std::vector<Gray>& pictures, int most) {
   const Vec3d here = normalize(pictures[view].camera.center);
   std::vector<std::pair<double, int>> ranked;
   for (int v = 0; v < int(pictures.size()); ++v) {
@@ -150,12 +150,12 @@ struct Estimate {
 
 // Every plane's score is the mean of the two pictures that agree best with it: the others may not see the
 // place.
-Estimate sweep(int view, const std::vector<Grey>& pictures, const std::vector<Vec3d>& corners,
+Estimate sweep(int view, const std::vector<Gray>& pictures, const std::vector<Vec3d>& corners,
                const StereoOptions& options) {
-  const Grey& a = pictures[view];
+  const Gray& a = pictures[view];
   const size_t n = a.value.size();
   Estimate out{std::vector<float>(n, 0.0f), {}};
-  const std::vector<int> others = neighbours_of(view, pictures, options.neighbours);
+  const std::vector<int> others = neighbors_of(view, pictures, options.neighbors);
   if (others.size() < 2) return out;
   double baseline = 0;
   std::vector<Warp> warps;
@@ -220,7 +220,7 @@ std::vector<Vec3d> corners_of(const VisualHull& hull) {
 
 std::vector<DepthMap> stereo_depths(const PixelStore& pixels, const VisualHull& hull,
                                     const StereoOptions& options, const Progress& progress) {
-  const std::vector<Grey> pictures = grey_pictures(pixels, shrink_for(pixels, options.pixels));
+  const std::vector<Gray> pictures = gray_pictures(pixels, shrink_for(pixels, options.pixels));
   const std::vector<Vec3d> corners = corners_of(hull);
   std::vector<Estimate> estimates(pictures.size());
   parallel_for(int(pictures.size()), [&](int v) {
@@ -231,7 +231,7 @@ std::vector<DepthMap> stereo_depths(const PixelStore& pixels, const VisualHull& 
   parallel_for(int(pictures.size()), [&](int v) {
     const Camera& camera = pictures[v].camera;
     out[v] = {camera, estimates[v].depth};
-    const std::vector<int> others = neighbours_of(v, pictures, options.neighbours);
+    const std::vector<int> others = neighbors_of(v, pictures, options.neighbors);
     for (size_t i = 0; i < out[v].depth.size(); ++i) {
       if (out[v].depth[i] == 0) continue;
       const Vec3d p =

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Depth by plane sweep: what a window of a picture shows must be found again in neighbouring pictures.
-// Texture that repeats in colour but not in detail (bricks, tiles) tells a hollow from its mouth here, where
-// descent on colours cannot. [Collins 1996; Goesele et al. 2006]
+// Depth by plane sweep: what a window of a picture shows must be found again in neighboring pictures.
+// Texture that repeats in color but not in detail (bricks, tiles) tells a hollow from its mouth here, where
+// descent on colors cannot. [Collins 1996; Goesele et al. 2006]
 #pragma once
 
 #include <span>
@@ -15,10 +15,10 @@ namespace cei3d {
 
 struct StereoOptions {
   size_t pixels = 6000000;   // of all depth maps together; the pictures are shrunk until they fit
-  int neighbours = 4;        // pictures that one is compared with
+  int neighbors = 4;         // pictures that one is compared with
   int window = 3;            // half width, pixels
-  float least_score = 0.6f;  // mean correlation with the two neighbours that agree best
-  float agreement = 1.5f;    // of neighbouring maps about a point, in planes
+  float least_score = 0.6f;  // mean correlation with the two neighbors that agree best
+  float agreement = 1.5f;    // of neighboring maps about a point, in planes
 };
 
 struct DepthMap {

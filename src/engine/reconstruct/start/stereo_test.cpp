@@ -14,8 +14,8 @@ namespace {
 Vec3f speckled(Vec3f p) {
   constexpr float kSpeckles = 30;  // a unit
   const auto cell = [&](float v) { return uint64_t(int64_t(std::floor(v * kSpeckles)) + 1000); };
-  const float grey = 0.3f + 0.2f * Rng(cell(p.x), cell(p.y), cell(p.z)).uniform();
-  return {grey, grey, grey};
+  const float gray = 0.3f + 0.2f * Rng(cell(p.x), cell(p.y), cell(p.z)).uniform();
+  return {gray, gray, gray};
 }
 
 struct Box : testing::Test {
@@ -60,7 +60,7 @@ TEST_F(Box, SameBitsOnOneThread) {
   for (size_t v = 0; v < maps.size(); ++v) EXPECT_EQ(again[v].depth, maps[v].depth);
 }
 
-// A smooth grey object tells nothing: better no depth than a wrong one.
+// A smooth gray object tells nothing: better no depth than a wrong one.
 TEST(Stereo, WithoutTextureNothingIsKnown) {
   PixelStore pixels;
   for (int i = 0; i < 12; ++i) {

@@ -9,7 +9,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kSums = 6;             // of a window: 1, a, b, aa, bb, ab
-constexpr float kNoise = 1e-4f;      // variance of a window without texture; grey values are 0 to 1
+constexpr float kNoise = 1e-4f;      // variance of a window without texture; gray values are 0 to 1
 constexpr float kLeastKnown = 0.6f;  // of a window
 
 }  // namespace
@@ -28,7 +28,7 @@ Warp warp_between(const Camera& a, const Camera& b) {
           pixel(cam_from_world * (a.center - b.center))};
 }
 
-WindowMatcher::WindowMatcher(const Grey& a, int window)
+WindowMatcher::WindowMatcher(const Gray& a, int window)
     : a_(a),
       window_(window),
       width_(a.camera.width),
@@ -40,7 +40,7 @@ WindowMatcher::WindowMatcher(const Grey& a, int window)
   for (auto& r : rows_) r.assign(kSums * padded(), 0.0f);
 }
 
-void WindowMatcher::match(const Grey& b, const Warp& warp, double depth, std::vector<float>& score) {
+void WindowMatcher::match(const Gray& b, const Warp& warp, double depth, std::vector<float>& score) {
   std::fill(columns_.begin(), columns_.end(), 0.0f);
   for (auto& r : rows_) std::fill(r.begin(), r.end(), 0.0f);
   const int height = a_.camera.height;
@@ -56,7 +56,7 @@ void WindowMatcher::match(const Grey& b, const Warp& warp, double depth, std::ve
   }
 }
 
-void WindowMatcher::sample(const Grey& b, const Warp& w, double depth, int y, std::vector<float>& row) {
+void WindowMatcher::sample(const Gray& b, const Warp& w, double depth, int y, std::vector<float>& row) {
   const Vec3f start = to_float((w.column + w.dx * 0.5 + w.dy * (y + 0.5)) * depth + w.offset),
               step = to_float(w.dx * depth);
   const float most_x = float(b.camera.width) - 1.001f, most_y = float(b.camera.height) - 1.001f;

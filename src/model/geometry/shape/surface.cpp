@@ -21,7 +21,6 @@ namespace cei3d {
 namespace {
 
 constexpr int kRowBytes = kSkyDirections / 8;
-constexpr float kLift = 2e-3f;  // visibility rays start this far above the surface, unit-sphere units
 
 // Normals of a mesh that brought none: face normals weighted by their angle at the vertex. [Thuermer and
 // Wuethrich 1998]
@@ -142,7 +141,7 @@ struct Surface::Bvh {
     parallel_ranges(int(mesh.positions.size()), 64, [&](int begin, int end) {
       for (int v = begin; v < end; ++v) {
         if (!looks.empty() && !looks[v]) continue;
-        const Vec3f n = mesh.normals[v], o = mesh.positions[v] + n * kLift;
+        const Vec3f n = mesh.normals[v], o = mesh.positions[v] + n * kRayLift;
         uint8_t* row = &bits[size_t(v) * kRowBytes];
         std::fill(row, row + kRowBytes, uint8_t(0));
         for (int k = 0; k < kSkyDirections; ++k)

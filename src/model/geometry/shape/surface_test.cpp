@@ -50,7 +50,7 @@ TEST(Surface, AConvexBodySeesExactlyItsOwnHemisphere) {
   EXPECT_EQ(wrong, 0);
 }
 
-TEST(Surface, ANeighbourHidesItsSolidAngle) {
+TEST(Surface, ANeighborHidesItsSolidAngle) {
   // From the top of the unit-less small sphere at the origin, a sphere of radius .3 at height .8 covers a
   // cone of half-angle asin(.3 / .7).
   const Surface s(join(sphere({0, 0, 0}, 0.1f), sphere({0, 0, 0.8f}, 0.3f)));
