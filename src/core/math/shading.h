@@ -107,7 +107,8 @@ HD ShadingPoint<T> shading_grad(const float* table, const ShadingPoint<T>& p, Ve
   const T lit = dot(d_diffuse, p.albedo * p.irradiance), mirrored = dot(d_specular, p.reflected),
           mirrored_f0 = dot(d_specular, p.reflected * f0),
           mirrored_albedo = dot(d_specular, p.reflected * p.albedo);
-  const auto nv_clamped = (p.nv < zero) | (p.nv > one), roughness_clamped = p.roughness < T(kMinRoughness);
+  const auto nv_clamped = (p.nv < zero) | (p.nv > one);
+  const auto roughness_clamped = p.roughness < T(kMinRoughness);
   ShadingPoint<T> d;
   d.albedo =
       d_diffuse * p.irradiance * (k * view.value) + d_specular * p.reflected * (p.metalness * s.value.scale);
