@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/compute/device.h"
+#include "core/math/shading.h"
 #include "engine/render/irradiance_map.h"
 #include "engine/render/self_reflection.h"
 #include "engine/render/vertex_light.h"

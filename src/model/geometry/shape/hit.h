@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "core/math/shading.h"
+#include "core/math/mirror.h"
 
 namespace cei3d {
 
