@@ -63,7 +63,7 @@ void add_render(Commands& commands) {
   verb->add_option("--channels", o->channels,
                    "Comma-separated: rgb, albedo, diffuse, specular (RGBA, sRGB, straight alpha), normal "
                    "(world space of the capture, (n+1)/2, 16-bit), depth (z-depth, 16-bit, scale in "
-                   "render.json), roughness, mask (gray)")
+                   "render.json), roughness, metalness, mask (gray)")
       ->capture_default_str();
   verb->add_option(
       "--size", o->size,

@@ -62,7 +62,7 @@ std::vector<Channel> parse_channels(const std::string& text) {
     if (!c)
       fail_usage(
           "Unknown channel '{}'. Channels are rgb, albedo, diffuse, specular, normal, depth, roughness, "
-          "mask.",
+          "metalness, mask.",
           word);
     channels.push_back(*c);
   }

@@ -67,7 +67,7 @@ struct LobeScene {
                            .begin = 0,
                            .end = kPoints,
                            .normals = normals.data(),
-                           .mirrors = mirrors.data(),
+                           .axes = mirrors.data(),
                            .reflection_lobes = reflection.data(),
                            .d_irradiance = y1.data(),
                            .d_reflected = y2.data(),
@@ -80,10 +80,10 @@ struct LobeScene {
     std::vector<float> out(4 * kPoints);
     d.launch<SgReflectionGrad>({.lobes = planes(),
                                 .stride = kPoints,
-                                .mirrors = mirrors.data(),
+                                .axes = mirrors.data(),
                                 .roughness = roughness.data(),
                                 .d_reflected = y2.data(),
-                                .d_mirrors = out.data(),
+                                .d_axes = out.data(),
                                 .d_roughness = out.data() + 3 * kPoints},
                                kPoints);
     return out;

@@ -39,7 +39,7 @@ HD T reflection_scale_grad(T roughness) {  // d / d roughness
 }
 
 // The mixture for one roughness: sharpness lambda[j], and weight[j] of unit-height Gaussians, so that the
-// integral over the upper hemisphere, seen along the normal, is 1.
+// integral over the sphere is 1.
 template <class T>
 struct ReflectionLobe {
   T lambda[kReflectionLobes], weight[kReflectionLobes];
@@ -48,13 +48,10 @@ template <class T>
 HD ReflectionLobe<T> reflection_lobe(T roughness) {
   const T scale = reflection_scale(max(roughness, T(kMinRoughness)));
   ReflectionLobe<T> lobe;
-  T above(0.0f);
   for (int j = 0; j < kReflectionLobes; ++j) {
     lobe.lambda[j] = T(reflection_node(j)) * scale;
-    above += T(reflection_share(j)) / (T(1.0f) + exp(-lobe.lambda[j]));
+    lobe.weight[j] = T(reflection_share(j)) / sg_integral(lobe.lambda[j]);
   }
-  for (int j = 0; j < kReflectionLobes; ++j)
-    lobe.weight[j] = T(reflection_share(j)) / (sg_integral(lobe.lambda[j]) * above);
   return lobe;
 }
 
@@ -69,16 +66,10 @@ HD ReflectionLobeGrad<T> reflection_lobe_grad(T roughness) {
   const T clamped = max(roughness, T(kMinRoughness));
   const T d_scale = select(roughness < T(kMinRoughness), T(0.0f), reflection_scale_grad(clamped));
   ReflectionLobeGrad<T> g{reflection_lobe(roughness), {}, {}};
-  T above(0.0f), d_above(0.0f);
   for (int j = 0; j < kReflectionLobes; ++j) {
-    const T e = exp(-g.lobe.lambda[j]), inverse = T(1.0f) / (T(1.0f) + e);
     g.d_lambda[j] = T(reflection_node(j)) * d_scale;
-    above += T(reflection_share(j)) * inverse;
-    d_above += T(reflection_share(j)) * e * inverse * inverse * g.d_lambda[j];
-  }
-  for (int j = 0; j < kReflectionLobes; ++j) {
     const T d_integral = sg_integral_slope(g.lobe.lambda[j]) * g.d_lambda[j];
-    g.d_weight[j] = -(g.lobe.weight[j] * (d_integral / sg_integral(g.lobe.lambda[j]) + d_above / above));
+    g.d_weight[j] = -(g.lobe.weight[j] * d_integral / sg_integral(g.lobe.lambda[j]));
   }
   return g;
 }

@@ -76,7 +76,7 @@ TEST(SplitSum, SlopesAreTheDerivativesOfTheInterpolation) {
 }
 
 TEST(SplitSum, SlopesAreContinuousAcrossNodes) {
-  const double cell = 1.0 / (kSplitSumCosines - 1), node = 9 * cell;
+  const double cell = 1.0 / (kTableCosines - 1), node = 9 * cell;
   const auto slope = [](double nv) { return split_sum_grad(split_sum_table(), nv, 0.4).d_nv.scale; };
   EXPECT_NEAR(slope(node - 1e-9), slope(node + 1e-9), 1e-6);
   EXPECT_GT(std::abs(slope(node - cell) - slope(node + cell)), 1e-3);  // not because it is constant

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/export/object_mesh.h"
 
+#include <cmath>
 #include <map>
 #include <tuple>
 
@@ -34,6 +35,14 @@ Mesh compact(const Mesh& mesh) {
   return out;
 }
 
+// A mesh has few materials: where they vary continuously they are rounded.
+std::vector<Material> rounded(std::vector<Material> materials) {
+  constexpr float kStep = 0.1f;  // of the roughness
+  for (Material& m : materials)
+    m = {kStep * std::round(m.roughness / kStep), m.specular, std::round(m.metalness)};
+  return materials;
+}
+
 // The materials that occur among the vertices. A triangle gets the one that two of its corners have, else its
 // first corner's.
 MeshMaterials mesh_materials(const Mesh& mesh, const std::vector<Material>& of_vertex) {
@@ -57,6 +66,7 @@ ColoredMesh colored_mesh(const Device& device, const Scene& scene) {
   Mesh mesh = scene.surface->mesh();
   Appearance look = appearance_at(device, scene, vertex_hits(mesh));
   mesh.colors = std::move(look.albedo);
+  if (scene.material.varying()) look.material = rounded(std::move(look.material));
   MeshMaterials materials = mesh_materials(mesh, look.material);
   if (!scene.poses.empty()) mesh = compact(mesh);
   mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);

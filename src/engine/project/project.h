@@ -34,8 +34,8 @@
 namespace cei3d {
 
 // 1: an edit has one result, that of its first making. 2: results by what they depend on. 3: the residual has
-// features of its own.
-inline constexpr int kProjectVersion = 3;
+// features of its own. 4: materials may vary over the surface.
+inline constexpr int kProjectVersion = 4;
 
 struct ProjectHead {
   Normalization normalization;

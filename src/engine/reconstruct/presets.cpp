@@ -27,6 +27,9 @@ Preset fast() {
   p.appearance.albedo.activation = Activation::relu;
   p.appearance.albedo.outputs = 3;
   p.appearance.albedo.output_activation = Activation::sigmoid;
+  p.appearance.materials = p.appearance.albedo;
+  p.appearance.materials.encoding = {0, 10, 16, 256, 14};
+  p.appearance.materials.outputs = MaterialField::kOutputs;
   p.trial.geometry = p.geometry;
   p.iterations = 4000;
   p.resolution_from_views = true;
@@ -61,6 +64,9 @@ Preset paper() {
   p.appearance.albedo.activation = Activation::elu;
   p.appearance.albedo.outputs = 3;
   p.appearance.albedo.output_activation = Activation::sigmoid;
+  p.appearance.materials = p.appearance.albedo;
+  p.appearance.materials.width = 128;
+  p.appearance.materials.outputs = MaterialField::kOutputs;
   p.appearance.batch = 1024;
   p.appearance.network_rate = 5e-4f;
   p.polish.batch = 1024;
@@ -94,6 +100,7 @@ void fit_to_footprint(Preset& p, double footprint) {
   if (!p.resolution_from_views) return;
   fit(p.geometry.sdf.encoding, fine ? 17 : 15);
   fit(p.appearance.albedo.encoding, fine ? 19 : 16);
+  fit(p.appearance.materials.encoding, fine ? 17 : 15);
   p.meshing.resolution = fine ? 256 : finest > 140 ? 192 : 96;
   p.finer_meshing.resolution = p.meshing.resolution * 3 / 2;
 }

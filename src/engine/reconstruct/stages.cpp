@@ -139,7 +139,7 @@ void refine(const RunContext& run, RunState& state, uint64_t subset) {
   if (run.progress.left() < plan.refinement + plan.finer_mesh + plan.residual) return;
   Scene& scene = state.scene;
   const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, subset});
-  AppearanceResult result{scene.light, scene.material.mean(), scene.albedo, {}};
+  AppearanceResult result{scene.light, scene.material, scene.albedo, {}};
   refine_albedo(run.device, {scene.surface, hits.samples()}, appearance_options(run), result, run.progress,
                 run.preset.refinement_steps);
   check_cancelled(run.progress);

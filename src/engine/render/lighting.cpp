@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/compute/kernels/shade.h"
+#include "engine/render/hit_reflection.h"
 
 namespace cei3d {
 namespace {
@@ -21,14 +22,26 @@ struct Planes {
   Vec3f get(int r, size_t i) { return load_planes<float>(row(r), kBlock, int(i)); }
 };
 
-struct ReflectionPlanes {
-  Planes<3> mirrors;
+// One of the two lobes of every hit.
+struct LobeOfHits {
+  Planes<3> axes;
   Planes<1> roughness;
+
+  void put(size_t i, const ReflectionAxis<float>& lobe) {
+    axes.put(0, i, lobe.axis);
+    roughness.row(0)[i] = lobe.roughness;
+  }
+};
+struct ReflectionPlanes {
+  LobeOfHits base, fresnel;
+  std::vector<float> share;  // of the base lobe
 
   explicit ReflectionPlanes(const HitBatch& batch) {
     for (size_t i = 0; i < batch.size(); ++i) {
-      mirrors.put(0, i, mirror_direction(batch.hits[i]));
-      roughness.row(0)[i] = batch.materials[i].roughness;
+      const SurfaceReflection<float> r = reflection_of(batch.hits[i], batch.materials[i]);
+      base.put(i, r.base);
+      fresnel.put(i, r.fresnel);
+      share.push_back(r.share);
     }
   }
 };
@@ -118,18 +131,55 @@ void Lighting::set_lobes(const SgMixture& light) {
   irradiance_ = IrradianceMap(device_, lobes());
 }
 
+namespace {
+
+Planes<3> sky_along(const Device& device, const LobePlanes& light, LobeOfHits& lobe, size_t hits) {
+  Planes<3> out;
+  device.launch<SgReflection>({.lobes = light,
+                               .stride = kBlock,
+                               .axes = lobe.axes.row(0),
+                               .roughness = lobe.roughness.row(0),
+                               .out = out.row(0)},
+                              padded_to_panels(int(hits)));
+  return out;
+}
+
+// dL/d(axis and roughness of the lobe) from dL/d(radiance along it), times `share` of each hit.
+struct LobeGrad {
+  Planes<3> d_axes;
+  Planes<1> d_roughness;
+
+  LobeGrad(const Device& device, const LobePlanes& light, LobeOfHits& lobe,
+           std::span<const Vec3f> d_radiance, const std::vector<float>& share) {
+    Planes<3> d_reflected;
+    for (size_t i = 0; i < share.size(); ++i) d_reflected.put(0, i, d_radiance[i] * share[i]);
+    device.launch<SgReflectionGrad>({.lobes = light,
+                                     .stride = kBlock,
+                                     .axes = lobe.axes.row(0),
+                                     .roughness = lobe.roughness.row(0),
+                                     .d_reflected = d_reflected.row(0),
+                                     .d_axes = d_axes.row(0),
+                                     .d_roughness = d_roughness.row(0)},
+                                    padded_to_panels(int(share.size())));
+  }
+  ReflectionAxis<float> of(size_t i) { return {d_axes.get(0, i), d_roughness.row(0)[i]}; }
+};
+
+std::vector<float> rest_of(std::vector<float> share) {
+  for (float& s : share) s = 1 - s;
+  return share;
+}
+
+}  // namespace
+
 // batch: at most kBlock hits.
 std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
   ReflectionPlanes in(batch);
-  Planes<3> out;
-  device_.launch<SgReflection>({.lobes = lobes(),
-                                .stride = kBlock,
-                                .mirrors = in.mirrors.row(0),
-                                .roughness = in.roughness.row(0),
-                                .out = out.row(0)},
-                               padded_to_panels(int(batch.size())));
+  Planes<3> base = sky_along(device_, lobes(), in.base, batch.size()),
+            fresnel = sky_along(device_, lobes(), in.fresnel, batch.size());
   std::vector<Vec3f> radiance(batch.size());
-  for (size_t i = 0; i < radiance.size(); ++i) radiance[i] = out.get(0, i);
+  for (size_t i = 0; i < radiance.size(); ++i)
+    radiance[i] = base.get(0, i) * in.share[i] + fresnel.get(0, i) * (1 - in.share[i]);
   return radiance;
 }
 
@@ -200,24 +250,20 @@ Shading Lighting::shade(const HitBatch& batch, std::span<const Vec3f> albedo,
   return shading_of(terms(batch, seen), albedo);
 }
 
-Lighting::ReflectionGrad Lighting::reflection_grad(const HitBatch& batch,
-                                                   std::span<const Vec3f> d_reflection) const {
+std::vector<SurfaceReflectionGrad<float>> Lighting::reflection_grad(
+    const HitBatch& batch, std::span<const Vec3f> d_reflection) const {
   ReflectionPlanes in(batch);
-  Planes<3> d_reflected, d_mirrors;
-  Planes<1> d_roughness;
-  for (size_t i = 0; i < batch.size(); ++i) d_reflected.put(0, i, d_reflection[i]);
-  device_.launch<SgReflectionGrad>({.lobes = lobes(),
-                                    .stride = kBlock,
-                                    .mirrors = in.mirrors.row(0),
-                                    .roughness = in.roughness.row(0),
-                                    .d_reflected = d_reflected.row(0),
-                                    .d_mirrors = d_mirrors.row(0),
-                                    .d_roughness = d_roughness.row(0)},
-                                   padded_to_panels(int(batch.size())));
-  ReflectionGrad out;
+  Planes<3> base = sky_along(device_, lobes(), in.base, batch.size()),
+            fresnel = sky_along(device_, lobes(), in.fresnel, batch.size());
+  LobeGrad d_base(device_, lobes(), in.base, d_reflection, in.share),
+      d_fresnel(device_, lobes(), in.fresnel, d_reflection, rest_of(in.share));
+  std::vector<SurfaceReflectionGrad<float>> out;
   for (size_t i = 0; i < batch.size(); ++i) {
-    out.d_mirror.push_back(d_mirrors.get(0, i));
-    out.d_roughness.push_back(d_roughness.row(0)[i]);
+    const Material& m = batch.materials[i];
+    const SurfaceReflection<float> d{d_base.of(i), d_fresnel.of(i),
+                                     dot(d_reflection[i], base.get(0, i) - fresnel.get(0, i))};
+    out.push_back(surface_reflection_grad(reflection_tables(), batch.hits[i].normal, batch.hits[i].to_camera,
+                                          m.roughness, m.specular, m.metalness, d));
   }
   return out;
 }
@@ -234,16 +280,16 @@ ShadingSlopes Lighting::block_grad(const HitBatch& batch, std::span<const Incide
     out.d_sky_irradiance[i] = d.sky_irradiance;
     out.d_sky_reflection[i] = d.sky_reflection;
   }
-  const ReflectionGrad reflection = reflection_grad(batch, out.d_sky_reflection);
+  const std::vector<SurfaceReflectionGrad<float>> reflection = reflection_grad(batch, out.d_sky_reflection);
   for (size_t i = 0; i < batch.size(); ++i) {
     const Vec3f n = batch.hits[i].normal, v = batch.hits[i].to_camera;
     const float d_nv = d_points.row(Rows::kNv)[i], nv = dot(n, v);
-    Vec3f &d_n = out.d_normal[i], &d_v = out.d_view[i];
-    d_n = (v - n * nv) * d_nv;
-    d_v = (n - v * nv) * d_nv;
-    mirrored_direction_grad(n, v, reflection.d_mirror[i], d_n, d_v);
-    out.d_material[i] = {d_points.row(Rows::kRoughness)[i] + reflection.d_roughness[i],
-                         d_points.row(Rows::kSpecular)[i], d_points.row(Rows::kMetalness)[i]};
+    const SurfaceReflectionGrad<float>& r = reflection[i];
+    out.d_normal[i] = (v - n * nv) * d_nv + r.d_n;
+    out.d_view[i] = (n - v * nv) * d_nv + r.d_v;
+    out.d_material[i] = {d_points.row(Rows::kRoughness)[i] + r.d_roughness,
+                         d_points.row(Rows::kSpecular)[i] + r.d_specular,
+                         d_points.row(Rows::kMetalness)[i] + r.d_metalness};
   }
   return out;
 }

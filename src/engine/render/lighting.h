@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/compute/device.h"
+#include "core/math/reflection_axis.h"
 #include "core/math/shading.h"
 #include "engine/render/irradiance_map.h"
 #include "engine/render/self_reflection.h"
@@ -87,13 +88,10 @@ class Lighting {
   void set_lobes(const SgMixture&);
 
  private:
-  struct ReflectionGrad {
-    std::vector<Vec3f> d_mirror;  // by the mirrored directions
-    std::vector<float> d_roughness;
-  };
   LobePlanes lobes() const { return {lobe_planes_.data(), n_lobes_, padded_}; }
   std::vector<Vec3f> sky_reflection(const HitBatch&) const;
-  ReflectionGrad reflection_grad(const HitBatch&, std::span<const Vec3f> d_reflection) const;
+  std::vector<SurfaceReflectionGrad<float>> reflection_grad(const HitBatch&,
+                                                            std::span<const Vec3f> d_reflection) const;
   ShadingSlopes block_grad(const HitBatch&, std::span<const IncidentLight<float>>,
                            std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const;
   IncidentLight<float> incident_at(const Hit&, Vec3f sky_reflection, const SelfReflection::Seen&) const;

@@ -62,7 +62,7 @@ struct Bound {
   double dielectric, metal;  // max error under any of the lights
 };
 // The rougher a metal, the farther its reflection is from a lobe that is round about the mirror direction.
-constexpr Bound kBounds[] = {{0.2f, 0.03, 0.06}, {0.5f, 0.06, 0.25}, {0.8f, 0.04, 0.33}};
+constexpr Bound kBounds[] = {{0.2f, 0.001, 0.001}, {0.5f, 0.001, 0.001}, {0.8f, 0.001, 0.001}};
 
 TEST(LightingTruth, ADielectricBallIsShadedAsPathTracingShowsIt) {
   for (const std::string& light : light_names())

@@ -50,7 +50,7 @@ struct Frame {
   Image rgb, albedo, diffuse, specular;  // RGBA, linear, straight alpha
   Image normal;                          // RGB, unit vectors in the capture's axes; 0 where nothing was hit
   Image depth;                           // 1 channel, z-depth in capture units; 0 where nothing was hit
-  Image roughness;                       // 1 channel; 0 where nothing was hit
+  Image roughness, metalness;            // 1 channel; 0 where nothing was hit
   Image mask;                            // 1 channel, coverage
   std::vector<uint8_t>
       edited;  // #pixels, 1 where any sample of the pixel's mean lies in the region of an edit

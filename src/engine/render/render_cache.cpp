@@ -13,12 +13,6 @@ std::vector<double> numbers_of(const Camera& c) {
   return n;
 }
 
-std::vector<float> numbers_of(const SgMixture& light, const Material& m) {
-  std::vector<float> n = to_array(light);
-  n.insert(n.end(), {m.roughness, m.specular, m.metalness});
-  return n;
-}
-
 size_t bytes_of(const GBuffer& g) {
   return g.hits.size() * (sizeof(Hit) + sizeof(float) + sizeof(uint16_t)) +
          g.samples.size() * (sizeof(uint8_t) + sizeof(uint32_t));
@@ -52,8 +46,8 @@ std::shared_ptr<const Transport> RenderCache::transport(const Scene& scene, size
 
 std::shared_ptr<const PoseLight> RenderCache::pose_light(const Scene& scene, size_t pose,
                                                          const PoseLight* before) {
-  LightKey key{surface_of_pose(scene, pose), surface_before(scene, pose), scene.albedo,
-               numbers_of(scene.light, scene.material.mean())};
+  LightKey key{surface_of_pose(scene, pose), surface_before(scene, pose), scene.albedo, scene.material,
+               to_array(scene.light)};
   if (auto kept = lights_.find(key)) return kept;
   const auto made = light_on_pose(device_, scene, pose, *transport(scene, pose), before);
   return lights_.put(std::move(key), made, bytes_of(*made));

@@ -50,7 +50,8 @@ class RenderCache {
   struct LightKey {
     SurfacePtr surface, before;
     std::shared_ptr<const Field> albedo;
-    std::vector<float> numbers;  // of light and material
+    MaterialField material;
+    std::vector<float> light;
     bool operator==(const LightKey&) const = default;
   };
   struct ViewKey {

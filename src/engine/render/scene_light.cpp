@@ -10,7 +10,7 @@ namespace {
 // As reconstructed, in the first shape.
 VertexMaterials rest_materials(const Device& device, const Scene& scene, const Surface& rest) {
   const auto& positions = rest.mesh().positions;
-  return {scene.albedo->eval3(device, positions), scene.material.at(positions)};
+  return {scene.albedo->eval3(device, positions), scene.material.at(device, positions)};
 }
 
 // With the vertices that an edit has added.
@@ -149,7 +149,7 @@ SceneLight::SceneLight(const Device& device, const Scene& scene, PoseLights ligh
 
 // Of the vertices of that pose; null: as they were reconstructed.
 SeenMaterials SceneLight::materials_as_of(int layer, int pose) const {
-  SeenMaterialsKey key{surface_of_pose(scene_, size_t(pose)), scene_.albedo, scene_.material.mean(), {}};
+  SeenMaterialsKey key{surface_of_pose(scene_, size_t(pose)), scene_.albedo, scene_.material, {}};
   bool changed = false, stored = seen_;
   for (int l = 0; l <= layer; ++l) {
     const EditLayer& layer_l = scene_.layers[size_t(l)];

@@ -36,7 +36,7 @@ std::shared_ptr<const PoseLight> light_on_pose(const Device&, const Scene&, size
 struct SeenMaterialsKey {
   std::shared_ptr<const Surface> surface;
   std::shared_ptr<const Field> albedo;
-  Material material;
+  MaterialField material;
   std::string layers;  // content of all of them
   bool operator==(const SeenMaterialsKey&) const = default;
 };

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/compute/kernels/shade.h"
+#include "engine/render/hit_reflection.h"
 
 namespace cei3d {
 namespace {
@@ -123,23 +124,24 @@ Vec3f SelfReflection::diffuse_radiance(const Surface::RayHit& r) const {
   return at(seen_.albedo, r) * at(vertices_.irradiance, r) / kPi;
 }
 
-// Radiance along the mirror directions of these points: of the environment, or of the surface met there as if
+// Radiance along the axes of the reflection lobes of these points: of the environment, or of the surface met there as if
 // diffuse.
 std::vector<Vec3f> SelfReflection::mirrored(std::span<const Hit> hits,
                                             std::span<const Material> materials) const {
   const size_t n = hits.size(), stride = size_t(padded_to_panels(int(n)));
-  std::vector<Vec3f> from(n), mirrors(n), out(n);
-  std::vector<float> mirror_planes(3 * stride, 0.0f), roughness(stride, 1.0f), sky(3 * stride);
+  std::vector<Vec3f> from(n), axes(n), out(n);
+  std::vector<float> axis_planes(3 * stride, 0.0f), roughness(stride, 1.0f), sky(3 * stride);
   for (size_t k = 0; k < n; ++k) {
-    mirrors[k] = mirror_direction(hits[k]);
+    const ReflectionAxis<float> lobe = reflection_of(hits[k], materials[k]).base;
+    axes[k] = lobe.axis;
     from[k] = ray_origin(hits[k]);
-    roughness[k] = materials[k].roughness;
-    store_planes(mirror_planes.data(), int(stride), int(k), mirrors[k]);
+    roughness[k] = lobe.roughness;
+    store_planes(axis_planes.data(), int(stride), int(k), axes[k]);
   }
-  device_.launch<SgReflection>({light_, int(stride), mirror_planes.data(), roughness.data(), sky.data()},
+  device_.launch<SgReflection>({light_, int(stride), axis_planes.data(), roughness.data(), sky.data()},
                                int(stride));
   std::vector<Surface::RayHit> next(n);
-  surface_.intersect(from, mirrors, 0, next);
+  surface_.intersect(from, axes, 0, next);
   for (size_t k = 0; k < n; ++k)
     out[k] = next[k].t < 0 ? load_planes<float>(sky.data(), int(stride), int(k)) : diffuse_radiance(next[k]);
   return out;
@@ -177,9 +179,9 @@ std::vector<Vec3f> SelfReflection::radiance_of(const Met& met) const {
   return out;
 }
 
-void SelfReflection::add_rays(const Hit& h, uint32_t owner, const std::vector<Vec3f>& lobe,
+void SelfReflection::add_rays(const Hit& h, const Material& m, uint32_t owner, const std::vector<Vec3f>& lobe,
                               Rays& rays) const {
-  const Vec3f r = mirror_direction(h);
+  const Vec3f r = mean_axis(reflection_of(h, m));
   for (const Vec3f& d : lobe) {
     Vec3f ray = turned(r, d);
     // Folded up from below the horizon: the split sum already holds the masking.
@@ -198,7 +200,7 @@ std::vector<SelfReflection::Seen> SelfReflection::seen_by(std::span<const Hit> h
   rays.reserve(hits.size() * kMinRays);
   Lobes lobes;
   for (size_t i = 0; i < hits.size(); ++i)
-    add_rays(hits[i], uint32_t(i), lobes.of(materials[i], dot(hits[i].normal, hits[i].to_camera)), rays);
+    add_rays(hits[i], materials[i], uint32_t(i), lobes.of(materials[i], dot(hits[i].normal, hits[i].to_camera)), rays);
   const Met met = met_by(rays);
   const std::vector<Vec3f> radiance = radiance_of(met);
   std::vector<Seen> out(hits.size());

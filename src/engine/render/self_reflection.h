@@ -33,7 +33,7 @@ class SelfReflection {
   struct Rays;
   class Lobes;
   struct Met;
-  void add_rays(const Hit&, uint32_t owner, const std::vector<Vec3f>& lobe, Rays&) const;
+  void add_rays(const Hit&, const Material&, uint32_t owner, const std::vector<Vec3f>& lobe, Rays&) const;
   Met met_by(const Rays&) const;
   std::vector<Vec3f> mirrored(std::span<const Hit>, std::span<const Material>) const;
   std::vector<Vec3f> reflected_at(const Met&) const;

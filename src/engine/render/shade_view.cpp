@@ -18,7 +18,7 @@ Frame empty_frame(int width, int height) {
   Frame f;
   for (Image* i : {&f.rgb, &f.albedo, &f.diffuse, &f.specular}) *i = Image(width, height, 4);
   f.normal = Image(width, height, 3);
-  for (Image* i : {&f.depth, &f.roughness, &f.mask}) *i = Image(width, height, 1);
+  for (Image* i : {&f.depth, &f.roughness, &f.metalness, &f.mask}) *i = Image(width, height, 1);
   f.edited.assign(size_t(width) * height, 0);
   return f;
 }
@@ -129,7 +129,7 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
     for (int x = 0; x < g.width; ++x) {
       const size_t p = size_t(y) * g.width + x;
       Vec3f albedo{0, 0, 0}, diffuse{0, 0, 0}, specular{0, 0, 0}, normal{0, 0, 0}, rgb{0, 0, 0};
-      float depth = 0, roughness = 0, weight = 0;
+      float depth = 0, roughness = 0, metalness = 0, weight = 0;
       const float total = filter.visit_hits(x, y, [&](uint32_t i, float w) {
         albedo += w * look.albedo[i];
         diffuse += w * shading.diffuse[i];
@@ -138,6 +138,7 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
         normal += w * g.hits[i].normal;
         depth += w * g.depths[i];
         roughness += w * look.material[i].roughness;
+        metalness += w * look.material[i].metalness;
         weight += w;
         f.edited[p] |= look.layer[i] >= 0;
       });
@@ -151,6 +152,7 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
       for (int c = 0; c < 3; ++c) f.normal.data[3 * p + c] = n[c];
       f.depth.data[p] = depth / weight / float(scene.normalization.scale);
       f.roughness.data[p] = roughness / weight;
+      f.metalness.data[p] = metalness / weight;
       f.mask.data[p] = coverage;
     }
   });

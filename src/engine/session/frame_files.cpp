@@ -51,6 +51,8 @@ Image channel_picture(const Frame& f, Channel channel, double depth_scale) {
       return scaled(f.depth, float(depth_scale / 65535));
     case Channel::roughness:
       return f.roughness;
+    case Channel::metalness:
+      return f.metalness;
     case Channel::mask:
       return f.mask;
   }

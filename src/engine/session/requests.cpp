@@ -9,7 +9,7 @@ namespace cei3d {
 namespace {
 
 constexpr const char* kChannels[] = {"rgb",    "albedo", "diffuse",   "specular",
-                                     "normal", "depth",  "roughness", "mask"};
+                                     "normal", "depth",  "roughness", "metalness", "mask"};
 constexpr const char* kSeverities[] = {"note", "warning", "error"};
 constexpr const char* kTargets[] = {"albedo", "appearance", "radiance"};
 constexpr const char* kRoutings[] = {"both", "points", "outline", "none"};

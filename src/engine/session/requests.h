@@ -188,7 +188,7 @@ std::optional<Routing> routing_from_name(const std::string&);
 const char* paint_target_name(PaintTarget);
 const char* routing_name(Routing);
 
-enum class Channel { rgb, albedo, diffuse, specular, normal, depth, roughness, mask };
+enum class Channel { rgb, albedo, diffuse, specular, normal, depth, roughness, metalness, mask };
 const char* channel_name(Channel);
 std::optional<Channel> channel_from_name(const std::string&);
 

@@ -189,14 +189,14 @@ std::vector<float> original_shares(const Scene& scene, std::span<const Hit> hits
 }
 
 // The materials below all layers. Surface that an edit added is not in the field's domain: it gets the mean.
-std::vector<Material> base_materials(const Scene& scene, std::span<const Hit> hits) {
+std::vector<Material> base_materials(const Device& device, const Scene& scene, std::span<const Hit> hits) {
   std::vector<Vec3f> points(hits.size(), Vec3f{0, 0, 0});
   std::vector<uint8_t> added(hits.size(), 0);
   for (size_t i = 0; i < hits.size(); ++i) {
     added[i] = !scene.poses.empty() && scene.poses.back()->born_in(hits[i].triangle) > 0;
     if (!added[i]) points[i] = in_pose(scene.poses, hits[i], 0).position;
   }
-  std::vector<Material> materials = scene.material.at(points);
+  std::vector<Material> materials = scene.material.at(device, points);
   for (size_t i = 0; i < hits.size(); ++i)
     if (added[i]) materials[i] = scene.material.mean();
   return materials;
@@ -208,7 +208,7 @@ Appearance appearance_at(const Device& device, const Scene& scene, std::span<con
   Routes routes(scene, hits);
   Appearance out;
   put_colors(device, scene, hits, routes, out);
-  out.material = base_materials(scene, hits);
+  out.material = base_materials(device, scene, hits);
   out.layer.resize(hits.size());
   for (size_t i = 0; i < hits.size(); ++i) {
     const Route& r = routes.at[i];

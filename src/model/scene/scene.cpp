@@ -86,6 +86,15 @@ std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const std:
   return residual;
 }
 
+// Objects of project version 3 and below have one material.
+std::shared_ptr<const Field> load_materials(const Tensors& tensors, const Json& head) {
+  std::shared_ptr<const Field> field = load_field("materials", tensors, head);
+  if (field && field->config().outputs < MaterialField::kOutputs)
+    fail("the network of the materials has {} outputs, {} are needed", field->config().outputs,
+         MaterialField::kOutputs);
+  return field;
+}
+
 Scene reshaped(Scene scene, const Reshape& change) {
   const std::shared_ptr<const Surface> before = scene.surface;
   if (!before) fail("The object has no surface that could be changed; reconstruct it again.");
@@ -121,6 +130,7 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   head["material"] = {{"roughness", own.roughness}, {"specular", own.specular}, {"metalness", own.metalness}};
   save_field(scene.sdf, "sdf", tensors, head);
   save_field(scene.albedo, "albedo", tensors, head);
+  save_field(scene.material.varying(), "materials", tensors, head);
   if (scene.surface) save_surface(*scene.surface, tensors, head);
   save_light(scene.light, tensors, head);
   if (scene.residual) save_residual(*scene.residual, scene.sdf, tensors, head);
@@ -135,10 +145,11 @@ Scene load_scene(const Tensors& tensors, const Json& head) {
     scene.normalization.scale = reader.require<double>("scale");
     scene.up = vector_from(reader, "up");
     JsonReader material = reader.object("material");
-    scene.material = Material{material.require<float>("roughness"), material.require<float>("specular"),
-                              material.require<float>("metalness")};
+    const Material mean{material.require<float>("roughness"), material.require<float>("specular"),
+                        material.require<float>("metalness")};
     material.finish();
-    for (const char* field : {"sdf", "albedo", "residual_features"}) reader.has(field);
+    for (const char* field : {"sdf", "albedo", "materials", "residual_features"}) reader.has(field);
+    scene.material = {mean, load_materials(tensors, head)};
     scene.sdf = load_field("sdf", tensors, head);
     scene.albedo = load_field("albedo", tensors, head);
     if (reader.has("surface")) scene.surface = load_surface(tensors, reader.member("surface"));

@@ -34,13 +34,13 @@ struct SgReflection {
   struct Args {
     LobePlanes lobes;
     int stride;
-    const float* mirrors;    // [3][stride] unit, mirrored_direction()
+    const float* axes;       // [3][stride] unit, core/math/reflection_axis.h
     const float* roughness;  // [stride]
     float* out;              // [3][stride]
   };
   template <class T>
   static HD void run(const Args& a, int i) {
-    const Vec3<T> r = load_planes<T>(a.mirrors, a.stride, i);
+    const Vec3<T> r = load_planes<T>(a.axes, a.stride, i);
     const ReflectionLobe<T> lobe = reflection_lobe(load<T>(a.roughness + i));
     Vec3<T> sum{T(0.0f), T(0.0f), T(0.0f)};
     for (int k = 0; k < a.lobes.count; ++k) {
@@ -51,31 +51,31 @@ struct SgReflection {
   }
 };
 
-// Adjoint of SgReflection for the mirrored directions, as if their length were free, and for the roughness.
+// Adjoint of SgReflection for the axes, as if their length were free, and for the roughness.
 // Item: a point.
 struct SgReflectionGrad {
   struct Args {
     LobePlanes lobes;
     int stride;
-    const float *mirrors, *roughness;  // as in SgReflection
+    const float *axes, *roughness;  // as in SgReflection
     const float* d_reflected;          // [3][stride]
-    float* d_mirrors;                  // [3][stride], written
+    float* d_axes;                  // [3][stride], written
     float* d_roughness;                // [stride], written
   };
   template <class T>
   static HD void run(const Args& a, int i) {
-    const Vec3<T> r = load_planes<T>(a.mirrors, a.stride, i), g = load_planes<T>(a.d_reflected, a.stride, i);
+    const Vec3<T> r = load_planes<T>(a.axes, a.stride, i), g = load_planes<T>(a.d_reflected, a.stride, i);
     const ReflectionLobeGrad<T> lobe = reflection_lobe_grad(load<T>(a.roughness + i));
-    Vec3<T> d_mirror{T(0.0f), T(0.0f), T(0.0f)};
+    Vec3<T> d_axis{T(0.0f), T(0.0f), T(0.0f)};
     T d_roughness(0.0f);
     for (int k = 0; k < a.lobes.count; ++k) {
       const Vec3<T> d = r - a.lobes.axis<T>(k);
       const T weight = dot(g, a.lobes.mu<T>(k));
       const SgReflectedMaterialGrad<T> s = sg_reflected_material_grad(a.lobes.lambda<T>(k), lobe, dot(d, d));
-      d_mirror += d * (T(2.0f) * weight * s.d_q);
+      d_axis += d * (T(2.0f) * weight * s.d_q);
       d_roughness += weight * s.d_roughness;
     }
-    store_planes(a.d_mirrors, a.stride, i, d_mirror);
+    store_planes(a.d_axes, a.stride, i, d_axis);
     store<T>(a.d_roughness + i, d_roughness);
   }
 };
@@ -105,7 +105,7 @@ struct SgLobesGrad {
   struct Args {
     LobePlanes lobes;
     int stride, begin, end;
-    const float *normals, *mirrors;           // [3][stride]
+    const float *normals, *axes;           // [3][stride]
     const float* reflection_lobes;            // [ReflectionLobes::kRows][stride]
     const float *d_irradiance, *d_reflected;  // [3][stride]
     float* d_lobes;                           // [7][lobes.padded]: axis, sharpness, color; written
@@ -121,7 +121,7 @@ struct SgLobesGrad {
       const Vec3<T> n = point<T>(a.normals, a.stride, h), e = point<T>(a.d_irradiance, a.stride, h);
       const SgSlopes<T> diffuse = sg_irradiance_slopes(lambda, dot(n, axis));
       const T d_diffuse = dot(e, mu);
-      const Vec3<T> g = point<T>(a.d_reflected, a.stride, h), gap = point<T>(a.mirrors, a.stride, h) - axis;
+      const Vec3<T> g = point<T>(a.d_reflected, a.stride, h), gap = point<T>(a.axes, a.stride, h) - axis;
       const SgReflectedGrad<T> specular = sg_reflected_grad(lambda, lobe<T>(a, h), dot(gap, gap));
       const T d_specular = dot(g, mu);
       d_mu += e * diffuse.value + g * specular.value;

@@ -32,17 +32,28 @@ LinearSplitOptions split_options(const AppearanceOptions& o) {
   return s;
 }
 
+constexpr float kAllMetal = 0.97f;  // mean metalness
+
 // Metals gain half a decibel: their pictures are nothing but light. Dielectrics hardly anything.
-int joint_steps_for(const Material& m, bool brief) {
-  return m.metalness > 0 ? (brief ? 120 : 400) : (brief ? 30 : 100);
+int joint_steps_for(const Material& mean, bool brief) {
+  return mean.metalness > 0.1f ? (brief ? 120 : 400) : (brief ? 30 : 100);
 }
 
-// Descent on the albedo field under a light, and then on both. bouncing: base colors of the mesh's vertices
-// to begin with.
+// Mean of the values that a triangle has at its corners.
+Material material_between(const std::vector<Material>& of, const Mesh& mesh, const Hit& h) {
+  const auto& t = mesh.triangles[h.triangle];
+  const Material &a = of[t[0]], &b = of[t[1]], &c = of[t[2]];
+  const float w = 1 - h.b1 - h.b2;
+  const auto mean = [&](float Material::*x) { return a.*x * w + b.*x * h.b1 + c.*x * h.b2; };
+  return {mean(&Material::roughness), mean(&Material::specular), mean(&Material::metalness)};
+}
+
+// Descent on the fields of albedo and material under a light, and then on all three. bouncing: base colors of
+// the mesh's vertices to begin with.
 class Descent {
  public:
   Descent(const Device& device, const AppearanceInput& input, std::shared_ptr<const Transport> transport,
-          const AppearanceOptions& options, Field field, const std::vector<Vec3f>& bouncing,
+          const AppearanceOptions& options, Field albedo, const std::vector<Vec3f>& bouncing,
           AppearanceResult& result, Progress& progress)
       : device_(device),
         input_(input),
@@ -50,17 +61,18 @@ class Descent {
         options_(options),
         result_(result),
         progress_(progress),
-        field_(std::move(field)),
-        trainer_(field_, {.network_rate = options.network_rate}) {
+        albedo_(std::move(albedo)),
+        albedo_trainer_(albedo_, {.network_rate = options.network_rate}) {
+    if (result.material.varying()) learn_materials(*result.material.varying());
     relight(bouncing);
   }
 
-  // The field alone, `rate` times the full rates, falling to a tenth: every sample's radiance is linear in
+  // The albedo alone, `rate` times the full rates, falling to a tenth: every sample's radiance is linear in
   // its base color, dark + a gain.
   void fit_albedo(int steps, float rate) {
     const SurfaceSamples& samples = input_.samples;
-    const std::vector<ShadingTerms<float>> terms =
-        lighting_->terms(UniformBatch(samples.hits, result_.material));
+    const std::vector<Material> materials = result_.material.at(device_, positions_of(samples.hits));
+    const std::vector<ShadingTerms<float>> terms = lighting_->terms({samples.hits, materials});
     for (int step = 0; step < steps; ++step) {
       check_cancelled(progress_);
       choose_batch();
@@ -69,18 +81,18 @@ class Descent {
           d_a = sample_grad(samples, batch_[i], terms[batch_[i]], a, 1 / float(options_.batch)).d_albedo;
         });
       };
-      trainer_.step(device_, positions_, loss, rate * std::pow(0.1f, float(step) / float(steps)));
+      albedo_trainer_.step(device_, points_, loss, rate * std::pow(0.1f, float(step) / float(steps)));
       if (step % 50 == 0) progress_.report({"albedo", 0.6 + 0.2 * step / steps, -1, ""});
     }
   }
 
-  // Field and light together; openness and bounce follow every kRefresh steps.
-  void fit_jointly(int steps) {
-    LightDescent light(result_.light, result_.material.metalness == 0);
+  // Albedo, materials and light together; openness and bounce follow every kRefresh steps.
+  void fit_jointly(int steps, bool keep_power) {
+    LightDescent light(result_.light, keep_power);
     for (int step = 0; step < steps; ++step) {
       check_cancelled(progress_);
       if (step % kRefresh == 0)
-        relight(field_.eval3(device_, input_.surface->mesh().positions));
+        relight(albedo_.eval3(device_, input_.surface->mesh().positions));
       else
         lighting_->set_lobes(result_.light);
       joint_step(light, std::pow(0.1f, float(step) / float(steps)));
@@ -88,25 +100,33 @@ class Descent {
     }
   }
 
-  Field take_field() { return std::move(field_); }
+  Field take_albedo() { return std::move(albedo_); }
 
  private:
   static constexpr int kRefresh = 25;
 
+  void learn_materials(const Field& field) {
+    materials_ = std::make_shared<Field>(field);
+    result_.material = {result_.material.mean(), materials_};
+    material_trainer_ = std::make_unique<FieldTrainer>(*materials_, FieldTrainer::Options{});
+  }
+
   void relight(const std::vector<Vec3f>& base_color) {
-    lighting_ = std::make_unique<Lighting>(device_, input_.surface, result_.light, base_color,
-                                           result_.material, transport_);
+    lighting_ = std::make_unique<Lighting>(
+        device_, input_.surface, result_.light,
+        vertex_light(*transport_, result_.light,
+                     {base_color, result_.material.at(device_, input_.surface->mesh().positions)}));
   }
 
   void choose_batch() {
     batch_.resize(options_.batch);
-    positions_.clear();
+    points_.clear();
     for (int i = 0; i < options_.batch; ++i) {
       batch_[i] =
           Rng(options_.seed, uint64_t(epoch_), uint64_t(i)).below(uint32_t(input_.samples.hits.size()));
       const SurfaceSamples& s = input_.samples;
       const float footprint = s.footprints.empty() ? 0 : s.footprints[batch_[i]];
-      for (const Vec3f p : pixel_points(s.hits[batch_[i]], footprint)) positions_.push_back(p);
+      for (const Vec3f p : pixel_points(s.hits[batch_[i]], footprint)) points_.push_back(p);
     }
     ++epoch_;
   }
@@ -130,7 +150,9 @@ class Descent {
     choose_batch();
     std::vector<Hit> hits(options_.batch);
     for (int i = 0; i < options_.batch; ++i) hits[i] = input_.samples.hits[batch_[i]];
-    const UniformBatch batch(hits, result_.material);
+    const std::vector<Vec3f> positions = positions_of(hits);
+    const std::vector<Material> materials = result_.material.at(device_, positions);
+    const HitBatch batch{hits, materials};
     const std::vector<IncidentLight<float>> light = lighting_->incident_light(batch);
     const std::vector<ShadingTerms<float>> terms = lighting_->terms(batch, light);
     std::vector<Vec3f> albedo(hits.size()), d_radiance(hits.size());
@@ -142,10 +164,28 @@ class Descent {
         d_a = g.d_albedo;
       });
     };
-    trainer_.step(device_, positions_, loss, 0.1f * rate);
+    albedo_trainer_.step(device_, points_, loss, 0.1f * rate);
     const ShadingSlopes slopes = lighting_->grad(batch, light, albedo, d_radiance);
     descent.step(device_, batch, slopes.d_sky_irradiance, slopes.d_sky_reflection, rate);
     result_.light = descent.light();
+    if (materials_) descend_materials(positions, slopes.d_material, 0.1f * rate);
+  }
+
+  void descend_materials(const std::vector<Vec3f>& positions, const std::vector<Material>& d_material,
+                         float rate) {
+    constexpr int kOutputs = MaterialField::kOutputs;
+    const auto loss = [&](int begin, int end, const float* out, float* d_out) {
+      for (int i = begin; i < end; ++i)
+        material_of_grad(out + kOutputs * (i - begin), d_material[size_t(i)], d_out + kOutputs * (i - begin));
+    };
+    material_trainer_->step(device_, positions, loss, rate);
+  }
+
+  static std::vector<Vec3f> positions_of(std::span<const Hit> hits) {
+    std::vector<Vec3f> out;
+    out.reserve(hits.size());
+    for (const Hit& h : hits) out.push_back(h.position);
+    return out;
   }
 
   const Device& device_;
@@ -154,13 +194,41 @@ class Descent {
   AppearanceOptions options_;
   AppearanceResult& result_;
   Progress& progress_;
-  Field field_;
-  FieldTrainer trainer_;
+  Field albedo_;
+  FieldTrainer albedo_trainer_;
+  std::shared_ptr<Field> materials_;  // null: one material, which stays
+  std::unique_ptr<FieldTrainer> material_trainer_;
   std::unique_ptr<Lighting> lighting_;
   int epoch_ = 0;
   std::vector<uint32_t> batch_;
-  std::vector<Vec3f> positions_;  // kPixelPoints of each pixel
+  std::vector<Vec3f> points_;  // kPixelPoints of each pixel
 };
+
+// A field of the materials that the split found at the vertices, learned where the samples are.
+MaterialField fit_materials(const Device& device, const AppearanceInput& input,
+                            const AppearanceOptions& options, const LinearSplit& split, Progress& progress) {
+  if (split.materials.empty()) return split.material;
+  constexpr int kOutputs = MaterialField::kOutputs;
+  const auto field = std::make_shared<Field>(options.materials, options.seed + 200);
+  FieldTrainer trainer(*field, {.network_rate = options.network_rate});
+  const std::span<const Hit> hits = input.samples.hits;
+  std::vector<Vec3f> points(size_t(options.batch));
+  std::vector<float> targets(points.size() * kOutputs);
+  for (int step = 0; step < options.material_steps; ++step) {
+    check_cancelled(progress);
+    for (size_t i = 0; i < points.size(); ++i) {
+      const Hit& h = hits[Rng(options.seed ^ 0x3a7e, uint64_t(step), i).below(uint32_t(hits.size()))];
+      points[i] = h.position;
+      outputs_for(material_between(split.materials, input.surface->mesh(), h), &targets[kOutputs * i]);
+    }
+    const auto loss = [&](int begin, int end, const float* out, float* d_out) {
+      for (int i = 0; i < (end - begin) * kOutputs; ++i)
+        d_out[i] = (out[i] - targets[size_t(begin) * kOutputs + size_t(i)]) / float(options.batch);
+    };
+    trainer.step(device, points, loss, std::pow(0.03f, float(step) / float(options.material_steps)));
+  }
+  return {split.material, field};
+}
 
 }  // namespace
 
@@ -171,25 +239,29 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   progress.report({"light", 0, -1, ""});
   const auto transport = std::make_shared<const Transport>(input.surface);
   result.split = linear_split(*transport, input.samples, split_options(options), progress);
-  result.material = result.split.material;
+  const Material& mean = result.split.material;
   progress.log(Json{{"stage", "linear split"},
                     {"seconds", steady_seconds() - start},
-                    {"roughness", result.material.roughness},
-                    {"metalness", result.material.metalness}}
+                    {"roughness", mean.roughness},
+                    {"metalness", mean.metalness},
+                    {"one_material", result.split.materials.empty()}}
                    .dump());
   progress.report({"lobes", 0.5, -1, ""});
   LobeFitOptions lobes;
   lobes.height = result.split.light.height;
   lobes.steps = options.lobe_steps;
-  lobes.seen_through = 0.5f * reflection_scale(result.material.roughness);
+  lobes.seen_through = 0.5f * reflection_scale(result.split.smoothest);
   result.light = fit_lobes(device, result.split.light, lobes, EnvUp::z, progress);
+  result.material = fit_materials(device, input, options, result.split, progress);
   const bool brief = options.effort == Effort::brief;
   Descent descent(device, input, transport, options, Field(options.albedo, options.seed + 100),
                   result.split.albedo, result, progress);
   descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800, 1);
-  descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps
-                                               : joint_steps_for(result.material, brief));
-  result.albedo = std::make_shared<const Field>(descent.take_field());
+  // Nothing but a dielectric's reflections tells the strength of the light.
+  const bool all_metal = mean.metalness > kAllMetal;
+  descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps : joint_steps_for(mean, brief),
+                      !all_metal);
+  result.albedo = std::make_shared<const Field>(descent.take_albedo());
   progress.log(Json{{"stage", "appearance"}, {"seconds", steady_seconds() - start}}.dump());
   return result;
 }
@@ -199,7 +271,7 @@ void refine_albedo(const Device& device, const AppearanceInput& input, const App
   Descent descent(device, input, std::make_shared<const Transport>(input.surface), options, *result.albedo,
                   result.albedo->eval3(device, input.surface->mesh().positions), result, progress);
   descent.fit_albedo(steps, 0.2f);
-  result.albedo = std::make_shared<const Field>(descent.take_field());
+  result.albedo = std::make_shared<const Field>(descent.take_albedo());
 }
 
 }  // namespace cei3d

@@ -9,6 +9,7 @@
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "model/field/field.h"
 #include "model/light/sg_mixture.h"
+#include "model/scene/material_field.h"
 
 namespace cei3d {
 
@@ -24,16 +25,18 @@ struct AppearanceOptions {
   int albedo_steps = -1;  // of the field under the split's light; -1: as `effort` says
   int joint_steps = -1;   // of field and light together; -1: as `effort` says
   int lobe_steps = 800;   // of the fit of lobes to the split's light
+  int material_steps = 400;  // of the fit of a field to the split's materials
   float roughness = 0;    // > 0: known, not searched
   uint64_t seed = 1;
   FieldConfig albedo;          // 3 outputs, sigmoid
+  FieldConfig materials;       // MaterialField::kOutputs outputs, sigmoid
   int batch = 4096;            // pixels a step, of kPixelPoints each
   float network_rate = 2e-3f;  // Adam's, of the field's layers
 };
 
 struct AppearanceResult {
   SgMixture light;
-  Material material;
+  MaterialField material;
   std::shared_ptr<const Field> albedo;
   LinearSplit split;  // what it started from, for the record
 };

@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/compute/kernels/adam.h"
 #include "core/compute/kernels/shade.h"
+#include "engine/render/hit_reflection.h"
 
 namespace cei3d {
 namespace {
@@ -21,53 +22,67 @@ std::vector<float> planes_of(std::span<const Vec3f> v, int stride) {
   return p;
 }
 
-// What the lobes' gradient needs of the hits, as planes.
+// What the lobes' gradient needs of the hits and of one part of their reflection, as planes.
 struct HitPlanes {
   int stride;
-  std::vector<float> normals, mirrors, reflection_lobes;
-
-  HitPlanes(const Device& device, const HitBatch& batch) : stride(padded_to_panels(int(batch.size()))) {
-    std::vector<Vec3f> n, m;
-    std::vector<float> roughness;
-    for (size_t i = 0; i < batch.size(); ++i) {
-      n.push_back(batch.hits[i].normal);
-      m.push_back(mirror_direction(batch.hits[i]));
-      roughness.push_back(batch.materials[i].roughness);
-    }
-    normals = planes_of(n, stride);
-    mirrors = planes_of(m, stride);
-    roughness.resize(size_t(stride), 1.0f);
-    reflection_lobes.resize(size_t(ReflectionLobes::kRows) * stride);
-    device.launch<ReflectionLobes>({stride, roughness.data(), reflection_lobes.data()}, stride);
-  }
+  std::vector<float> normals, axes, reflection_lobes, d_irradiance, d_reflected;
 };
 
-}  // namespace
+HitPlanes hit_planes(const Device& device, const HitBatch& batch, ReflectionPart part,
+                     std::span<const Vec3f> d_irradiance, std::span<const Vec3f> d_reflected) {
+  HitPlanes p;
+  p.stride = padded_to_panels(int(batch.size()));
+  const bool base = part == ReflectionPart::base;
+  std::vector<Vec3f> normals, axes, d_lobe;
+  std::vector<float> roughness;
+  for (size_t i = 0; i < batch.size(); ++i) {
+    const SurfaceReflection<float> r = reflection_of(batch.hits[i], batch.materials[i]);
+    const ReflectionAxis<float>& lobe = base ? r.base : r.fresnel;
+    normals.push_back(batch.hits[i].normal);
+    axes.push_back(lobe.axis);
+    roughness.push_back(lobe.roughness);
+    d_lobe.push_back(d_reflected[i] * (base ? r.share : 1 - r.share));
+  }
+  p.normals = planes_of(normals, p.stride);
+  p.axes = planes_of(axes, p.stride);
+  p.d_irradiance = base ? planes_of(d_irradiance, p.stride) : planes_of({}, p.stride);
+  p.d_reflected = planes_of(d_lobe, p.stride);
+  roughness.resize(size_t(p.stride), 1.0f);
+  p.reflection_lobes.resize(size_t(ReflectionLobes::kRows) * p.stride);
+  device.launch<ReflectionLobes>({p.stride, roughness.data(), p.reflection_lobes.data()}, p.stride);
+  return p;
+}
 
-std::vector<float> lobes_grad(const Device& device, const LobePlanes& lobes, const HitBatch& batch,
-                              std::span<const Vec3f> d_irradiance, std::span<const Vec3f> d_reflected) {
-  const int n = int(batch.size()), chunks = (n + kGrain - 1) / kGrain;
-  const HitPlanes hits(device, batch);
-  const std::vector<float> d_e = planes_of(d_irradiance, hits.stride),
-                           d_r = planes_of(d_reflected, hits.stride);
-  const std::vector<float> zeros(size_t(7) * lobes.padded, 0.0f);
-  std::vector<std::vector<float>> parts(size_t(chunks), zeros);
+// Adds to sum.
+void add_lobes_grad(const Device& device, const LobePlanes& lobes, int n, const HitPlanes& hits,
+                    std::vector<float>& sum) {
+  const int chunks = (n + kGrain - 1) / kGrain;
+  std::vector<std::vector<float>> parts(size_t(chunks), std::vector<float>(sum.size(), 0.0f));
   parallel_for(chunks, [&](int c) {
     device.launch<SgLobesGrad>({.lobes = lobes,
                                 .stride = hits.stride,
                                 .begin = c * kGrain,
                                 .end = min(n, (c + 1) * kGrain),
                                 .normals = hits.normals.data(),
-                                .mirrors = hits.mirrors.data(),
+                                .axes = hits.axes.data(),
                                 .reflection_lobes = hits.reflection_lobes.data(),
-                                .d_irradiance = d_e.data(),
-                                .d_reflected = d_r.data(),
+                                .d_irradiance = hits.d_irradiance.data(),
+                                .d_reflected = hits.d_reflected.data(),
                                 .d_lobes = parts[size_t(c)].data()},
                                lobes.padded);
   });
-  std::vector<float> sum = zeros;
   for (const std::vector<float>& part : parts)
     for (size_t i = 0; i < part.size(); ++i) sum[i] += part[i];
+}
+
+}  // namespace
+
+std::vector<float> lobes_grad(const Device& device, const LobePlanes& lobes, const HitBatch& batch,
+                              std::span<const Vec3f> d_irradiance, std::span<const Vec3f> d_reflected) {
+  std::vector<float> sum(size_t(7) * lobes.padded, 0.0f);
+  for (const ReflectionPart part : {ReflectionPart::base, ReflectionPart::fresnel})
+    add_lobes_grad(device, lobes, int(batch.size()),
+                   hit_planes(device, batch, part, d_irradiance, d_reflected), sum);
   return sum;
 }
 

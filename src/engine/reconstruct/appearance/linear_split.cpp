@@ -9,7 +9,8 @@
 #include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/math/color.h"
-#include "engine/reconstruct/appearance/split_system.h"
+#include "core/base/json.h"
+#include "engine/reconstruct/appearance/split_solver.h"
 #include "model/light/envmap.h"
 
 namespace cei3d {
@@ -20,65 +21,9 @@ constexpr double kFar = 1.25;  // a residual this much above the best ends the s
 // A metal explains everything by reflections; of a matte object of many colors it explains as much as a
 // dielectric does (dtu24). Of a metal (teapot) it leaves a fifth.
 constexpr double kMetalBy = 0.5;
-
-struct Solution {
-  SplitUnknowns x;
-  std::vector<Vec3f> color;  // of a metal
-  double residual = 0;
-};
-
-// Solves for one size of the problem.
-class Solver {
- public:
-  Solver(const Transport& transport, const SurfaceSamples& samples, const LinearSplitOptions& options,
-         Progress& progress)
-      : mesh_(transport.surface().mesh()),
-        rows_(make_split_rows(transport.surface(), samples, options)),
-        options_(options),
-        progress_(progress),
-        system_(mesh_, rows_, options) {
-    start_.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
-    start_.light.assign(size_t(2) * options.light_height * options.light_height, {0, 0, 0});
-  }
-  size_t rows() const { return rows_.size(); }
-
-  Solution dielectric(float roughness) {
-    system_.set_metal({});
-    system_.set_roughness(roughness);
-    Solution s{start_, {}, 0};
-    system_.solve(s.x, options_.rounds, options_.steps);
-    return finish(std::move(s), false);
-  }
-  Solution metal(float roughness) {
-    system_.set_roughness(roughness);
-    Solution s{start_, std::vector<Vec3f>(mesh_.positions.size(), Vec3f{0.7f, 0.7f, 0.7f}), 0};
-    for (int round = 0; round < 3; ++round) {
-      check_cancelled(progress_);
-      system_.set_metal(s.color);
-      system_.solve(s.x, 3, 8);
-      s.color = system_.fit_metal_color(s.x);
-    }
-    system_.set_metal(s.color);
-    return finish(std::move(s), true);
-  }
-  std::vector<LinearSplit::Trial> trials;
-
- private:
-  Solution finish(Solution s, bool metal) {
-    check_cancelled(progress_);
-    s.residual = system_.residual(s.x);
-    trials.push_back({metal, system_.roughness(), s.residual});
-    progress_.log(fmt::format(R"({{"stage":"split","metal":{},"roughness":{:.3f},"residual":{:.3e}}})", metal,
-                              system_.roughness(), s.residual));
-    return s;
-  }
-  const Mesh& mesh_;
-  std::vector<SplitRow> rows_;
-  LinearSplitOptions options_;
-  Progress& progress_;
-  SplitSystem system_;
-  SplitUnknowns start_;
-};
+// Several materials have to explain the pictures so much better than one: they always explain a little more.
+constexpr double kSeveralBy = 0.75;
+constexpr float kFirstRoughness = 0.3f;  // at most, of the one material that the search for several begins with
 
 // The largest roughness whose non-negative light fits within the tolerance of the best: a smaller one with a
 // blurred light fits about as well as the truth, a larger one asks for negative light. A coarse scan, then
@@ -110,7 +55,7 @@ float search_roughness(F residual_at, const LinearSplitOptions& o) {
 
 // Light and a metal's color share a factor per channel that reflections leave open: the light is taken to be
 // gray on average.
-void make_light_gray(Solution& s, int height) {
+void make_light_gray(SplitSolution& s, int height) {
   Vec3f mean{0, 0, 0};
   for (int i = 0; i < height; ++i)
     for (int j = 0; j < 2 * height; ++j)
@@ -119,23 +64,24 @@ void make_light_gray(Solution& s, int height) {
   for (int c = 0; c < 3; ++c) {
     const float k = gray / max(mean[c], 1e-6f * gray);
     for (Vec3f& l : s.x.light) l[c] *= k;
-    for (Vec3f& a : s.color) a[c] /= k;
+    for (Vec3f& a : s.materials.color) a[c] /= k;
   }
   // No reflectance above one: the brightest hundredth decides the common scale.
   std::vector<float> peak;
-  for (const Vec3f& a : s.color) peak.push_back(std::max({a.x, a.y, a.z}));
+  for (const Vec3f& a : s.materials.color) peak.push_back(std::max({a.x, a.y, a.z}));
   std::nth_element(peak.begin(), peak.begin() + peak.size() * 99 / 100, peak.end());
   const float k = max(1.0f, peak[peak.size() * 99 / 100]);
   for (Vec3f& l : s.x.light) l = l * k;
-  for (Vec3f& a : s.color) a = a / k;
+  for (Vec3f& a : s.materials.color) a = a / k;
 }
 
-// Base colors of a dielectric, unclamped: what it sends out diffusely over what reaches it.
-std::vector<Vec3f> base_colors(const Transport& transport, const LinearSplit& r) {
-  const std::vector<Vec3f> sky = transport.sky(sky_radiance(r.light)), bounce = transport.bounce(r.diffuse);
-  std::vector<Vec3f> color(r.diffuse.size());
-  for (size_t v = 0; v < color.size(); ++v)
-    for (int c = 0; c < 3; ++c) color[v][c] = kPi * r.diffuse[v][c] / max(sky[v][c] + bounce[v][c], 1e-4f);
+// Base colors, those of dielectrics unclamped: what they send out diffusely over what reaches them.
+std::vector<Vec3f> base_colors(const Transport& transport, const SplitSolution& s, int height) {
+  const std::vector<Vec3f> irradiance = split_irradiance(transport, s.x, s.materials, height);
+  std::vector<Vec3f> color = s.materials.color;
+  for (uint32_t v = 0; v < color.size(); ++v)
+    for (int c = 0; c < 3 && !s.materials.is_metal(v); ++c)
+      color[v][c] = kPi * s.x.diffuse[v][c] / max(irradiance[v][c], 1e-4f);
   return color;
 }
 
@@ -149,29 +95,25 @@ float percentile(std::vector<float> values, double share) {
 // On surfaces that reflect less the light comes out too dark, and more diffuse light leaves them than
 // arrives. No base color is above one: that bounds the light from below, and the specular reflectance from
 // above.
-void brighten_light(const Transport& transport, LinearSplit& r) {
+void brighten_light(const Transport& transport, SplitSolution& s, int height) {
   constexpr double kShare = 0.98;  // of the surface is believed
   constexpr int kRounds = 3;       // the bounce does not scale with the light
   float all = 1;
   for (int round = 0; round < kRounds; ++round) {
-    const std::vector<Vec3f> color = base_colors(transport, r);
+    const std::vector<Vec3f> color = base_colors(transport, s, height);
     Vec3f gain;
     for (int c = 0; c < 3; ++c) {
-      std::vector<float> channel(color.size());
-      for (size_t v = 0; v < color.size(); ++v) channel[v] = color[v][c];
+      std::vector<float> channel;
+      for (uint32_t v = 0; v < color.size(); ++v)
+        if (!s.materials.is_metal(v)) channel.push_back(color[v][c]);
+      if (channel.empty()) return;
       gain[c] = max(percentile(std::move(channel), kShare), 1.0f);
     }
-    for (size_t i = 0; i < r.light.data.size(); ++i) r.light.data[i] *= gain[int(i % 3)];
+    for (Vec3f& l : s.x.light) l = l * gain;
+    for (Vec3f& a : s.materials.color) a = a / gain;
     all *= luminance(gain);
   }
-  r.material.specular /= all;
-}
-
-Image to_image(const std::vector<Vec3f>& light, int height) {
-  Image map(2 * height, height, 3);
-  for (size_t i = 0; i < light.size(); ++i)
-    for (int c = 0; c < 3; ++c) map.data[3 * i + c] = light[i][c];
-  return map;
+  for (Material& m : s.materials.of) m.specular /= all;
 }
 
 std::vector<Vec3f> clamped(std::vector<Vec3f> v, float high) {
@@ -203,39 +145,76 @@ SkyRadiance sky_radiance(const Image& light) {
   return sum;
 }
 
-LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples,
-                         const LinearSplitOptions& options, Progress& progress) {
-  const Mesh& mesh = transport.surface().mesh();
-  LinearSplitOptions coarse = options;
-  coarse.most_hits = options.search_hits;
-  coarse.light_height = options.search_height;
-  Solver search(transport, samples, coarse, progress);
+namespace {
+
+LinearSplitOptions search_options(const LinearSplitOptions& options, int hits) {
+  LinearSplitOptions o = options;
+  o.most_hits = hits;
+  o.light_height = options.search_height;
+  return o;
+}
+
+// The solution of the final size, its materials found by searches of smaller ones.
+SplitSolution solve(const Transport& transport, const SurfaceSamples& samples,
+                    const LinearSplitOptions& options, Progress& progress,
+                    std::vector<LinearSplit::Trial>& trials) {
+  SplitSolver search(transport, samples, search_options(options, options.search_hits), progress);
   if (search.rows() < 1000)
     fail("only {} pixels see the surface well enough to tell light from material; are masks and poses right?",
          search.rows());
   const double dielectric_residual = search.dielectric(0.2f).residual,
                metal_residual = search.metal(0.2f).residual;
-  LinearSplit result;
   const bool is_metal = metal_residual < kMetalBy * dielectric_residual;
   const float roughness = search_roughness(
       [&](float r) { return (is_metal ? search.metal(r) : search.dielectric(r)).residual; }, options);
-  Solver fine(transport, samples, options, progress);
-  Solution solution = is_metal ? fine.metal(roughness) : fine.dielectric(roughness);
-  if (is_metal) {
-    make_light_gray(solution, options.light_height);
-    result.material = {roughness, 0.5f, 1};
-    result.light = to_image(solution.x.light, options.light_height);
-    result.albedo = clamped(solution.color, 1);
-    result.diffuse.assign(mesh.positions.size(), {0, 0, 0});
-  } else {
-    result.material = {roughness, 0.5f, 0};
-    result.light = to_image(solution.x.light, options.light_height);
-    result.diffuse = clamped(solution.x.diffuse, 1e6f);
-    brighten_light(transport, result);
-    result.albedo = clamped(base_colors(transport, result), 1);
-  }
-  result.trials = std::move(search.trials);
-  result.trials.insert(result.trials.end(), fine.trials.begin(), fine.trials.end());
+  SplitSolver fine(transport, samples, options, progress);
+  SplitSolution one = is_metal ? fine.metal(roughness) : fine.dielectric(roughness);
+  trials = std::move(search.trials);
+  trials.insert(trials.end(), fine.trials.begin(), fine.trials.end());
+  if (options.fixed_roughness > 0) return one;
+  SplitSolver materials(transport, samples, search_options(options, options.material_hits), progress);
+  const float first = std::min(roughness, kFirstRoughness);
+  SplitSolution several = fine.with_materials(
+      materials.several(is_metal ? materials.metal(first) : materials.dielectric(first)).materials);
+  progress.log(Json{{"stage", "materials"}, {"one", one.residual}, {"several", several.residual}}.dump());
+  return several.residual < kSeveralBy * one.residual ? several : one;
+}
+
+Material mean_of(const std::vector<Material>& materials) {
+  double roughness = 0, specular = 0, metalness = 0;
+  for (const Material& m : materials) roughness += m.roughness, specular += m.specular, metalness += m.metalness;
+  const double n = double(materials.size());
+  return {float(roughness / n), float(specular / n), float(metalness / n)};
+}
+
+float smoothest_of(const std::vector<Material>& materials) {
+  std::vector<float> roughness;
+  for (const Material& m : materials) roughness.push_back(m.roughness);
+  return percentile(std::move(roughness), 0.01);
+}
+
+}  // namespace
+
+LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples,
+                         const LinearSplitOptions& options, Progress& progress) {
+  LinearSplit result;
+  SplitSolution s = solve(transport, samples, options, progress, result.trials);
+  const auto& of = s.materials.of;
+  s.x.diffuse = clamped(std::move(s.x.diffuse), 1e6f);
+  const bool all_metal = std::all_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
+  if (all_metal)
+    make_light_gray(s, options.light_height);
+  else
+    brighten_light(transport, s, options.light_height);
+  result.material = mean_of(of);
+  if (std::any_of(of.begin(), of.end(), [&](const Material& m) { return !(m == of.front()); }))
+    result.materials = of;
+  else
+    result.material = of.front();
+  result.smoothest = smoothest_of(of);
+  result.light = light_image(s.x.light, options.light_height);
+  result.diffuse = std::move(s.x.diffuse);
+  result.albedo = clamped(base_colors(transport, {{result.diffuse, s.x.light}, s.materials, 0}, options.light_height), 1);
   return result;
 }
 

@@ -3,7 +3,8 @@
 // with d known (diffuse_view()): whatever of it does not change with the view stays in D, free for every
 // surface point, so the light L can only be read from how a point changes with the view, where albedo cannot
 // interfere. For a given roughness both are linear unknowns. Albedo then is D over the irradiance of L:
-// explicit. Metals have no D; there light and reflectance alternate.
+// explicit. Metals have no D; there light and reflectance alternate. Where several materials explain the
+// pictures better than one, each vertex has its own.
 #pragma once
 
 #include <span>
@@ -33,7 +34,8 @@ struct LinearSplitOptions {
   int light_height = 48;       // rows of the light's lat-long grid, EnvUp::z
   int rounds = 4, steps = 12;  // of conjugate gradients; negative light is clamped and frozen between rounds
   int search_hits = 200000;    // samples, and
-  int search_height = 32;      // rows of the light, while the roughness is searched
+  int material_hits = 600000;  // samples while materials of the vertices are searched
+  int search_height = 32;      // rows of the light, in both searches
   float scan_step = 1.4f;      // from one roughness to the next, and
   int refinements = 3;         // bisections afterwards
   float fixed_roughness = 0;   // > 0: no search
@@ -43,7 +45,9 @@ struct LinearSplitOptions {
 };
 
 struct LinearSplit {
-  Material material;           // roughness; metalness 0 or 1
+  Material material;           // mean over the surface
+  std::vector<Material> materials;  // #V, metalness 0 or 1; empty: `material` everywhere
+  float smoothest = 0;         // roughness of the smoothest hundredth of the surface
   Image light;                 // light_height rows, 2 light_height columns, RGB, linear, >= 0
   std::vector<Vec3f> albedo;   // #V base color, linear, [0, 1]
   std::vector<Vec3f> diffuse;  // #V view-independent radiance D; zero for metals

@@ -13,14 +13,9 @@ namespace cei3d {
 namespace {
 
 constexpr int kChunks = 16;        // of rows; fixed, so that sums are the same on any machine
-constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
+constexpr float kSmoothest = 0.1f, kRoughest = 0.95f;  // of the ladder
 constexpr float kGrazing = 0.1f;   // samples seen flatter than this are left out: silhouettes and bad normals
 constexpr float kDarkest = 0.003f;  // radiance below which the display curve's slope is not followed further
-
-Vec3f interpolate(const std::vector<Vec3f>& values, const std::array<uint32_t, 3>& v,
-                  const std::array<float, 3>& b) {
-  return values[v[0]] * b[0] + values[v[1]] * b[1] + values[v[2]] * b[2];
-}
 
 void set_far_hit(const Mesh& mesh, const Surface::RayHit& h, SplitRow& row) {
   const auto& t = mesh.triangles[h.triangle];
@@ -54,6 +49,8 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     row = {};
     row.vertices = {t[0], t[1], t[2]};
     row.barycentric = {1 - h.b1 - h.b2, h.b1, h.b2};
+    row.normal = h.normal;
+    row.to_camera = h.to_camera;
     row.nv = dot(h.normal, h.to_camera);
     row.color = samples.colors[kept[k]];
     for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_slope(max(row.color[c], kDarkest)));
@@ -63,163 +60,190 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
   }
   std::vector<Surface::RayHit> hits(n);
   surface.intersect(origins, directions, 0, hits);
-  for (size_t k = 0; k < n; ++k) {
-    rows[k].taps = env_taps(directions[k], 2 * options.light_height, options.light_height);
+  for (size_t k = 0; k < n; ++k)
     if (hits[k].t >= 0) set_far_hit(mesh, hits[k], rows[k]);
-  }
   return rows;
 }
 
-LobeBlur::LobeBlur(float roughness, int height) : height_(height), width_(2 * height) {
-  kernel_.assign(size_t(height_) * height_ * width_, 0);
-  const float alpha = roughness * roughness;
-  parallel_for(height_, [&](int out) {
-    float* rows = &kernel_[size_t(out) * height_ * width_];
-    double total = 0;
-    const Vec3f r = env_direction(0.5f, float(out) + 0.5f, width_, height_);
-    for (int in = 0; in < height_; ++in)
-      for (int k = 0; k < width_; ++k) {
-        // Mean over the cell: a narrow lobe is thinner than a cell.
-        float sum = 0;
-        for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b) {
-            const float u = float(k) + (float(a) + 0.5f) / 3, v = float(in) + (float(b) + 0.5f) / 3;
-            const float c = dot(r, env_direction(u, v, width_, height_));
-            if (c > 0) sum += smith_g1(c, alpha) * ggx_density(sqrt(0.5f * (1 + c)), alpha);
-          }
-        const float w = sum * env_solid_angle(in, width_, height_);
-        rows[size_t(in) * width_ + k] = w;
-        total += w;
-      }
-    for (int i = 0; i < height_ * width_; ++i) rows[i] = float(rows[i] / total);
-  });
+float BlurLadder::roughness(int level) {
+  return kSmoothest * std::pow(kRoughest / kSmoothest, float(level) / (kLevels - 1));
 }
 
-void LobeBlur::run(const std::vector<float>& kernel, bool transposed, const std::vector<Vec3f>& in,
-                   std::vector<Vec3f>& out) const {
-  out.assign(in.size(), {0, 0, 0});
-  parallel_for(height_, [&](int i) {
-    std::vector<float> sum(3 * size_t(width_), 0), k2(2 * size_t(width_));
-    for (int j = 0; j < height_; ++j) {
-      const float* k = &kernel[(transposed ? size_t(j) * height_ + i : size_t(i) * height_ + j) * width_];
-      for (int d = 0; d < width_; ++d)
-        k2[d] = k2[d + width_] = k[d];  // symmetric in d, so transposing is free
-      for (int s = 0; s < width_; ++s) {
-        const Vec3f v = in[size_t(j) * width_ + s];
-        const float* shifted = &k2[width_ - s];
-        for (int c = 0; c < 3; ++c) {
-          float* row = &sum[size_t(c) * width_];
-          const float x = v[c];
-          for (int d = 0; d < width_; ++d) row[d] += x * shifted[d];
-        }
-      }
-    }
-    for (int d = 0; d < width_; ++d)
-      out[size_t(i) * width_ + d] = {sum[d], sum[width_ + d], sum[2 * width_ + d]};
-  });
+BlurLadder::Place BlurLadder::place(float roughness) {
+  const float at = clamp(std::log(roughness / kSmoothest) / std::log(kRoughest / kSmoothest), 0.0f, 1.0f) *
+                   (kLevels - 1);
+  const int level = std::min(int(at), kLevels - 2);
+  return {level, at - float(level)};
 }
-void LobeBlur::apply(const std::vector<Vec3f>& light, std::vector<Vec3f>& blurred) const {
-  run(kernel_, false, light, blurred);
+
+const LobeBlur& BlurLadder::level(int i) {
+  auto& blur = blurs_[size_t(i)];
+  if (!blur) blur = std::make_unique<LobeBlur>(roughness(i), height_);
+  return *blur;
 }
-void LobeBlur::apply_transposed(const std::vector<Vec3f>& blurred, std::vector<Vec3f>& light) const {
-  run(kernel_, true, blurred, light);
+
+ReflectedSky reflected_sky(const SplitRow& row, ReflectionPart part, float roughness, int light_height) {
+  const ReflectionAxis<float> lobe =
+      reflection_axis(reflection_axis_table(part), row.normal, row.to_camera, roughness);
+  return {BlurLadder::place(lobe.roughness), env_taps(lobe.axis, 2 * light_height, light_height)};
 }
-void LobeBlur::apply_squared_transposed(const std::vector<Vec3f>& blurred, std::vector<Vec3f>& light) const {
-  std::vector<float> squared(kernel_);
-  for (float& k : squared) k *= k;
-  run(squared, true, blurred, light);
+
+Vec3f radiance_at(const Blurred& blurred, const ReflectedSky& at) {
+  const auto &below = blurred[size_t(at.lobe.level)], &above = blurred[size_t(at.lobe.level) + 1];
+  Vec3f sum{0, 0, 0};
+  for (int k = 0; k < 4; ++k) {
+    const int pixel = at.taps.pixel[k];
+    sum += (below[pixel] * (1 - at.lobe.above) + above[pixel] * at.lobe.above) * at.taps.weight[k];
+  }
+  return sum;
 }
+
+namespace {
+
+// The adjoint of radiance_at().
+void scatter(const ReflectedSky& at, Vec3f radiance, Blurred& sum) {
+  auto &below = sum[size_t(at.lobe.level)], &above = sum[size_t(at.lobe.level) + 1];
+  for (int k = 0; k < 4; ++k) {
+    const Vec3f part = radiance * at.taps.weight[k];
+    below[at.taps.pixel[k]] += part * (1 - at.lobe.above);
+    above[at.taps.pixel[k]] += part * at.lobe.above;
+  }
+}
+
+}  // namespace
 
 SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
                          const LinearSplitOptions& options)
-    : mesh_(mesh), rows_(rows), options_(options) {
+    : mesh_(mesh), rows_(rows), options_(options), blurs_(options.light_height) {
   for (const SplitRow& row : rows) weights_.push_back(row.weight);
   for (const auto& t : mesh.triangles)
     for (int c = 0; c < 3; ++c)
       if (t[c] < t[(c + 1) % 3]) edges_.push_back({t[c], t[(c + 1) % 3]});
 }
 
-void SplitSystem::set_roughness(float roughness) {
-  roughness_ = roughness;
-  blur_ = std::make_unique<LobeBlur>(roughness, options_.light_height);
-  split_sum_.resize(rows_.size());
-  diffuse_view_.resize(rows_.size());
-  const float* table = split_sum_table();
+SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {
+  const auto& v = row.vertices;
+  const auto& b = row.barycentric;
+  float roughness = 0;
+  Vec3f f0{0, 0, 0};
+  bool metal = false;
+  for (int k = 0; k < 3; ++k) {
+    const Material& m = materials_.of[v[k]];
+    roughness += m.roughness * b[k];
+    f0 += f0_of(materials_.color[v[k]], m.specular, m.metalness) * b[k];
+    metal = metal || (materials_.is_metal(v[k]) && b[k] > 0);
+  }
+  bool far_metal = false;
+  for (int k = 0; k < 3 && row.blocked; ++k) far_metal = far_metal || materials_.is_metal(row.far_vertices[k]);
+  Optics o;
+  o.used = !row.blocked || (!metal && !far_metal);
+  o.base = reflected_sky(row, ReflectionPart::base, roughness, options_.light_height);
+  o.fresnel = reflected_sky(row, ReflectionPart::fresnel, roughness, options_.light_height);
+  o.split_sum = split_sum(split_sum_table(), row.nv, roughness);
+  o.base_gain = f0 * o.split_sum.scale;
+  o.diffuse_view = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness);
+  return o;
+}
+
+void SplitSystem::set_materials(SplitMaterials materials) {
+  materials_ = std::move(materials);
+  optics_.resize(rows_.size());
   parallel_ranges(int(rows_.size()), 4096, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      split_sum_[i] = split_sum(table, rows_[i].nv, roughness);
-      diffuse_view_[i] = diffuse_view(clamp(rows_[i].nv, 0.0f, 1.0f), roughness);
-    }
+    for (int i = begin; i < end; ++i) optics_[i] = optics_of(rows_[i]);
   });
+  in_use_.fill(false);
+  for (const Optics& o : optics_)
+    for (const ReflectedSky* sky : {&o.base, &o.fresnel})
+      in_use_[size_t(sky->lobe.level)] = in_use_[size_t(sky->lobe.level) + 1] = true;
 }
 
-void SplitSystem::set_metal(std::vector<Vec3f> color) { metal_ = std::move(color); }
-
-Vec3f SplitSystem::gain(size_t i) const {
-  const SplitRow& row = rows_[i];
-  const Vec3f black{0, 0, 0};
-  const Vec3f f0 = metal_.empty()
-                       ? f0_of(black, kSpecular, 0.0f)
-                       : f0_of(interpolate(metal_, row.vertices, row.barycentric), kSpecular, 1.0f);
-  return reflectance(split_sum_[i], f0);
+Blurred SplitSystem::blurred(const std::vector<Vec3f>& light) const {
+  Blurred out;
+  for (int i = 0; i < BlurLadder::kLevels; ++i)
+    if (in_use_[size_t(i)]) blurs_.level(i).apply(light, out[size_t(i)]);
+  return out;
 }
 
-Vec3f SplitSystem::predict(size_t i, const SplitUnknowns& x, const std::vector<Vec3f>& blurred) const {
+Vec3f SplitSystem::predict(size_t i, const SplitUnknowns& x, const Blurred& blurred) const {
   const SplitRow& row = rows_[i];
-  Vec3f seen{0, 0, 0};
-  if (row.blocked)
-    seen = interpolate(x.diffuse, row.far_vertices, row.far_barycentric);
-  else
-    for (int k = 0; k < 4; ++k) seen += blurred[row.taps.pixel[k]] * row.taps.weight[k];
-  return interpolate(x.diffuse, row.vertices, row.barycentric) * diffuse_view_[i] + gain(i) * seen;
+  const Optics& o = optics_[i];
+  const Vec3f diffuse = between(x.diffuse, row.vertices, row.barycentric) * o.diffuse_view;
+  if (row.blocked) return diffuse + o.gain() * between(x.diffuse, row.far_vertices, row.far_barycentric);
+  return diffuse + o.base_gain * radiance_at(blurred, o.base) +
+         radiance_at(blurred, o.fresnel) * o.split_sum.bias;
 }
 
 void SplitSystem::release_bounds(const SplitUnknowns& x) {
-  std::vector<Vec3f> blurred;
-  blur_->apply(x.light, blurred);
+  const Blurred sky = blurred(x.light);
   parallel_ranges(int(rows_.size()), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
       if (!row.clipped) continue;
-      const Vec3f above = predict(size_t(i), x, blurred) - row.color;
+      const Vec3f above = predict(size_t(i), x, sky) - row.color;
       for (int c = 0; c < 3; ++c) weights_[i][c] = (row.clipped >> c & 1) && above[c] > 0 ? 0 : row.weight[c];
     }
   });
 }
 
+std::vector<Vec3f> SplitSystem::targets(const SplitUnknowns& x) const {
+  const Blurred sky = blurred(x.light);
+  std::vector<Vec3f> out(rows_.size());
+  parallel_ranges(int(rows_.size()), 4096, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      out[i] = rows_[i].color;
+      if (!rows_[i].clipped) continue;
+      const Vec3f seen = predict(size_t(i), x, sky);
+      for (int c = 0; c < 3; ++c)
+        if (rows_[i].clipped >> c & 1) out[i][c] = max(out[i][c], seen[c]);
+    }
+  });
+  return out;
+}
+
 template <class F>
 void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
   const size_t cells = size_t(2) * options_.light_height * options_.light_height;
-  std::vector<SplitUnknowns> part(kChunks);
-  const bool dielectric = metal_.empty();
+  struct Part {
+    std::vector<Vec3f> diffuse;
+    Blurred sky;
+  };
+  std::vector<Part> parts(kChunks);
   parallel_for(kChunks, [&](int chunk) {
-    SplitUnknowns& sum = part[chunk];
-    sum.diffuse.assign(dielectric ? mesh_.positions.size() : 0, {0, 0, 0});
-    sum.light.assign(cells, {0, 0, 0});
+    Part& sum = parts[chunk];
+    sum.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
+    for (size_t i = 0; i < BlurLadder::kLevels; ++i)
+      if (in_use_[i]) sum.sky[i].assign(cells, {0, 0, 0});
     const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
     for (size_t i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
-      if (!dielectric && row.blocked) continue;
-      const Vec3f y = row_value(i) * weights_[i], g = y * gain(i);
-      if (dielectric)
-        for (int k = 0; k < 3; ++k)
-          sum.diffuse[row.vertices[k]] += y * (row.barycentric[k] * diffuse_view_[i]);
-      if (row.blocked)
+      const Optics& o = optics_[i];
+      if (!o.used) continue;
+      const Vec3f y = row_value(i) * weights_[i];
+      for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += y * (row.barycentric[k] * o.diffuse_view);
+      if (row.blocked) {
+        const Vec3f g = y * o.gain();
         for (int k = 0; k < 3; ++k) sum.diffuse[row.far_vertices[k]] += g * row.far_barycentric[k];
-      else
-        for (int k = 0; k < 4; ++k) sum.light[row.taps.pixel[k]] += g * row.taps.weight[k];
+        continue;
+      }
+      scatter(o.base, y * o.base_gain, sum.sky);
+      scatter(o.fresnel, y * o.split_sum.bias, sum.sky);
     }
   });
   out.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
-  std::vector<Vec3f> blurred(cells, Vec3f{0, 0, 0});
-  if (dielectric)
-    parallel_ranges(int(out.diffuse.size()), 4096, [&](int begin, int end) {
-      for (int chunk = 0; chunk < kChunks; ++chunk)
-        for (int v = begin; v < end; ++v) out.diffuse[v] += part[chunk].diffuse[v];
-    });
-  for (const SplitUnknowns& p : part)
-    for (size_t i = 0; i < cells; ++i) blurred[i] += p.light[i];
-  blur_->apply_transposed(blurred, out.light);
+  out.light.assign(cells, {0, 0, 0});
+  parallel_ranges(int(out.diffuse.size()), 4096, [&](int begin, int end) {
+    for (const Part& part : parts)
+      for (int v = begin; v < end; ++v)
+        if (!materials_.is_metal(uint32_t(v))) out.diffuse[v] += part.diffuse[v];
+  });
+  for (int level = 0; level < BlurLadder::kLevels; ++level) {
+    if (!in_use_[size_t(level)]) continue;
+    std::vector<Vec3f> sum(cells, Vec3f{0, 0, 0}), light;
+    for (const Part& part : parts)
+      for (size_t i = 0; i < cells; ++i) sum[i] += part.sky[size_t(level)][i];
+    blurs_.level(level).apply_transposed(sum, light);
+    for (size_t i = 0; i < cells; ++i) out.light[i] += light[i];
+  }
 }
 
 void SplitSystem::smooth(const SplitUnknowns& x, SplitUnknowns& out) const {
@@ -234,8 +258,8 @@ void SplitSystem::smooth(const SplitUnknowns& x, SplitUnknowns& out) const {
       link(i * w + j, i * w + (j + 1) % w);
       if (i + 1 < h) link(i * w + j, (i + 1) * w + j);
     }
-  if (!metal_.empty()) return;
   for (const auto& e : edges_) {
+    if (materials_.is_metal(e[0]) || materials_.is_metal(e[1])) continue;
     const Vec3f d = (x.diffuse[e[0]] - x.diffuse[e[1]]) * diffuse_smoothness_;
     out.diffuse[e[0]] += d;
     out.diffuse[e[1]] += -d;
@@ -243,9 +267,8 @@ void SplitSystem::smooth(const SplitUnknowns& x, SplitUnknowns& out) const {
 }
 
 void SplitSystem::normal(const SplitUnknowns& x, SplitUnknowns& out) const {
-  std::vector<Vec3f> blurred;
-  blur_->apply(x.light, blurred);
-  accumulate([&](size_t row) { return predict(row, x, blurred); }, out);
+  const Blurred sky = blurred(x.light);
+  accumulate([&](size_t row) { return predict(row, x, sky); }, out);
   smooth(x, out);
 }
 
@@ -254,15 +277,14 @@ void SplitSystem::right_side(SplitUnknowns& out) const {
 }
 
 double SplitSystem::residual(const SplitUnknowns& x) const {
-  std::vector<Vec3f> blurred;
-  blur_->apply(x.light, blurred);
+  const Blurred sky = blurred(x.light);
   std::vector<double> sum(kChunks, 0), count(kChunks, 0);  // of rows and channels
   parallel_for(kChunks, [&](int chunk) {
     const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
     for (size_t i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
       if (row.blocked) continue;
-      const Vec3f e = predict(i, x, blurred) - row.color;
+      const Vec3f e = predict(i, x, sky) - row.color;
       count[chunk] += 3;
       for (int c = 0; c < 3; ++c) {
         if ((row.clipped >> c & 1) && e[c] > 0) continue;
@@ -279,19 +301,29 @@ SplitUnknowns SplitSystem::diagonal() const {
   const size_t cells = size_t(2) * options_.light_height * options_.light_height;
   SplitUnknowns d;
   d.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
-  std::vector<Vec3f> mass(cells, Vec3f{0, 0, 0});
+  d.light.assign(cells, {0, 0, 0});
+  Blurred mass;
+  for (auto& m : mass) m.assign(cells, {0, 0, 0});
   for (size_t i = 0; i < rows_.size(); ++i) {
     const SplitRow& row = rows_[i];
-    if (!metal_.empty() && row.blocked) continue;
-    const Vec3f g = gain(i), gg = row.weight * g * g;
+    const Optics& o = optics_[i];
+    if (!o.used) continue;
+    const Vec3f gg = row.weight * o.gain() * o.gain();
     for (int k = 0; k < 3; ++k)
-      d.diffuse[row.vertices[k]] += row.weight * square(row.barycentric[k] * diffuse_view_[i]);
+      d.diffuse[row.vertices[k]] += row.weight * square(row.barycentric[k] * o.diffuse_view);
     if (row.blocked)
       for (int k = 0; k < 3; ++k) d.diffuse[row.far_vertices[k]] += gg * square(row.far_barycentric[k]);
     else
-      for (int k = 0; k < 4; ++k) mass[row.taps.pixel[k]] += gg * row.taps.weight[k];
+      for (int k = 0; k < 4; ++k)
+        mass[size_t(o.base.lobe.level) + (o.base.lobe.above > 0.5f)][o.base.taps.pixel[k]] +=
+            gg * o.base.taps.weight[k];
   }
-  blur_->apply_squared_transposed(mass, d.light);
+  for (int level = 0; level < BlurLadder::kLevels; ++level) {
+    if (!in_use_[size_t(level)]) continue;
+    std::vector<Vec3f> light;
+    blurs_.level(level).apply_squared_transposed(mass[size_t(level)], light);
+    for (size_t i = 0; i < cells; ++i) d.light[i] += light[i];
+  }
   return d;
 }
 
@@ -321,18 +353,15 @@ void for_both(SplitUnknowns& a, const SplitUnknowns& b, F f) {
   for (size_t i = 0; i < a.light.size(); ++i) f(a.light[i], b.light[i]);
 }
 
-void mask(SplitUnknowns& x, const std::vector<std::array<uint8_t, 3>>& frozen, bool metal) {
+void mask(SplitUnknowns& x, const std::vector<std::array<uint8_t, 3>>& frozen) {
   for (size_t i = 0; i < frozen.size(); ++i)
     for (int c = 0; c < 3; ++c)
       if (frozen[i][c]) x.light[i][c] = 0;
-  if (metal)
-    for (Vec3f& d : x.diffuse) d = {0, 0, 0};
 }
 
 }  // namespace
 
 void SplitSystem::descend(SplitUnknowns& x, const SplitUnknowns& inverse, int steps) const {
-  const bool metal = !metal_.empty();
   SplitUnknowns r, ax;
   right_side(r);
   normal(x, ax);
@@ -341,14 +370,14 @@ void SplitSystem::descend(SplitUnknowns& x, const SplitUnknowns& inverse, int st
   std::vector<std::array<uint8_t, 3>> frozen(x.light.size(), std::array<uint8_t, 3>{0, 0, 0});
   for (size_t i = 0; i < frozen.size(); ++i)
     for (int c = 0; c < 3; ++c) frozen[i][c] = x.light[i][c] <= 0 && r.light[i][c] < 0;
-  mask(r, frozen, metal);
+  mask(r, frozen);
   SplitUnknowns z = r;
   for_both(z, inverse, [](Vec3f& a, const Vec3f& b) { a = a * b; });
   SplitUnknowns p = z;
   Sums rz = dot_product(r, z);
   for (int k = 0; k < steps; ++k) {
     normal(p, ax);
-    mask(ax, frozen, metal);
+    mask(ax, frozen);
     const Vec3f alpha = ratio(rz, dot_product(p, ax));
     for_both(x, p, [&](Vec3f& a, const Vec3f& b) { a += alpha * b; });
     for_both(r, ax, [&](Vec3f& a, const Vec3f& b) { a = a - alpha * b; });
@@ -362,6 +391,8 @@ void SplitSystem::descend(SplitUnknowns& x, const SplitUnknowns& inverse, int st
 }
 
 void SplitSystem::solve(SplitUnknowns& x, int rounds, int steps) {
+  for (uint32_t v = 0; v < x.diffuse.size(); ++v)
+    if (materials_.is_metal(v)) x.diffuse[v] = {0, 0, 0};
   SplitUnknowns inverse = diagonal();
   Vec3f mean_light{0, 0, 0}, mean_diffuse{0, 0, 0};
   for (const Vec3f& d : inverse.light) mean_light += d / float(inverse.light.size());
@@ -380,17 +411,16 @@ void SplitSystem::solve(SplitUnknowns& x, int rounds, int steps) {
   }
 }
 
-std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) const {
-  std::vector<Vec3f> blurred;
-  blur_->apply(x.light, blurred);
+std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) {
+  const Blurred sky = blurred(x.light);
   const size_t n = mesh_.positions.size();
   std::vector<Vec3f> above(n, Vec3f{0, 0, 0}), below(n, Vec3f{0, 0, 0});
   for (size_t i = 0; i < rows_.size(); ++i) {
     const SplitRow& row = rows_[i];
     if (row.blocked) continue;
-    Vec3f seen{0, 0, 0};
-    for (int k = 0; k < 4; ++k) seen += blurred[row.taps.pixel[k]] * row.taps.weight[k];
-    const Vec3f slope = seen * split_sum_[i].scale, rest = row.color - seen * split_sum_[i].bias;
+    const Optics& o = optics_[i];
+    const Vec3f slope = radiance_at(sky, o.base) * o.split_sum.scale,
+                rest = row.color - radiance_at(sky, o.fresnel) * o.split_sum.bias;
     for (int k = 0; k < 3; ++k) {
       above[row.vertices[k]] += weights_[i] * slope * rest * row.barycentric[k];
       below[row.vertices[k]] += weights_[i] * slope * slope * row.barycentric[k];

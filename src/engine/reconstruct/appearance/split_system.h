@@ -1,26 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// The equations of the linear split for one roughness, and their solution by conjugate gradients.
+// The equations of the linear split for given materials, and their solution by conjugate gradients.
 #pragma once
 
 #include <array>
+#include <map>
 #include <memory>
 #include <vector>
 
-#include "core/math/shading.h"
+#include "core/math/reflection_axis.h"
 #include "engine/reconstruct/appearance/linear_split.h"
+#include "engine/reconstruct/appearance/lobe_blur.h"
 #include "model/light/envmap.h"
 
 namespace cei3d {
 
-// What a sample says, roughness aside.
+// What a sample says, materials aside.
 struct SplitRow {
   std::array<uint32_t, 3> vertices;  // around the hit
   std::array<float, 3> barycentric;
-  float nv;                              // cosine of normal and viewer
-  bool blocked;                          // the mirror ray meets the surface again:
-  std::array<uint32_t, 3> far_vertices;  // ... here
+  Vec3f normal, to_camera;               // unit
+  float nv;                              // their cosine
+  bool blocked;                          // the mirror ray meets the surface again,
+  std::array<uint32_t, 3> far_vertices;  // between these vertices
   std::array<float, 3> far_barycentric;
-  EnvTaps taps;     // of the sky along the mirror ray
   Vec3f color;      // linear
   Vec3f weight;     // squared slope of the display curve
   uint8_t clipped;  // SurfaceSamples::clipped
@@ -28,47 +30,91 @@ struct SplitRow {
 
 std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&);
 
-// Radiance of the sky blurred by the reflection lobe, on the light's own grid: P = K L. Circulant along the
-// columns.
-class LobeBlur {
+inline Vec3f between(const std::vector<Vec3f>& values, const std::array<uint32_t, 3>& v,
+                     const std::array<float, 3>& b) {
+  return values[v[0]] * b[0] + values[v[1]] * b[1] + values[v[2]] * b[2];
+}
+
+// A light blurred by the lobes of a ladder of roughnesses; in between the blurs are interpolated.
+class BlurLadder {
  public:
-  LobeBlur(float roughness, int height);
-  void apply(const std::vector<Vec3f>& light, std::vector<Vec3f>& blurred) const;
-  void apply_transposed(const std::vector<Vec3f>& blurred, std::vector<Vec3f>& light) const;
-  void apply_squared_transposed(const std::vector<Vec3f>& blurred,
-                                std::vector<Vec3f>& light) const;  // entries squared
+  explicit BlurLadder(int light_height) : height_(light_height) {}
+
+  static constexpr int kLevels = 10;
+  static float roughness(int level);
+  struct Place {
+    int level = 0;  // and the next one
+    float above = 0;  // share of the next one
+  };
+  static Place place(float roughness);
+
+  const LobeBlur& level(int i);  // made on first use
+  int height() const { return height_; }
 
  private:
-  void run(const std::vector<float>& kernel, bool transposed, const std::vector<Vec3f>& in,
-           std::vector<Vec3f>& out) const;
-  int height_, width_;
-  std::vector<float> kernel_;  // [row out][row in][column difference mod width], rows sum to 1
+  int height_;
+  std::array<std::unique_ptr<LobeBlur>, kLevels> blurs_;
 };
+
+// Materials of the vertices as the split sees them: metalness is 0 or 1.
+struct SplitMaterials {
+  std::vector<Material> of;  // #V
+  std::vector<Vec3f> color;  // #V, base color of the metals
+  bool is_metal(uint32_t v) const { return of[v].metalness > 0.5f; }
+};
+inline SplitMaterials one_material(size_t vertices, const Material& m) {
+  return {std::vector<Material>(vertices, m), std::vector<Vec3f>(vertices, Vec3f{0.7f, 0.7f, 0.7f})};
+}
 
 struct SplitUnknowns {
   std::vector<Vec3f> diffuse;  // #V
   std::vector<Vec3f> light;    // #cells
 };
 
+// The part of the sky that a row reflects by a part of the split sum, if its surface has that roughness.
+struct ReflectedSky {
+  BlurLadder::Place lobe;
+  EnvTaps taps;
+};
+ReflectedSky reflected_sky(const SplitRow&, ReflectionPart, float roughness, int light_height);
+
+using Blurred = std::array<std::vector<Vec3f>, BlurLadder::kLevels>;  // a light; empty: a level not in use
+Vec3f radiance_at(const Blurred&, const ReflectedSky&);
+
 class SplitSystem {
  public:
   SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows, const LinearSplitOptions& options);
 
-  void set_roughness(float roughness);
-  float roughness() const { return roughness_; }
-  // Base color of a metal: the specular gain becomes color * scale + bias, D stays zero, and samples whose
-  // mirror ray is blocked are left out. Empty: a dielectric.
-  void set_metal(std::vector<Vec3f> color);
+  // Metals have no D, and their samples whose mirror ray is blocked are left out.
+  void set_materials(SplitMaterials);
+  const SplitMaterials& materials() const { return materials_; }
 
   // Improves x by rounds of conjugate gradients, light kept >= 0, clipped channels at least what they show.
   void solve(SplitUnknowns& x, int rounds, int steps);
   double residual(const SplitUnknowns& x) const;  // mean of weight * error^2 over samples that mirror the sky
-  // Base color per vertex that fits best under the light: #V. Clipped channels as of the last solve().
-  std::vector<Vec3f> fit_metal_color(const SplitUnknowns& x) const;
+  // Base color per vertex that fits best under the light if all were metal: #V. Clipped channels as of the
+  // last solve().
+  std::vector<Vec3f> fit_metal_color(const SplitUnknowns& x);
+
+  // What the rows show; of a clipped channel what x predicts, where that is more. #rows
+  std::vector<Vec3f> targets(const SplitUnknowns& x) const;
+
+  BlurLadder& blurs() { return blurs_; }
+  const std::vector<SplitRow>& rows() const { return rows_; }
 
  private:
-  Vec3f gain(size_t row) const;  // fraction of the reflected radiance that the viewer gets
-  Vec3f predict(size_t row, const SplitUnknowns&, const std::vector<Vec3f>& blurred) const;
+  // What the materials make of a row.
+  struct Optics {
+    bool used = true;
+    ReflectedSky base, fresnel;
+    SplitSum<float> split_sum;
+    Vec3f base_gain;     // fraction of what `base` sees that the viewer gets; split_sum.bias of `fresnel`
+    float diffuse_view;  // of D towards the viewer; 0 at metals
+    Vec3f gain() const { return base_gain + Vec3f{split_sum.bias, split_sum.bias, split_sum.bias}; }
+  };
+  Optics optics_of(const SplitRow&) const;
+  Blurred blurred(const std::vector<Vec3f>& light) const;
+  Vec3f predict(size_t row, const SplitUnknowns&, const Blurred&) const;
   void smooth(const SplitUnknowns& x, SplitUnknowns& out) const;  // out += gradient of the priors
   void release_bounds(const SplitUnknowns& x);                    // sets weights_
   template <class F>
@@ -83,11 +129,10 @@ class SplitSystem {
   std::vector<Vec3f> weights_;  // of the rows; 0 where a clipped channel is brighter than it shows already
   LinearSplitOptions options_;
   std::vector<std::array<uint32_t, 2>> edges_;
-  float roughness_ = 0;
-  std::unique_ptr<LobeBlur> blur_;
-  std::vector<SplitSum<float>> split_sum_;  // #rows
-  std::vector<float> diffuse_view_;         // #rows, of D towards the viewer
-  std::vector<Vec3f> metal_;                // #V or empty
+  mutable BlurLadder blurs_;
+  SplitMaterials materials_;
+  std::vector<Optics> optics_;  // #rows
+  std::array<bool, BlurLadder::kLevels> in_use_{};
   float light_smoothness_ = 0, diffuse_smoothness_ = 0;
 };
 

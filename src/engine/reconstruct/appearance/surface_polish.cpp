@@ -25,21 +25,23 @@ class Polish {
         albedo_(*appearance.albedo),
         trainer_(albedo_, {}),
         lighting_(device, input.surface, appearance.light,
-                  albedo_.eval3(device, input.surface->mesh().positions), appearance.material),
-        materials_(size_t(options.batch), appearance.material) {}
+                  vertex_light(Transport(input.surface), appearance.light,
+                               {albedo_.eval3(device, input.surface->mesh().positions),
+                                appearance.material.at(device, input.surface->mesh().positions)})) {}
 
   // share: of the polishing that is done, [0, 1).
   GeometryStats step(int step, double share) {
     choose_batch(step);
     refine_hits(device_, stage_.sdf(), directions_, hits_, edges_);
+    std::vector<Vec3f> positions;
+    for (const Hit& h : hits_) positions.push_back(h.position);
+    materials_ = appearance_.material.at(device_, positions);
     const HitBatch batch{hits_, materials_};
     const std::vector<IncidentLight<float>> light = lighting_.incident_light(batch);
-    fit_albedo(lighting_.terms(batch, light));
-    std::vector<Vec3f> d_normals = lighting_.grad(batch, light, colors_, d_radiance_).d_normal, positions,
-                       points;
+    fit_albedo(positions, lighting_.terms(batch, light));
+    std::vector<Vec3f> d_normals = lighting_.grad(batch, light, colors_, d_radiance_).d_normal, points;
     std::vector<float> d_values;
     for (Vec3f& d : d_normals) d = d * options_.weight;
-    for (const Hit& h : hits_) positions.push_back(h.position);
     add_value_slopes(stage_.sdf().config(), positions, d_normals, edges_, points, d_values);
     return stage_.step(options_.first_step + step, options_.from + (1 - options_.from) * share,
                        {points, d_values});
@@ -62,9 +64,7 @@ class Polish {
 
   // One step of the albedo, so that what it had learned of wrong normals does not hold them. Sets colors_ and
   // d_radiance_.
-  void fit_albedo(const std::vector<ShadingTerms<float>>& terms) {
-    std::vector<Vec3f> positions(hits_.size());
-    for (size_t i = 0; i < hits_.size(); ++i) positions[i] = hits_[i].position;
+  void fit_albedo(const std::vector<Vec3f>& positions, const std::vector<ShadingTerms<float>>& terms) {
     colors_.resize(hits_.size());
     d_radiance_.resize(hits_.size());
     const auto loss = [&](int begin, int end, const float* out, float* d_out) {
@@ -88,7 +88,7 @@ class Polish {
   Field albedo_;
   FieldTrainer trainer_;
   Lighting lighting_;
-  std::vector<Material> materials_;  // of a batch
+  std::vector<Material> materials_;  // of the hits
   std::vector<uint32_t> batch_;
   std::vector<Hit> hits_;
   std::vector<Vec3f> colors_, d_radiance_;  // base color of the hits, dL/d(what they send out)

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/appearance/split_solver.h"
+
+#include <algorithm>
+
+#include "core/base/cancel.h"
+#include "core/base/error.h"
+#include "core/base/json.h"
+#include "engine/reconstruct/appearance/material_evidence.h"
+
+namespace cei3d {
+namespace {
+
+constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
+
+constexpr int kRounds = 3;        // of materials and light
+constexpr int kDiffusion = 20;    // steps, of evidence over the surface
+constexpr float kMetalBy = 0.85f;  // a metal has to explain a place so much better than a dielectric
+// The brightest diffuse base color that a vertex may have, in multiples of white: while the scale of the light
+// is uncertain, and then.
+constexpr float kFirstWhite = 3, kLastWhite = 1.3f;
+
+}  // namespace
+
+Image light_image(const std::vector<Vec3f>& light, int height) {
+  Image map(2 * height, height, 3);
+  for (size_t i = 0; i < light.size(); ++i)
+    for (int c = 0; c < 3; ++c) map.data[3 * i + c] = light[i][c];
+  return map;
+}
+
+std::vector<Vec3f> diffuse_radiance(const Transport& transport, const SplitUnknowns& x,
+                                    const SplitMaterials& materials, int height) {
+  const std::vector<Vec3f> sky = transport.sky(sky_radiance(light_image(x.light, height)));
+  std::vector<Vec3f> out = x.diffuse;
+  for (uint32_t v = 0; v < out.size(); ++v)
+    if (materials.is_metal(v)) out[v] = materials.color[v] * sky[v] / kPi;
+  return out;
+}
+
+std::vector<Vec3f> split_irradiance(const Transport& transport, const SplitUnknowns& x,
+                                    const SplitMaterials& materials, int height) {
+  std::vector<Vec3f> out = transport.sky(sky_radiance(light_image(x.light, height)));
+  const std::vector<Vec3f> bounce = transport.bounce(diffuse_radiance(transport, x, materials, height));
+  for (size_t v = 0; v < out.size(); ++v) out[v] += bounce[v];
+  return out;
+}
+
+SplitSolver::SplitSolver(const Transport& transport, const SurfaceSamples& samples,
+                         const LinearSplitOptions& options, Progress& progress)
+    : transport_(transport),
+      mesh_(transport.surface().mesh()),
+      rows_(make_split_rows(transport.surface(), samples, options)),
+      options_(options),
+      progress_(progress),
+      system_(mesh_, rows_, options) {}
+
+SplitSolution SplitSolver::start(SplitMaterials materials) const {
+  SplitSolution s;
+  s.x.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
+  s.x.light.assign(size_t(2) * options_.light_height * options_.light_height, {0, 0, 0});
+  s.materials = std::move(materials);
+  return s;
+}
+
+SplitSolution SplitSolver::solved(SplitSolution s, int rounds, int steps) {
+  check_cancelled(progress_);
+  system_.set_materials(s.materials);
+  system_.solve(s.x, rounds, steps);
+  return s;
+}
+
+SplitSolution SplitSolver::with_fitted_metals(SplitSolution s, int rounds, int steps) {
+  s = solved(std::move(s), rounds, steps);
+  s.materials.color = system_.fit_metal_color(s.x);
+  return s;
+}
+
+SplitSolution SplitSolver::finish(SplitSolution s, bool metal, float roughness) {
+  check_cancelled(progress_);
+  system_.set_materials(s.materials);
+  s.residual = system_.residual(s.x);
+  trials.push_back({metal, roughness, s.residual});
+  progress_.log(fmt::format(R"({{"stage":"split","metal":{},"roughness":{:.3f},"residual":{:.3e}}})", metal,
+                            roughness, s.residual));
+  return s;
+}
+
+SplitSolution SplitSolver::dielectric(float roughness) {
+  return finish(solved(start(one_material(mesh_.positions.size(), {roughness, kSpecular, 0})),
+                       options_.rounds, options_.steps),
+                false, roughness);
+}
+
+SplitSolution SplitSolver::metal(float roughness) {
+  SplitSolution s = start(one_material(mesh_.positions.size(), {roughness, kSpecular, 1}));
+  for (int round = 0; round < 3; ++round) s = with_fitted_metals(std::move(s), 3, 8);
+  return finish(std::move(s), true, roughness);
+}
+
+std::vector<Vec3f> SplitSolver::white_radiance(const SplitSolution& s, float albedo) const {
+  std::vector<Vec3f> out = split_irradiance(transport_, s.x, s.materials, options_.light_height);
+  for (Vec3f& e : out) e = e * (albedo / kPi);
+  return out;
+}
+
+// A vertex far from all samples keeps what it has.
+void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, SplitMaterials& materials) {
+  const std::vector<Vec3f> white = white_radiance({x, materials, 0}, max_albedo);
+  MaterialEvidence evidence =
+      material_evidence(mesh_, rows_, system_.targets(x), system_.blurs(), x.light, white);
+  diffuse_evidence(mesh_, mean_colors(mesh_, rows_), kDiffusion, evidence);
+  for (size_t v = 0; v < materials.of.size(); ++v) {
+    if (evidence.samples[v] <= 0) continue;
+    const BestMaterials b = best_materials(evidence.of(v));
+    const bool metal = b.metal_error < kMetalBy * b.dielectric_error;
+    materials.of[v] = {metal ? b.metal_roughness : b.dielectric_roughness, kSpecular, metal ? 1.0f : 0.0f};
+  }
+}
+
+// Reflections of metals leave the scale of the light open: that of the dielectrics decides.
+void SplitSolver::fix_scale(SplitSolution& s) {
+  system_.set_materials(s.materials);
+  s.materials.color = system_.fit_metal_color(s.x);
+  const LightScale scale =
+      light_scale(mesh_, rows_, system_.targets(s.x), system_.blurs(), s.x.light, s.materials);
+  for (Vec3f& l : s.x.light) l = l * scale.factor;
+  for (Vec3f& a : s.materials.color) a = a / scale.factor;
+}
+
+SplitSolution SplitSolver::several(SplitSolution s) {
+  for (int round = 0; round < kRounds; ++round) {
+    check_cancelled(progress_);
+    system_.set_materials(s.materials);
+    choose_materials(s.x, round + 1 < kRounds ? kFirstWhite : kLastWhite, s.materials);
+    fix_scale(s);
+    s = with_fitted_metals(std::move(s), 2, 8);
+    system_.set_materials(s.materials);
+    s.residual = system_.residual(s.x);
+    progress_.log(Json{{"stage", "materials"}, {"round", round}, {"residual", s.residual}}.dump());
+  }
+  return s;
+}
+
+SplitSolution SplitSolver::with_materials(const SplitMaterials& materials) {
+  SplitSolution s = start(materials);
+  for (int round = 0; round < 3; ++round) s = with_fitted_metals(std::move(s), 3, 8);
+  system_.set_materials(s.materials);
+  s.residual = system_.residual(s.x);
+  return s;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Solutions of the linear split for one size of the problem: for one material, and for a material at every
+// vertex.
+#pragma once
+
+#include "core/base/progress.h"
+#include "engine/reconstruct/appearance/split_system.h"
+
+namespace cei3d {
+
+struct SplitSolution {
+  SplitUnknowns x;
+  SplitMaterials materials;
+  double residual = 0;
+};
+
+class SplitSolver {
+ public:
+  SplitSolver(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&);
+
+  size_t rows() const { return rows_.size(); }
+  SplitSolution dielectric(float roughness);
+  SplitSolution metal(float roughness);
+  // Finds the materials of the vertices: by turns the materials that explain the samples best under the
+  // light, and the light for these materials. start: the light to begin with.
+  SplitSolution several(SplitSolution start);
+  // The light for these materials.
+  SplitSolution with_materials(const SplitMaterials&);
+
+  std::vector<LinearSplit::Trial> trials;  // of one material
+
+ private:
+  SplitSolution start(SplitMaterials) const;
+  SplitSolution solved(SplitSolution, int rounds, int steps);
+  SplitSolution with_fitted_metals(SplitSolution, int rounds, int steps);
+  SplitSolution finish(SplitSolution, bool metal, float roughness);
+  void choose_materials(const SplitUnknowns&, float max_albedo, SplitMaterials&);
+  void fix_scale(SplitSolution&);
+  std::vector<Vec3f> white_radiance(const SplitSolution&, float albedo) const;
+
+  const Transport& transport_;
+  const Mesh& mesh_;
+  std::vector<SplitRow> rows_;
+  LinearSplitOptions options_;
+  Progress& progress_;
+  SplitSystem system_;
+};
+
+// What every vertex sends out, reflections of metals as if they were diffuse. light: of `height` rows.
+std::vector<Vec3f> diffuse_radiance(const Transport&, const SplitUnknowns&, const SplitMaterials&, int height);
+// Irradiance of every vertex, from the light and from the surface.
+std::vector<Vec3f> split_irradiance(const Transport&, const SplitUnknowns&, const SplitMaterials&, int height);
+
+Image light_image(const std::vector<Vec3f>& light, int height);
+
+}  // namespace cei3d

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/compute/device.h"
+#include "model/field/field.h"
+#include "model/material/material.h"
+
+namespace cei3d {
+
+// The material of every surface point, before edits: the same everywhere, or roughness and metalness of a
+// network. The specular strength is the same everywhere.
+class MaterialField {
+ public:
+  static constexpr int kOutputs = 2;  // of the network, each in [0, 1]; see material_of()
+
+  MaterialField() = default;
+  MaterialField(const Material& everywhere)  // NOLINT: one material is a field, too
+      : mean_(everywhere) {}
+  // mean: over the reconstructed surface. varying: kOutputs outputs in [0, 1], or more, which are not read.
+  MaterialField(const Material& mean, std::shared_ptr<const Field> varying)
+      : mean_(mean), varying_(std::move(varying)) {}
+
+  // points: of the reconstructed shape, unit frame. #points
+  std::vector<Material> at(const Device&, std::span<const Vec3f> points) const;
+  // For reports, and for surface that edits have added.
+  const Material& mean() const { return mean_; }
+  // Null: the material is the same everywhere.
+  const std::shared_ptr<const Field>& varying() const { return varying_; }
+
+  bool operator==(const MaterialField&) const = default;  // the same network, not an equal one
+
+ private:
+  Material mean_;
+  std::shared_ptr<const Field> varying_;
+};
+
+// The material that the outputs of a network stand for. Near 0 and 1 the metalness is cut off, so that most
+// of a surface is exactly a dielectric or exactly a metal.
+Material material_of(const float* outputs, float specular);
+// dL/d(outputs) from dL/d(material); 0 where the metalness is cut off.
+void material_of_grad(const float* outputs, const Material& d_material, float* d_outputs);
+// Outputs that stand for a material.
+void outputs_for(const Material&, float* outputs);
+
+}  // namespace cei3d
