@@ -194,13 +194,13 @@ TEST(Shading, AdjointOfTheMirroredDirectionEqualsDualNumbersAlongTheSphere) {
   EXPECT_NEAR(dot(d_v, v), 0, 1e-12);
 }
 
-TEST(Reflection, LobeOfAnyRoughnessHoldsTheHemispheresEnergyOnce) {
+TEST(Reflection, LobeOfAnyRoughnessHoldsTheSpheresEnergyOnce) {
   for (const double roughness : {0.05, 0.2, 0.5, 0.9}) {
     const ReflectionLobe<double> lobe = reflection_lobe(roughness);
-    double above = 0;  // of every Gaussian: the integral over the upper hemisphere around its axis
+    double total = 0;  // of every Gaussian: the integral over the sphere
     for (int j = 0; j < kReflectionLobes; ++j)
-      above += lobe.weight[j] * 2 * M_PI * (1 - std::exp(-lobe.lambda[j])) / lobe.lambda[j];
-    EXPECT_NEAR(above, 1, 1e-6) << roughness;
+      total += lobe.weight[j] * 2 * M_PI * (1 - std::exp(-2 * lobe.lambda[j])) / lobe.lambda[j];
+    EXPECT_NEAR(total, 1, 1e-6) << roughness;
   }
 }
 

@@ -9,6 +9,7 @@
 #include "core/compute/kernels/shade.h"
 #include "core/math/dual.h"
 #include "core/math/rng.h"
+#include "engine/render/hit_reflection.h"
 #include "engine/reconstruct/appearance/display_loss.h"
 
 namespace cei3d {
@@ -61,9 +62,13 @@ double slope(const Problem& p, int lobe, int member) {
   const auto dual = [](Vec3f v) { return Vec3<D>{D(v.x), D(v.y), D(v.z)}; };
   double sum = 0;
   for (size_t i = 0; i < kHits; ++i) {
-    const Vec3<D> gap = dual(mirror_direction(p.hits[i])) - axis;
+    const SurfaceReflection<float> s = reflection_of(p.hits[i], p.materials[i]);
+    const auto along = [&](const ReflectionAxis<float>& a) {
+      const Vec3<D> gap = dual(a.axis) - axis;
+      return sg_reflected(x[3], reflection_lobe(D(a.roughness)), dot(gap, gap));
+    };
     const D e = sg_irradiance(x[3], dot(dual(p.hits[i].normal), axis)),
-            r = sg_reflected(x[3], reflection_lobe(D(p.materials[i].roughness)), dot(gap, gap));
+            r = D(s.share) * along(s.base) + D(1 - s.share) * along(s.fresnel);
     for (int c = 0; c < 3; ++c)
       sum += derivative_of(x[size_t(4 + c)] * (e * D(p.d_irradiance[i][c]) + r * D(p.d_reflected[i][c])));
   }
@@ -95,13 +100,14 @@ double distance_to(const Problem& p, const SgMixture& light, const SgMixture& wa
                    std::vector<Vec3f>& d_r) {
   const auto sent = [&](const SgMixture& m, size_t i, bool reflected) {
     Vec3f sum{0, 0, 0};
-    const Vec3f r = mirror_direction(p.hits[i]);
-    const ReflectionLobe<float> lobe = reflection_lobe(p.materials[i].roughness);
-    for (const SgLobe& l : m.lobes) {
-      const Vec3f gap = r - l.axis;
-      sum += l.mu * (reflected ? sg_reflected(l.lambda, lobe, dot(gap, gap))
+    const SurfaceReflection<float> s = reflection_of(p.hits[i], p.materials[i]);
+    const auto along = [](const ReflectionAxis<float>& a, const SgLobe& l) {
+      const Vec3f gap = a.axis - l.axis;
+      return sg_reflected(l.lambda, reflection_lobe(a.roughness), dot(gap, gap));
+    };
+    for (const SgLobe& l : m.lobes)
+      sum += l.mu * (reflected ? s.share * along(s.base, l) + (1 - s.share) * along(s.fresnel, l)
                                : sg_irradiance(l.lambda, dot(p.hits[i].normal, l.axis)));
-    }
     return sum;
   };
   double sum = 0;

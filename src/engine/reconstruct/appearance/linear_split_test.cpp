@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 
 #include "core/base/error.h"
 #include "core/math/rng.h"
@@ -63,7 +64,9 @@ struct Drawn {
   SurfaceSamples samples() const { return {hits, colors, clipped}; }
 };
 
-Drawn draw(const Material& material, float brightness = 1) {
+using Materials = std::function<Material(Vec3f position)>;
+
+Drawn draw(const Materials& material_at, float brightness = 1) {
   Drawn d;
   d.surface = std::make_shared<const Surface>(bumpy_ball());
   d.transport = std::make_shared<Transport>(d.surface);
@@ -92,10 +95,17 @@ Drawn draw(const Material& material, float brightness = 1) {
     albedo.push_back(d.base[t[0]] * (1 - b1 - b2) + d.base[t[1]] * b1 + d.base[t[2]] * b2);
   }
   const Device device = make_device();
-  const Lighting lighting(device, d.surface, studio(), d.base, material, d.transport);
-  const Shading s = lighting.shade(UniformBatch(d.hits, material), albedo);
+  std::vector<Material> of_vertices, of_hits;
+  for (const Vec3f& p : m.positions) of_vertices.push_back(material_at(p));
+  for (const Hit& h : d.hits) of_hits.push_back(material_at(h.position));
+  const Lighting lighting(device, d.surface, studio(), vertex_light(*d.transport, studio(), {d.base, of_vertices}));
+  const Shading s = lighting.shade({d.hits, of_hits}, albedo);
   for (size_t i = 0; i < d.hits.size(); ++i) d.colors.push_back(s.diffuse[i] + s.specular[i]);
   return d;
+}
+
+Drawn draw(const Material& everywhere, float brightness = 1) {
+  return draw([=](Vec3f) { return everywhere; }, brightness);
 }
 
 LinearSplitOptions small() {
@@ -140,11 +150,10 @@ TEST(LinearSplit, FindsLightRoughnessAndAlbedoOfADielectric) {
   const Drawn d = draw({0.3f, 0.5f, 0});
   Progress quiet;
   const LinearSplit split = linear_split(*d.transport, d.samples(), small(), quiet);
+  EXPECT_TRUE(split.materials.empty());  // one
   EXPECT_EQ(split.material.metalness, 0);
   EXPECT_NEAR(split.material.roughness, 0.3f, 0.03f);
   const Match albedo = match(pick(split.albedo, seen(d)), pick(d.base, seen(d)));
-  // The pictures are drawn with a lobe of few Gaussians, the solve knows the exact one: a seventh of the
-  // scale.
   EXPECT_NEAR(albedo.scale, 1, 0.15);
   EXPECT_LT(albedo.error, 0.04);
   std::vector<Vec3f> got, truth;
@@ -179,10 +188,34 @@ TEST(LinearSplit, TellsAMetalFromADielectric) {
   const Drawn d = draw({0.25f, 0.5f, 1});
   Progress quiet;
   const LinearSplit split = linear_split(*d.transport, d.samples(), small(), quiet);
+  EXPECT_TRUE(split.materials.empty());
   EXPECT_EQ(split.material.metalness, 1);
   EXPECT_LT(split.material.roughness, 0.3f);  // a metal's residual is flat below the truth
   // Up to one factor, which reflections leave open.
   EXPECT_LT(match(pick(split.albedo, seen(d)), pick(d.base, seen(d))).error, 0.15);
+}
+
+// A body whose upper half is a metal and whose lower half is a rougher dielectric.
+TEST(LinearSplit, FindsSeveralMaterialsAndTheirBorder) {
+  const Material above{0.25f, 0.5f, 1}, below{0.4f, 0.5f, 0};
+  const Drawn d = draw([&](Vec3f p) { return p.z > 0 ? above : below; });
+  Progress quiet;
+  const LinearSplit split = linear_split(*d.transport, d.samples(), small(), quiet);
+  ASSERT_EQ(split.materials.size(), d.base.size());
+  size_t wrong = 0;
+  double above_roughness = 0, below_roughness = 0, metals = 0;
+  for (const uint32_t v : seen(d)) {
+    const bool metal = d.surface->mesh().positions[v].z > 0;
+    wrong += (split.materials[v].metalness > 0.5f) != metal;
+    metals += metal;
+    (metal ? above_roughness : below_roughness) += split.materials[v].roughness;
+  }
+  EXPECT_LT(double(wrong), 0.04 * double(seen(d).size()));
+  EXPECT_NEAR(above_roughness / metals, above.roughness, 0.08);
+  EXPECT_NEAR(below_roughness / (double(seen(d).size()) - metals), below.roughness, 0.1);
+  const Match albedo = match(pick(split.albedo, seen(d)), pick(d.base, seen(d)));
+  EXPECT_NEAR(albedo.scale, 1, 0.25);
+  EXPECT_LT(albedo.error, 0.2);
 }
 
 TEST(LinearSplit, IsTheSameEveryTimeAndSaysWhenThereIsTooLittle) {
@@ -215,8 +248,8 @@ AppearanceOptions brief(float roughness) {
 std::vector<Vec3f> redrawn(const Device& device, const Drawn& d, const AppearanceResult& a) {
   std::vector<Vec3f> x;
   for (const Hit& h : d.hits) x.push_back(h.position);
-  const Lighting lighting(device, d.surface, a.light, a.split.albedo, a.material, d.transport);
-  const Shading s = lighting.shade(UniformBatch(d.hits, a.material), a.albedo->eval3(device, x));
+  const Lighting lighting(device, d.surface, a.light, a.split.albedo, a.material.mean(), d.transport);
+  const Shading s = lighting.shade(UniformBatch(d.hits, a.material.mean()), a.albedo->eval3(device, x));
   std::vector<Vec3f> out(x.size());
   for (size_t i = 0; i < x.size(); ++i) out[i] = s.diffuse[i] + s.specular[i];
   return out;
