@@ -24,8 +24,12 @@ std::string project_text(const ProjectInfo& i) {
     text += fmt::format("surface     {} vertices, {} triangles\n", i.vertices, i.triangles);
     text += fmt::format("handlers    {} points, {:.4g} apart (capture units)\n", i.handler_points,
                         i.handler_spacing);
-    text += fmt::format("material    roughness {:.3f}, specular {:.3f}, metalness {:.3f}\n",
-                        i.material.roughness, i.material.specular, i.material.metalness);
+    text += fmt::format("material    {}\n", i.object.text());
+    if (i.object.explained)
+      text +=
+          fmt::format("explained   {:.1f} dB by light and material, {:.1f} dB with the correction network\n",
+                      i.object.explained->physical, i.object.explained->with_residual);
+    if (const std::string w = i.object.warning(); !w.empty()) text += "            " + w + "\n";
     text += fmt::format("light       {} lobes\n", i.lobes);
     text += fmt::format("edits       {}, {} of them on\n", i.edits, i.edits_active);
   } else {

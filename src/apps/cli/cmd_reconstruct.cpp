@@ -20,12 +20,10 @@ void run_reconstruct(const Options& o, Session& session, Console& console) {
   request.project = o.project;
   if (!o.time.empty()) request.options.seconds = parse_duration(o.time);
   const ReconstructReport r = session.reconstruct(request, console);
-  console.done(
-      r.json(),
-      fmt::format(
-          "{}: object of {} vertices and {} handler points from {} views in {}; roughness {:.2f}, {}.",
-          o.project, r.vertices, r.handler_points, r.views, duration_text(r.seconds), r.material.roughness,
-          r.material.metalness > 0.5f ? "metal" : "dielectric"));
+  console.done(r.json(),
+               fmt::format("{}: object of {} vertices and {} handler points from {} views in {}; {}.{}{}",
+                           o.project, r.vertices, r.handler_points, r.views, duration_text(r.seconds),
+                           r.object.text(), r.object.warning().empty() ? "" : "\n", r.object.warning()));
 }
 
 }  // namespace

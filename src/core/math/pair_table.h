@@ -37,7 +37,8 @@ PairTable make_pair_table(const F& value) {
       node(r + 1, c + 1)[1] = float(p.second);
     }
     extrapolate(node(r + 1, 0), node(r + 1, 1), node(r + 1, 2));
-    extrapolate(node(r + 1, kTableColumns - 1), node(r + 1, kTableColumns - 2), node(r + 1, kTableColumns - 3));
+    extrapolate(node(r + 1, kTableColumns - 1), node(r + 1, kTableColumns - 2),
+                node(r + 1, kTableColumns - 3));
   }
   for (int c = 0; c < kTableColumns; ++c) {
     extrapolate(node(0, c), node(1, c), node(2, c));

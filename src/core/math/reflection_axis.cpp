@@ -72,15 +72,15 @@ PairTable make_table(ReflectionPart part) {
   return make_pair_table([&](double nv, double roughness) {
     const double cosine = std::min(nv, frontal(part));
     const Vec3d mean = mean_direction(part, cosine, roughness);
-    return TablePair<double>{share_of_normal(cosine, mean),
-                             widths.roughness(1 - length(mean)) / roughness};
+    return TablePair<double>{share_of_normal(cosine, mean), widths.roughness(1 - length(mean)) / roughness};
   });
 }
 
 }  // namespace
 
 const float* reflection_axis_table(ReflectionPart part) {
-  static const PairTable base = make_table(ReflectionPart::base), fresnel = make_table(ReflectionPart::fresnel);
+  static const PairTable base = make_table(ReflectionPart::base),
+                         fresnel = make_table(ReflectionPart::fresnel);
   return part == ReflectionPart::base ? base.data() : fresnel.data();
 }
 

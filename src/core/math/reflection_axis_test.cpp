@@ -26,7 +26,8 @@ Vec3d mean_direction(ReflectionPart part, double nv, double roughness) {
     for (int j = 0; j < columns; ++j) {
       const double a = 2 * M_PI * (j + 0.5) / columns;
       const Vec3d l{s * std::cos(a), s * std::sin(a), c};
-      const double none = microfacet_brdf(n, v, l, 0.0, roughness), all = microfacet_brdf(n, v, l, 1.0, roughness);
+      const double none = microfacet_brdf(n, v, l, 0.0, roughness),
+                   all = microfacet_brdf(n, v, l, 1.0, roughness);
       const double weight = s * c * (part == ReflectionPart::base ? all - none : none);
       sum += l * weight;
       total += weight;
@@ -86,9 +87,10 @@ void expect_adjoint(Vec3d n, Vec3d v, double roughness, double metalness) {
                               g.d_roughness,       g.d_specular,      g.d_metalness};
   for (int k = 0; k < kMoves; ++k) {
     const auto on = [&](int i) { return i == k ? 1.0 : 0.0; };
-    const Vec3<D> dn = moved(n, tangent * on(0) + other * on(1), 1), dv = moved(v, side * on(2) + up * on(3), 1);
-    const SurfaceReflection<D> r = surface_reflection(tables, dn, dv, D(roughness, on(4)), D(0.5, on(5)),
-                                                      D(metalness, on(6)));
+    const Vec3<D> dn = moved(n, tangent * on(0) + other * on(1), 1),
+                  dv = moved(v, side * on(2) + up * on(3), 1);
+    const SurfaceReflection<D> r =
+        surface_reflection(tables, dn, dv, D(roughness, on(4)), D(0.5, on(5)), D(metalness, on(6)));
     const auto along = [](Vec3<D> x, Vec3d by) {
       return derivative_of(x.x) * by.x + derivative_of(x.y) * by.y + derivative_of(x.z) * by.z;
     };

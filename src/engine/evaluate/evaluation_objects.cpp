@@ -45,7 +45,7 @@ Json EvaluationObjects::describe_given(const Capture& capture) {
           {"options", info.options},
           {"vertices", info.vertices},
           {"handler_points", info.handler_points},
-          {"roughness", info.material.roughness}};
+          {"roughness", info.object.mean.roughness}};
 }
 
 EvaluationObject EvaluationObjects::whole() const { return {"whole", r_.options, !r_.project.empty()}; }

@@ -160,9 +160,9 @@ void fit_scene_residual(const RunContext& run, RunState& state, const Stage::Che
   options.steps = plan.residual_steps;
   options.seed = run.seed;
   const ObjectHits hits = scene_hits(run, state.scene, {plan.residual_hits, kResidualSubset});
-  if (auto residual =
-          fit_residual(run.device, state.scene, hits.samples(), hits.views, options, run.progress))
-    state.scene.residual = std::make_shared<const Residual>(std::move(*residual));
+  ResidualFit fit = fit_residual(run.device, state.scene, hits.samples(), hits.views, options, run.progress);
+  if (fit.residual) state.scene.residual = std::make_shared<const Residual>(std::move(*fit.residual));
+  state.scene.explained = fit.explained;
   check_cancelled(run.progress);
 }
 

@@ -149,8 +149,8 @@ struct LobeGrad {
   Planes<3> d_axes;
   Planes<1> d_roughness;
 
-  LobeGrad(const Device& device, const LobePlanes& light, LobeOfHits& lobe,
-           std::span<const Vec3f> d_radiance, const std::vector<float>& share) {
+  LobeGrad(const Device& device, const LobePlanes& light, LobeOfHits& lobe, std::span<const Vec3f> d_radiance,
+           const std::vector<float>& share) {
     Planes<3> d_reflected;
     for (size_t i = 0; i < share.size(); ++i) d_reflected.put(0, i, d_radiance[i] * share[i]);
     device.launch<SgReflectionGrad>({.lobes = light,

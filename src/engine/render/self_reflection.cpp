@@ -124,8 +124,8 @@ Vec3f SelfReflection::diffuse_radiance(const Surface::RayHit& r) const {
   return at(seen_.albedo, r) * at(vertices_.irradiance, r) / kPi;
 }
 
-// Radiance along the axes of the reflection lobes of these points: of the environment, or of the surface met there as if
-// diffuse.
+// Radiance along the axes of the reflection lobes of these points: of the environment, or of the surface met
+// there as if diffuse.
 std::vector<Vec3f> SelfReflection::mirrored(std::span<const Hit> hits,
                                             std::span<const Material> materials) const {
   const size_t n = hits.size(), stride = size_t(padded_to_panels(int(n)));
@@ -200,7 +200,8 @@ std::vector<SelfReflection::Seen> SelfReflection::seen_by(std::span<const Hit> h
   rays.reserve(hits.size() * kMinRays);
   Lobes lobes;
   for (size_t i = 0; i < hits.size(); ++i)
-    add_rays(hits[i], materials[i], uint32_t(i), lobes.of(materials[i], dot(hits[i].normal, hits[i].to_camera)), rays);
+    add_rays(hits[i], materials[i], uint32_t(i),
+             lobes.of(materials[i], dot(hits[i].normal, hits[i].to_camera)), rays);
   const Met met = met_by(rays);
   const std::vector<Vec3f> radiance = radiance_of(met);
   std::vector<Seen> out(hits.size());

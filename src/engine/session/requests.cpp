@@ -8,8 +8,8 @@
 namespace cei3d {
 namespace {
 
-constexpr const char* kChannels[] = {"rgb",    "albedo", "diffuse",   "specular",
-                                     "normal", "depth",  "roughness", "metalness", "mask"};
+constexpr const char* kChannels[] = {"rgb",   "albedo",    "diffuse",   "specular", "normal",
+                                     "depth", "roughness", "metalness", "mask"};
 constexpr const char* kSeverities[] = {"note", "warning", "error"};
 constexpr const char* kTargets[] = {"albedo", "appearance", "radiance"};
 constexpr const char* kRoutings[] = {"both", "points", "outline", "none"};
@@ -79,12 +79,40 @@ Json CheckReport::json() const {
           {"usable", report.usable()}};
 }
 
+Json ObjectSummary::json() const {
+  Json j = material_json(mean);
+  j["varies"] = varies;
+  j["metal_share"] = metal_share;
+  j["roughness_range"] = {min_roughness, max_roughness};
+  if (explained)
+    j["explained_db"] = {{"physical", explained->physical}, {"with_residual", explained->with_residual}};
+  return j;
+}
+
+std::string ObjectSummary::text() const {
+  if (!varies)
+    return fmt::format("roughness {:.2f}, {}", mean.roughness,
+                       mean.metalness > 0.5f ? "metal" : "dielectric");
+  return fmt::format("several materials: roughness {:.2f} to {:.2f}, {:.0f} % metal", min_roughness,
+                     max_roughness, 100 * metal_share);
+}
+
+std::string ObjectSummary::warning() const {
+  constexpr double kMuchLess = 3;  // dB
+  if (!explained || explained->with_residual - explained->physical < kMuchLess) return {};
+  return fmt::format(
+      "Light and material explain the photographs to {:.1f} dB, the correction network brings the pictures "
+      "to "
+      "{:.1f} dB: edits and other light will look less true than the object as photographed.",
+      explained->physical, explained->with_residual);
+}
+
 Json ReconstructReport::json() const {
   return {{"seconds", seconds},
           {"views", views},
           {"handler_points", handler_points},
           {"vertices", vertices},
-          {"material", material_json(material)}};
+          {"material", object.json()}};
 }
 
 Json ProjectInfo::json() const {
@@ -96,7 +124,7 @@ Json ProjectInfo::json() const {
             {"finished", finished},
             {"bytes", bytes}};
   if (finished)
-    j["object"] = {{"material", material_json(material)},
+    j["object"] = {{"material", object.json()},
                    {"vertices", vertices},
                    {"triangles", triangles},
                    {"handler_points", handler_points},

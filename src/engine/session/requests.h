@@ -44,11 +44,24 @@ struct ReconstructRequest {
   ReconstructOptions options;  // with `resume`: those the project began with count instead
   bool resume = false, replace = false;
 };
+// What the object is made of and how far that explains its photographs.
+struct ObjectSummary {
+  Material mean;
+  bool varies = false;                         // the material, over the surface
+  float metal_share = 0;                       // of the surface
+  float min_roughness = 0, max_roughness = 0;  // of all but the smoothest and the roughest twentieth
+  std::optional<Explained> explained;          // none: not measured
+  // "3 dB less than ..." if light and material explain much less than is shown; else empty.
+  std::string warning() const;
+  std::string text() const;  // of the material, half a line
+  Json json() const;
+};
+
 struct ReconstructReport {
   double seconds = 0;
   size_t views = 0;
   size_t handler_points = 0, vertices = 0;
-  Material material;
+  ObjectSummary object;
   Json json() const;
 };
 
@@ -60,7 +73,7 @@ struct ProjectInfo {
   Normalization normalization;
   Json options;  // of the reconstruction
   // The rest stands when `finished`:
-  Material material;
+  ObjectSummary object;
   size_t vertices = 0, triangles = 0, handler_points = 0, lobes = 0;
   float handler_spacing = 0;  // capture units
   size_t edits = 0, edits_active = 0;

@@ -11,6 +11,7 @@
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
 #include "engine/render/render_cache.h"
+#include "engine/session/object_summary.h"
 #include "engine/session/version.h"
 
 namespace cei3d {
@@ -25,8 +26,8 @@ uintmax_t bytes_below(const fs::path& folder) {
   return sum;
 }
 
-void describe_scene(const Scene& scene, ProjectInfo& info) {
-  info.material = scene.material.mean();
+void describe_scene(const Device& device, const Scene& scene, ProjectInfo& info) {
+  info.object = summary_of(device, scene);
   info.lobes = scene.light.lobes.size();
   if (scene.surface) {
     info.vertices = scene.surface->mesh().positions.size();
@@ -98,7 +99,7 @@ ProjectInfo Session::info() const {
     info.edits = p.stack().entries().size();
     info.edits_active = p.stack().active().size();
     info.bytes = bytes_below(p.folder());
-    if (info.finished) describe_scene(p.base(), info);
+    if (info.finished) describe_scene(*device_, p.base(), info);
     return info;
   });
 }

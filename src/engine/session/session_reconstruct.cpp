@@ -7,6 +7,7 @@
 #include "engine/capture/check.h"
 #include "engine/project/dataset.h"
 #include "engine/project/project.h"
+#include "engine/session/object_summary.h"
 #include "engine/session/run_log.h"
 #include "engine/session/session.h"
 
@@ -71,13 +72,14 @@ void require_same_capture(const Project& project, const fs::path& given) {
         now.root.string(), project.folder().string());
 }
 
-ReconstructReport report_of(const Project& project, const Scene& scene, double seconds) {
+ReconstructReport report_of(const Device& device, const Project& project, const Scene& scene,
+                            double seconds) {
   ReconstructReport r;
   r.seconds = seconds;
   r.views = views_of(project.capture(), Split::train).size();
   r.handler_points = scene.handlers ? scene.handlers->positions.size() : 0;
   r.vertices = scene.surface ? scene.surface->mesh().positions.size() : 0;
-  r.material = scene.material.mean();
+  r.object = summary_of(device, scene);
   return r;
 }
 
@@ -88,7 +90,7 @@ ReconstructReport Session::run_reconstruction(const ReconstructRequest& request,
   if (request.resume) {
     open(request.project, Access::write);
     require_same_capture(project(), request.capture);
-    if (project().has_base()) return report_of(project(), project().base(), 0);
+    if (project().has_base()) return report_of(*device_, project(), project().base(), 0);
   } else {
     Project::check_place(request.project, request.replace);
     const ReconstructOptions& o = request.options;
@@ -106,7 +108,7 @@ ReconstructReport Session::run_reconstruction(const ReconstructRequest& request,
     const Scene scene = cei3d::reconstruct(*device_, project().capture(), CaptureImages(options.downscale),
                                            project().head().normalization, options, checkpoints, log);
     project().save_base(scene);
-    return report_of(project(), scene, steady_seconds() - start);
+    return report_of(*device_, project(), scene, steady_seconds() - start);
   } catch (...) {
     project().discard_if_empty();
     throw;

@@ -40,8 +40,9 @@ TEST(MaterialField, GradientEqualsDifferences) {
       float up[] = {at[0], at[1]}, down[] = {at[0], at[1]};
       up[k] += kStep, down[k] -= kStep;
       const Material a = material_of(up, 0.5f), b = material_of(down, 0.5f);
-      const float want = ((a.roughness - b.roughness) * d.roughness + (a.metalness - b.metalness) * d.metalness) /
-                         (2 * kStep);
+      const float want =
+          ((a.roughness - b.roughness) * d.roughness + (a.metalness - b.metalness) * d.metalness) /
+          (2 * kStep);
       EXPECT_NEAR(got[k], want, 1e-3) << metalness << ' ' << k;
     }
   }

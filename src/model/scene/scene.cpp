@@ -135,6 +135,9 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   save_light(scene.light, tensors, head);
   if (scene.residual) save_residual(*scene.residual, scene.sdf, tensors, head);
   if (scene.handlers) save_handlers(*scene.handlers, tensors, head);
+  if (scene.explained)
+    head["explained"] = {{"physical", scene.explained->physical},
+                         {"with_residual", scene.explained->with_residual}};
 }
 
 Scene load_scene(const Tensors& tensors, const Json& head) {
@@ -156,6 +159,11 @@ Scene load_scene(const Tensors& tensors, const Json& head) {
     scene.light = load_light(tensors, reader.member("light"));
     if (reader.has("residual")) scene.residual = load_residual(tensors, scene.sdf, head);
     if (reader.has("handlers")) scene.handlers = load_handlers(tensors, reader.member("handlers"));
+    if (reader.has("explained")) {
+      JsonReader explained = reader.object("explained");
+      scene.explained = {explained.require<double>("physical"), explained.require<double>("with_residual")};
+      explained.finish();
+    }
     reader.finish();
     return scene;
   });

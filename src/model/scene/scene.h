@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,12 @@
 
 namespace cei3d {
 
+// How well pictures are matched at the object that the residual had not been trained on, in dB of
+// display-encoded colors: by light and material alone, and with the residual.
+struct Explained {
+  double physical = 0, with_residual = 0;
+};
+
 struct Scene {
   Normalization normalization;          // between the capture frame and the unit frame of everything else
   Vec3d up{0, 0, 1};                    // capture frame
@@ -33,6 +40,7 @@ struct Scene {
   MaterialField material;
   // What they cannot explain; null: nothing, or not any more, since the light was changed.
   std::shared_ptr<const Residual> residual;
+  std::optional<Explained> explained;             // of the reconstruction; none: not measured
   std::shared_ptr<const HandlerPoints> handlers;  // on the present shape
   Poses poses;  // shape versions, the last one with `surface`; empty while the shape is the reconstructed one
   std::vector<EditLayer> layers;  // in order; later layers cover earlier ones

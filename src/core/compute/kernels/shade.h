@@ -58,9 +58,9 @@ struct SgReflectionGrad {
     LobePlanes lobes;
     int stride;
     const float *axes, *roughness;  // as in SgReflection
-    const float* d_reflected;          // [3][stride]
+    const float* d_reflected;       // [3][stride]
     float* d_axes;                  // [3][stride], written
-    float* d_roughness;                // [stride], written
+    float* d_roughness;             // [stride], written
   };
   template <class T>
   static HD void run(const Args& a, int i) {
@@ -105,7 +105,7 @@ struct SgLobesGrad {
   struct Args {
     LobePlanes lobes;
     int stride, begin, end;
-    const float *normals, *axes;           // [3][stride]
+    const float *normals, *axes;              // [3][stride]
     const float* reflection_lobes;            // [ReflectionLobes::kRows][stride]
     const float *d_irradiance, *d_reflected;  // [3][stride]
     float* d_lobes;                           // [7][lobes.padded]: axis, sharpness, color; written

@@ -22,11 +22,11 @@ enum class Effort { brief, full };  // brief: fewer samples and steps, half the 
 
 struct AppearanceOptions {
   Effort effort = Effort::full;
-  int albedo_steps = -1;  // of the field under the split's light; -1: as `effort` says
-  int joint_steps = -1;   // of field and light together; -1: as `effort` says
-  int lobe_steps = 800;   // of the fit of lobes to the split's light
+  int albedo_steps = -1;     // of the field under the split's light; -1: as `effort` says
+  int joint_steps = -1;      // of field and light together; -1: as `effort` says
+  int lobe_steps = 800;      // of the fit of lobes to the split's light
   int material_steps = 400;  // of the fit of a field to the split's materials
-  float roughness = 0;    // > 0: known, not searched
+  float roughness = 0;       // > 0: known, not searched
   uint64_t seed = 1;
   FieldConfig albedo;          // 3 outputs, sigmoid
   FieldConfig materials;       // MaterialField::kOutputs outputs, sigmoid

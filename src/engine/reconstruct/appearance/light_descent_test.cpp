@@ -9,8 +9,8 @@
 #include "core/compute/kernels/shade.h"
 #include "core/math/dual.h"
 #include "core/math/rng.h"
-#include "engine/render/hit_reflection.h"
 #include "engine/reconstruct/appearance/display_loss.h"
+#include "engine/render/hit_reflection.h"
 
 namespace cei3d {
 namespace {

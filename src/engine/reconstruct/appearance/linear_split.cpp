@@ -8,8 +8,8 @@
 
 #include "core/base/cancel.h"
 #include "core/base/error.h"
-#include "core/math/color.h"
 #include "core/base/json.h"
+#include "core/math/color.h"
 #include "engine/reconstruct/appearance/split_solver.h"
 #include "model/light/envmap.h"
 
@@ -23,7 +23,8 @@ constexpr double kFar = 1.25;  // a residual this much above the best ends the s
 constexpr double kMetalBy = 0.5;
 // Several materials have to explain the pictures so much better than one: they always explain a little more.
 constexpr double kSeveralBy = 0.75;
-constexpr float kFirstRoughness = 0.3f;  // at most, of the one material that the search for several begins with
+constexpr float kFirstRoughness =
+    0.3f;  // at most, of the one material that the search for several begins with
 
 // The largest roughness whose non-negative light fits within the tolerance of the best: a smaller one with a
 // blurred light fits about as well as the truth, a larger one asks for negative light. A coarse scan, then
@@ -182,7 +183,8 @@ SplitSolution solve(const Transport& transport, const SurfaceSamples& samples,
 
 Material mean_of(const std::vector<Material>& materials) {
   double roughness = 0, specular = 0, metalness = 0;
-  for (const Material& m : materials) roughness += m.roughness, specular += m.specular, metalness += m.metalness;
+  for (const Material& m : materials)
+    roughness += m.roughness, specular += m.specular, metalness += m.metalness;
   const double n = double(materials.size());
   return {float(roughness / n), float(specular / n), float(metalness / n)};
 }
@@ -201,7 +203,8 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
   SplitSolution s = solve(transport, samples, options, progress, result.trials);
   const auto& of = s.materials.of;
   s.x.diffuse = clamped(std::move(s.x.diffuse), 1e6f);
-  const bool all_metal = std::all_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
+  const bool all_metal =
+      std::all_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
   if (all_metal)
     make_light_gray(s, options.light_height);
   else
@@ -214,7 +217,8 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
   result.smoothest = smoothest_of(of);
   result.light = light_image(s.x.light, options.light_height);
   result.diffuse = std::move(s.x.diffuse);
-  result.albedo = clamped(base_colors(transport, {{result.diffuse, s.x.light}, s.materials, 0}, options.light_height), 1);
+  result.albedo =
+      clamped(base_colors(transport, {{result.diffuse, s.x.light}, s.materials, 0}, options.light_height), 1);
   return result;
 }
 

@@ -45,12 +45,12 @@ struct LinearSplitOptions {
 };
 
 struct LinearSplit {
-  Material material;           // mean over the surface
+  Material material;                // mean over the surface
   std::vector<Material> materials;  // #V, metalness 0 or 1; empty: `material` everywhere
-  float smoothest = 0;         // roughness of the smoothest hundredth of the surface
-  Image light;                 // light_height rows, 2 light_height columns, RGB, linear, >= 0
-  std::vector<Vec3f> albedo;   // #V base color, linear, [0, 1]
-  std::vector<Vec3f> diffuse;  // #V view-independent radiance D; zero for metals
+  float smoothest = 0;              // roughness of the smoothest hundredth of the surface
+  Image light;                      // light_height rows, 2 light_height columns, RGB, linear, >= 0
+  std::vector<Vec3f> albedo;        // #V base color, linear, [0, 1]
+  std::vector<Vec3f> diffuse;       // #V view-independent radiance D; zero for metals
   struct Trial {
     bool metal;
     float roughness;

@@ -98,7 +98,8 @@ Drawn draw(const Materials& material_at, float brightness = 1) {
   std::vector<Material> of_vertices, of_hits;
   for (const Vec3f& p : m.positions) of_vertices.push_back(material_at(p));
   for (const Hit& h : d.hits) of_hits.push_back(material_at(h.position));
-  const Lighting lighting(device, d.surface, studio(), vertex_light(*d.transport, studio(), {d.base, of_vertices}));
+  const Lighting lighting(device, d.surface, studio(),
+                          vertex_light(*d.transport, studio(), {d.base, of_vertices}));
   const Shading s = lighting.shade({d.hits, of_hits}, albedo);
   for (size_t i = 0; i < d.hits.size(); ++i) d.colors.push_back(s.diffuse[i] + s.specular[i]);
   return d;

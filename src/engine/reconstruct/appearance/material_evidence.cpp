@@ -11,7 +11,8 @@ namespace cei3d {
 namespace {
 
 constexpr int kLevels = BlurLadder::kLevels;
-constexpr float kMinMetal = 0.02f, kMaxMetal = 4;  // reflectance of a metal, the light's scale being uncertain
+constexpr float kMinMetal = 0.02f,
+                kMaxMetal = 4;  // reflectance of a metal, the light's scale being uncertain
 
 uint32_t nearest_vertex(const SplitRow& r) {
   const auto& b = r.barycentric;
@@ -80,10 +81,11 @@ MaterialEvidence material_evidence(const Mesh& mesh, const std::vector<SplitRow>
           if (row.blocked) continue;
           const SplitSum<float> s = split_sum(table, row.nv, roughness);
           const Vec3f w = row.weight;
-          const Vec3f base = radiance_at(sky, reflected_sky(row, ReflectionPart::base, roughness,
-                                                            blurs.height())) * s.scale;
-          const Vec3f rest = colors[of.rows[k]] - radiance_at(sky, reflected_sky(row, ReflectionPart::fresnel, roughness,
-                                                            blurs.height())) * s.bias;
+          const Vec3f base =
+              radiance_at(sky, reflected_sky(row, ReflectionPart::base, roughness, blurs.height())) * s.scale;
+          const Vec3f rest = colors[of.rows[k]] - radiance_at(sky, reflected_sky(row, ReflectionPart::fresnel,
+                                                                                 roughness, blurs.height())) *
+                                                      s.bias;
           const float d = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness);
           dielectric.add(w, {d, d, d}, rest - base * f0_of(black, 0.5f, 0.0f));
           metal.add(w, base, rest);
@@ -199,17 +201,19 @@ LightScale light_scale(const Mesh& mesh, const std::vector<SplitRow>& rows, std:
       if (row.blocked) continue;
       const SplitSum<float> s = split_sum(table, row.nv, roughness);
       const Vec3f w = row.weight;
-      const Vec3f g = radiance_at(sky, reflected_sky(row, ReflectionPart::base, roughness, blurs.height())) *
-                          f0_of({0, 0, 0}, 0.5f, 0.0f) * s.scale +
-                      radiance_at(sky, reflected_sky(row, ReflectionPart::fresnel, roughness,
-                                                     blurs.height())) * s.bias;
+      const Vec3f g =
+          radiance_at(sky, reflected_sky(row, ReflectionPart::base, roughness, blurs.height())) *
+              f0_of({0, 0, 0}, 0.5f, 0.0f) * s.scale +
+          radiance_at(sky, reflected_sky(row, ReflectionPart::fresnel, roughness, blurs.height())) * s.bias;
       const float d = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness);
-      dd += w * (d * d), dg += w * g * d, gg += w * g * g, dc += w * colors[of.rows[k]] * d, gc += w * g * colors[of.rows[k]];
+      dd += w * (d * d), dg += w * g * d, gg += w * g * g, dc += w * colors[of.rows[k]] * d,
+          gc += w * g * colors[of.rows[k]];
     }
     for (int c = 0; c < 3; ++c) {
       if (dd[c] <= 0) continue;
-      above[c] += double(gc[c]) - double(dg[c]) * dc[c] / dd[c];
-      below[c] += double(gg[c]) - double(dg[c]) * dg[c] / dd[c];
+      const bool black = dc[c] < dg[c];  // what is diffuse would be negative
+      above[c] += double(gc[c]) - (black ? 0 : double(dg[c]) * dc[c] / dd[c]);
+      below[c] += double(gg[c]) - (black ? 0 : double(dg[c]) * dg[c] / dd[c]);
     }
   }
   LightScale s;

@@ -86,8 +86,8 @@ class Trainer {
   bool can_judge() const { return !apart_.empty() && !taught_.empty(); }
   void teach_all() { taught_.insert(taught_.end(), apart_.begin(), apart_.end()); }
 
-  // Share of the squared error, as displayed, that the residual takes off views it has not seen.
-  double gain() const {
+  // How well views that the residual has not seen are matched.
+  Explained explained() const {
     std::vector<uint32_t> judged;
     std::vector<Hit> hits;
     for (size_t i = 0; i < apart_.size(); i += 1 + apart_.size() / kJudged) {
@@ -100,7 +100,8 @@ class Trainer {
       with += squared_error(judged[i], sent_[judged[i]] + values[i]);
       without += squared_error(judged[i], sent_[judged[i]]);
     }
-    return 1 - with / without;
+    const auto psnr = [&](double sum) { return -10 * std::log10(sum / (3 * double(judged.size()))); };
+    return {psnr(without), psnr(with)};
   }
 
   void step(double rate) {
@@ -194,9 +195,9 @@ void train(Trainer& trainer, int steps, double seconds, const Clock& clock, Prog
 
 }  // namespace
 
-std::optional<Residual> fit_residual(const Device& device, const Scene& scene, const SurfaceSamples& samples,
-                                     std::span<const uint16_t> views, const ResidualOptions& options,
-                                     Progress& progress) {
+ResidualFit fit_residual(const Device& device, const Scene& scene, const SurfaceSamples& samples,
+                         std::span<const uint16_t> views, const ResidualOptions& options,
+                         Progress& progress) {
   const double start = options.clock();
   progress.report({"residual", 0, -1, ""});
   Trainer trainer(device, scene, samples, views, options, progress);
@@ -205,12 +206,19 @@ std::optional<Residual> fit_residual(const Device& device, const Scene& scene, c
   const double seconds = options.seconds > 0 ? std::max(options.seconds - shading, 0.5 * options.seconds) : 0;
   const int judging = std::max(1, int(kJudging * options.steps));
   train(trainer, judging, kJudging * seconds, options.clock, progress);
-  const double gain = trainer.gain();
-  progress.log(Json{{"stage", "residual"}, {"shading", shading}, {"gain_on_views_kept_apart", gain}}.dump());
-  if (gain < kLeastGain) return {};
+  const Explained explained = trainer.explained();
+  const double gain = 1 - std::pow(10, 0.1 * (explained.physical - explained.with_residual));
+  progress.log(Json{
+      {"stage", "residual"},
+      {"shading", shading},
+      {"physical", explained.physical},
+      {"with_residual", explained.with_residual},
+      {"gain_on_views_kept_apart",
+       gain}}.dump());
+  if (gain < kLeastGain) return {{}, explained};
   trainer.teach_all();
   train(trainer, options.steps - judging, (1 - kJudging) * seconds, options.clock, progress);
-  return trainer.take();
+  return {trainer.take(), explained};
 }
 
 }  // namespace cei3d

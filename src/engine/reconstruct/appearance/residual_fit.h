@@ -24,9 +24,14 @@ struct ResidualOptions {
 };
 
 // scene: the object without residual. samples: as for the appearance stage; views: #samples. For the first
-// fifth every eighth view is kept apart, to judge by: nothing is returned where its pixels do not gain (spot:
-// what light and material leave there is noise), or where there is no such view. Error: interrupted.
-std::optional<Residual> fit_residual(const Device&, const Scene& scene, const SurfaceSamples& samples,
-                                     std::span<const uint16_t> views, const ResidualOptions&, Progress&);
+// fifth every eighth view is kept apart, to judge by: there is no residual where its pixels do not gain
+// (spot: what light and material leave there is noise), and nothing where there is no such view. Error:
+// interrupted.
+struct ResidualFit {
+  std::optional<Residual> residual;
+  std::optional<Explained> explained;  // of the views kept apart, after that fifth
+};
+ResidualFit fit_residual(const Device&, const Scene& scene, const SurfaceSamples& samples,
+                         std::span<const uint16_t> views, const ResidualOptions&, Progress&);
 
 }  // namespace cei3d

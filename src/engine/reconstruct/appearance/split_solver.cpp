@@ -2,6 +2,7 @@
 #include "engine/reconstruct/appearance/split_solver.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/cancel.h"
 #include "core/base/error.h"
@@ -13,11 +14,11 @@ namespace {
 
 constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
 
-constexpr int kRounds = 3;        // of materials and light
-constexpr int kDiffusion = 20;    // steps, of evidence over the surface
+constexpr int kRounds = 3;         // of materials and light
+constexpr int kDiffusion = 20;     // steps, of evidence over the surface
 constexpr float kMetalBy = 0.85f;  // a metal has to explain a place so much better than a dielectric
-// The brightest diffuse base color that a vertex may have, in multiples of white: while the scale of the light
-// is uncertain, and then.
+// The brightest diffuse base color that a vertex may have, in multiples of white: while the scale of the
+// light is uncertain, and then.
 constexpr float kFirstWhite = 3, kLastWhite = 1.3f;
 
 }  // namespace
@@ -118,14 +119,52 @@ void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, Spl
   }
 }
 
-// Reflections of metals leave the scale of the light open: that of the dielectrics decides.
+namespace {
+
+void scale_light(SplitSolution& s, Vec3f factor) {
+  for (Vec3f& l : s.x.light) l = l * factor;
+  for (Vec3f& a : s.materials.color) a = a / factor;
+}
+
+// The brightest channel of the object's colored metals where they are clean: patina and dirt only darken. 0
+// where they are few. Metals that are nearly gray tell nothing, they reflect between .5 and .97.
+float colored_metal_peak(const SplitMaterials& materials) {
+  constexpr float kColored = 1.25f;  // ratio of the brightest and the darkest channel
+  constexpr double kFew = 0.02;      // of the vertices
+  constexpr double kClean = 0.7;     // the percentile; estimates of vertices scatter
+  std::vector<float> peaks;
+  for (uint32_t v = 0; v < materials.of.size(); ++v) {
+    if (!materials.is_metal(v)) continue;
+    const Vec3f c = materials.color[v];
+    const float peak = max(c.x, max(c.y, c.z));
+    if (peak > kColored * min(c.x, min(c.y, c.z))) peaks.push_back(peak);
+  }
+  if (double(peaks.size()) < kFew * double(materials.of.size())) return 0;
+  const auto at = peaks.begin() + std::ptrdiff_t(kClean * double(peaks.size()));
+  std::nth_element(peaks.begin(), at, peaks.end());
+  return *at;
+}
+
+}  // namespace
+
+// Reflections of metals leave the scale of the light open. The dielectrics' tell it per channel, the metals'
+// color in common: metals that have a color are gold, copper and their alloys, whose brightest channel
+// reflects .89 to 1 (docs/method.md#materials). The two are weighed by how well each is known.
 void SplitSolver::fix_scale(SplitSolution& s) {
+  constexpr float kPeak = 0.94f;
+  constexpr float kPeakError = 0.1f, kDielectricError = 0.2f;  // of the logarithms
   system_.set_materials(s.materials);
   s.materials.color = system_.fit_metal_color(s.x);
-  const LightScale scale =
+  const LightScale of_dielectrics =
       light_scale(mesh_, rows_, system_.targets(s.x), system_.blurs(), s.x.light, s.materials);
-  for (Vec3f& l : s.x.light) l = l * scale.factor;
-  for (Vec3f& a : s.materials.color) a = a / scale.factor;
+  scale_light(s, of_dielectrics.factor);
+  const float peak = colored_metal_peak(s.materials);
+  const Vec3f f = of_dielectrics.factor;
+  progress_.log(Json{{"stage", "scale"}, {"dielectrics", {f.x, f.y, f.z}}, {"metal_peak", peak}}.dump());
+  if (peak <= 0) return;
+  const float share = square(kDielectricError) / (square(kDielectricError) + square(kPeakError));
+  const float common = std::pow(peak / kPeak, share);
+  scale_light(s, {common, common, common});
 }
 
 SplitSolution SplitSolver::several(SplitSolution s) {
@@ -134,7 +173,7 @@ SplitSolution SplitSolver::several(SplitSolution s) {
     system_.set_materials(s.materials);
     choose_materials(s.x, round + 1 < kRounds ? kFirstWhite : kLastWhite, s.materials);
     fix_scale(s);
-    s = with_fitted_metals(std::move(s), 2, 8);
+    s = solved(std::move(s), 2, 8);
     system_.set_materials(s.materials);
     s.residual = system_.residual(s.x);
     progress_.log(Json{{"stage", "materials"}, {"round", round}, {"residual", s.residual}}.dump());
@@ -144,7 +183,10 @@ SplitSolution SplitSolver::several(SplitSolution s) {
 
 SplitSolution SplitSolver::with_materials(const SplitMaterials& materials) {
   SplitSolution s = start(materials);
-  for (int round = 0; round < 3; ++round) s = with_fitted_metals(std::move(s), 3, 8);
+  for (int round = 0; round < 3; ++round) {
+    s = solved(std::move(s), 3, 8);
+    fix_scale(s);
+  }
   system_.set_materials(s.materials);
   s.residual = system_.residual(s.x);
   return s;

@@ -47,9 +47,11 @@ class SplitSolver {
 };
 
 // What every vertex sends out, reflections of metals as if they were diffuse. light: of `height` rows.
-std::vector<Vec3f> diffuse_radiance(const Transport&, const SplitUnknowns&, const SplitMaterials&, int height);
+std::vector<Vec3f> diffuse_radiance(const Transport&, const SplitUnknowns&, const SplitMaterials&,
+                                    int height);
 // Irradiance of every vertex, from the light and from the surface.
-std::vector<Vec3f> split_irradiance(const Transport&, const SplitUnknowns&, const SplitMaterials&, int height);
+std::vector<Vec3f> split_irradiance(const Transport&, const SplitUnknowns&, const SplitMaterials&,
+                                    int height);
 
 Image light_image(const std::vector<Vec3f>& light, int height);
 

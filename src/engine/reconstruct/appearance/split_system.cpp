@@ -12,9 +12,9 @@
 namespace cei3d {
 namespace {
 
-constexpr int kChunks = 16;        // of rows; fixed, so that sums are the same on any machine
+constexpr int kChunks = 16;  // of rows; fixed, so that sums are the same on any machine
 constexpr float kSmoothest = 0.1f, kRoughest = 0.95f;  // of the ladder
-constexpr float kGrazing = 0.1f;   // samples seen flatter than this are left out: silhouettes and bad normals
+constexpr float kGrazing = 0.1f;  // samples seen flatter than this are left out: silhouettes and bad normals
 constexpr float kDarkest = 0.003f;  // radiance below which the display curve's slope is not followed further
 
 void set_far_hit(const Mesh& mesh, const Surface::RayHit& h, SplitRow& row) {
@@ -70,8 +70,8 @@ float BlurLadder::roughness(int level) {
 }
 
 BlurLadder::Place BlurLadder::place(float roughness) {
-  const float at = clamp(std::log(roughness / kSmoothest) / std::log(kRoughest / kSmoothest), 0.0f, 1.0f) *
-                   (kLevels - 1);
+  const float at =
+      clamp(std::log(roughness / kSmoothest) / std::log(kRoughest / kSmoothest), 0.0f, 1.0f) * (kLevels - 1);
   const int level = std::min(int(at), kLevels - 2);
   return {level, at - float(level)};
 }
@@ -134,7 +134,8 @@ SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {
     metal = metal || (materials_.is_metal(v[k]) && b[k] > 0);
   }
   bool far_metal = false;
-  for (int k = 0; k < 3 && row.blocked; ++k) far_metal = far_metal || materials_.is_metal(row.far_vertices[k]);
+  for (int k = 0; k < 3 && row.blocked; ++k)
+    far_metal = far_metal || materials_.is_metal(row.far_vertices[k]);
   Optics o;
   o.used = !row.blocked || (!metal && !far_metal);
   o.base = reflected_sky(row, ReflectionPart::base, roughness, options_.light_height);
@@ -353,10 +354,34 @@ void for_both(SplitUnknowns& a, const SplitUnknowns& b, F f) {
   for (size_t i = 0; i < a.light.size(); ++i) f(a.light[i], b.light[i]);
 }
 
-void mask(SplitUnknowns& x, const std::vector<std::array<uint8_t, 3>>& frozen) {
-  for (size_t i = 0; i < frozen.size(); ++i)
-    for (int c = 0; c < 3; ++c)
-      if (frozen[i][c]) x.light[i][c] = 0;
+// Channels that stand at zero and would still sink: they stay out of a round.
+struct Frozen {
+  std::vector<std::array<uint8_t, 3>> light, diffuse;
+
+  Frozen(const SplitUnknowns& x, const SplitUnknowns& rest)
+      : light(of(x.light, rest.light)), diffuse(of(x.diffuse, rest.diffuse)) {}
+  void mask(SplitUnknowns& x) const {
+    mask(light, x.light);
+    mask(diffuse, x.diffuse);
+  }
+
+ private:
+  static std::vector<std::array<uint8_t, 3>> of(const std::vector<Vec3f>& x, const std::vector<Vec3f>& rest) {
+    std::vector<std::array<uint8_t, 3>> out(x.size());
+    for (size_t i = 0; i < x.size(); ++i)
+      for (int c = 0; c < 3; ++c) out[i][size_t(c)] = x[i][c] <= 0 && rest[i][c] < 0;
+    return out;
+  }
+  static void mask(const std::vector<std::array<uint8_t, 3>>& frozen, std::vector<Vec3f>& x) {
+    for (size_t i = 0; i < frozen.size(); ++i)
+      for (int c = 0; c < 3; ++c)
+        if (frozen[i][size_t(c)]) x[i][c] = 0;
+  }
+};
+
+void clamp_at_zero(std::vector<Vec3f>& x) {
+  for (Vec3f& v : x)
+    for (int c = 0; c < 3; ++c) v[c] = max(v[c], 0.0f);
 }
 
 }  // namespace
@@ -366,18 +391,15 @@ void SplitSystem::descend(SplitUnknowns& x, const SplitUnknowns& inverse, int st
   right_side(r);
   normal(x, ax);
   for_both(r, ax, [](Vec3f& a, const Vec3f& b) { a = a - b; });
-  // Light that stands at zero and would still sink stays out of this round.
-  std::vector<std::array<uint8_t, 3>> frozen(x.light.size(), std::array<uint8_t, 3>{0, 0, 0});
-  for (size_t i = 0; i < frozen.size(); ++i)
-    for (int c = 0; c < 3; ++c) frozen[i][c] = x.light[i][c] <= 0 && r.light[i][c] < 0;
-  mask(r, frozen);
+  const Frozen frozen(x, r);
+  frozen.mask(r);
   SplitUnknowns z = r;
   for_both(z, inverse, [](Vec3f& a, const Vec3f& b) { a = a * b; });
   SplitUnknowns p = z;
   Sums rz = dot_product(r, z);
   for (int k = 0; k < steps; ++k) {
     normal(p, ax);
-    mask(ax, frozen);
+    frozen.mask(ax);
     const Vec3f alpha = ratio(rz, dot_product(p, ax));
     for_both(x, p, [&](Vec3f& a, const Vec3f& b) { a += alpha * b; });
     for_both(r, ax, [&](Vec3f& a, const Vec3f& b) { a = a - alpha * b; });
@@ -406,8 +428,8 @@ void SplitSystem::solve(SplitUnknowns& x, int rounds, int steps) {
   for (int round = 0; round < rounds; ++round) {
     release_bounds(x);
     descend(x, inverse, steps);
-    for (Vec3f& l : x.light)
-      for (int c = 0; c < 3; ++c) l[c] = max(l[c], 0.0f);
+    clamp_at_zero(x.light);
+    clamp_at_zero(x.diffuse);
   }
 }
 

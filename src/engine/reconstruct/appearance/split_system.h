@@ -43,7 +43,7 @@ class BlurLadder {
   static constexpr int kLevels = 10;
   static float roughness(int level);
   struct Place {
-    int level = 0;  // and the next one
+    int level = 0;    // and the next one
     float above = 0;  // share of the next one
   };
   static Place place(float roughness);
@@ -89,7 +89,8 @@ class SplitSystem {
   void set_materials(SplitMaterials);
   const SplitMaterials& materials() const { return materials_; }
 
-  // Improves x by rounds of conjugate gradients, light kept >= 0, clipped channels at least what they show.
+  // Improves x by rounds of conjugate gradients, light and D kept >= 0, clipped channels at least what they
+  // show.
   void solve(SplitUnknowns& x, int rounds, int steps);
   double residual(const SplitUnknowns& x) const;  // mean of weight * error^2 over samples that mirror the sky
   // Base color per vertex that fits best under the light if all were metal: #V. Clipped channels as of the

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/session/object_summary.h"
+
+#include <algorithm>
+
+namespace cei3d {
+
+ObjectSummary summary_of(const Device& device, const Scene& scene) {
+  constexpr size_t kTwentieth = 20;
+  ObjectSummary out;
+  out.mean = scene.material.mean();
+  out.explained = scene.explained;
+  out.min_roughness = out.max_roughness = out.mean.roughness;
+  out.metal_share = out.mean.metalness;
+  out.varies = bool(scene.material.varying());
+  if (!out.varies || !scene.surface) return out;
+  const auto& surface = scene.poses.empty() ? scene.surface : scene.poses.front()->surface;
+  const std::vector<Material> materials = scene.material.at(device, surface->mesh().positions);
+  if (materials.empty()) return out;
+  std::vector<float> roughness;
+  float metals = 0;
+  for (const Material& m : materials) {
+    roughness.push_back(m.roughness);
+    metals += m.metalness;
+  }
+  std::sort(roughness.begin(), roughness.end());
+  out.metal_share = metals / float(materials.size());
+  out.min_roughness = roughness[roughness.size() / kTwentieth];
+  out.max_roughness = roughness[roughness.size() - 1 - roughness.size() / kTwentieth];
+  return out;
+}
+
+}  // namespace cei3d
