@@ -15,8 +15,8 @@ constexpr double kGeometryStep = 13;   // a step of the geometry stage: so many 
 constexpr double kStartShapes = 3500;  // carving and stereo: so many of Rates::trial_step
 constexpr double kPolishStep = 68;     // a step of polishing: so many of Rates::sdf_step
 constexpr double kResidualStep = 8;    // a step of the residual's training: so many of Rates::sdf_step
-constexpr double kFullSplit = 1e7, kBriefSplit = 6e6;  // the linear split: so many of Rates::hit_shaded
-constexpr double kFullDescent = 2000,
+constexpr double kFullSplit = 2e7, kBriefSplit = 1.2e7;  // the linear split: so many of Rates::hit_shaded
+constexpr double kFullDescent = 2500,
                  kBriefDescent = 750;  // lobes and descents: so many of Rates::albedo_step
 constexpr double kRefinementStep = 2;  // a step of a refinement: so many of Rates::albedo_step
 constexpr double kReserve = 3;         // reading and writing files: so many of the first surface

@@ -36,7 +36,8 @@ constexpr float kAllMetal = 0.97f;  // mean metalness
 
 // Metals gain half a decibel: their pictures are nothing but light. Dielectrics hardly anything.
 int joint_steps_for(const Material& mean, bool brief) {
-  return mean.metalness > 0.1f ? (brief ? 120 : 400) : (brief ? 30 : 100);
+  if (mean.metalness > kAllMetal) return brief ? 120 : 400;
+  return mean.metalness > 0.05f ? (brief ? 60 : 200) : (brief ? 30 : 100);
 }
 
 // Mean of the values that a triangle has at its corners.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include "core/base/cancel.h"
 #include "core/base/error.h"
@@ -23,6 +24,9 @@ constexpr double kFar = 1.25;  // a residual this much above the best ends the s
 constexpr double kMetalBy = 0.5;
 // Several materials have to explain the pictures so much better than one: they always explain a little more.
 constexpr double kSeveralBy = 0.75;
+// Where one leaves no more than that, there is nothing to explain: noise of photographs, 37 dB.
+constexpr double kExplained = 2e-4;
+constexpr double kPlainlyOne = 0.85;  // a first guess at several that leaves more is not improved
 constexpr float kFirstRoughness =
     0.3f;  // at most, of the one material that the search for several begins with
 
@@ -155,11 +159,14 @@ LinearSplitOptions search_options(const LinearSplitOptions& options, int hits) {
   return o;
 }
 
-// The solution of the final size, its materials found by searches of smaller ones.
-SplitSolution solve(const Transport& transport, const SurfaceSamples& samples,
-                    const LinearSplitOptions& options, Progress& progress,
-                    std::vector<LinearSplit::Trial>& trials) {
-  SplitSolver search(transport, samples, search_options(options, options.search_hits), progress);
+struct OneMaterial {
+  bool is_metal;
+  float roughness;
+};
+
+// light: one that fits.
+OneMaterial search_one_material(SplitSolver search, const LinearSplitOptions& options,
+                                std::vector<LinearSplit::Trial>& trials, Image& light) {
   if (search.rows() < 1000)
     fail("only {} pixels see the surface well enough to tell light from material; are masks and poses right?",
          search.rows());
@@ -168,15 +175,43 @@ SplitSolution solve(const Transport& transport, const SurfaceSamples& samples,
   const bool is_metal = metal_residual < kMetalBy * dielectric_residual;
   const float roughness = search_roughness(
       [&](float r) { return (is_metal ? search.metal(r) : search.dielectric(r)).residual; }, options);
-  SplitSolver fine(transport, samples, options, progress);
-  SplitSolution one = is_metal ? fine.metal(roughness) : fine.dielectric(roughness);
   trials = std::move(search.trials);
+  light = search.guess();
+  return {is_metal, roughness};
+}
+
+// Nothing where the object is plainly of one material.
+std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMaterial& found) {
+  const auto one = [&](float roughness) {
+    return found.is_metal ? search.metal(roughness) : search.dielectric(roughness);
+  };
+  SplitSolution start = one(found.roughness);
+  if (start.residual < kExplained) return {};
+  const double max_residual = kPlainlyOne * start.residual;
+  if (found.roughness > kFirstRoughness) start = one(kFirstRoughness);
+  SplitSolution several = search.several(std::move(start), max_residual);
+  if (several.residual > max_residual) return {};
+  return std::move(several.materials);
+}
+
+// The solution of the final size, its materials found by searches of smaller ones.
+SplitSolution solve(const Transport& transport, const SurfaceSamples& samples,
+                    const LinearSplitOptions& options, Progress& progress,
+                    std::vector<LinearSplit::Trial>& trials) {
+  Image light;
+  const auto solver = [&](const LinearSplitOptions& o) {
+    return SplitSolver(transport, samples, o, progress, light);
+  };
+  const OneMaterial found =
+      search_one_material(solver(search_options(options, options.search_hits)), options, trials, light);
+  std::optional<SplitMaterials> materials;
+  if (options.fixed_roughness <= 0)
+    materials = search_materials(solver(search_options(options, options.material_hits)), found);
+  SplitSolver fine = solver(options);
+  SplitSolution one = found.is_metal ? fine.metal(found.roughness) : fine.dielectric(found.roughness);
   trials.insert(trials.end(), fine.trials.begin(), fine.trials.end());
-  if (options.fixed_roughness > 0) return one;
-  SplitSolver materials(transport, samples, search_options(options, options.material_hits), progress);
-  const float first = std::min(roughness, kFirstRoughness);
-  SplitSolution several = fine.with_materials(
-      materials.several(is_metal ? materials.metal(first) : materials.dielectric(first)).materials);
+  if (!materials) return one;
+  SplitSolution several = fine.with_materials(*materials);
   progress.log(Json{{"stage", "materials"}, {"one", one.residual}, {"several", several.residual}}.dump());
   return several.residual < kSeveralBy * one.residual ? several : one;
 }

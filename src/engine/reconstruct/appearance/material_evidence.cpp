@@ -11,6 +11,8 @@ namespace cei3d {
 namespace {
 
 constexpr int kLevels = BlurLadder::kLevels;
+constexpr int kGrain = 1024;  // vertices a chunk
+constexpr float kSpecular = 0.5f;
 constexpr float kMinMetal = 0.02f,
                 kMaxMetal = 4;  // reflectance of a metal, the light's scale being uncertain
 
@@ -19,26 +21,13 @@ uint32_t nearest_vertex(const SplitRow& r) {
   return b[0] >= b[1] && b[0] >= b[2] ? r.vertices[0] : b[1] >= b[2] ? r.vertices[1] : r.vertices[2];
 }
 
-// Rows by the vertex nearest to them.
-struct RowsOfVertices {
-  std::vector<uint32_t> start, rows;  // #V + 1; #rows
-
-  RowsOfVertices(size_t vertices, const std::vector<SplitRow>& all) : start(vertices + 1, 0) {
-    for (const SplitRow& r : all) ++start[nearest_vertex(r) + 1];
-    for (size_t v = 0; v < vertices; ++v) start[v + 1] += start[v];
-    rows.resize(all.size());
-    std::vector<uint32_t> at(start.begin(), start.end() - 1);
-    for (uint32_t i = 0; i < all.size(); ++i) rows[at[nearest_vertex(all[i])]++] = i;
-  }
-};
-
-// Least squares of one coefficient: y = k s.
+// Least squares of one coefficient a channel: y = k s.
 struct OneCoefficient {
   Vec3f ss{0, 0, 0}, sy{0, 0, 0}, yy{0, 0, 0};
-  void add(Vec3f w, Vec3f s, Vec3f y) {
-    ss += w * s * s;
-    sy += w * s * y;
-    yy += w * y * y;
+  void add(Vec3f weight, Vec3f s, Vec3f y) {
+    ss += weight * s * s;
+    sy += weight * s * y;
+    yy += weight * y * y;
   }
   // Squared error of the best coefficient within bounds.
   float error(Vec3f low, Vec3f high) const {
@@ -51,104 +40,26 @@ struct OneCoefficient {
   }
 };
 
-Blurred all_levels(BlurLadder& blurs, const std::vector<Vec3f>& light) {
-  Blurred out;
-  for (int level = 0; level < kLevels; ++level) blurs.level(level).apply(light, out[size_t(level)]);
-  return out;
-}
-
-}  // namespace
-
-MaterialEvidence material_evidence(const Mesh& mesh, const std::vector<SplitRow>& rows,
-                                   std::span<const Vec3f> colors, BlurLadder& blurs,
-                                   const std::vector<Vec3f>& light, const std::vector<Vec3f>& max_diffuse) {
-  const size_t n = mesh.positions.size();
-  const RowsOfVertices of(n, rows);
-  MaterialEvidence out;
-  out.error.assign(n * MaterialEvidence::kHypotheses, 0.0f);
-  out.samples.assign(n, 0.0f);
-  const float* table = split_sum_table();
-  const Vec3f black{0, 0, 0}, low{kMinMetal, kMinMetal, kMinMetal}, high{kMaxMetal, kMaxMetal, kMaxMetal};
-  const Blurred sky = all_levels(blurs, light);
-  for (int level = 0; level < kLevels; ++level) {
-    const float roughness = BlurLadder::roughness(level);
-    parallel_ranges(int(n), 1024, [&](int begin, int end) {
-      for (int v = begin; v < end; ++v) {
-        OneCoefficient dielectric, metal;
-        int count = 0;
-        for (uint32_t k = of.start[v]; k < of.start[v + 1]; ++k) {
-          const SplitRow& row = rows[of.rows[k]];
-          if (row.blocked) continue;
-          const SplitSum<float> s = split_sum(table, row.nv, roughness);
-          const Vec3f w = row.weight;
-          const Vec3f base =
-              radiance_at(sky, reflected_sky(row, ReflectionPart::base, roughness, blurs.height())) * s.scale;
-          const Vec3f rest = colors[of.rows[k]] - radiance_at(sky, reflected_sky(row, ReflectionPart::fresnel,
-                                                                                 roughness, blurs.height())) *
-                                                      s.bias;
-          const float d = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness);
-          dielectric.add(w, {d, d, d}, rest - base * f0_of(black, 0.5f, 0.0f));
-          metal.add(w, base, rest);
-          ++count;
-        }
-        if (count == 0) continue;
-        float* e = &out.error[size_t(v) * MaterialEvidence::kHypotheses];
-        e[level] = dielectric.error(black, max_diffuse[v]);
-        e[kLevels + level] = metal.error(low, high);
-        out.samples[v] = float(count);
-      }
-    });
+// Least squares of color = diffuse * D + reflected * t, D >= 0 and free, as sums over a vertex' samples.
+struct ScaleSums {
+  Vec3f dd{0, 0, 0}, dg{0, 0, 0}, gg{0, 0, 0}, dc{0, 0, 0}, gc{0, 0, 0};
+  void add(Vec3f weight, float diffuse, Vec3f reflected, Vec3f color) {
+    dd += weight * (diffuse * diffuse);
+    dg += weight * reflected * diffuse;
+    gg += weight * reflected * reflected;
+    dc += weight * color * diffuse;
+    gc += weight * reflected * color;
   }
-  return out;
-}
-
-void diffuse_evidence(const Mesh& mesh, const std::vector<Vec3f>& colors, int rounds, MaterialEvidence& e) {
-  constexpr float kContrast = 0.05f;  // of display-encoded colors: a border between materials
-  constexpr int kH = MaterialEvidence::kHypotheses;
-  const size_t n = mesh.positions.size();
-  std::vector<std::array<uint32_t, 2>> edges;
-  for (const auto& t : mesh.triangles)
-    for (int c = 0; c < 3; ++c)
-      if (t[c] < t[(c + 1) % 3]) edges.push_back({t[c], t[(c + 1) % 3]});
-  std::vector<uint32_t> start(n + 1, 0);
-  for (const auto& edge : edges) ++start[edge[0] + 1], ++start[edge[1] + 1];
-  for (size_t v = 0; v < n; ++v) start[v + 1] += start[v];
-  std::vector<uint32_t> neighbor(start.back());
-  std::vector<float> weight(start.back());
-  std::vector<uint32_t> at(start.begin(), start.end() - 1);
-  for (const auto& edge : edges) {
-    const Vec3f d = colors[edge[0]] - colors[edge[1]];
-    const float w = std::exp(-dot(d, d) / (2 * kContrast * kContrast));
-    for (int side = 0; side < 2; ++side) {
-      neighbor[at[edge[side]]] = edge[1 - side];
-      weight[at[edge[side]]++] = w;
+  // Adds numerator and denominator of t.
+  void add_to(Vec3d& above, Vec3d& below) const {
+    for (int c = 0; c < 3; ++c) {
+      if (dd[c] <= 0) continue;
+      const double share = dc[c] < dg[c] ? 0 : double(dg[c]) / dd[c];  // 0: D would be negative
+      above[c] += gc[c] - share * dc[c];
+      below[c] += gg[c] - share * dg[c];
     }
   }
-  std::vector<float> error(e.error.size()), samples(n);
-  for (int round = 0; round < rounds; ++round) {
-    parallel_ranges(int(n), 1024, [&](int begin, int end) {
-      for (int v = begin; v < end; ++v) {
-        float total = 1, sum[kH], count = e.samples[v];
-        std::copy(e.of(v), e.of(v) + kH, sum);
-        for (uint32_t k = start[v]; k < start[v + 1]; ++k) {
-          const float w = weight[k];
-          const float* other = e.of(neighbor[k]);
-          for (int h = 0; h < kH; ++h) sum[h] += w * other[h];
-          count += w * e.samples[neighbor[k]];
-          total += w;
-        }
-        for (int h = 0; h < kH; ++h) error[size_t(v) * kH + h] = sum[h] / total;
-        samples[v] = count / total;
-      }
-    });
-    e.error.swap(error);
-    e.samples.swap(samples);
-  }
-  for (size_t v = 0; v < n; ++v)
-    for (int h = 0; h < kH; ++h) e.error[v * kH + h] /= max(3 * e.samples[v], 1e-6f);
-}
-
-namespace {
+};
 
 // Minimum of errors over the levels, by a parabola through the least and its neighbors.
 void minimum(const float* e, float& roughness, float& error) {
@@ -166,6 +77,84 @@ void minimum(const float* e, float& roughness, float& error) {
 
 }  // namespace
 
+LitSamples::LitSamples(size_t vertices, const std::vector<SplitRow>& rows, std::vector<Vec3f> colors,
+                       BlurLadder& blurs, const std::vector<Vec3f>& light)
+    : rows_(rows), colors_(std::move(colors)), light_height_(blurs.height()), start_(vertices + 1, 0) {
+  for (int level = 0; level < kLevels; ++level) blurs.level(level).apply(light, sky_[size_t(level)]);
+  for (const SplitRow& r : rows) ++start_[nearest_vertex(r) + 1];
+  for (size_t v = 0; v < vertices; ++v) start_[v + 1] += start_[v];
+  order_.resize(rows.size());
+  std::vector<uint32_t> at(start_.begin(), start_.end() - 1);
+  for (uint32_t i = 0; i < rows.size(); ++i) order_[at[nearest_vertex(rows[i])]++] = i;
+}
+
+LitSamples::Seen LitSamples::seen_by(const SplitRow& row, float roughness) const {
+  const SplitSum<float> s = split_sum(split_sum_table(), row.nv, roughness);
+  const auto sky = [&](ReflectionPart part) {
+    return radiance_at(sky_, reflected_sky(row, part, roughness, light_height_));
+  };
+  return {sky(ReflectionPart::base) * s.scale, sky(ReflectionPart::fresnel) * s.bias,
+          diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness)};
+}
+
+// Calls visit(row, its color, Seen) for the vertex' samples that mirror the sky. Returns their number.
+template <class F>
+int LitSamples::for_samples(uint32_t vertex, float roughness, const F& visit) const {
+  int count = 0;
+  for (uint32_t k = start_[vertex]; k < start_[vertex + 1]; ++k) {
+    const SplitRow& row = rows_[order_[k]];
+    if (row.blocked) continue;
+    visit(row, colors_[order_[k]], seen_by(row, roughness));
+    ++count;
+  }
+  return count;
+}
+
+// Of the dielectric and the metal of that level. Returns the number of samples.
+int LitSamples::add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float* errors) const {
+  const Vec3f black{0, 0, 0}, white{1, 1, 1}, f0 = f0_of(black, kSpecular, 0.0f);
+  OneCoefficient dielectric, metal;
+  const int count =
+      for_samples(vertex, BlurLadder::roughness(level), [&](const SplitRow& row, Vec3f color, const Seen& s) {
+        dielectric.add(row.weight, white * s.diffuse_view, color - s.fresnel - s.base * f0);
+        metal.add(row.weight, s.base, color - s.fresnel);
+      });
+  errors[level] = dielectric.error(black, max_diffuse);
+  errors[kLevels + level] = metal.error(white * kMinMetal, white * kMaxMetal);
+  return count;
+}
+
+MaterialEvidence LitSamples::evidence(const std::vector<Vec3f>& max_diffuse) const {
+  const size_t n = start_.size() - 1;
+  MaterialEvidence out;
+  out.error.assign(n * MaterialEvidence::kHypotheses, 0.0f);
+  out.samples.assign(n, 0.0f);
+  parallel_ranges(int(n), kGrain, [&](int begin, int end) {
+    for (int level = 0; level < kLevels; ++level)
+      for (int v = begin; v < end; ++v)
+        out.samples[v] = float(add_errors(uint32_t(v), level, max_diffuse[v],
+                                          &out.error[size_t(v) * MaterialEvidence::kHypotheses]));
+  });
+  return out;
+}
+
+LightScale LitSamples::light_scale(const SplitMaterials& materials) const {
+  const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kSpecular, 0.0f);
+  Vec3d above{0, 0, 0}, below{0, 0, 0};
+  for (uint32_t v = 0; v + 1 < start_.size(); ++v) {
+    if (materials.is_metal(v)) continue;
+    ScaleSums sums;
+    for_samples(v, materials.of[v].roughness, [&](const SplitRow& row, Vec3f color, const Seen& s) {
+      sums.add(row.weight, s.diffuse_view, s.base * f0 + s.fresnel, color);
+    });
+    sums.add_to(above, below);
+  }
+  LightScale scale{1, 1, 1};
+  for (int c = 0; c < 3; ++c)
+    if (below[c] > 0) scale[c] = float(above[c] / below[c]);
+  return scale;
+}
+
 BestMaterials best_materials(const float* errors) {
   BestMaterials b{};
   minimum(errors, b.dielectric_roughness, b.dielectric_error);
@@ -173,55 +162,80 @@ BestMaterials best_materials(const float* errors) {
   return b;
 }
 
-std::vector<Vec3f> mean_colors(const Mesh& mesh, const std::vector<SplitRow>& rows) {
-  std::vector<Vec3f> sum(mesh.positions.size(), Vec3f{0, 0, 0});
-  std::vector<float> count(sum.size(), 0);
+std::vector<Vec3f> mean_colors(size_t vertices, const std::vector<SplitRow>& rows) {
+  std::vector<Vec3f> sum(vertices, Vec3f{0, 0, 0});
+  std::vector<float> count(vertices, 0);
   for (const SplitRow& r : rows)
     for (int k = 0; k < 3; ++k) {
       for (int c = 0; c < 3; ++c) sum[r.vertices[k]][c] += r.barycentric[k] * srgb_from_linear(r.color[c]);
       count[r.vertices[k]] += r.barycentric[k];
     }
-  for (size_t v = 0; v < sum.size(); ++v) sum[v] = sum[v] / max(count[v], 1e-6f);
+  for (size_t v = 0; v < vertices; ++v) sum[v] = sum[v] / max(count[v], 1e-6f);
   return sum;
 }
 
-LightScale light_scale(const Mesh& mesh, const std::vector<SplitRow>& rows, std::span<const Vec3f> colors,
-                       BlurLadder& blurs, const std::vector<Vec3f>& light, const SplitMaterials& materials) {
-  const size_t n = mesh.positions.size();
-  const RowsOfVertices of(n, rows);
-  const Blurred sky = all_levels(blurs, light);
-  const float* table = split_sum_table();
-  double above[3] = {0, 0, 0}, below[3] = {0, 0, 0};
-  for (size_t v = 0; v < n; ++v) {
-    if (materials.is_metal(uint32_t(v))) continue;
-    const float roughness = materials.of[v].roughness;
-    Vec3f dd{0, 0, 0}, dg{0, 0, 0}, gg{0, 0, 0}, dc{0, 0, 0}, gc{0, 0, 0};
-    for (uint32_t k = of.start[v]; k < of.start[v + 1]; ++k) {
-      const SplitRow& row = rows[of.rows[k]];
-      if (row.blocked) continue;
-      const SplitSum<float> s = split_sum(table, row.nv, roughness);
-      const Vec3f w = row.weight;
-      const Vec3f g =
-          radiance_at(sky, reflected_sky(row, ReflectionPart::base, roughness, blurs.height())) *
-              f0_of({0, 0, 0}, 0.5f, 0.0f) * s.scale +
-          radiance_at(sky, reflected_sky(row, ReflectionPart::fresnel, roughness, blurs.height())) * s.bias;
-      const float d = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness);
-      dd += w * (d * d), dg += w * g * d, gg += w * g * g, dc += w * colors[of.rows[k]] * d,
-          gc += w * g * colors[of.rows[k]];
-    }
-    for (int c = 0; c < 3; ++c) {
-      if (dd[c] <= 0) continue;
-      const bool black = dc[c] < dg[c];  // what is diffuse would be negative
-      above[c] += double(gc[c]) - (black ? 0 : double(dg[c]) * dc[c] / dd[c]);
-      below[c] += double(gg[c]) - (black ? 0 : double(dg[c]) * dg[c] / dd[c]);
-    }
+namespace {
+
+// The neighbors of every vertex, and how much what they say counts for it.
+struct Neighbors {
+  std::vector<uint32_t> start, vertex;  // #V + 1; neighbors
+  std::vector<float> weight;
+
+  Neighbors(const Mesh& mesh, const std::vector<Vec3f>& colors) : start(mesh.positions.size() + 1, 0) {
+    const std::vector<std::array<uint32_t, 2>> edges = edges_of(mesh);
+    for (const auto& e : edges) ++start[e[0] + 1], ++start[e[1] + 1];
+    for (size_t v = 0; v + 1 < start.size(); ++v) start[v + 1] += start[v];
+    vertex.resize(start.back());
+    weight.resize(start.back());
+    std::vector<uint32_t> at(start.begin(), start.end() - 1);
+    for (const auto& e : edges)
+      for (int side = 0; side < 2; ++side) {
+        const uint32_t k = at[e[size_t(side)]]++;
+        vertex[k] = e[size_t(1 - side)];
+        weight[k] = likeness(colors[e[0]], colors[e[1]]);
+      }
   }
-  LightScale s;
-  for (int c = 0; c < 3; ++c) {
-    s.factor[c] = below[c] > 0 ? float(above[c] / below[c]) : 1.0f;
-    s.curvature[c] = float(below[c]);
+
+ private:
+  static std::vector<std::array<uint32_t, 2>> edges_of(const Mesh& mesh) {
+    std::vector<std::array<uint32_t, 2>> edges;
+    for (const auto& t : mesh.triangles)
+      for (int c = 0; c < 3; ++c)
+        if (t[c] < t[(c + 1) % 3]) edges.push_back({t[c], t[(c + 1) % 3]});
+    return edges;
   }
-  return s;
+  static float likeness(Vec3f a, Vec3f b) {
+    constexpr float kContrast = 0.05f;  // of display-encoded colors: a border between materials
+    return std::exp(-dot(a - b, a - b) / (2 * kContrast * kContrast));
+  }
+};
+
+// The mean of the vertex and its neighbors.
+void mean_around(const Neighbors& near, const MaterialEvidence& e, uint32_t v, MaterialEvidence& out) {
+  constexpr int kH = MaterialEvidence::kHypotheses;
+  float total = 1, sum[kH], samples = e.samples[v];
+  std::copy(e.of(v), e.of(v) + kH, sum);
+  for (uint32_t k = near.start[v]; k < near.start[v + 1]; ++k) {
+    const float* other = e.of(near.vertex[k]);
+    for (int h = 0; h < kH; ++h) sum[h] += near.weight[k] * other[h];
+    samples += near.weight[k] * e.samples[near.vertex[k]];
+    total += near.weight[k];
+  }
+  for (int h = 0; h < kH; ++h) out.error[size_t(v) * kH + h] = sum[h] / total;
+  out.samples[v] = samples / total;
+}
+
+}  // namespace
+
+void diffuse_evidence(const Mesh& mesh, const std::vector<Vec3f>& colors, int steps, MaterialEvidence& e) {
+  const Neighbors near(mesh, colors);
+  MaterialEvidence next = e;
+  for (int step = 0; step < steps; ++step) {
+    parallel_ranges(int(e.samples.size()), kGrain, [&](int begin, int end) {
+      for (int v = begin; v < end; ++v) mean_around(near, e, uint32_t(v), next);
+    });
+    std::swap(e, next);
+  }
 }
 
 }  // namespace cei3d

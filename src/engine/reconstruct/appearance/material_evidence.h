@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which material a place of the surface has, given the light: every vertex is asked how well each of a ladder
-// of materials explains its samples, when its own color is free.
+// What the samples of a surface say when the light is known: which material a place has, and how strong the
+// light is. Every vertex is asked with its own color free.
 #pragma once
 
 #include <vector>
@@ -9,23 +9,46 @@
 
 namespace cei3d {
 
-// Of each hypothesis, a dielectric or a metal with the roughness of a level of BlurLadder: the mean weighted
-// squared error over the samples of a vertex.
+// The squared error that hypotheses leave: a dielectric or a metal with the roughness of each level of
+// BlurLadder.
 struct MaterialEvidence {
   static constexpr int kHypotheses = 2 * BlurLadder::kLevels;  // dielectrics first
-  std::vector<float> error;                                    // [#V][kHypotheses]
+  std::vector<float> error;                                    // [#V][kHypotheses], sums over samples
   std::vector<float> samples;                                  // #V
   const float* of(size_t vertex) const { return &error[vertex * kHypotheses]; }
 };
 
-// max_diffuse: #V, radiance that a white dielectric would send out. colors: #rows, SplitSystem::targets().
-MaterialEvidence material_evidence(const Mesh&, const std::vector<SplitRow>&, std::span<const Vec3f> colors,
-                                   BlurLadder&, const std::vector<Vec3f>& light,
-                                   const std::vector<Vec3f>& max_diffuse);
+// The factor on the light, per channel, that fits the dielectrics' samples best when the diffuse radiance of
+// every vertex is free. 1 where there are none.
+using LightScale = Vec3f;
 
-// The mean over each vertex's surroundings of similar color. colors: #V, display-encoded. rounds: steps of
-// diffusion from vertex to vertex.
-void diffuse_evidence(const Mesh&, const std::vector<Vec3f>& colors, int rounds, MaterialEvidence&);
+class LitSamples {
+ public:
+  // colors: #rows, SplitSystem::targets(). The rows must outlive the object.
+  LitSamples(size_t vertices, const std::vector<SplitRow>& rows, std::vector<Vec3f> colors, BlurLadder&,
+             const std::vector<Vec3f>& light);
+
+  // max_diffuse: #V, radiance that a white dielectric would send out.
+  MaterialEvidence evidence(const std::vector<Vec3f>& max_diffuse) const;
+  LightScale light_scale(const SplitMaterials&) const;
+
+ private:
+  // Of a row, if its surface has that roughness.
+  struct Seen {
+    Vec3f base, fresnel;  // reflected radiance that F0 scales, and the rest
+    float diffuse_view;
+  };
+  Seen seen_by(const SplitRow&, float roughness) const;
+  int add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float* errors) const;
+  template <class F>
+  int for_samples(uint32_t vertex, float roughness, const F& visit) const;
+
+  const std::vector<SplitRow>& rows_;
+  std::vector<Vec3f> colors_;
+  int light_height_;
+  Blurred sky_;
+  std::vector<uint32_t> start_, order_;  // #V + 1; rows by the vertex nearest to them
+};
 
 // The best dielectric and the best metal of a vertex, their roughness between the levels.
 struct BestMaterials {
@@ -35,14 +58,10 @@ struct BestMaterials {
 BestMaterials best_materials(const float* errors);
 
 // Mean display-encoded color of each vertex's samples. #V
-std::vector<Vec3f> mean_colors(const Mesh&, const std::vector<SplitRow>&);
+std::vector<Vec3f> mean_colors(size_t vertices, const std::vector<SplitRow>&);
 
-// The factor on the light, per channel, that fits the dielectrics' samples best when the diffuse radiance of
-// every vertex is free; and how sharply: the curvature of the squared error by that factor.
-struct LightScale {
-  Vec3f factor, curvature;
-};
-LightScale light_scale(const Mesh&, const std::vector<SplitRow>&, std::span<const Vec3f> colors, BlurLadder&,
-                       const std::vector<Vec3f>& light, const SplitMaterials&);
+// Sums over each vertex's surroundings of similar color in place of its own: steps of diffusion from vertex
+// to vertex. colors: #V, display-encoded.
+void diffuse_evidence(const Mesh&, const std::vector<Vec3f>& colors, int steps, MaterialEvidence&);
 
 }  // namespace cei3d

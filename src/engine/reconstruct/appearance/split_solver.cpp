@@ -7,13 +7,13 @@
 #include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
-#include "engine/reconstruct/appearance/material_evidence.h"
 
 namespace cei3d {
 namespace {
 
 constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
 
+constexpr int kWithoutGuess = 3;  // times the steps, of a solution that starts from uniform light
 constexpr int kRounds = 3;         // of materials and light
 constexpr int kDiffusion = 20;     // steps, of evidence over the surface
 constexpr float kMetalBy = 0.85f;  // a metal has to explain a place so much better than a dielectric
@@ -48,18 +48,31 @@ std::vector<Vec3f> split_irradiance(const Transport& transport, const SplitUnkno
 }
 
 SplitSolver::SplitSolver(const Transport& transport, const SurfaceSamples& samples,
-                         const LinearSplitOptions& options, Progress& progress)
+                         const LinearSplitOptions& options, Progress& progress, Image guess)
     : transport_(transport),
       mesh_(transport.surface().mesh()),
       rows_(make_split_rows(transport.surface(), samples, options)),
       options_(options),
       progress_(progress),
-      system_(mesh_, rows_, options) {}
+      system_(mesh_, rows_, options),
+      guess_(std::move(guess)) {}
+
+std::vector<Vec3f> SplitSolver::first_light() const {
+  const int height = options_.light_height, width = 2 * height;
+  Vec3f uniform{0, 0, 0};
+  for (const SplitRow& r : rows_) uniform += r.color * (2 / float(rows_.size()));
+  std::vector<Vec3f> light(size_t(width) * height, uniform);
+  for (int y = 0; y < height && guess_.width > 0; ++y)
+    for (int x = 0; x < width; ++x)
+      light[size_t(y) * width + x] =
+          env_radiance(guess_, env_direction(float(x) + 0.5f, float(y) + 0.5f, width, height));
+  return light;
+}
 
 SplitSolution SplitSolver::start(SplitMaterials materials) const {
   SplitSolution s;
   s.x.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
-  s.x.light.assign(size_t(2) * options_.light_height * options_.light_height, {0, 0, 0});
+  s.x.light = first_light();
   s.materials = std::move(materials);
   return s;
 }
@@ -81,6 +94,7 @@ SplitSolution SplitSolver::finish(SplitSolution s, bool metal, float roughness) 
   check_cancelled(progress_);
   system_.set_materials(s.materials);
   s.residual = system_.residual(s.x);
+  guess_ = light_image(s.x.light, options_.light_height);
   trials.push_back({metal, roughness, s.residual});
   progress_.log(fmt::format(R"({{"stage":"split","metal":{},"roughness":{:.3f},"residual":{:.3e}}})", metal,
                             roughness, s.residual));
@@ -88,8 +102,9 @@ SplitSolution SplitSolver::finish(SplitSolution s, bool metal, float roughness) 
 }
 
 SplitSolution SplitSolver::dielectric(float roughness) {
+  const int steps = options_.steps * (guess_.width > 0 ? 1 : kWithoutGuess);
   return finish(solved(start(one_material(mesh_.positions.size(), {roughness, kSpecular, 0})),
-                       options_.rounds, options_.steps),
+                       options_.rounds, steps),
                 false, roughness);
 }
 
@@ -105,12 +120,15 @@ std::vector<Vec3f> SplitSolver::white_radiance(const SplitSolution& s, float alb
   return out;
 }
 
+LitSamples SplitSolver::lit_samples(const SplitUnknowns& x) {
+  return LitSamples(mesh_.positions.size(), rows_, system_.targets(x), system_.blurs(), x.light);
+}
+
 // A vertex far from all samples keeps what it has.
 void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, SplitMaterials& materials) {
   const std::vector<Vec3f> white = white_radiance({x, materials, 0}, max_albedo);
-  MaterialEvidence evidence =
-      material_evidence(mesh_, rows_, system_.targets(x), system_.blurs(), x.light, white);
-  diffuse_evidence(mesh_, mean_colors(mesh_, rows_), kDiffusion, evidence);
+  MaterialEvidence evidence = lit_samples(x).evidence(white);
+  diffuse_evidence(mesh_, mean_colors(mesh_.positions.size(), rows_), kDiffusion, evidence);
   for (size_t v = 0; v < materials.of.size(); ++v) {
     if (evidence.samples[v] <= 0) continue;
     const BestMaterials b = best_materials(evidence.of(v));
@@ -155,19 +173,21 @@ void SplitSolver::fix_scale(SplitSolution& s) {
   constexpr float kPeakError = 0.1f, kDielectricError = 0.2f;  // of the logarithms
   system_.set_materials(s.materials);
   s.materials.color = system_.fit_metal_color(s.x);
-  const LightScale of_dielectrics =
-      light_scale(mesh_, rows_, system_.targets(s.x), system_.blurs(), s.x.light, s.materials);
-  scale_light(s, of_dielectrics.factor);
+  const LightScale of_dielectrics = lit_samples(s.x).light_scale(s.materials);
+  scale_light(s, of_dielectrics);
   const float peak = colored_metal_peak(s.materials);
-  const Vec3f f = of_dielectrics.factor;
-  progress_.log(Json{{"stage", "scale"}, {"dielectrics", {f.x, f.y, f.z}}, {"metal_peak", peak}}.dump());
+  progress_.log(Json{
+      {"stage", "scale"},
+      {"dielectrics", {of_dielectrics.x, of_dielectrics.y, of_dielectrics.z}},
+      {"metal_peak",
+       peak}}.dump());
   if (peak <= 0) return;
   const float share = square(kDielectricError) / (square(kDielectricError) + square(kPeakError));
   const float common = std::pow(peak / kPeak, share);
   scale_light(s, {common, common, common});
 }
 
-SplitSolution SplitSolver::several(SplitSolution s) {
+SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {
   for (int round = 0; round < kRounds; ++round) {
     check_cancelled(progress_);
     system_.set_materials(s.materials);
@@ -177,6 +197,7 @@ SplitSolution SplitSolver::several(SplitSolution s) {
     system_.set_materials(s.materials);
     s.residual = system_.residual(s.x);
     progress_.log(Json{{"stage", "materials"}, {"round", round}, {"residual", s.residual}}.dump());
+    if (s.residual > max_residual) break;
   }
   return s;
 }

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "core/base/progress.h"
-#include "engine/reconstruct/appearance/split_system.h"
+#include "engine/reconstruct/appearance/material_evidence.h"
 
 namespace cei3d {
 
@@ -16,24 +16,33 @@ struct SplitSolution {
 
 class SplitSolver {
  public:
-  SplitSolver(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&);
+  // Conjugate gradients are slow to find the strength of the light: solutions start from `guess`, of any
+  // size, and after the first from that one's light; without a guess from uniform light.
+  SplitSolver(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&,
+              Image guess = {});
+
+  SplitSolver(const SplitSolver&) = delete;  // the system refers to the rows
 
   size_t rows() const { return rows_.size(); }
+  const Image& guess() const { return guess_; }
   SplitSolution dielectric(float roughness);
   SplitSolution metal(float roughness);
   // Finds the materials of the vertices: by turns the materials that explain the samples best under the
-  // light, and the light for these materials. start: the light to begin with.
-  SplitSolution several(SplitSolution start);
+  // light, and the light for these materials. start: the light to begin with. max_residual: gives up, with
+  // the residual as it is, when the first turn leaves more.
+  SplitSolution several(SplitSolution start, double max_residual);
   // The light for these materials.
   SplitSolution with_materials(const SplitMaterials&);
 
   std::vector<LinearSplit::Trial> trials;  // of one material
 
  private:
+  std::vector<Vec3f> first_light() const;
   SplitSolution start(SplitMaterials) const;
   SplitSolution solved(SplitSolution, int rounds, int steps);
   SplitSolution with_fitted_metals(SplitSolution, int rounds, int steps);
   SplitSolution finish(SplitSolution, bool metal, float roughness);
+  LitSamples lit_samples(const SplitUnknowns&);
   void choose_materials(const SplitUnknowns&, float max_albedo, SplitMaterials&);
   void fix_scale(SplitSolution&);
   std::vector<Vec3f> white_radiance(const SplitSolution&, float albedo) const;
@@ -44,6 +53,7 @@ class SplitSolver {
   LinearSplitOptions options_;
   Progress& progress_;
   SplitSystem system_;
+  Image guess_;
 };
 
 // What every vertex sends out, reflections of metals as if they were diffuse. light: of `height` rows.
