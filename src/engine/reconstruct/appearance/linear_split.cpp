@@ -22,10 +22,9 @@ constexpr double kFar = 1.25;  // a residual this much above the best ends the s
 // A metal explains everything by reflections; of a matte object of many colors it explains as much as a
 // dielectric does (dtu24). Of a metal (teapot) it leaves a fifth.
 constexpr double kMetalBy = 0.5;
-// Several materials have to explain the pictures so much better than one: they always explain a little more.
-constexpr double kSeveralBy = 0.75;
-// Where one leaves no more than that, there is nothing to explain: noise of photographs, 37 dB.
-constexpr double kExplained = 2e-4;
+// Several materials always explain a little more than one. They have to explain so much more, and more than
+// the noise of photographs, 37 dB.
+constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
 constexpr double kPlainlyOne = 0.85;  // a first guess at several that leaves more is not improved
 constexpr float kFirstRoughness =
     0.3f;  // at most, of the one material that the search for several begins with
@@ -164,9 +163,9 @@ struct OneMaterial {
   float roughness;
 };
 
-// light: one that fits.
+// guess: the last solution.
 OneMaterial search_one_material(SplitSolver search, const LinearSplitOptions& options,
-                                std::vector<LinearSplit::Trial>& trials, Image& light) {
+                                std::vector<LinearSplit::Trial>& trials, SplitGuess& guess) {
   if (search.rows() < 1000)
     fail("only {} pixels see the surface well enough to tell light from material; are masks and poses right?",
          search.rows());
@@ -176,21 +175,22 @@ OneMaterial search_one_material(SplitSolver search, const LinearSplitOptions& op
   const float roughness = search_roughness(
       [&](float r) { return (is_metal ? search.metal(r) : search.dielectric(r)).residual; }, options);
   trials = std::move(search.trials);
-  light = search.guess();
+  guess = search.guess();
   return {is_metal, roughness};
 }
 
-// Nothing where the object is plainly of one material.
-std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMaterial& found) {
+// Nothing where the object is plainly of one material. guess: the last solution.
+std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMaterial& found, SplitGuess& guess) {
   const auto one = [&](float roughness) {
     return found.is_metal ? search.metal(roughness) : search.dielectric(roughness);
   };
   SplitSolution start = one(found.roughness);
-  if (start.residual < kExplained) return {};
+  if (start.residual < kNoise) return {};
   const double max_residual = kPlainlyOne * start.residual;
   if (found.roughness > kFirstRoughness) start = one(kFirstRoughness);
   SplitSolution several = search.several(std::move(start), max_residual);
   if (several.residual > max_residual) return {};
+  guess = search.guess();
   return std::move(several.materials);
 }
 
@@ -198,22 +198,22 @@ std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMate
 SplitSolution solve(const Transport& transport, const SurfaceSamples& samples,
                     const LinearSplitOptions& options, Progress& progress,
                     std::vector<LinearSplit::Trial>& trials) {
-  Image light;
+  SplitGuess guess;
   const auto solver = [&](const LinearSplitOptions& o) {
-    return SplitSolver(transport, samples, o, progress, light);
+    return SplitSolver(transport, samples, o, progress, guess);
   };
   const OneMaterial found =
-      search_one_material(solver(search_options(options, options.search_hits)), options, trials, light);
+      search_one_material(solver(search_options(options, options.search_hits)), options, trials, guess);
   std::optional<SplitMaterials> materials;
   if (options.fixed_roughness <= 0)
-    materials = search_materials(solver(search_options(options, options.material_hits)), found);
+    materials = search_materials(solver(search_options(options, options.material_hits)), found, guess);
   SplitSolver fine = solver(options);
   SplitSolution one = found.is_metal ? fine.metal(found.roughness) : fine.dielectric(found.roughness);
   trials.insert(trials.end(), fine.trials.begin(), fine.trials.end());
   if (!materials) return one;
   SplitSolution several = fine.with_materials(*materials);
   progress.log(Json{{"stage", "materials"}, {"one", one.residual}, {"several", several.residual}}.dump());
-  return several.residual < kSeveralBy * one.residual ? several : one;
+  return several.residual < std::min(kSeveralBy * one.residual, one.residual - kNoise) ? several : one;
 }
 
 Material mean_of(const std::vector<Material>& materials) {

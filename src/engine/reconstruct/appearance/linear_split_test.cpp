@@ -65,13 +65,14 @@ struct Drawn {
 };
 
 using Materials = std::function<Material(Vec3f position)>;
+using Colors = std::function<Vec3f(Vec3f position)>;
 
-Drawn draw(const Materials& material_at, float brightness = 1) {
+Drawn draw(const Materials& material_at, const Colors& color_at) {
   Drawn d;
   d.surface = std::make_shared<const Surface>(bumpy_ball());
   d.transport = std::make_shared<Transport>(d.surface);
   const Mesh& m = d.surface->mesh();
-  for (const Vec3f& p : m.positions) d.base.push_back(paint(p) * brightness);
+  for (const Vec3f& p : m.positions) d.base.push_back(color_at(p));
   std::vector<Vec3f> origins, directions;
   for (int view = 0; view < 40; ++view) {
     const float z = 1 - (2 * float(view) + 1) / 40, r = std::sqrt(1 - z * z), a = 2.39996323f * float(view);
@@ -106,7 +107,7 @@ Drawn draw(const Materials& material_at, float brightness = 1) {
 }
 
 Drawn draw(const Material& everywhere, float brightness = 1) {
-  return draw([=](Vec3f) { return everywhere; }, brightness);
+  return draw([=](Vec3f) { return everywhere; }, [=](Vec3f p) { return paint(p) * brightness; });
 }
 
 LinearSplitOptions small() {
@@ -196,10 +197,16 @@ TEST(LinearSplit, TellsAMetalFromADielectric) {
   EXPECT_LT(match(pick(split.albedo, seen(d)), pick(d.base, seen(d))).error, 0.15);
 }
 
-// A body whose upper half is a metal and whose lower half is a rougher dielectric.
+Vec3f gold_and_copper(Vec3f p) {
+  const bool stripe = std::sin(9 * p.x + 4 * p.z) > 0;
+  return stripe ? Vec3f{0.95f, 0.64f, 0.54f} : Vec3f{1.0f, 0.77f, 0.34f};
+}
+
+// A body whose upper half is of metals and whose lower half is a rougher dielectric.
 TEST(LinearSplit, FindsSeveralMaterialsAndTheirBorder) {
   const Material above{0.25f, 0.5f, 1}, below{0.4f, 0.5f, 0};
-  const Drawn d = draw([&](Vec3f p) { return p.z > 0 ? above : below; });
+  const Drawn d = draw([&](Vec3f p) { return p.z > 0 ? above : below; },
+                       [](Vec3f p) { return p.z > 0 ? gold_and_copper(p) : paint(p); });
   Progress quiet;
   const LinearSplit split = linear_split(*d.transport, d.samples(), small(), quiet);
   ASSERT_EQ(split.materials.size(), d.base.size());

@@ -167,7 +167,7 @@ std::vector<Vec3f> mean_colors(size_t vertices, const std::vector<SplitRow>& row
   std::vector<float> count(vertices, 0);
   for (const SplitRow& r : rows)
     for (int k = 0; k < 3; ++k) {
-      for (int c = 0; c < 3; ++c) sum[r.vertices[k]][c] += r.barycentric[k] * srgb_from_linear(r.color[c]);
+      sum[r.vertices[k]] += r.color * r.barycentric[k];
       count[r.vertices[k]] += r.barycentric[k];
     }
   for (size_t v = 0; v < vertices; ++v) sum[v] = sum[v] / max(count[v], 1e-6f);
@@ -192,7 +192,7 @@ struct Neighbors {
       for (int side = 0; side < 2; ++side) {
         const uint32_t k = at[e[size_t(side)]]++;
         vertex[k] = e[size_t(1 - side)];
-        weight[k] = likeness(colors[e[0]], colors[e[1]]);
+        weight[k] = likeness(srgb_from_linear(colors[e[0]]), srgb_from_linear(colors[e[1]]));
       }
   }
 

@@ -57,11 +57,11 @@ struct BestMaterials {
 };
 BestMaterials best_materials(const float* errors);
 
-// Mean display-encoded color of each vertex's samples. #V
+// Mean linear color of each vertex's samples, 0 where there are none. #V
 std::vector<Vec3f> mean_colors(size_t vertices, const std::vector<SplitRow>&);
 
 // Sums over each vertex's surroundings of similar color in place of its own: steps of diffusion from vertex
-// to vertex. colors: #V, display-encoded.
+// to vertex. colors: #V, linear.
 void diffuse_evidence(const Mesh&, const std::vector<Vec3f>& colors, int steps, MaterialEvidence&);
 
 }  // namespace cei3d

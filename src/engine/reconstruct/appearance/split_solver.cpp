@@ -13,7 +13,6 @@ namespace {
 
 constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
 
-constexpr int kWithoutGuess = 3;  // times the steps, of a solution that starts from uniform light
 constexpr int kRounds = 3;         // of materials and light
 constexpr int kDiffusion = 20;     // steps, of evidence over the surface
 constexpr float kMetalBy = 0.85f;  // a metal has to explain a place so much better than a dielectric
@@ -48,7 +47,7 @@ std::vector<Vec3f> split_irradiance(const Transport& transport, const SplitUnkno
 }
 
 SplitSolver::SplitSolver(const Transport& transport, const SurfaceSamples& samples,
-                         const LinearSplitOptions& options, Progress& progress, Image guess)
+                         const LinearSplitOptions& options, Progress& progress, SplitGuess guess)
     : transport_(transport),
       mesh_(transport.surface().mesh()),
       rows_(make_split_rows(transport.surface(), samples, options)),
@@ -57,24 +56,26 @@ SplitSolver::SplitSolver(const Transport& transport, const SurfaceSamples& sampl
       system_(mesh_, rows_, options),
       guess_(std::move(guess)) {}
 
-std::vector<Vec3f> SplitSolver::first_light() const {
-  const int height = options_.light_height, width = 2 * height;
-  Vec3f uniform{0, 0, 0};
-  for (const SplitRow& r : rows_) uniform += r.color * (2 / float(rows_.size()));
-  std::vector<Vec3f> light(size_t(width) * height, uniform);
-  for (int y = 0; y < height && guess_.width > 0; ++y)
-    for (int x = 0; x < width; ++x)
-      light[size_t(y) * width + x] =
-          env_radiance(guess_, env_direction(float(x) + 0.5f, float(y) + 0.5f, width, height));
-  return light;
+SplitUnknowns SplitSolver::uniform() const {
+  Vec3f mean{0, 0, 0};
+  for (const SplitRow& r : rows_) mean += r.color / float(rows_.size());
+  const size_t cells = size_t(2) * options_.light_height * options_.light_height;
+  return {mean_colors(mesh_.positions.size(), rows_), std::vector<Vec3f>(cells, mean)};
 }
 
-SplitSolution SplitSolver::start(SplitMaterials materials) const {
-  SplitSolution s;
-  s.x.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
-  s.x.light = first_light();
-  s.materials = std::move(materials);
-  return s;
+SplitUnknowns SplitSolver::guessed() const {
+  if (guess_.light.width == 0) return uniform();
+  const int height = options_.light_height, width = 2 * height;
+  SplitUnknowns x{guess_.diffuse, {}};
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column)
+      x.light.push_back(env_radiance(
+          guess_.light, env_direction(float(column) + 0.5f, float(row) + 0.5f, width, height)));
+  return x;
+}
+
+void SplitSolver::remember(const SplitUnknowns& x) {
+  guess_ = {x.diffuse, light_image(x.light, options_.light_height)};
 }
 
 SplitSolution SplitSolver::solved(SplitSolution s, int rounds, int steps) {
@@ -94,7 +95,6 @@ SplitSolution SplitSolver::finish(SplitSolution s, bool metal, float roughness) 
   check_cancelled(progress_);
   system_.set_materials(s.materials);
   s.residual = system_.residual(s.x);
-  guess_ = light_image(s.x.light, options_.light_height);
   trials.push_back({metal, roughness, s.residual});
   progress_.log(fmt::format(R"({{"stage":"split","metal":{},"roughness":{:.3f},"residual":{:.3e}}})", metal,
                             roughness, s.residual));
@@ -102,14 +102,14 @@ SplitSolution SplitSolver::finish(SplitSolution s, bool metal, float roughness) 
 }
 
 SplitSolution SplitSolver::dielectric(float roughness) {
-  const int steps = options_.steps * (guess_.width > 0 ? 1 : kWithoutGuess);
-  return finish(solved(start(one_material(mesh_.positions.size(), {roughness, kSpecular, 0})),
-                       options_.rounds, steps),
-                false, roughness);
+  SplitSolution s{guessed(), one_material(mesh_.positions.size(), {roughness, kSpecular, 0})};
+  s = solved(std::move(s), options_.rounds, options_.steps);
+  remember(s.x);
+  return finish(std::move(s), false, roughness);
 }
 
 SplitSolution SplitSolver::metal(float roughness) {
-  SplitSolution s = start(one_material(mesh_.positions.size(), {roughness, kSpecular, 1}));
+  SplitSolution s{uniform(), one_material(mesh_.positions.size(), {roughness, kSpecular, 1})};
   for (int round = 0; round < 3; ++round) s = with_fitted_metals(std::move(s), 3, 8);
   return finish(std::move(s), true, roughness);
 }
@@ -197,13 +197,14 @@ SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {
     system_.set_materials(s.materials);
     s.residual = system_.residual(s.x);
     progress_.log(Json{{"stage", "materials"}, {"round", round}, {"residual", s.residual}}.dump());
-    if (s.residual > max_residual) break;
+    if (s.residual > max_residual) return s;
   }
+  remember(s.x);
   return s;
 }
 
 SplitSolution SplitSolver::with_materials(const SplitMaterials& materials) {
-  SplitSolution s = start(materials);
+  SplitSolution s{guessed(), materials};
   for (int round = 0; round < 3; ++round) {
     s = solved(std::move(s), 3, 8);
     fix_scale(s);

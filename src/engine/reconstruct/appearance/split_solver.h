@@ -14,17 +14,23 @@ struct SplitSolution {
   double residual = 0;
 };
 
+// A solution for a problem of any size.
+struct SplitGuess {
+  std::vector<Vec3f> diffuse;  // #V
+  Image light;                 // empty: no guess
+};
+
 class SplitSolver {
  public:
-  // Conjugate gradients are slow to find the strength of the light: solutions start from `guess`, of any
-  // size, and after the first from that one's light; without a guess from uniform light.
+  // Conjugate gradients are slow to find the strength of the light where dielectrics reflect it: solutions
+  // with dielectrics start from the last one, the first from `guess`; without a guess from uniform light.
   SplitSolver(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&,
-              Image guess = {});
+              SplitGuess guess = {});
 
   SplitSolver(const SplitSolver&) = delete;  // the system refers to the rows
 
   size_t rows() const { return rows_.size(); }
-  const Image& guess() const { return guess_; }
+  const SplitGuess& guess() const { return guess_; }
   SplitSolution dielectric(float roughness);
   SplitSolution metal(float roughness);
   // Finds the materials of the vertices: by turns the materials that explain the samples best under the
@@ -37,8 +43,9 @@ class SplitSolver {
   std::vector<LinearSplit::Trial> trials;  // of one material
 
  private:
-  std::vector<Vec3f> first_light() const;
-  SplitSolution start(SplitMaterials) const;
+  SplitUnknowns uniform() const;  // light; each vertex the mean color of its samples
+  SplitUnknowns guessed() const;
+  void remember(const SplitUnknowns&);
   SplitSolution solved(SplitSolution, int rounds, int steps);
   SplitSolution with_fitted_metals(SplitSolution, int rounds, int steps);
   SplitSolution finish(SplitSolution, bool metal, float roughness);
@@ -53,7 +60,7 @@ class SplitSolver {
   LinearSplitOptions options_;
   Progress& progress_;
   SplitSystem system_;
-  Image guess_;
+  SplitGuess guess_;
 };
 
 // What every vertex sends out, reflections of metals as if they were diffuse. light: of `height` rows.
