@@ -15,12 +15,14 @@ Vec3f vector_from(JsonReader& reader, const char* key) {
 }
 
 Json tint_json(const Tint& t) {
-  return {{"color", vector_json(t.color)}, {"keep_texture", t.keep_texture}, {"mean", vector_json(t.mean)}};
+  Json j = {{"color", vector_json(t.color)}, {"keep_texture", t.keep_texture}, {"mean", vector_json(t.mean)}};
+  if (t.blend != 1) j["blend"] = t.blend;
+  return j;
 }
 
 Tint tint_from(JsonReader reader) {
   const Tint tint{vector_from(reader, "color"), reader.require<bool>("keep_texture"),
-                  vector_from(reader, "mean")};
+                  vector_from(reader, "mean"), reader.optional("blend", 1.0f)};
   reader.finish();
   return tint;
 }
@@ -30,12 +32,15 @@ Json change_json(const MaterialChange& c) {
   if (c.roughness) j["roughness"] = *c.roughness;
   if (c.specular) j["specular"] = *c.specular;
   if (c.metalness) j["metalness"] = *c.metalness;
+  if (c.roughness_scale) j["roughness_scale"] = *c.roughness_scale;
+  if (c.blend != 1) j["blend"] = c.blend;
   return j;
 }
 
 MaterialChange change_from(JsonReader reader) {
   const MaterialChange change{reader.optional<float>("roughness"), reader.optional<float>("specular"),
-                              reader.optional<float>("metalness")};
+                              reader.optional<float>("metalness"), reader.optional<float>("roughness_scale"),
+                              reader.optional("blend", 1.0f)};
   reader.finish();
   return change;
 }

@@ -18,6 +18,7 @@
 namespace cei3d {
 
 inline constexpr int kLatestPose = -1;
+inline constexpr float kMaterialWeight = 0.5f;
 
 struct EditLayer {
   std::string id;            // "0001-paint"
@@ -38,8 +39,8 @@ struct EditLayer {
   std::shared_ptr<const Reshape> reshape;  // null: no change of shape
 
   bool contains(Vec3f position, Vec3f normal) const { return weight(position, normal) > 0; }
-  // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. Material is all or
-  // nothing.
+  // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. The material is all or
+  // nothing: it changes where the weight is above kMaterialWeight.
   float weight(Vec3f position, Vec3f normal) const;
 };
 
