@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct Typed {
   int code;
@@ -74,6 +75,18 @@ TEST(Cli, HelpNamesEveryCaptureFormat) {
   const std::string help = type({"-h"}).out;
   EXPECT_THAT(help, HasSubstr(capture_format_layouts("\n  ")));
   EXPECT_THAT(type({"check", "-h"}).out, HasSubstr(capture_format_names()));
+}
+
+TEST(Cli, MaterialsAreListedAndNearNamesAreTold) {
+  for (const char* edit : {"material", "part", "paint"}) {
+    const std::string help = type({"edit", edit, "-h"}).out;
+    for (const char* name : {"gold", "silver", "rubber", "wood"}) EXPECT_THAT(help, HasSubstr(name)) << edit;
+  }
+  const Typed near = type({"edit", "p", "material", "--material", "gould"});
+  EXPECT_EQ(near.code, 2);
+  EXPECT_THAT(near.err, HasSubstr("gold"));
+  EXPECT_THAT(near.err, Not(HasSubstr("rubber")));
+  EXPECT_THAT(type({"edit", "p", "material", "--material", "unobtainium"}).err, HasSubstr("rubber"));
 }
 
 TEST(Cli, Version) {

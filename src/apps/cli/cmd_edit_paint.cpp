@@ -49,9 +49,11 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
       ->required()
       ->expected(1)
       ->take_all();
-  verb->add_option("--scribble", o->scribbles,
-                   "RGBA PNG of the view's size. Where it is opaque, its sRGB color becomes the albedo; "
-                   "semi-transparent strokes are blended by their alpha")
+  verb->add_option(
+          "--scribble", o->scribbles,
+          "RGBA PNG of the view's size. Where it is opaque, its sRGB color becomes the albedo; "
+          "semi-transparent strokes are blended by their alpha. A material is painted where alpha is above "
+          "one half; --material paints with its own color instead of the scribble's")
       ->required()
       ->expected(1)
       ->take_all();
@@ -69,6 +71,7 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
                    "which changes other places too. For comparison")
       ->check(CLI::IsMember({"both", "points", "outline", "none"}))
       ->capture_default_str();
+  add_material_values(verb, o->command.material);
   verb->add_option("--seed", o->command.seed, "Random seed")->capture_default_str();
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {

@@ -80,6 +80,7 @@ void add_edit_part(Commands& commands, CLI::App* edit, ProjectName project) {
   CLI::App* verb = commands.add(
       "part", "Select a part by clicks in one view; name it, recolor it, change its material", edit);
   add_where(verb, *o);
+  add_blend(verb, e);
   add_name(verb, o->command);
   add_part_effects(verb, *o);
   add_output(verb, o->output);

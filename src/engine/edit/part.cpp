@@ -80,7 +80,7 @@ void check_size(size_t points, size_t all, const PartRequest& r) {
 void set_effects(const Device& device, const Scene& scene, const PartRequest& r, EditLayer& layer) {
   layer.material = r.change;
   if (!r.color) return;
-  Tint tint{*r.color, r.keep_texture, {1, 1, 1}};
+  Tint tint{*r.color, r.keep_texture, {1, 1, 1}, r.change.blend};
   if (r.keep_texture) tint.mean = mean_color_inside(device, scene, layer);
   layer.tint = tint;
 }
@@ -99,6 +99,7 @@ PartResult select_part(const Device& device, const Scene& scene, const PartReque
     fail("The object has no handler points to select a part of; reconstruct it again.");
   const double start = steady_seconds();
   if (r.combination) part_layer(scene, r.combination->part);  // an error before the work
+  check_change(r.change);
   const std::vector<Seed> seeds = part_seeds(device, scene, r);
   progress.report({"part", 0.1, -1, ""});
   const double seeded = steady_seconds();

@@ -35,7 +35,7 @@ struct PartRequest {
   std::function<std::vector<float>(const Scene&, const PartRequest&, Progress&)> network;
   bool in_view = false;  // only what the view shows of the part, for comparison
   std::optional<PartCombination> combination;
-  MaterialChange change;
+  MaterialChange change;       // its blend is also that of the color
   std::optional<Vec3f> color;  // linear
   bool keep_texture = false;   // scale the present texture to the color instead of replacing it
 };
