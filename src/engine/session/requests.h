@@ -130,11 +130,13 @@ struct DeformCommand {
   std::optional<double> radius;  // along the surface, capture units
   std::string part;              // empty: the whole object
 };
-// A part by clicks or a mask in one view, with or without effects on it.
+// A part by clicks, a mask or a clicked material in one view, with or without effects on it.
 struct PartCommand {
   std::string view;
   std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centers at +0.5
   std::filesystem::path mask;                    // PNG in place of clicks; empty: none
+  std::optional<Vec2<double>> like{};            // in place of clicks: what has the material of this pixel
+  bool like_color = false;                       // and its base color
   std::string segmenter = "grow";                // or "sam"
   bool in_view = false;                          // only what this view shows of the part
   std::string name;                      // empty: that of the part combined with, else "part1", "part2", ...
