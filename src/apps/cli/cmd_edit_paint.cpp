@@ -63,7 +63,8 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
                        "the view shows under the present light. radiance: color shown under every light")
           ->check(CLI::IsMember({"albedo", "appearance", "radiance"}))
           ->capture_default_str();
-  verb->add_flag("--erase", o->command.erase, "Restore the reconstructed albedo where the scribble is opaque")
+  verb->add_flag("--erase", o->command.erase,
+                 "Restore the reconstructed albedo and material where the scribble is opaque")
       ->excludes(target);
   verb->add_option("--routing", o->routing,
                    "How painted surface is found. both: near handler points and inside the scribble's "

@@ -12,7 +12,7 @@
 namespace cei3d {
 namespace {
 
-// By how much two points of one material may differ: twice the error of an estimated material.
+// By how much two points of one material may differ.
 constexpr float kRoughness = 0.1f, kMetalness = 0.25f;
 constexpr float kColor = 0.12f;  // distance in sRGB
 

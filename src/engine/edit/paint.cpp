@@ -240,7 +240,7 @@ PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& 
   const double traced = steady_seconds();
   progress.report({"paint", 0.2, -1, ""});
   result.layer.id = request.id;
-  result.layer.erase = request.erase;
+  result.layer.erase = result.layer.erase_material = request.erase;
   result.layer.unlit = request.unlit;
   result.layer.material = request.material;
   if (request.routing == Routing::none) {

@@ -26,7 +26,7 @@ struct PaintRequest {
   std::vector<Scribble> scribbles;  // later scribbles cover earlier ones
   std::string id;                   // of the new layer
   uint64_t seed = 1;                // for the branch's weights and batches
-  bool erase = false;               // restore the base's albedo; the scribbles' colors are ignored
+  bool erase = false;  // restore the base's albedo and material; the scribbles' colors are ignored
   Routing routing = Routing::both;
   bool unlit = false;  // show the painted color as it is, under every light
   // null: the painted colors are display colors of the albedo. Else: of the radiance under this light.

@@ -123,7 +123,7 @@ Aspects depends(const Json& stored) {
 
 }  // namespace
 
-// Version 2: several strokes; version 3: materials.
+// Version 2: several strokes; version 3: materials, also erased ones.
 const EditOp kPaintOp{"paint", 3, make, depends, migrate};
 
 }  // namespace cei3d

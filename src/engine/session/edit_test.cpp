@@ -228,7 +228,26 @@ TEST_F(EditTest, APresetSetsWhatTheCommandDoesNot) {
   EXPECT_EQ(layer.material.roughness_scale, 2.0f);
 }
 
-TEST_F(EditTest, GoldLeafIsPaintedAndErasedByUndo) {
+TEST_F(EditTest, AnEraserTakesGoldLeafOffAgain) {
+  PaintCommand gold = scribble(0, {0.8f, 0.1f, 0.1f}, 6);
+  gold.material.preset = "gold";
+  session_.paint(gold, quiet_);
+  PaintCommand eraser = scribble(0, {0, 0, 0}, 10);
+  eraser.erase = true;
+  session_.paint(eraser, quiet_);
+  const Scene after = scene("a");
+  Scene before = after;
+  before.layers.clear();
+  const std::vector<Hit> hits = vertex_hits(after.surface->mesh());
+  const Appearance was = appearance_at(session_.device(), before, hits),
+                   is = appearance_at(session_.device(), after, hits);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    EXPECT_EQ(is.material[i], was.material[i]);
+    EXPECT_EQ(std::memcmp(&is.albedo[i], &was.albedo[i], sizeof(Vec3f)), 0);
+  }
+}
+
+TEST_F(EditTest, GoldLeafIsPaintedAndUndone) {
   const Scene before = scene("a");
   PaintCommand c = scribble(0, {0.8f, 0.1f, 0.1f}, 8);
   c.material.preset = "gold";

@@ -106,7 +106,7 @@ struct PaintCommand {
   uint64_t seed = 1;
   PaintTarget target = PaintTarget::albedo;  // what the colors of the scribble mean
   Routing routing = Routing::both;
-  bool erase = false;  // the base's own colors again where there is paint
+  bool erase = false;  // the base's own colors and material again where there is paint
   // Of what is painted. Its color can only be a preset's, which replaces those of the scribbles.
   MaterialEffects material{};
 };

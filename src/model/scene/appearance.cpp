@@ -57,7 +57,7 @@ class Walk {
     if (layer.reshape) visit_change(l, pose + 1);
     const bool colors = r_.base && (layer.albedo || layer.erase || layer.tint);
     const bool marks = r_.layer < 0 && !layer.everywhere;
-    const bool changes = shows(layer.material, covered_);
+    const bool changes = shows(layer.material, covered_) || layer.erase_material;
     if (!colors && !changes && !marks) return;
     const bool old = born_ <= pose;  // what was made later is in no region that is older ...
     if (!old && !layer.everywhere) return;
@@ -70,8 +70,9 @@ class Walk {
   }
 
   void visit_material(int l, const EditLayer& layer) {
-    chunk_.materials.push_back(l);
+    if (shows(layer.material, covered_)) chunk_.materials.push_back(l);
     cover(covered_, layer.material);
+    if (layer.erase_material) covered_ = {true, true, true};
   }
 
   void visit_colors(int l, const EditLayer& layer, const SurfacePoint& p, float weight) {

@@ -92,6 +92,7 @@ Expected one_by_one(const Scene& s, const Hit& hit) {
     if (!layer.everywhere) e.layer = l;
     if (layer.albedo) e.albedo = value_at(*layer.albedo, hit.position);
     if (layer.tint) e.albedo = tinted(*layer.tint, e.albedo);
+    if (layer.erase_material) e.material = s.material.mean();
     e.material = changed(e.material, layer.material);
   }
   return e;
@@ -136,6 +137,7 @@ TEST(Appearance, ScaledAndBlendedMaterialsAreAppliedFromTheBottomUp) {
           layer("x", ball({rng.uniform() - 0.5f, rng.uniform() - 0.5f, 0.1f}, 0.3f + 0.6f * rng.uniform())));
       s.layers.back().everywhere = rng.below(5) == 0;
       s.layers.back().material = random_change(10 * stack + l);
+      s.layers.back().erase_material = rng.below(5) == 0;
     }
     const Appearance got = appearance_at(make_device(), s, hits);
     for (size_t i = 0; i < hits.size(); ++i) {

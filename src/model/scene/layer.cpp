@@ -95,6 +95,7 @@ void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
   save_field(layer.albedo, "albedo", tensors, head);
   if (layer.unlit) head["unlit"] = true;
   if (layer.erase) head["erase"] = true;
+  if (layer.erase_material) head["erase_material"] = true;
   if (layer.tint) head["tint"] = tint_json(*layer.tint);
   if (!layer.material.empty()) head["material"] = change_json(layer.material);
   if (layer.light) save_light(*layer.light, tensors, head);
@@ -115,6 +116,7 @@ EditLayer load_layer(const Tensors& tensors, const Json& head) {
     layer.albedo = load_field("albedo", tensors, head);
     layer.unlit = reader.optional("unlit", false);
     layer.erase = reader.optional("erase", false);
+    layer.erase_material = reader.optional("erase_material", false);
     if (reader.has("tint")) layer.tint = tint_from(reader.object("tint"));
     if (reader.has("material")) layer.material = change_from(reader.object("material"));
     if (reader.has("light")) layer.light = load_light(tensors, reader.member("light"));

@@ -33,6 +33,7 @@ struct EditLayer {
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: albedo of the layers below
   bool unlit = false;                   // the color is shown as it is, without light
   bool erase = false;                   // restores the base's albedo, whatever lies below
+  bool erase_material = false;          // restores the base's material, whatever lies below
   std::optional<Tint> tint;             // recolors the result of the above
   MaterialChange material;
   std::optional<SgMixture> light;          // replaces the object's light, everywhere

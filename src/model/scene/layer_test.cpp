@@ -50,7 +50,7 @@ std::vector<EditLayer> one_of_each_kind() {
   layers[7] = layers[0];
   layers[7].also = {some_region(), Region({{{0.5f, 0, 0}}, {{1, 0, 0}}, {0.2f}})};
   layers[7].albedo = nullptr;
-  layers[7].erase = true;
+  layers[7].erase = layers[7].erase_material = true;
   return layers;
 }
 
@@ -72,6 +72,7 @@ TEST(EditLayer, LoadGivesWhatWasSaved) {
     EXPECT_EQ(again.part, layer.part);
     EXPECT_EQ(again.everywhere, layer.everywhere);
     EXPECT_EQ(again.unlit, layer.unlit);
+    EXPECT_EQ(again.erase_material, layer.erase_material);
     EXPECT_EQ(again.material, layer.material);
     ASSERT_EQ(again.tint.has_value(), layer.tint.has_value());
     if (layer.tint) {
