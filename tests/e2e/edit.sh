@@ -51,6 +51,7 @@ same_pictures "$out/matt" "$out/replayed"
 contents "$project" >"$out/before.txt"
 refused 2 'roughness|1.5' edit "$project" material --roughness 1.5
 refused 2 'ear' edit "$project" material --part ear --roughness 0.5
+refused 2 'gold' edit "$project" material --material gould
 refused 2 '--env|change' edit "$project" light
 refused 2 'PNG' edit "$project" light --scale 2 --picture "$out/light.jpg"
 refused 2 '--scribble' edit "$project" paint --view train/r_055 --scribble "$sample/edits/paint/scribble.png" --view r_001
@@ -60,9 +61,12 @@ same "$out/before.txt" "$out/after.txt"
 cei3d undo "$project"
 cei3d undo "$project"
 
+cei3d edit "$project" paint --view train/r_055 --scribble "$sample/edits/paint/scribble.png" --material gold
+cei3d log "$project" | grep 'paint .*material gold' >/dev/null || fail "the material is not in the log"
 cei3d edit "$project" paint --view train/r_055 --scribble "$sample/edits/paint/scribble.png" --erase
 views "$out/erased"
 same_pictures "$out/before" "$out/erased"
+cei3d undo "$project"
 cei3d undo "$project"
 
 views "$out/relit" --env "$sample/envs/venice.hdr"

@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::AnyOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct Typed {
   int code;
@@ -76,6 +77,18 @@ TEST(Cli, HelpNamesEveryCaptureFormat) {
   EXPECT_THAT(type({"check", "-h"}).out, HasSubstr(capture_format_names()));
 }
 
+TEST(Cli, MaterialsAreListedAndNearNamesAreTold) {
+  for (const char* edit : {"material", "part", "paint"}) {
+    const std::string help = type({"edit", edit, "-h"}).out;
+    for (const char* name : {"gold", "silver", "rubber", "wood"}) EXPECT_THAT(help, HasSubstr(name)) << edit;
+  }
+  const Typed near = type({"edit", "p", "material", "--material", "gould"});
+  EXPECT_EQ(near.code, 2);
+  EXPECT_THAT(near.err, HasSubstr("gold"));
+  EXPECT_THAT(near.err, Not(HasSubstr("rubber")));
+  EXPECT_THAT(type({"edit", "p", "material", "--material", "unobtainium"}).err, HasSubstr("rubber"));
+}
+
 TEST(Cli, Version) {
   const Typed t = type({"--version"});
   EXPECT_EQ(t.code, 0);
@@ -109,6 +122,13 @@ TEST(Cli, WrongUsageIsTwo) {
       {"edit", "p", "paint", "--view", "a", "--scribble", "s.png", "--erase", "--target", "albedo"},
       {"edit", "p", "material", "--roughness", "shiny"},
       {"edit", "p", "material", "--replace"},
+      {"edit", "p", "material", "--material", "gould"},
+      {"edit", "p", "material", "--roughness", "0.5", "--roughness-scale", "2"},
+      {"edit", "p", "part", "--view", "a", "--positive", "1,1", "--material", "unobtainium"},
+      {"edit", "p", "paint", "--view", "a", "--scribble", "s.png", "--material", ""},
+      {"edit", "p", "part", "--view", "a", "--like", "1,1", "--positive", "2,2"},
+      {"edit", "p", "part", "--view", "a", "--like", "1"},
+      {"edit", "p", "part", "--view", "a", "--positive", "2,2", "--like-color"},
       {"edit", "material", "--roughness", "0.5"},
       {"edit", "p", "light", "--env", "no/such.hdr"},
       {"edit", "p", "light", "--rotate", "left"},

@@ -49,9 +49,11 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
       ->required()
       ->expected(1)
       ->take_all();
-  verb->add_option("--scribble", o->scribbles,
-                   "RGBA PNG of the view's size. Where it is opaque, its sRGB color becomes the albedo; "
-                   "semi-transparent strokes are blended by their alpha")
+  verb->add_option(
+          "--scribble", o->scribbles,
+          "RGBA PNG of the view's size. Where it is opaque, its sRGB color becomes the albedo; "
+          "semi-transparent strokes are blended by their alpha. A material is painted where alpha is above "
+          "one half; --material paints with its own color instead of the scribble's")
       ->required()
       ->expected(1)
       ->take_all();
@@ -61,7 +63,8 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
                        "the view shows under the present light. radiance: color shown under every light")
           ->check(CLI::IsMember({"albedo", "appearance", "radiance"}))
           ->capture_default_str();
-  verb->add_flag("--erase", o->command.erase, "Restore the reconstructed albedo where the scribble is opaque")
+  verb->add_flag("--erase", o->command.erase,
+                 "Restore the reconstructed albedo and material where the scribble is opaque")
       ->excludes(target);
   verb->add_option("--routing", o->routing,
                    "How painted surface is found. both: near handler points and inside the scribble's "
@@ -69,6 +72,7 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
                    "which changes other places too. For comparison")
       ->check(CLI::IsMember({"both", "points", "outline", "none"}))
       ->capture_default_str();
+  add_material_values(verb, o->command.material);
   verb->add_option("--seed", o->command.seed, "Random seed")->capture_default_str();
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {

@@ -8,6 +8,7 @@ namespace {
 struct Options {
   PartCommand command;
   std::vector<std::string> positive, negative;
+  std::string like;
   bool replace = true, remove = false;
   EditOutput output;
 };
@@ -16,6 +17,7 @@ PartCommand command_of(const Options& o) {
   PartCommand c = o.command;
   c.positive = parse_pixels(o.positive, "--positive");
   c.negative = parse_pixels(o.negative, "--negative");
+  if (!o.like.empty()) c.like = parse_pixels({o.like}, "--like").front();
   c.effects.replace = !c.effects.color.empty() && o.replace;
   return c;
 }
@@ -33,12 +35,22 @@ void add_where(CLI::App* verb, Options& o) {
       "--positive", o.positive, "Clicks on the part, X,Y ... (column, row from the top left corner)");
   CLI::Option* negative =
       verb->add_option("--negative", o.negative, "Clicks that are not on the part, X,Y ...");
-  verb->add_option("--mask", c.mask,
-                   "Instead of clicks: a PNG of the view's size that shows the whole part, opaque, or bright "
-                   "if it is opaque everywhere")
-      ->excludes(positive)
-      ->excludes(negative)
-      ->check(CLI::ExistingFile);
+  CLI::Option* mask =
+      verb->add_option(
+              "--mask", c.mask,
+              "Instead of clicks: a PNG of the view's size that shows the whole part, opaque, or bright "
+              "if it is opaque everywhere")
+          ->excludes(positive)
+          ->excludes(negative)
+          ->check(CLI::ExistingFile);
+  CLI::Option* like =
+      verb->add_option("--like", o.like,
+                       "Instead of clicks: X,Y of a pixel; selects all surface with the material seen there "
+                       "(roughness within 0.1, metalness within 0.25), wherever it is")
+          ->excludes(positive)
+          ->excludes(negative)
+          ->excludes(mask);
+  verb->add_flag("--like-color", c.like_color, "With --like: and with a similar color")->needs(like);
   verb->add_option("--segmenter", c.segmenter,
                    "How the part is found. grow: in 3D by color and creases, about a second. sam: in images "
                    "by a network that `./run sam` installs")
@@ -68,6 +80,7 @@ void add_part_effects(CLI::App* verb, Options& o) {
           "With --color: scale the texture so that its mean is the color, instead of replacing it")
       ->needs(color);
   add_material_values(verb, e);
+  add_blend(verb, e);
   verb->add_flag("--remove", o.remove,
                  "Also remove the part and close the surface behind it, as a second edit")
       ->excludes(color);
@@ -78,7 +91,9 @@ void add_part_effects(CLI::App* verb, Options& o) {
 void add_edit_part(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add(
-      "part", "Select a part by clicks in one view; name it, recolor it, change its material", edit);
+      "part",
+      "Select a part by clicks or by its material in one view; name it, recolor it, change its material",
+      edit);
   add_where(verb, *o);
   add_name(verb, o->command);
   add_part_effects(verb, *o);

@@ -12,13 +12,27 @@ struct Options {
 
 std::string state_of(const LogEntry& e) { return !e.done ? "undone" : e.enabled ? "on" : "off"; }
 
+// "128,96" of a pixel or a point; empty for lists of lists and the like.
+std::string numbers_text(const Json& list) {
+  std::string text;
+  for (const Json& j : list) {
+    if (!j.is_number()) return "";
+    text += fmt::format("{}{:.6g}", text.empty() ? "" : ",", j.get<double>());
+  }
+  return text;
+}
+
+std::string value_text(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  return value.is_structured() ? numbers_text(value) : value.dump();
+}
+
 // The edit's parameters: "part ear, roughness 0.5".
 std::string what_of(const LogEntry& e) {
   std::string text;
   for (const auto& [key, value] : e.params.items()) {
-    if (key == "seed" || value.is_structured()) continue;
-    const std::string shown = value.is_string() ? value.get<std::string>() : value.dump();
-    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, shown);
+    const std::string shown = key == "seed" ? "" : value_text(value);
+    if (!shown.empty()) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", key, shown);
   }
   return text;
 }

@@ -25,8 +25,9 @@ void add_output(CLI::App* verb, EditOutput&);
 // Prints the report of an edit and writes its --picture.
 void finish_edit(Session&, Console&, const EditSummary&, std::string text, const EditOutput&);
 
-// --roughness, --specular, --metalness
+// --material, --roughness, --roughness-scale, --specular, --metalness
 void add_material_values(CLI::App* verb, MaterialEffects&);
+void add_blend(CLI::App* verb, MaterialEffects&);
 // Those and --color, --replace.
 void add_effects(CLI::App* verb, MaterialEffects&);
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/edit/material.h"
 
+#include <cmath>
+
 #include "core/base/error.h"
 #include "model/scene/appearance.h"
 #include "model/scene/parts.h"
@@ -16,9 +18,7 @@ void check_share(const std::optional<float>& value, const char* name) {
 void check_request(const MaterialRequest& r) {
   if (r.change.empty() && !r.color)
     fail_usage("Nothing to change: give a roughness, a specular, a metalness or a color.");
-  check_share(r.change.roughness, "Roughness");
-  check_share(r.change.specular, "Specular");
-  check_share(r.change.metalness, "Metalness");
+  check_change(r.change);
   for (int c = 0; r.color && c < 3; ++c) check_share((*r.color)[c], "A channel of the color,");
 }
 
@@ -62,6 +62,16 @@ Vec3f mean_color(const Device& device, const Scene& scene, const Inside& inside)
 
 }  // namespace
 
+void check_change(const MaterialChange& c) {
+  check_share(c.roughness, "Roughness");
+  check_share(c.specular, "Specular");
+  check_share(c.metalness, "Metalness");
+  check_share(c.blend, "Blend");
+  if (c.roughness && c.roughness_scale) fail_usage("Give a roughness or a scale of the roughness, not both.");
+  if (c.roughness_scale && !(*c.roughness_scale >= 0 && std::isfinite(*c.roughness_scale)))
+    fail_usage("Roughness scale {} is not a number from 0 up.", *c.roughness_scale);
+}
+
 Vec3f mean_color_inside(const Device& device, const Scene& scene, const EditLayer& layer) {
   const Inside inside(scene, layer);
   if (inside.hits.empty()) fail("The part is nowhere on the surface as it is now; was it removed?");
@@ -88,7 +98,7 @@ MaterialResult change_material(const Device& device, const Scene& scene, const M
     fail("Part '{}' is nowhere on the surface as it is now; was it removed?", request.part);
   result.report.points = inside.hits.size();
   if (request.color) {
-    layer.tint = Tint{*request.color, request.keep_texture, {1, 1, 1}};
+    layer.tint = Tint{*request.color, request.keep_texture, {1, 1, 1}, request.change.blend};
     if (request.keep_texture) layer.tint->mean = mean_color(device, scene, inside);
     result.report.mean = layer.tint->mean;
   }

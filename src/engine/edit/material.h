@@ -11,9 +11,9 @@
 namespace cei3d {
 
 struct MaterialRequest {
-  std::string id;    // of the new layer
-  std::string part;  // empty: the whole object
-  MaterialChange change;
+  std::string id;              // of the new layer
+  std::string part;            // empty: the whole object
+  MaterialChange change;       // its blend is also that of the color
   std::optional<Vec3f> color;  // linear
   bool keep_texture = true;    // scale the present texture to the color instead of replacing it
 };
@@ -29,9 +29,12 @@ struct MaterialResult {
   MaterialReport report;
 };
 
-// Usage errors: nothing to change, values outside [0, 1] or not finite, no such part. Error: the part has no
-// surface any more.
+// Usage errors: nothing to change, values outside [0, 1], a negative scale, anything not finite, no such
+// part. Error: the part has no surface any more.
 MaterialResult change_material(const Device&, const Scene&, const MaterialRequest&);
+
+// Usage errors: values outside [0, 1], a negative scale, anything not finite, a roughness and a scale.
+void check_change(const MaterialChange&);
 
 // Mean linear albedo below the layer over the surface in its region, weighted by area. Error: the region is
 // empty.

@@ -9,6 +9,7 @@
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/math/rng.h"
+#include "engine/edit/material.h"
 #include "engine/edit/relearn.h"
 #include "engine/render/scene_light.h"
 #include "model/scene/appearance.h"
@@ -31,6 +32,21 @@ void check_stroke(const Stroke& s) {
   if (s.painted_pixels == s.missed_pixels)
     fail("none of the {} painted pixels is on the object as this view sees it; is it the right view?",
          s.painted_pixels);
+}
+
+void check_material(const PaintRequest& r) {
+  check_change(r.material);
+  if (r.routing == Routing::none && (r.color || !r.material.empty()))
+    fail_usage("Paint with a material needs to know where; use another --routing.");
+}
+
+void check_opacity(const std::vector<Stroke>& strokes) {
+  for (const Stroke& s : strokes)
+    if (std::any_of(s.coverage.begin(), s.coverage.end(), [](float c) { return c > kMaterialWeight; }))
+      return;
+  fail(
+      "the paint is nowhere more opaque than one half, and a material is painted only from there; paint with "
+      "a higher alpha");
 }
 
 // Targets of all scribbles together.
@@ -61,12 +77,14 @@ void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
   }
 }
 
-// Replaces the targets by the albedos that show them in the light; returns the fraction of the targets that
-// no albedo reaches.
-float solve_for_albedo(const Device& device, const Scene& scene, const SceneLight& light, Paint& paint) {
+// Replaces the targets by the albedos that show them in the light once the material is changed; returns the
+// fraction of the targets that no albedo reaches.
+float solve_for_albedo(const Device& device, const Scene& scene, const SceneLight& light,
+                       const MaterialChange& change, Paint& paint) {
   constexpr float kVisible = 0.02f;  // linear radiance
-  const std::vector<ShadingTerms<float>> terms =
-      light.terms(paint.hits, appearance_at(device, scene, paint.hits));
+  Appearance appearance = appearance_at(device, scene, paint.hits);
+  for (Material& m : appearance.material) m = changed(m, change);
+  const std::vector<ShadingTerms<float>> terms = light.terms(paint.hits, appearance);
   size_t outside = 0;
   for (size_t i = 0; i < paint.hits.size(); ++i) {
     const Vec3f target = paint.targets[i], gain = terms[i].gain(), offset = terms[i].specular_offset;
@@ -134,6 +152,17 @@ std::shared_ptr<const Field> fit_branch(const Device& device, const Paint& s, ui
   return field;
 }
 
+// The same color everywhere, exactly.
+std::shared_ptr<const Field> uniform_branch(Vec3f color) {
+  FieldConfig c;
+  c.hidden_layers = 0;
+  auto field = std::make_shared<Field>(c, 0);
+  for (Param& p : field->params().all()) std::fill(p.value.begin(), p.value.end(), 0.0f);
+  Param& bias = field->params().all().back();
+  for (int i = 0; i < 3; ++i) bias.value[i] = color[i];
+  return field;
+}
+
 void measure_branch(const Device& device, const Field& branch, const Paint& s, PaintReport& report) {
   std::vector<Vec3f> x;
   std::vector<size_t> index;
@@ -195,25 +224,32 @@ void count(const std::vector<Stroke>& strokes, const std::vector<Region>& region
 PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& request, Progress& progress) {
   PaintResult result;
   PaintReport& report = result.report;
+  check_material(request);
   const double start = steady_seconds();
   const std::vector<Stroke> strokes = trace_strokes(device, scene, request);
+  if (!request.material.empty()) check_opacity(strokes);
   std::vector<Region> regions;
   for (const Stroke& s : strokes) regions.push_back(stroke_region(s, request.routing));
   count(strokes, regions, report);
   Paint paint;
   for (size_t i = 0; i < strokes.size(); ++i)
     add_stroke(strokes[i], std::span(regions).subspan(i + 1), paint);
-  if (request.seen_in) report.out_of_reach = solve_for_albedo(device, scene, *request.seen_in, paint);
+  if (request.color) std::fill(paint.targets.begin(), paint.targets.end(), *request.color);
+  if (request.seen_in)
+    report.out_of_reach = solve_for_albedo(device, scene, *request.seen_in, request.material, paint);
   const double traced = steady_seconds();
   progress.report({"paint", 0.2, -1, ""});
   result.layer.id = request.id;
-  result.layer.erase = request.erase;
+  result.layer.erase = result.layer.erase_material = request.erase;
   result.layer.unlit = request.unlit;
+  result.layer.material = request.material;
   if (request.routing == Routing::none) {
     result.layer.everywhere = true;
     result.layer.albedo = relearn_all(device, scene, request, paint, regions, progress);
   } else {
-    if (!request.erase) result.layer.albedo = fit_branch(device, paint, request.seed, progress);
+    if (!request.erase)
+      result.layer.albedo =
+          request.color ? uniform_branch(*request.color) : fit_branch(device, paint, request.seed, progress);
     result.layer.region = std::move(regions.front());
     result.layer.also.assign(std::make_move_iterator(regions.begin() + 1),
                              std::make_move_iterator(regions.end()));

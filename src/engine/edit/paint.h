@@ -3,6 +3,7 @@
 // sec. 4.3, eq. 17; docs/method.md#edit-layers]
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/base/progress.h"
@@ -25,11 +26,13 @@ struct PaintRequest {
   std::vector<Scribble> scribbles;  // later scribbles cover earlier ones
   std::string id;                   // of the new layer
   uint64_t seed = 1;                // for the branch's weights and batches
-  bool erase = false;               // restore the base's albedo; the scribbles' colors are ignored
+  bool erase = false;  // restore the base's albedo and material; the scribbles' colors are ignored
   Routing routing = Routing::both;
   bool unlit = false;  // show the painted color as it is, under every light
   // null: the painted colors are display colors of the albedo. Else: of the radiance under this light.
   const SceneLight* seen_in = nullptr;
+  MaterialChange material{};     // of what is painted with a weight above kMaterialWeight
+  std::optional<Vec3f> color{};  // linear; instead of the scribbles' colors
 };
 
 struct PaintReport {
@@ -47,7 +50,8 @@ struct PaintResult {
 };
 
 // Pure: the scene is not changed. Errors: no scribble, wrong size, no alpha or nothing painted, no painted
-// pixel on the surface, cancelled.
+// pixel on the surface, a material of strokes that are too transparent for one, cancelled. Usage errors:
+// those of check_change(), a material or color without a region.
 PaintResult paint(const Device&, const Scene&, const PaintRequest&, Progress&);
 
 }  // namespace cei3d

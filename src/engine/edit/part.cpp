@@ -5,6 +5,7 @@
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "engine/edit/handler_colors.h"
+#include "engine/edit/like.h"
 #include "engine/edit/material.h"
 #include "engine/edit/part_seeds.h"
 #include "engine/segment/grow.h"
@@ -22,6 +23,7 @@ constexpr const char* kInterrupted = "Selecting the part was interrupted; nothin
 
 std::vector<float> selected(const Device& device, const Scene& scene, const PartRequest& r,
                             std::span<const Seed> seeds, Progress& progress) {
+  if (r.like) return like_scores(device, scene, r);
   if (r.network) return r.network(scene, r, progress);
   return grow(*scene.handlers, handler_colors(device, scene), seeds);
 }
@@ -80,7 +82,7 @@ void check_size(size_t points, size_t all, const PartRequest& r) {
 void set_effects(const Device& device, const Scene& scene, const PartRequest& r, EditLayer& layer) {
   layer.material = r.change;
   if (!r.color) return;
-  Tint tint{*r.color, r.keep_texture, {1, 1, 1}};
+  Tint tint{*r.color, r.keep_texture, {1, 1, 1}, r.change.blend};
   if (r.keep_texture) tint.mean = mean_color_inside(device, scene, layer);
   layer.tint = tint;
 }
@@ -97,9 +99,10 @@ double vertex_share(const Scene& scene, const EditLayer& layer) {
 PartResult select_part(const Device& device, const Scene& scene, const PartRequest& r, Progress& progress) {
   if (!scene.handlers || scene.handlers->positions.empty())
     fail("The object has no handler points to select a part of; reconstruct it again.");
+  check_change(r.change);
   const double start = steady_seconds();
   if (r.combination) part_layer(scene, r.combination->part);  // an error before the work
-  const std::vector<Seed> seeds = part_seeds(device, scene, r);
+  const std::vector<Seed> seeds = r.like ? std::vector<Seed>() : part_seeds(device, scene, r);
   progress.report({"part", 0.1, -1, ""});
   const double seeded = steady_seconds();
   std::vector<float> scores = selected(device, scene, r, seeds, progress);

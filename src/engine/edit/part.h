@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `edit part`: turns clicks or a mask in one view into a part of the object; its color and material may
-// change in the same edit. [paper sec. 4.3, CPS; docs/method.md#parts]
+// `edit part`: turns clicks, a mask or a clicked material in one view into a part of the object; its color
+// and material may change in the same edit. [paper sec. 4.3, CPS; docs/method.md#parts]
 #pragma once
 
 #include <functional>
@@ -23,19 +23,26 @@ struct PartCombination {
   std::string part;
 };
 
+// A part by what it is made of.
+struct PartLikeness {
+  Vec2f pixel;         // of the view; the surface seen there is the example
+  bool color = false;  // its base color counts, too
+};
+
 struct PartRequest {
   std::string id;    // of the new layer
   std::string name;  // of the part
   std::string view;  // name of the view, for error messages
   Camera camera;     // of the view, unit frame
-  Prompts clicks;    // in the view; at least one positive unless there is a mask
+  Prompts clicks;    // in the view; at least one positive unless there is a mask or a likeness
   Image mask;        // instead of clicks: 1 channel, of the view's size; inside where >= 0.5
+  std::optional<PartLikeness> like;  // instead of clicks: what has the material of this pixel
   // If set, finds the part from the clicks instead of growing it on the handler points. Returns #handlers
   // scores in [0, 1].
   std::function<std::vector<float>(const Scene&, const PartRequest&, Progress&)> network;
   bool in_view = false;  // only what the view shows of the part, for comparison
   std::optional<PartCombination> combination;
-  MaterialChange change;
+  MaterialChange change;       // its blend is also that of the color
   std::optional<Vec3f> color;  // linear
   bool keep_texture = false;   // scale the present texture to the color instead of replacing it
 };
@@ -53,7 +60,8 @@ struct PartResult {
 
 // Pure: the scene is not changed. Usage errors: no positive click, clicks outside the image, a positive and a
 // negative click on the same point, a mask of another size, no part to combine with. Errors: clicks on the
-// background, a mask without any of the object, a part that is empty or the whole object, cancelled.
+// background, a mask without any of the object, a likeness that the whole object has, a part that is empty or
+// the whole object, cancelled.
 PartResult select_part(const Device&, const Scene&, const PartRequest&, Progress&);
 
 }  // namespace cei3d

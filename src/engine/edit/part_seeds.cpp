@@ -11,28 +11,17 @@
 namespace cei3d {
 namespace {
 
-void check_clicks(const PartRequest& r) {
-  if (r.clicks.positive.empty()) fail_usage("Give a --positive click on the part, or a --mask.");
-  for (const auto* list : {&r.clicks.positive, &r.clicks.negative})
-    for (const Vec2f p : *list)
-      if (!(p.x >= 0 && p.y >= 0 && p.x <= float(r.camera.width) && p.y <= float(r.camera.height)))
-        fail_usage("Click {:.6g},{:.6g} is not in view {}, which is {}x{}.", p.x, p.y, r.view, r.camera.width,
-                   r.camera.height);
-}
-
 std::vector<SurfacePoint> clicked_points(const Device& device, const Scene& scene, const PartRequest& r,
                                          std::span<const Vec2f> pixels) {
-  std::vector<Ray> rays;
-  for (const Vec2f p : pixels) rays.push_back(r.camera.ray(p.x, p.y));
-  std::vector<uint32_t> ray_of_hit;
-  const std::vector<Hit> hits = trace_rays(device, scene, rays, ray_of_hit);
-  for (size_t i = 0; i < pixels.size(); ++i)
-    if (i >= ray_of_hit.size() || ray_of_hit[i] != i)
-      fail("View {} shows the background at {:.6g},{:.6g}; click on the object.", r.view, pixels[i].x,
-           pixels[i].y);
   std::vector<SurfacePoint> points;
-  for (const Hit& h : hits) points.push_back({h.position, h.normal});
+  for (const Hit& h : clicked_hits(device, scene, r, pixels)) points.push_back({h.position, h.normal});
   return points;
+}
+
+void check_pixel(Vec2f p, const PartRequest& r) {
+  if (!(p.x >= 0 && p.y >= 0 && p.x <= float(r.camera.width) && p.y <= float(r.camera.height)))
+    fail_usage("Click {:.6g},{:.6g} is not in view {}, which is {}x{}.", p.x, p.y, r.view, r.camera.width,
+               r.camera.height);
 }
 
 // Seeds of a mask: points that the view shows well, about a pixel away from the mask's border. Points on the
@@ -59,9 +48,25 @@ std::vector<Seed> mask_seeds(const Scene& scene, const PartRequest& r) {
 
 }  // namespace
 
+std::vector<Hit> clicked_hits(const Device& device, const Scene& scene, const PartRequest& r,
+                              std::span<const Vec2f> pixels) {
+  std::vector<Ray> rays;
+  for (const Vec2f p : pixels) {
+    check_pixel(p, r);
+    rays.push_back(r.camera.ray(p.x, p.y));
+  }
+  std::vector<uint32_t> ray_of_hit;
+  const std::vector<Hit> hits = trace_rays(device, scene, rays, ray_of_hit);
+  for (size_t i = 0; i < pixels.size(); ++i)
+    if (i >= ray_of_hit.size() || ray_of_hit[i] != i)
+      fail("View {} shows the background at {:.6g},{:.6g}; click on the object.", r.view, pixels[i].x,
+           pixels[i].y);
+  return hits;
+}
+
 std::vector<Seed> part_seeds(const Device& device, const Scene& scene, const PartRequest& r) {
   if (!r.mask.empty()) return mask_seeds(scene, r);
-  check_clicks(r);
+  if (r.clicks.positive.empty()) fail_usage("Give a --positive click on the part, or a --mask.");
   return click_seeds(*scene.handlers, clicked_points(device, scene, r, r.clicks.positive),
                      clicked_points(device, scene, r, r.clicks.negative));
 }

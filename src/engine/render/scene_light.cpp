@@ -154,7 +154,8 @@ SeenMaterials SceneLight::materials_as_of(int layer, int pose) const {
   for (int l = 0; l <= layer; ++l) {
     const EditLayer& layer_l = scene_.layers[size_t(l)];
     if (!was_on(layer_l, pose)) continue;
-    changed = changed || layer_l.albedo || layer_l.erase || layer_l.tint || !layer_l.material.empty();
+    changed = changed || layer_l.albedo || layer_l.erase || layer_l.erase_material || layer_l.tint ||
+              !layer_l.material.empty();
     stored = stored && !layer_l.content.empty();
     key.layers += layer_l.content + " ";
   }

@@ -28,6 +28,7 @@ Aspects depends(const Json& params) {
 
 }  // namespace
 
-const EditOp kMaterialOp{"material", 1, make, depends};
+// Version 2: scales, blends and presets.
+const EditOp kMaterialOp{"material", 2, make, depends};
 
 }  // namespace cei3d

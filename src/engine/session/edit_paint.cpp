@@ -9,6 +9,7 @@
 #include "engine/io/png_file.h"
 #include "engine/render/render_cache.h"
 #include "engine/session/edit_ops.h"
+#include "engine/session/edit_params.h"
 #include "engine/session/requests.h"
 
 namespace cei3d {
@@ -83,6 +84,9 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
   request.seed = params.require<uint64_t>("seed");
   request.erase = params.optional("erase", false);
   request.routing = routing_of(params);
+  const Effects effects = effects_from_params(params);
+  request.material = effects.change;
+  request.color = effects.color;
   const PaintTarget target = target_of(params);
   request.unlit = target == PaintTarget::radiance;
   params.has("view");  // the names of the strokes' views, for lists
@@ -119,6 +123,7 @@ Aspects depends(const Json& stored) {
 
 }  // namespace
 
-const EditOp kPaintOp{"paint", 2, make, depends, migrate};
+// Version 2: several strokes; version 3: materials, also erased ones.
+const EditOp kPaintOp{"paint", 3, make, depends, migrate};
 
 }  // namespace cei3d

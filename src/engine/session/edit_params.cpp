@@ -3,9 +3,12 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/name_distance.h"
 #include "core/math/color.h"
+#include "model/material/presets.h"
 
 namespace cei3d {
 namespace {
@@ -14,6 +17,25 @@ void put_share(const std::optional<double>& value, const char* name, Json& param
   if (!value) return;
   if (!(*value >= 0 && *value <= 1)) fail_usage("--{} {} is not in the range from 0 to 1.", name, *value);
   params[name] = *value;
+}
+
+void check_effects(const MaterialEffects& e) {
+  if (!e.preset.empty())
+    if (const std::string problem = unknown_preset(e.preset); !problem.empty()) fail_usage("{}", problem);
+  if (e.blend && e.empty()) fail_usage("--blend needs something to blend: --material, --color or a value.");
+  if (e.roughness && e.roughness_scale) fail_usage("Give --roughness or --roughness-scale, not both.");
+  if (e.roughness_scale && !(*e.roughness_scale >= 0 && std::isfinite(*e.roughness_scale)))
+    fail_usage("--roughness-scale {} is not a number from 0 up.", *e.roughness_scale);
+  if (e.replace && e.color.empty()) fail_usage("--replace goes with --color.");
+  if (!e.color.empty()) color_from_text(e.color);
+}
+
+void put_preset(const MaterialPreset& preset, Effects& e) {
+  e.change.roughness = preset.material.roughness;
+  e.change.specular = preset.material.specular;
+  e.change.metalness = preset.material.metalness;
+  e.color = preset.color;
+  e.replace = true;
 }
 
 }  // namespace
@@ -30,22 +52,56 @@ Vec3f color_from_text(const std::string& text) {
   return color;
 }
 
+std::string material_preset_names() {
+  std::string names;
+  for (const MaterialPreset& p : material_presets())
+    names += (names.empty() ? "" : ", ") + std::string(p.name);
+  return names;
+}
+
+std::string unknown_preset(const std::string& name) {
+  if (find_material_preset(name)) return "";
+  constexpr size_t kNear = 2;  // letters
+  std::string near;
+  for (const MaterialPreset& p : material_presets())
+    if (name_distance(name, p.name) <= kNear) near += (near.empty() ? "" : ", ") + std::string(p.name);
+  const std::string problem = fmt::format("There is no material '{}'; ", name);
+  return problem + (near.empty() ? "there are: " + material_preset_names() : "near names are: " + near) + ".";
+}
+
 Effects effects_from_params(JsonReader& params) {
   Effects e;
-  e.change = {params.optional<float>("roughness"), params.optional<float>("specular"),
-              params.optional<float>("metalness")};
-  if (const auto color = params.optional<std::string>("color")) e.color = color_from_text(*color);
-  e.replace = params.optional("replace", false);
+  if (const auto name = params.optional<std::string>("material")) {
+    const MaterialPreset* preset = find_material_preset(*name);
+    if (!preset)
+      fail("{} has the material '{}', which this program does not know; update cei3d.", params.what(), *name);
+    put_preset(*preset, e);
+  }
+  if (const auto r = params.optional<float>("roughness")) e.change.roughness = r;
+  if (const auto s = params.optional<float>("specular")) e.change.specular = s;
+  if (const auto m = params.optional<float>("metalness")) e.change.metalness = m;
+  if (const auto s = params.optional<float>("roughness_scale")) {
+    e.change.roughness_scale = s;
+    e.change.roughness.reset();
+  }
+  e.change.blend = params.optional("blend", 1.0f);
+  const bool replace = params.optional("replace", false);
+  if (const auto color = params.optional<std::string>("color")) {
+    e.color = color_from_text(*color);
+    e.replace = replace;
+  }
   return e;
 }
 
 void put_effects(const MaterialEffects& effects, Json& params) {
+  check_effects(effects);
+  if (!effects.preset.empty()) params["material"] = effects.preset;
   put_share(effects.roughness, "roughness", params);
   put_share(effects.specular, "specular", params);
   put_share(effects.metalness, "metalness", params);
-  if (effects.replace && effects.color.empty()) fail_usage("--replace goes with --color.");
+  if (effects.roughness_scale) params["roughness_scale"] = *effects.roughness_scale;
+  put_share(effects.blend, "blend", params);
   if (effects.color.empty()) return;
-  color_from_text(effects.color);
   params["color"] = effects.color;
   if (effects.replace) params["replace"] = true;
 }

@@ -19,6 +19,13 @@ std::vector<Vec2f> pixels_from(JsonReader& params, const char* key) {
   return pixels;
 }
 
+std::optional<PartLikeness> likeness_from(JsonReader& params) {
+  const bool color = params.optional("like_color", false);
+  if (!params.has("like")) return std::nullopt;
+  const auto [x, y] = params.numbers<2>("like");
+  return PartLikeness{{float(x), float(y)}, color};
+}
+
 // Inside where it is opaque, when it is not so everywhere; else where it is bright.
 Image decode_mask(const std::string& bytes, const std::string& name) {
   if (image_format(bytes, name) != ImageFormat::png) fail("{} is not a PNG; save the mask as one.", name);
@@ -75,6 +82,7 @@ PartRequest request_of(const EditContext& context, const EditJob& job) {
                                              Progress& progress) {
       return scores_by_network(context, name, scene, request, progress);
     };
+  r.like = likeness_from(params);
   r.in_view = params.optional("in_view", false);
   r.combination = combination_from(params);
   params.finish();
@@ -95,7 +103,7 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
             {{"clicks", r.seed_seconds}, {"select", r.select_seconds}, {"effects", r.color_seconds}}}}};
 }
 
-// Color decides where a part ends.
+// Color and material decide where a part ends.
 Aspects depends(const Json& params) {
   JsonReader reader(params, "The parameters of a part");
   return {.shape = true, .look = true, .parts = combination_from(reader).has_value()};
@@ -103,6 +111,7 @@ Aspects depends(const Json& params) {
 
 }  // namespace
 
-const EditOp kPartOp{"part", 1, make, depends};
+// Version 2: scales, blends and presets; parts of like material.
+const EditOp kPartOp{"part", 2, make, depends};
 
 }  // namespace cei3d

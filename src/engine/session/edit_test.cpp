@@ -16,6 +16,7 @@
 #include "engine/render/render_cache.h"
 #include "engine/render/sphere_scene.h"
 #include "engine/session/session.h"
+#include "model/material/presets.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {
@@ -161,6 +162,135 @@ TEST_F(EditTest, MaterialOfAPartStaysInThePart) {
   EXPECT_EQ(b.diffuse.data[4 * middle], 0);  // a metal
 }
 
+TEST_F(EditTest, MaterialsAreScaledAndBlendedOnTopOfEachOther) {
+  add_part("cap", {0, -kSphereRadius, 0}, 0.4f);
+  const Scene before = scene("a");
+  const Material base = before.material.mean();
+  const std::vector<Hit> hits = vertex_hits(before.surface->mesh());
+  const Appearance was = appearance_at(session_.device(), before, hits);
+  MaterialCommand scale, blend{"cap", {}};
+  scale.effects.roughness_scale = 0.5;
+  blend.effects.preset = "gold";
+  blend.effects.blend = 0.25;
+  session_.change_material(scale, quiet_);
+  session_.change_material(blend, quiet_);
+  const Appearance is = appearance_at(session_.device(), scene("a"), hits);
+  const MaterialPreset& gold = *find_material_preset("gold");
+  size_t inside = 0;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const bool in = was.layer[i] == 0;
+    inside += in;
+    const float half = 0.5f * base.roughness;
+    EXPECT_FLOAT_EQ(is.material[i].roughness, in ? 0.75f * half + 0.25f * gold.material.roughness : half);
+    EXPECT_EQ(is.material[i].metalness, in ? 0.25f : 0);
+    for (int c = 0; c < 3; ++c) {
+      if (in) {
+        EXPECT_FLOAT_EQ(is.albedo[i][c], 0.75f * was.albedo[i][c] + 0.25f * gold.color[c]);
+      } else {
+        EXPECT_EQ(is.albedo[i][c], was.albedo[i][c]);
+      }
+    }
+  }
+  EXPECT_GT(inside, 100u);
+  // Without the first, the second blends with what the object has by itself.
+  session_.toggle("0002-material", quiet_);
+  const Appearance left = appearance_at(session_.device(), scene("a"), hits);
+  for (size_t i = 0; i < hits.size(); ++i)
+    if (was.layer[i] != 0) {
+      EXPECT_EQ(left.material[i], base);
+    }
+}
+
+TEST_F(EditTest, APresetSetsWhatTheCommandDoesNot) {
+  const auto edited = [&](const MaterialEffects& effects) {
+    session_.change_material({"", effects}, quiet_);
+    const EditLayer layer = scene("a").layers.back();
+    session_.undo(quiet_);
+    return layer;
+  };
+  const MaterialPreset& copper = *find_material_preset("copper");
+  MaterialEffects e;
+  e.preset = "copper";
+  EditLayer layer = edited(e);
+  EXPECT_EQ(changed({}, layer.material), copper.material);
+  EXPECT_EQ(layer.tint->color.y, copper.color.y);
+  EXPECT_FALSE(layer.tint->keep_texture);
+  e.roughness = 0.75;
+  e.color = "#808080";
+  layer = edited(e);
+  EXPECT_EQ(layer.material.roughness, 0.75f);
+  EXPECT_EQ(layer.material.metalness, 1.0f);
+  EXPECT_TRUE(layer.tint->keep_texture);
+  e.roughness.reset();
+  e.roughness_scale = 2;
+  layer = edited(e);
+  EXPECT_EQ(layer.material.roughness, std::nullopt);
+  EXPECT_EQ(layer.material.roughness_scale, 2.0f);
+}
+
+TEST_F(EditTest, AnEraserTakesGoldLeafOffAgain) {
+  PaintCommand gold = scribble(0, {0.8f, 0.1f, 0.1f}, 6);
+  gold.material.preset = "gold";
+  session_.paint(gold, quiet_);
+  PaintCommand eraser = scribble(0, {0, 0, 0}, 10);
+  eraser.erase = true;
+  session_.paint(eraser, quiet_);
+  const Scene after = scene("a");
+  Scene before = after;
+  before.layers.clear();
+  const std::vector<Hit> hits = vertex_hits(after.surface->mesh());
+  const Appearance was = appearance_at(session_.device(), before, hits),
+                   is = appearance_at(session_.device(), after, hits);
+  for (size_t i = 0; i < hits.size(); ++i) {
+    EXPECT_EQ(is.material[i], was.material[i]);
+    EXPECT_EQ(std::memcmp(&is.albedo[i], &was.albedo[i], sizeof(Vec3f)), 0);
+  }
+}
+
+TEST_F(EditTest, GoldLeafIsPaintedAndUndone) {
+  const Scene before = scene("a");
+  PaintCommand c = scribble(0, {0.8f, 0.1f, 0.1f}, 8);
+  c.material.preset = "gold";
+  c.material.roughness = 0.5;
+  session_.paint(c, quiet_);
+  const LogEntry entry = session_.log().back();
+  EXPECT_EQ(entry.params.at("material"), "gold");
+  EXPECT_EQ(entry.params.at("roughness"), 0.5);
+  const std::vector<Hit> hits = vertex_hits(before.surface->mesh());
+  const Appearance was = appearance_at(session_.device(), before, hits),
+                   is = appearance_at(session_.device(), scene("a"), hits);
+  const Vec3f gold = find_material_preset("gold")->color;
+  size_t inside = 0;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const bool in = is.layer[i] == 0;
+    inside += in;
+    EXPECT_EQ(is.material[i].metalness, in ? 1 : 0);
+    EXPECT_EQ(is.material[i].roughness, in ? 0.5f : was.material[i].roughness);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(is.albedo[i][k], in ? gold[k] : was.albedo[i][k]);
+  }
+  EXPECT_GT(inside, 100u);
+  session_.undo(quiet_);
+  EXPECT_EQ(bytes_of(scene("a")), bytes_of(before));
+}
+
+TEST_F(EditTest, PaintRefusesAMaterialThatMakesNoSense) {
+  const std::string before = files_of(folder("a"));
+  const auto code = [&](const std::function<void(PaintCommand&)>& set) {
+    PaintCommand c = scribble(0, {0.8f, 0.1f, 0.1f}, 6);
+    c.material.preset = "gold";
+    set(c);
+    return error_of([&] { session_.paint(c, quiet_); }).code();
+  };
+  EXPECT_EQ(code([](PaintCommand& c) { c.erase = true; }), ErrorCode::usage);
+  EXPECT_EQ(code([](PaintCommand& c) { c.routing = Routing::none; }), ErrorCode::usage);
+  EXPECT_EQ(code([](PaintCommand& c) { c.target = PaintTarget::radiance; }), ErrorCode::usage);
+  EXPECT_EQ(code([](PaintCommand& c) { c.target = PaintTarget::appearance; }), ErrorCode::usage);
+  EXPECT_EQ(code([](PaintCommand& c) { c.material.preset = "gild"; }), ErrorCode::usage);
+  EXPECT_EQ(code([](PaintCommand& c) { c.material.blend = 0.5; }), ErrorCode::usage);
+  EXPECT_EQ(code([](PaintCommand& c) { c.material.color = "#ffffff"; }), ErrorCode::usage);
+  EXPECT_EQ(files_of(folder("a")), before);
+}
+
 TEST_F(EditTest, WrongMaterialsChangeNothing) {
   add_part("cap", {0, -kSphereRadius, 0}, 0.4f);
   add_part("nothing", {0, 0, 3}, 0.1f);
@@ -175,6 +305,25 @@ TEST_F(EditTest, WrongMaterialsChangeNothing) {
     EXPECT_EQ(message(c).code(), ErrorCode::usage) << r;
   }
   c.effects.roughness = 0.5f;
+  c.effects.roughness_scale = 2;
+  EXPECT_THAT(message(c).what(), HasSubstr("not both"));
+  c.effects.roughness.reset();
+  for (const float s : {-0.1f, NAN, INFINITY}) {
+    c.effects.roughness_scale = s;
+    EXPECT_EQ(message(c).code(), ErrorCode::usage) << s;
+  }
+  c.effects = {};
+  c.effects.blend = 0.5;
+  EXPECT_THAT(message(c).what(), HasSubstr("Nothing to change"));
+  c.effects.roughness = 0.5f;
+  for (const float b : {-0.1f, 1.1f, NAN}) {
+    c.effects.blend = b;
+    EXPECT_EQ(message(c).code(), ErrorCode::usage) << b;
+  }
+  c.effects.blend.reset();
+  c.effects.preset = "sliver";
+  EXPECT_THAT(message(c).what(), HasSubstr("near names are: silver"));
+  c.effects.preset = "";
   c.part = "ear";
   EXPECT_EQ(message(c).code(), ErrorCode::usage);
   EXPECT_THAT(message(c).what(), HasSubstr("'cap', 'nothing'"));
@@ -288,6 +437,18 @@ class RandomEdits : public EditTest {
         return session.change_light({"", 30, EnvConvention::by_up_axis, 1}, quiet).id;
       case 4:
         return session.change_light({"", 0, EnvConvention::by_up_axis, 1.5}, quiet).id;
+      case 11: {
+        PaintCommand c = scribble(0, {0.1f, 0.7f, 0.2f}, 5);
+        c.material.preset = "copper";
+        return session.paint(c, quiet).id;
+      }
+      case 9:
+        m.effects.preset = "brass";
+        m.effects.blend = 0.3;
+        return session.change_material(m, quiet).id;
+      case 10:
+        m.effects.roughness_scale = 1.5;
+        return session.change_material(m, quiet).id;
       case 5:
         m.effects.specular = 0.2f;
         return session.change_material(m, quiet).id;
@@ -311,7 +472,7 @@ TEST_F(RandomEdits, AreShownWithTheBitsOfASessionThatJustOpened) {
     if (what < 6 || cursor == 0) {
       ids.resize(cursor);
       kinds.resize(cursor);
-      int kind = int(rng.below(9));
+      int kind = int(rng.below(12));
       if (std::find(kinds.begin(), kinds.end(), kind) != kinds.end()) kind = kind == 8 ? 8 : kind % 6;
       kinds.push_back(kind);
       ids.push_back(make_edit(kind));
@@ -348,7 +509,7 @@ TEST_F(RandomEdits, EndInTheSameBytesAsDoingWhatIsLeft) {
       Rng rng(seed, 7, step);
       const uint32_t what = rng.below(10);
       if (what < 5 || history.empty()) {
-        int kind = int(rng.below(9));
+        int kind = int(rng.below(12));
         history.resize(cursor);
         if (std::any_of(history.begin(), history.end(), [&](const Made& m) { return m.kind == kind; }))
           kind = kind == 8 ? 8 : kind % 6;

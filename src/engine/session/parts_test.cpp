@@ -96,6 +96,28 @@ TEST_F(PartsTest, ACombinedPartKeepsItsName) {
   EXPECT_THAT(error_of([&] { session_.toggle("0001-part", quiet_); }).what(), HasSubstr("0002-part"));
 }
 
+TEST_F(PartsTest, APartLikeAnEditedOneIsRemadeWithThatEdit) {
+  PartCommand metal = columns(24, 40);
+  metal.name = "plate";
+  metal.effects.preset = "copper";
+  session_.select_part(metal, quiet_);
+  PartCommand like;
+  like.view = "r_0";
+  like.like = {32, 32};
+  like.name = "all copper";
+  session_.select_part(like, quiet_);
+  const Json params = session_.log().back().params;
+  EXPECT_EQ(params.at("like"), Json({32.0, 32.0}));
+  const Image plate = mask_of("plate"), copper = mask_of("all copper");
+  for (int y = 26; y < 38; ++y)
+    for (int x = 18; x < 46; ++x)
+      if (std::abs(x + 0.5 - 24) > 2 && std::abs(x + 0.5 - 40) > 2) {
+        EXPECT_EQ(*copper.at(x, y), *plate.at(x, y)) << x << ' ' << y;
+      }
+  // Without the copper, the object has one material.
+  EXPECT_THAT(error_of([&] { session_.toggle("0001-part", quiet_); }).what(), HasSubstr("one material"));
+}
+
 TEST_F(PartsTest, WrongCommandsChangeNothing) {
   const auto code = [&](const PartCommand& c) {
     return error_of([&] { session_.select_part(c, quiet_); }).code();
@@ -110,6 +132,16 @@ TEST_F(PartsTest, WrongCommandsChangeNothing) {
   c = columns(10, 30);
   c.effects.roughness = 1.5f;
   EXPECT_EQ(code(c), ErrorCode::usage);
+  c = columns(10, 30);
+  c.like = {32, 32};
+  EXPECT_EQ(code(c), ErrorCode::usage);  // a mask, too
+  c = columns(10, 30);
+  c.like_color = true;
+  EXPECT_EQ(code(c), ErrorCode::usage);
+  c = {};
+  c.view = "r_0";
+  c.like = {32, 32};
+  EXPECT_THAT(error_of([&] { session_.select_part(c, quiet_); }).what(), HasSubstr("has one material"));
   c = columns(10, 30);
   c.segmenter = "sam";
   EXPECT_EQ(code(c), ErrorCode::usage);

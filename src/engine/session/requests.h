@@ -88,6 +88,23 @@ struct LogEntry {
   Json json() const;
 };
 
+// Another material or color.
+struct MaterialEffects {
+  std::string preset;  // name of a material, "gold"; its values count where there are none below
+  std::optional<double> roughness, specular, metalness;  // [0, 1]
+  std::optional<double> roughness_scale;                 // times the present roughness, cut off at 1
+  std::string color;     // "#RRGGBB", sRGB; empty: the preset's or the present
+  bool replace = false;  // the color replaces the texture instead of scaling it; a preset's always does
+  std::optional<double> blend;  // [0, 1], share of all this, the rest being what is there; none: 1
+  bool empty() const {
+    return preset.empty() && !roughness && !specular && !metalness && !roughness_scale && color.empty();
+  }
+};
+// For help: "gold, silver, ...".
+std::string material_preset_names();
+// Empty when there is a preset of that name; else a sentence that names those that are near.
+std::string unknown_preset(const std::string& name);
+
 struct PaintStroke {
   std::string view;                // a view's name
   std::filesystem::path scribble;  // RGBA PNG of the view's size
@@ -102,14 +119,9 @@ struct PaintCommand {
   uint64_t seed = 1;
   PaintTarget target = PaintTarget::albedo;  // what the colors of the scribble mean
   Routing routing = Routing::both;
-  bool erase = false;  // the base's own colors again where there is paint
-};
-// Another material or color.
-struct MaterialEffects {
-  std::optional<double> roughness, specular, metalness;  // [0, 1]
-  std::string color;                                     // "#RRGGBB", sRGB; empty: stays
-  bool replace = false;  // the color replaces the texture instead of scaling it
-  bool empty() const { return !roughness && !specular && !metalness && color.empty(); }
+  bool erase = false;  // the base's own colors and material again where there is paint
+  // Of what is painted. Its color can only be a preset's, which replaces those of the scribbles.
+  MaterialEffects material{};
 };
 struct MaterialCommand {
   std::string part;  // its name; empty: the whole object
@@ -131,11 +143,13 @@ struct DeformCommand {
   std::optional<double> radius;  // along the surface, capture units
   std::string part;              // empty: the whole object
 };
-// A part by clicks or a mask in one view, with or without effects on it.
+// A part by clicks, a mask or a clicked material in one view, with or without effects on it.
 struct PartCommand {
   std::string view;
   std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centers at +0.5
   std::filesystem::path mask;                    // PNG in place of clicks; empty: none
+  std::optional<Vec2<double>> like{};            // in place of clicks: what has the material of this pixel
+  bool like_color = false;                       // and its base color
   std::string segmenter = "grow";                // or "sam"
   bool in_view = false;                          // only what this view shows of the part
   std::string name;                      // empty: that of the part combined with, else "part1", "part2", ...

@@ -68,6 +68,24 @@ std::string version_note(const std::string& id, int version, const EditOp& op) {
                      id, version, op.name, op.version);
 }
 
+// Usage errors: what does not go together in one edit.
+void check_paint(const PaintCommand& c) {
+  const MaterialEffects& m = c.material;
+  if (c.erase && c.target != PaintTarget::albedo)
+    fail_usage("--erase paints no color that --target could be about.");
+  if (c.erase && c.routing == Routing::none)
+    fail_usage("--erase needs to know where; use another --routing.");
+  if (!m.color.empty()) fail_usage("Paint has the colors of its scribble; leave out --color.");
+  if (m.blend) fail_usage("Paint is blended by the scribble's alpha; leave out --blend.");
+  if (m.empty()) return;
+  if (c.erase) fail_usage("--erase restores what was there; it goes with no material.");
+  if (c.routing == Routing::none) fail_usage("A material needs to know where; use another --routing.");
+  if (c.target == PaintTarget::radiance)
+    fail_usage("With --target radiance light and material mean nothing; leave out the material.");
+  if (c.target != PaintTarget::albedo && !m.preset.empty())
+    fail_usage("--material {} paints its own color, which is an albedo; leave out --target.", m.preset);
+}
+
 bool toggle_edit(Project& project, const Tools& tools, const std::string& id) {
   Stack next = project.stack();
   next.toggle(id);
@@ -84,10 +102,7 @@ EditSummary Session::add_edit(const char* op, Json params, EditInputs inputs, Pr
 }
 
 EditSummary Session::paint(const PaintCommand& command, Progress& progress) {
-  if (command.erase && command.target != PaintTarget::albedo)
-    fail_usage("--erase paints no color that --target could be about.");
-  if (command.erase && command.routing == Routing::none)
-    fail_usage("--erase needs to know where; use another --routing.");
+  check_paint(command);
   Json strokes = Json::array();
   EditInputs inputs;
   std::string views;
@@ -105,12 +120,15 @@ EditSummary Session::paint(const PaintCommand& command, Progress& progress) {
   else
     params["target"] = paint_target_name(command.target);
   if (command.routing != Routing::both) params["routing"] = routing_name(command.routing);
+  put_effects(command.material, params);
   return add_edit("paint", std::move(params), std::move(inputs), progress);
 }
 
 EditSummary Session::change_material(const MaterialCommand& command, Progress& progress) {
   if (command.effects.empty())
-    fail_usage("Nothing to change: give --roughness, --specular, --metalness or --color.");
+    fail_usage(
+        "Nothing to change: give --material, --roughness, --roughness-scale, --specular, --metalness or "
+        "--color.");
   Json params = Json::object();
   if (!command.part.empty()) params["part"] = command.part;
   put_effects(command.effects, params);

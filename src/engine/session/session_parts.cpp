@@ -41,6 +41,18 @@ void put_combination(const PartCommand& c, Json& params) {
     if (!part->empty()) params[key] = *part;
 }
 
+// Usage errors: not exactly one way to say where the part is.
+void check_place(const PartCommand& c) {
+  const bool clicks = !c.positive.empty() || !c.negative.empty();
+  if (clicks + !c.mask.empty() + c.like.has_value() != 1)
+    fail_usage(
+        "Say where the part is by one of --positive X,Y (and --negative X,Y), --like X,Y and --mask "
+        "FILE.png.");
+  if (c.segmenter == "sam" && !clicks)
+    fail_usage("The network wants clicks; --mask and --like go without --segmenter.");
+  if (c.like_color && !c.like) fail_usage("--like-color goes with --like.");
+}
+
 // Share of each pixel's samples that meet the part.
 Image part_mask(const Scene& scene, const EditLayer& part, const GBuffer& g) {
   const std::vector<uint8_t> inside = inside_layer(scene, part, g.hits);
@@ -56,11 +68,7 @@ Image part_mask(const Scene& scene, const EditLayer& part, const GBuffer& g) {
 }  // namespace
 
 EditSummary Session::select_part(const PartCommand& command, Progress& progress) {
-  const bool clicks = !command.positive.empty() || !command.negative.empty();
-  if (clicks == !command.mask.empty())
-    fail_usage("Say where the part is: --positive X,Y (and --negative X,Y), or --mask FILE.png.");
-  if (command.segmenter == "sam" && !clicks)
-    fail_usage("The network wants clicks; a --mask goes with --segmenter grow.");
+  check_place(command);
   Json params = {{"view", find_view(project().capture(), command.view).name},
                  {"segmenter", command.segmenter}};
   if (command.in_view) params["in_view"] = true;
@@ -71,6 +79,8 @@ EditSummary Session::select_part(const PartCommand& command, Progress& progress)
   params["name"] = name.empty() ? unused_name(project().scene()) : name;
   if (!command.positive.empty()) params["positive"] = pixels_json(command.positive);
   if (!command.negative.empty()) params["negative"] = pixels_json(command.negative);
+  if (command.like) params["like"] = {command.like->x, command.like->y};
+  if (command.like_color) params["like_color"] = true;
   EditInputs inputs;
   if (!command.mask.empty()) {
     params["mask"] = command.mask.string();

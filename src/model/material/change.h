@@ -9,14 +9,46 @@
 
 namespace cei3d {
 
+// `wanted` for a share of [0, 1], the rest being `below`. A share of 1 and two equal values give their bits.
+inline float blended(float below, float wanted, float share) {
+  return share < 1 ? below + (wanted - below) * share : wanted;
+}
+
 struct MaterialChange {
-  std::optional<float> roughness, specular, metalness;  // none: what lies below stays
-  bool empty() const { return !roughness && !specular && !metalness; }
+  std::optional<float> roughness{}, specular{}, metalness{};  // none: what lies below stays
+  std::optional<float> roughness_scale{};  // times the roughness below, cut off at 1; instead of `roughness`
+  float blend = 1;                         // share of the above, the rest being what lies below
+
+  bool empty() const { return !roughness && !specular && !metalness && !roughness_scale; }
+  bool operator==(const MaterialChange&) const = default;
 };
 
-inline Material changed(Material m, const MaterialChange& c) {
-  return {c.roughness.value_or(m.roughness), c.specular.value_or(m.specular),
-          c.metalness.value_or(m.metalness)};
+inline Material changed(const Material& below, const MaterialChange& c) {
+  const float roughness = c.roughness         ? *c.roughness
+                          : c.roughness_scale ? clamp(below.roughness * *c.roughness_scale, 0.0f, 1.0f)
+                                              : below.roughness;
+  return {blended(below.roughness, roughness, c.blend),
+          blended(below.specular, c.specular.value_or(below.specular), c.blend),
+          blended(below.metalness, c.metalness.value_or(below.metalness), c.blend)};
+}
+
+// Some of a material's values.
+struct MaterialValues {
+  bool roughness = false, specular = false, metalness = false;
+};
+
+// Whether the change has an effect on a value that is not in `covered`.
+inline bool shows(const MaterialChange& c, const MaterialValues& covered) {
+  return ((c.roughness || c.roughness_scale) && !covered.roughness) || (c.specular && !covered.specular) ||
+         (c.metalness && !covered.metalness);
+}
+
+// Adds the values that the change replaces: nothing of what lies below it shows in them.
+inline void cover(MaterialValues& covered, const MaterialChange& c) {
+  if (c.blend < 1) return;
+  covered.roughness |= c.roughness.has_value();
+  covered.specular |= c.specular.has_value();
+  covered.metalness |= c.metalness.has_value();
 }
 
 // Another base color, with or without the texture that lies below it. All linear.
@@ -24,13 +56,17 @@ struct Tint {
   Vec3f color;
   bool keep_texture = true;  // what lies below, scaled per channel so that its mean becomes `color`
   Vec3f mean{1, 1, 1};       // of what lies below, over the region, when the edit was made
+  float blend = 1;           // share of the above, the rest being what lies below
 };
 
 inline Vec3f tinted(const Tint& t, Vec3f below) {
-  if (!t.keep_texture) return t.color;
   constexpr float kDark = 1e-3f;  // of a channel that has nothing to scale
   Vec3f out;
-  for (int c = 0; c < 3; ++c) out[c] = min(below[c] * t.color[c] / max(t.mean[c], kDark), 1.0f);
+  for (int c = 0; c < 3; ++c) {
+    const float wanted =
+        t.keep_texture ? min(below[c] * t.color[c] / max(t.mean[c], kDark), 1.0f) : t.color[c];
+    out[c] = blended(below[c], wanted, t.blend);
+  }
   return out;
 }
 

@@ -22,23 +22,17 @@ struct Op {
 
 // What the layers say about a hit.
 struct Route {
-  int layer = -1;  // topmost that is not everywhere
-  MaterialChange material;
-  uint32_t op_begin = 0, op_end = 0;  // of the chunk's steps, the last one first
-  bool base = true;                   // the first step works on the base's color
+  int layer = -1;                                 // topmost that is not everywhere
+  uint32_t material_begin = 0, material_end = 0;  // of the chunk's materials, the last one first
+  bool base = true;                               // the first step works on the base's color
+
+  bool same_material() const { return material_begin == material_end; }
 };
 
 struct Chunk {
-  std::vector<Op> ops;
+  std::vector<Op> ops;         // a hit's last step stands first
+  std::vector<int> materials;  // layers that change a hit's material; the last one first
 };
-
-void put_below(MaterialChange& top, const MaterialChange& below) {
-  if (!top.roughness) top.roughness = below.roughness;
-  if (!top.specular) top.specular = below.specular;
-  if (!top.metalness) top.metalness = below.metalness;
-}
-
-bool is_whole(const MaterialChange& c) { return c.roughness && c.specular && c.metalness; }
 
 // One hit on its way through the layers, from the topmost down and no further than anything can still change.
 class Walk {
@@ -51,9 +45,9 @@ class Walk {
   }
 
   Route route() {
-    r_.op_begin = uint32_t(chunk_.ops.size());
+    r_.material_begin = uint32_t(chunk_.materials.size());
     for (int l = int(scene_.layers.size()) - 1; l >= 0; --l) visit(l, scene_.layers[l]);
-    r_.op_end = uint32_t(chunk_.ops.size());
+    r_.material_end = uint32_t(chunk_.materials.size());
     return r_;
   }
 
@@ -63,7 +57,7 @@ class Walk {
     if (layer.reshape) visit_change(l, pose + 1);
     const bool colors = r_.base && (layer.albedo || layer.erase || layer.tint);
     const bool marks = r_.layer < 0 && !layer.everywhere;
-    const bool changes = !layer.material.empty() && !is_whole(r_.material);
+    const bool changes = shows(layer.material, covered_) || layer.erase_material;
     if (!colors && !changes && !marks) return;
     const bool old = born_ <= pose;  // what was made later is in no region that is older ...
     if (!old && !layer.everywhere) return;
@@ -71,8 +65,14 @@ class Walk {
     const float weight = layer.everywhere ? 1 : layer.weight(p.position, p.normal);
     if (weight <= 0) return;
     if (marks) r_.layer = l;
-    if (changes) put_below(r_.material, layer.material);
+    if (changes && weight > kMaterialWeight) visit_material(l, layer);
     if (colors && old) visit_colors(l, layer, p, weight);  // ... but is of what the whole object is made of
+  }
+
+  void visit_material(int l, const EditLayer& layer) {
+    if (shows(layer.material, covered_)) chunk_.materials.push_back(l);
+    cover(covered_, layer.material);
+    if (layer.erase_material) covered_ = {true, true, true};
   }
 
   void visit_colors(int l, const EditLayer& layer, const SurfacePoint& p, float weight) {
@@ -107,6 +107,7 @@ class Walk {
   uint32_t index_;
   Chunk& chunk_;
   int born_ = 0, shaped_ = 0;
+  MaterialValues covered_;  // by the layers that were visited
   Route r_;
 };
 
@@ -164,7 +165,7 @@ void put_colors(const Device& device, const Scene& scene, std::span<const Hit> h
   if (std::any_of(layers.begin(), layers.end(), [](const EditLayer& l) { return l.unlit; }))
     out.unlit.assign(hits.size(), 0.0f);
   for (const Chunk& chunk : routes.chunks)
-    for (auto op = chunk.ops.rbegin(); op != chunk.ops.rend(); ++op) {  // a hit's last step stands first
+    for (auto op = chunk.ops.rbegin(); op != chunk.ops.rend(); ++op) {
       Vec3f& a = out.albedo[op->hit];
       const Vec3f c = op->kind == Op::Kind::tint ? tinted(*scene.layers[op->layer].tint, a) : op->color;
       a = op->weight < 1 ? a * (1 - op->weight) + c * op->weight : c;
@@ -183,7 +184,7 @@ std::vector<float> original_shares(const Scene& scene, std::span<const Hit> hits
     }
   for (size_t i = 0; i < hits.size(); ++i) {
     const bool moved = !scene.poses.empty() && scene.poses.back()->shaped_in(hits[i].triangle) > 0;
-    if (moved || !routes.at[i].material.empty()) share[i] = 0;
+    if (moved || !routes.at[i].same_material()) share[i] = 0;
   }
   return share;
 }
@@ -202,6 +203,13 @@ std::vector<Material> base_materials(const Device& device, const Scene& scene, s
   return materials;
 }
 
+// The layers' changes on top of `below`, one after the other.
+Material edited_material(const Scene& scene, const Route& r, const Chunk& chunk, Material below) {
+  for (uint32_t k = r.material_end; k-- > r.material_begin;)
+    below = changed(below, scene.layers[size_t(chunk.materials[k])].material);
+  return below;
+}
+
 }  // namespace
 
 Appearance appearance_at(const Device& device, const Scene& scene, std::span<const Hit> hits) {
@@ -213,7 +221,8 @@ Appearance appearance_at(const Device& device, const Scene& scene, std::span<con
   for (size_t i = 0; i < hits.size(); ++i) {
     const Route& r = routes.at[i];
     out.layer[i] = r.layer;
-    if (!r.material.empty()) out.material[i] = changed(out.material[i], r.material);
+    if (!r.same_material())
+      out.material[i] = edited_material(scene, r, routes.chunks[i / kGrain], out.material[i]);
   }
   if (scene.residual) out.original = original_shares(scene, hits, routes);
   return out;

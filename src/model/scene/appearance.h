@@ -22,9 +22,9 @@ struct Appearance {
 };
 
 // Layers are applied in their order, each in the pose of the object that it was made in: a branch covers what
-// lies below it, a tint recolors it, a material replaces the values it names. New matter has its own base
-// color. A hit that no layer contains gets exactly (bit for bit) the base's own value, whatever else is in
-// the batch.
+// lies below it, a tint recolors it, a material replaces, scales or blends the values it names. New matter
+// has its own base color. A hit that no layer contains gets exactly (bit for bit) the base's own value,
+// whatever else is in the batch.
 Appearance appearance_at(const Device&, const Scene&, std::span<const Hit> hits);
 
 // The vertices of a mesh as hits of one of their triangles, seen from above: for what is wanted by vertex. A

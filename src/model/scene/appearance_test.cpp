@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <optional>
 #include <set>
 #include <tuple>
 
@@ -69,7 +70,7 @@ Scene layered_scene() {
   blue.albedo = random_field(3);
   EditLayer tint = layer("0003-part", ball({0, 0.4f, 0.1f}, 0.4f));
   tint.tint = Tint{{0.6f, 0.1f, 0.2f}, true, {0.5f, 0.4f, 0.3f}};
-  tint.material.roughness = 0.7f;
+  tint.material.roughness_scale = 0.7f;
   EditLayer whole = layer("0004-material", {});
   whole.everywhere = true;
   whole.material.specular = 0.9f;
@@ -91,6 +92,7 @@ Expected one_by_one(const Scene& s, const Hit& hit) {
     if (!layer.everywhere) e.layer = l;
     if (layer.albedo) e.albedo = value_at(*layer.albedo, hit.position);
     if (layer.tint) e.albedo = tinted(*layer.tint, e.albedo);
+    if (layer.erase_material) e.material = s.material.mean();
     e.material = changed(e.material, layer.material);
   }
   return e;
@@ -113,6 +115,51 @@ TEST(Appearance, IsThatOfTheLayersOneAfterTheOther) {
   }
   for (const int n : seen) EXPECT_GT(n, 50);
   EXPECT_EQ(materials.size(), 4u);  // 2 x 2 of what lies below the last layer, which is everywhere
+}
+
+// Replaces, scales, blends or leaves each value, at random.
+MaterialChange random_change(uint64_t seed) {
+  Rng rng(seed, 4, 1);
+  const auto maybe = [&]() { return rng.below(2) ? std::optional(rng.uniform()) : std::nullopt; };
+  MaterialChange c{maybe(), maybe(), maybe(), std::nullopt, rng.below(2) ? 1 : rng.uniform()};
+  if (!c.roughness && rng.below(2)) c.roughness_scale = 2 * rng.uniform();
+  return c;
+}
+
+TEST(Appearance, ScaledAndBlendedMaterialsAreAppliedFromTheBottomUp) {
+  const std::vector<Hit> hits = random_hits(500);
+  for (uint64_t stack = 0; stack < 20; ++stack) {
+    Scene s;
+    s.albedo = random_field(1);
+    for (uint64_t l = 0; l < 6; ++l) {
+      Rng rng(stack, 3, l);
+      s.layers.push_back(
+          layer("x", ball({rng.uniform() - 0.5f, rng.uniform() - 0.5f, 0.1f}, 0.3f + 0.6f * rng.uniform())));
+      s.layers.back().everywhere = rng.below(5) == 0;
+      s.layers.back().material = random_change(10 * stack + l);
+      s.layers.back().erase_material = rng.below(5) == 0;
+    }
+    const Appearance got = appearance_at(make_device(), s, hits);
+    for (size_t i = 0; i < hits.size(); ++i) {
+      const Expected e = one_by_one(s, hits[i]);
+      ASSERT_EQ(got.material[i], e.material) << stack << ' ' << i;
+      ASSERT_EQ(got.layer[i], e.layer);
+    }
+  }
+}
+
+TEST(Appearance, AScaleBelowAReplacementIsNotSeenAndAboveItIs) {
+  Scene s;
+  s.albedo = random_field(1);
+  EditLayer set = layer("x", {}), half = set;
+  set.everywhere = half.everywhere = true;
+  set.material.roughness = 0.8f;
+  half.material.roughness_scale = 0.5f;
+  const std::vector<Hit> hits = random_hits(1);
+  s.layers = {half, set};
+  EXPECT_EQ(appearance_at(make_device(), s, hits).material[0].roughness, 0.8f);
+  s.layers = {half, set, half, half};
+  EXPECT_EQ(appearance_at(make_device(), s, hits).material[0].roughness, 0.2f);
 }
 
 TEST(Appearance, OutsideEveryRegionTheBaseIsBitIdenticalOnAllDevices) {
@@ -144,14 +191,6 @@ TEST(Appearance, AReplacingTintLeavesNothingOfWhatIsBelow) {
 
 TEST(Appearance, OfNothingIsNothing) {
   EXPECT_TRUE(appearance_at(make_device(), layered_scene(), {}).albedo.empty());
-}
-
-TEST(Tint, KeepsTextureAndStaysInRange) {
-  const Tint t{{0.6f, 0.1f, 0.2f}, true, {0.5f, 0.4f, 0.1f}};
-  const Vec3f at_mean = tinted(t, t.mean);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(at_mean[c], t.color[c], 1e-6f);
-  EXPECT_FLOAT_EQ(tinted(t, {0.25f, 0.8f, 0.05f}).x, 0.3f);
-  EXPECT_EQ(tinted(t, {1, 1, 1}).x, 1);
 }
 
 }  // namespace

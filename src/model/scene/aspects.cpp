@@ -19,7 +19,7 @@ constexpr Name kNames[] = {{"shape", &Aspects::shape},
 
 Aspects changed_by(const EditLayer& l) {
   return {.shape = bool(l.reshape),
-          .look = l.albedo || l.erase || l.tint || !l.material.empty(),
+          .look = l.albedo || l.erase || l.erase_material || l.tint || !l.material.empty(),
           .light = l.light.has_value(),
           .parts = !l.part.empty()};
 }

@@ -15,12 +15,14 @@ Vec3f vector_from(JsonReader& reader, const char* key) {
 }
 
 Json tint_json(const Tint& t) {
-  return {{"color", vector_json(t.color)}, {"keep_texture", t.keep_texture}, {"mean", vector_json(t.mean)}};
+  Json j = {{"color", vector_json(t.color)}, {"keep_texture", t.keep_texture}, {"mean", vector_json(t.mean)}};
+  if (t.blend != 1) j["blend"] = t.blend;
+  return j;
 }
 
 Tint tint_from(JsonReader reader) {
   const Tint tint{vector_from(reader, "color"), reader.require<bool>("keep_texture"),
-                  vector_from(reader, "mean")};
+                  vector_from(reader, "mean"), reader.optional("blend", 1.0f)};
   reader.finish();
   return tint;
 }
@@ -30,12 +32,15 @@ Json change_json(const MaterialChange& c) {
   if (c.roughness) j["roughness"] = *c.roughness;
   if (c.specular) j["specular"] = *c.specular;
   if (c.metalness) j["metalness"] = *c.metalness;
+  if (c.roughness_scale) j["roughness_scale"] = *c.roughness_scale;
+  if (c.blend != 1) j["blend"] = c.blend;
   return j;
 }
 
 MaterialChange change_from(JsonReader reader) {
   const MaterialChange change{reader.optional<float>("roughness"), reader.optional<float>("specular"),
-                              reader.optional<float>("metalness")};
+                              reader.optional<float>("metalness"), reader.optional<float>("roughness_scale"),
+                              reader.optional("blend", 1.0f)};
   reader.finish();
   return change;
 }
@@ -90,6 +95,7 @@ void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
   save_field(layer.albedo, "albedo", tensors, head);
   if (layer.unlit) head["unlit"] = true;
   if (layer.erase) head["erase"] = true;
+  if (layer.erase_material) head["erase_material"] = true;
   if (layer.tint) head["tint"] = tint_json(*layer.tint);
   if (!layer.material.empty()) head["material"] = change_json(layer.material);
   if (layer.light) save_light(*layer.light, tensors, head);
@@ -110,6 +116,7 @@ EditLayer load_layer(const Tensors& tensors, const Json& head) {
     layer.albedo = load_field("albedo", tensors, head);
     layer.unlit = reader.optional("unlit", false);
     layer.erase = reader.optional("erase", false);
+    layer.erase_material = reader.optional("erase_material", false);
     if (reader.has("tint")) layer.tint = tint_from(reader.object("tint"));
     if (reader.has("material")) layer.material = change_from(reader.object("material"));
     if (reader.has("light")) layer.light = load_light(tensors, reader.member("light"));

@@ -18,6 +18,7 @@
 namespace cei3d {
 
 inline constexpr int kLatestPose = -1;
+inline constexpr float kMaterialWeight = 0.5f;
 
 struct EditLayer {
   std::string id;            // "0001-paint"
@@ -32,14 +33,15 @@ struct EditLayer {
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: albedo of the layers below
   bool unlit = false;                   // the color is shown as it is, without light
   bool erase = false;                   // restores the base's albedo, whatever lies below
+  bool erase_material = false;          // restores the base's material, whatever lies below
   std::optional<Tint> tint;             // recolors the result of the above
   MaterialChange material;
   std::optional<SgMixture> light;          // replaces the object's light, everywhere
   std::shared_ptr<const Reshape> reshape;  // null: no change of shape
 
   bool contains(Vec3f position, Vec3f normal) const { return weight(position, normal) > 0; }
-  // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. Material is all or
-  // nothing.
+  // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. The material is all or
+  // nothing: it changes where the weight is above kMaterialWeight.
   float weight(Vec3f position, Vec3f normal) const;
 };
 

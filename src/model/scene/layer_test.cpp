@@ -42,14 +42,15 @@ std::vector<EditLayer> one_of_each_kind() {
   layers[4].reshape = some_reshape();
   layers[5] = layers[2];
   layers[5].tint->keep_texture = false;
-  layers[5].material.specular = 0;
+  layers[5].tint->blend = 0.25f;
+  layers[5].material = {.specular = 0.0f, .roughness_scale = 0.5f, .blend = 0.25f};
   layers[6].everywhere = true;
   layers[6].albedo = some_field();
   layers[6].unlit = true;
   layers[7] = layers[0];
   layers[7].also = {some_region(), Region({{{0.5f, 0, 0}}, {{1, 0, 0}}, {0.2f}})};
   layers[7].albedo = nullptr;
-  layers[7].erase = true;
+  layers[7].erase = layers[7].erase_material = true;
   return layers;
 }
 
@@ -71,8 +72,12 @@ TEST(EditLayer, LoadGivesWhatWasSaved) {
     EXPECT_EQ(again.part, layer.part);
     EXPECT_EQ(again.everywhere, layer.everywhere);
     EXPECT_EQ(again.unlit, layer.unlit);
-    EXPECT_EQ(again.material.roughness, layer.material.roughness);
-    EXPECT_EQ(again.tint.has_value(), layer.tint.has_value());
+    EXPECT_EQ(again.erase_material, layer.erase_material);
+    EXPECT_EQ(again.material, layer.material);
+    ASSERT_EQ(again.tint.has_value(), layer.tint.has_value());
+    if (layer.tint) {
+      EXPECT_EQ(again.tint->blend, layer.tint->blend);
+    }
     EXPECT_EQ(bool(again.reshape), bool(layer.reshape));
   }
 }
@@ -88,6 +93,26 @@ TEST(EditLayer, ReadsTheFirstFormat) {  // region and albedo, nothing else
   EXPECT_FALSE(layer.contains({0, 0, 0.5f}, {0, 0, -1}));
   EXPECT_TRUE(layer.albedo);
   EXPECT_FALSE(layer.everywhere || layer.tint || layer.light || layer.reshape || !layer.material.empty());
+}
+
+// Layers were stored before materials could be scaled and blended.
+TEST(EditLayer, ReadsMaterialsAndTintsThatOnlyReplace) {
+  const Json head = {{"id", "0001-material"},
+                     {"everywhere", true},
+                     {"material", {{"roughness", 0.5}}},
+                     {"tint", {{"color", {1, 0, 0}}, {"keep_texture", true}, {"mean", {1, 1, 1}}}}};
+  const EditLayer layer = load_layer({}, head);
+  EXPECT_EQ(layer.material, MaterialChange{.roughness = 0.5f});
+  EXPECT_EQ(layer.tint->blend, 1);
+  Tensors tensors;
+  Json again = Json::object();
+  save_layer(layer, tensors, again);
+  EXPECT_EQ(again.dump().find("blend"), std::string::npos);  // older programs read it, too
+}
+
+TEST(EditLayer, AMaterialWithAnUnknownKeyIsRefused) {
+  const Json head = {{"id", "0001-material"}, {"everywhere", true}, {"material", {{"roughness_scal", 0.5}}}};
+  EXPECT_THROW(load_layer({}, head), Error);
 }
 
 TEST(EditLayer, DamageIsASentence) {
