@@ -180,7 +180,8 @@ OneMaterial search_one_material(SplitSolver search, const LinearSplitOptions& op
 }
 
 // Nothing where the object is plainly of one material. guess: the last solution.
-std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMaterial& found, SplitGuess& guess) {
+std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMaterial& found,
+                                               SplitGuess& guess) {
   const auto one = [&](float roughness) {
     return found.is_metal ? search.metal(roughness) : search.dielectric(roughness);
   };

@@ -69,8 +69,8 @@ SplitUnknowns SplitSolver::guessed() const {
   SplitUnknowns x{guess_.diffuse, {}};
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column)
-      x.light.push_back(env_radiance(
-          guess_.light, env_direction(float(column) + 0.5f, float(row) + 0.5f, width, height)));
+      x.light.push_back(
+          env_radiance(guess_.light, env_direction(float(column) + 0.5f, float(row) + 0.5f, width, height)));
   return x;
 }
 
