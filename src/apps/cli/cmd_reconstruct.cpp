@@ -8,7 +8,7 @@ namespace cei3d {
 namespace {
 
 struct Options {
-  std::string capture, project, time;
+  std::string capture, project, time, light = "auto";
   ReconstructRequest request;
 };
 
@@ -18,6 +18,7 @@ void run_reconstruct(const Options& o, Session& session, Console& console) {
     fail_usage("reconstruct needs a CAPTURE, or --resume to continue a project.");
   if (!o.capture.empty()) request.capture = parse_capture_spec(o.capture).path;
   request.project = o.project;
+  request.options.light = light_motion_named(o.light);
   if (!o.time.empty()) request.options.seconds = parse_duration(o.time);
   const ReconstructReport r = session.reconstruct(request, console);
   console.done(r.json(),
@@ -64,6 +65,12 @@ void add_reconstruct(Commands& commands) {
   verb->add_option("--views", options.views,
                    "Train on N views only, spread evenly; the others become validation views. 0: all")
       ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  verb->add_option("--light", o->light,
+                   "How the light moves against the object. world: not at all. turntable: the object turned "
+                   "under lamps that stood still. camera: the light is fixed to the camera. auto: what "
+                   "explains the photographs best")
+      ->check(CLI::IsMember({"auto", "world", "camera", "turntable"}))
       ->capture_default_str();
   verb->add_option("--format", o->request.format,
                    capture_format_names() + " (default: detected from the files)");

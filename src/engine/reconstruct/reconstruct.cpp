@@ -52,6 +52,7 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
                            .preset = preset,
                            .plan = make_plan(in, preset, views.train.pixels().size(), rates, progress),
                            .seed = in.options.seed,
+                           .light = in.options.light,
                            .progress = progress};
   RunState state = saved ? std::move(saved->state) : RunState();
   state.scene.normalization = in.normalization;

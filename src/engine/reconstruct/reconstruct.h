@@ -15,9 +15,10 @@ struct ReconstructOptions {
   double seconds = 0;           // for the whole run; 0: as long as the preset's steps take
   int iterations = 0;  // of the geometry stage, instead of seconds: makes a run a function of the seed alone
   uint64_t seed = 1;
-  int downscale = 1;   // use images at 1/N of their size
-  int test_every = 8;  // hold out every Nth view when the capture has no split; 0: none
-  int views = 0;       // train on so many, spread evenly (engine/capture/spread.h); 0: on all
+  int downscale = 1;                 // use images at 1/N of their size
+  int test_every = 8;                // hold out every Nth view when the capture has no split; 0: none
+  std::optional<LightMotion> light;  // how it moves against the object; nothing: to be found
+  int views = 0;                     // train on so many, spread evenly (engine/capture/spread.h); 0: on all
 };
 
 // Where the trainer puts its state. Both files of a checkpoint appear or neither.

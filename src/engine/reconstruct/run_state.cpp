@@ -49,6 +49,7 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
           {"start_seconds", state.start_seconds},
           {"polish_deadline", state.polish_deadline},
           {"look_seconds", state.look_seconds},
+          {"light_frame_known", state.light_frame_known},
           {"has_geometry", bool(state.geometry)}};
   if (state.geometry) {
     Tensors geometry;
@@ -69,6 +70,7 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   state.start_seconds = head.at("start_seconds").get<double>();
   state.polish_deadline = head.at("polish_deadline").get<double>();
   state.look_seconds = head.at("look_seconds").get<double>();
+  state.light_frame_known = head.value("light_frame_known", false);
   if (head.at("has_geometry").get<bool>()) {
     state.geometry = make_geometry();
     state.geometry->load(without_prefix(kGeometry, tensors));

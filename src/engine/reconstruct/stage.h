@@ -25,6 +25,7 @@ struct RunContext {
   const Preset& preset;
   Plan plan;
   uint64_t seed;
+  std::optional<LightMotion> light;  // nothing: to be found
   RunClock& progress;
 };
 

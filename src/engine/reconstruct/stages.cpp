@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/cancel.h"
+#include "engine/reconstruct/appearance/find_light_frame.h"
 #include "engine/reconstruct/appearance/residual_fit.h"
 #include "engine/reconstruct/geometry/silhouette_level.h"
 #include "engine/reconstruct/geometry_training.h"
@@ -53,6 +54,22 @@ double polish_seconds(const RunContext& run, const RunState& state, int round) {
   return std::clamp(left / rounds_left, std::min(1.0, run.plan.polish), run.plan.polish);
 }
 
+using Turns = std::shared_ptr<const LightTurns>;
+
+// How the light turns in the training views; on first use it is found by the samples. Null: it stands still.
+Turns light_turns(const RunContext& run, RunState& state, const std::shared_ptr<const Surface>& surface,
+                  const ObjectHits& hits) {
+  const std::vector<Camera>& cameras = run.views.train.cameras();
+  const Vec3f axis = to_float(normalize(run.capture.up));
+  LightFrame& frame = state.scene.light_frame;
+  if (!state.light_frame_known)
+    frame = run.light ? light_frame(*run.light, cameras, axis)
+                      : find_light_frame({surface, hits.samples()}, hits.views, cameras, axis, run.seed,
+                                         run.progress);
+  state.light_frame_known = true;
+  return turns_of(frame, cameras);
+}
+
 // Light and material for the present surface, then the surface for them. A round for which there is no time
 // is left out.
 void polish(const RunContext& run, RunState& state, int round) {
@@ -73,8 +90,9 @@ void polish(const RunContext& run, RunState& state, int round) {
   AppearanceOptions brief = run.preset.appearance;
   brief.effort = Effort::brief;
   brief.seed = run.seed;
+  const Turns turns = light_turns(run, state, all.surface, fewer);
   const AppearanceResult appearance =
-      fit_appearance(run.device, {all.surface, fewer.samples()}, brief, run.progress);
+      fit_appearance(run.device, {all.surface, fewer.samples(turns.get())}, brief, run.progress);
   check_cancelled(run.progress);
   state.look_seconds = run.progress.elapsed() - begin;
   PolishOptions options = run.preset.polish;
@@ -83,7 +101,7 @@ void polish(const RunContext& run, RunState& state, int round) {
   options.clock = run.progress.clock();
   options.seed = run.seed + uint64_t(round);
   options.first_step = (int64_t(round) + 1) << 24;
-  polish_surface(run.device, geometry, all.input(), appearance, options, run.progress);
+  polish_surface(run.device, geometry, all.input(turns.get()), appearance, options, run.progress);
   check_cancelled(run.progress);
   run.progress.log(Json{{"stage", "polish"}, {"look_seconds", state.look_seconds}}.dump());
 }
@@ -124,7 +142,8 @@ AppearanceOptions appearance_options(const RunContext& run) {
 void estimate_appearance(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   Scene& scene = state.scene;
   if (state.hits.hits.empty()) state.hits = scene_hits(run, scene, {run.preset.max_hits});
-  AppearanceResult made = fit_appearance(run.device, {scene.surface, state.hits.samples()},
+  const Turns turns = light_turns(run, state, scene.surface, state.hits);
+  AppearanceResult made = fit_appearance(run.device, {scene.surface, state.hits.samples(turns.get())},
                                          appearance_options(run), run.progress);
   check_cancelled(run.progress);
   state.hits = {};
@@ -140,8 +159,9 @@ void refine(const RunContext& run, RunState& state, uint64_t subset) {
   Scene& scene = state.scene;
   const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, subset});
   AppearanceResult result{scene.light, scene.material, scene.albedo, {}};
-  refine_albedo(run.device, {scene.surface, hits.samples()}, appearance_options(run), result, run.progress,
-                run.preset.refinement_steps);
+  const Turns turns = light_turns(run, state, scene.surface, hits);
+  refine_albedo(run.device, {scene.surface, hits.samples(turns.get())}, appearance_options(run), result,
+                run.progress, run.preset.refinement_steps);
   check_cancelled(run.progress);
   scene.albedo = std::move(result.albedo);
 }
@@ -160,7 +180,9 @@ void fit_scene_residual(const RunContext& run, RunState& state, const Stage::Che
   options.steps = plan.residual_steps;
   options.seed = run.seed;
   const ObjectHits hits = scene_hits(run, state.scene, {plan.residual_hits, kResidualSubset});
-  ResidualFit fit = fit_residual(run.device, state.scene, hits.samples(), hits.views, options, run.progress);
+  const Turns turns = light_turns(run, state, state.scene.surface, hits);
+  ResidualFit fit =
+      fit_residual(run.device, state.scene, hits.samples(turns.get()), hits.views, options, run.progress);
   if (fit.residual) state.scene.residual = std::make_shared<const Residual>(std::move(*fit.residual));
   state.scene.explained = fit.explained;
   check_cancelled(run.progress);

@@ -18,7 +18,10 @@ struct ObjectHits {
   std::vector<uint8_t> clipped;   // SurfaceSamples::clipped
   std::vector<uint16_t> views;    // index of the camera
   std::vector<float> footprints;  // distance between neighboring pixels on the surface, unit-sphere units
-  SurfaceSamples samples() const { return {hits, colors, clipped, footprints}; }
+  // turns: of the cameras; null: the light stands still.
+  SurfaceSamples samples(const LightTurns* turns = nullptr) const {
+    return {hits, colors, clipped, footprints, {turns, views}};
+  }
 };
 
 struct HitOptions {
@@ -37,7 +40,7 @@ std::shared_ptr<const Surface> extract_surface(const Device&, const Field& sdf, 
 struct SurfaceAndHits {
   std::shared_ptr<const Surface> surface;
   ObjectHits hits;
-  AppearanceInput input() const { return {surface, hits.samples()}; }
+  AppearanceInput input(const LightTurns* turns) const { return {surface, hits.samples(turns)}; }
 };
 
 // Errors: no picture shows the surface; interrupted.

@@ -39,8 +39,8 @@ struct ReflectionPlanes {
   explicit ReflectionPlanes(const HitBatch& batch) {
     for (size_t i = 0; i < batch.size(); ++i) {
       const SurfaceReflection<float> r = reflection_of(batch.hits[i], batch.materials[i]);
-      base.put(i, r.base);
-      fresnel.put(i, r.fresnel);
+      base.put(i, {batch.turned.in_room(i, r.base.axis), r.base.roughness});
+      fresnel.put(i, {batch.turned.in_room(i, r.fresnel.axis), r.fresnel.roughness});
       share.push_back(r.share);
     }
   }
@@ -106,10 +106,14 @@ VertexMaterials uniform_materials(std::span<const Vec3f> albedo, const Material&
 }  // namespace
 
 Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface, const SgMixture& light,
-                   VertexLight vertices)
-    : device_(device), surface_(std::move(surface)), vertices_(std::move(vertices)) {
+                   std::vector<VertexLight> by_bin)
+    : device_(device), surface_(std::move(surface)), vertices_(std::move(by_bin)) {
   set_lobes(light);
 }
+
+Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface, const SgMixture& light,
+                   VertexLight vertices)
+    : Lighting(device, std::move(surface), light, std::vector<VertexLight>{std::move(vertices)}) {}
 
 Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface, const SgMixture& light,
                    std::span<const Vec3f> albedo, const Material& material,
@@ -183,13 +187,16 @@ std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
   return radiance;
 }
 
-IncidentLight<float> Lighting::incident_at(const Hit& h, Vec3f sky_reflection,
+IncidentLight<float> Lighting::incident_at(const HitBatch& batch, size_t hit, Vec3f sky_reflection,
                                            const SelfReflection::Seen& seen) const {
   const Mesh& mesh = surface_->mesh();
+  const Hit& h = batch.hits[hit];
   const auto& t = mesh.triangles[h.triangle];
-  return {.sky_irradiance = irradiance_.at(normalize(at_corners(mesh.normals, t, h.b1, h.b2))),
-          .visibility = at_corners(vertices_.visibility, t, h.b1, h.b2),
-          .bounce = at_corners(vertices_.bounce, t, h.b1, h.b2),
+  const VertexLight& vertices = vertices_[batch.turned.bin(hit)];
+  const Vec3f normal = normalize(at_corners(mesh.normals, t, h.b1, h.b2));
+  return {.sky_irradiance = irradiance_.at(batch.turned.in_room(hit, normal)),
+          .visibility = at_corners(vertices.visibility, t, h.b1, h.b2),
+          .bounce = at_corners(vertices.bounce, t, h.b1, h.b2),
           .sky_reflection = sky_reflection,
           .mirror_visibility = max(seen.visibility, 0.0f),
           .object_reflection = seen.radiance};
@@ -198,13 +205,13 @@ IncidentLight<float> Lighting::incident_at(const Hit& h, Vec3f sky_reflection,
 std::vector<IncidentLight<float>> Lighting::incident_light(const HitBatch& batch,
                                                            const VertexMaterials& seen) const {
   std::vector<IncidentLight<float>> out(batch.size());
-  const SelfReflection own(device_, *surface_, vertices_, lobes(), seen.empty() ? vertices_.made_of : seen);
+  const SelfReflection own(device_, *surface_, vertices_, lobes(),
+                           seen.empty() ? vertices_.front().made_of : seen);
   parallel_ranges(int(batch.size()), kBlock, [&](int begin, int end) {
     const HitBatch part = batch.part(begin, end);
     const std::vector<Vec3f> sky = sky_reflection(part);
-    const std::vector<SelfReflection::Seen> object = own.seen_by(part.hits, part.materials);
-    for (size_t i = 0; i < part.size(); ++i)
-      out[size_t(begin) + i] = incident_at(part.hits[i], sky[i], object[i]);
+    const std::vector<SelfReflection::Seen> object = own.seen_by(part);
+    for (size_t i = 0; i < part.size(); ++i) out[size_t(begin) + i] = incident_at(part, i, sky[i], object[i]);
   });
   return out;
 }
@@ -260,7 +267,10 @@ std::vector<SurfaceReflectionGrad<float>> Lighting::reflection_grad(
   std::vector<SurfaceReflectionGrad<float>> out;
   for (size_t i = 0; i < batch.size(); ++i) {
     const Material& m = batch.materials[i];
-    const SurfaceReflection<float> d{d_base.of(i), d_fresnel.of(i),
+    const auto in_object = [&](ReflectionAxis<float> d) {
+      return ReflectionAxis<float>{batch.turned.in_object(i, d.axis), d.roughness};
+    };
+    const SurfaceReflection<float> d{in_object(d_base.of(i)), in_object(d_fresnel.of(i)),
                                      dot(d_reflection[i], base.get(0, i) - fresnel.get(0, i))};
     out.push_back(surface_reflection_grad(reflection_tables(), batch.hits[i].normal, batch.hits[i].to_camera,
                                           m.roughness, m.specular, m.metalness, d));

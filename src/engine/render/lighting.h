@@ -12,6 +12,7 @@
 #include "core/compute/device.h"
 #include "core/math/reflection_axis.h"
 #include "core/math/shading.h"
+#include "engine/render/hit_batch.h"
 #include "engine/render/irradiance_map.h"
 #include "engine/render/self_reflection.h"
 #include "engine/render/vertex_light.h"
@@ -44,28 +45,11 @@ struct ShadingSlopes {
   std::vector<Vec3f> d_sky_reflection;
 };
 
-// Hits and the material of each.
-struct HitBatch {
-  std::span<const Hit> hits;
-  std::span<const Material> materials;  // #hits
-  size_t size() const { return hits.size(); }
-  HitBatch part(int begin, int end) const {
-    return {hits.subspan(size_t(begin), size_t(end - begin)),
-            materials.subspan(size_t(begin), size_t(end - begin))};
-  }
-};
-
-// Hits that all have the same material.
-struct UniformBatch {
-  UniformBatch(std::span<const Hit> h, const Material& m) : hits(h), materials(h.size(), m) {}
-  operator HitBatch() const { return {hits, materials}; }  // NOLINT: it is one
-  std::span<const Hit> hits;
-  std::vector<Material> materials;
-};
-
 class Lighting {
  public:
   Lighting(const Device&, std::shared_ptr<const Surface>, const SgMixture&, VertexLight);
+  // For hits under a light that turns: turned_vertex_lights().
+  Lighting(const Device&, std::shared_ptr<const Surface>, const SgMixture&, std::vector<VertexLight> by_bin);
   // With the vertices' light computed: albedo (#V) and material are those of the unedited object, as bounces
   // and reflections see it. The transport can be shared by lights; without one it is computed (a second).
   Lighting(const Device&, std::shared_ptr<const Surface>, const SgMixture&, std::span<const Vec3f> albedo,
@@ -94,14 +78,15 @@ class Lighting {
                                                             std::span<const Vec3f> d_reflection) const;
   ShadingSlopes block_grad(const HitBatch&, std::span<const IncidentLight<float>>,
                            std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const;
-  IncidentLight<float> incident_at(const Hit&, Vec3f sky_reflection, const SelfReflection::Seen&) const;
+  IncidentLight<float> incident_at(const HitBatch&, size_t hit, Vec3f sky_reflection,
+                                   const SelfReflection::Seen&) const;
 
   const Device& device_;
   std::shared_ptr<const Surface> surface_;
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
   IrradianceMap irradiance_;
-  VertexLight vertices_;
+  std::vector<VertexLight> vertices_;  // by bin of the light's turns
 };
 
 }  // namespace cei3d

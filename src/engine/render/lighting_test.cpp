@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "core/math/rng.h"
+#include "core/math/rotation.h"
 
 namespace cei3d {
 namespace {
@@ -309,6 +310,82 @@ TEST(Lighting, ADielectricReflectsItself) { EXPECT_LT(error_between_balls(kClay,
 
 TEST(Lighting, AMetalReflectsADielectricAsADielectric) {
   EXPECT_LT(error_between_balls(kCopper, kGreenPaint), 0.2);
+}
+
+// Two balls in three views, between which the light turns: each view has to look as under a light that stands
+// still and is turned accordingly.
+class TurningLight : public testing::Test {
+ protected:
+  static constexpr size_t kViews = 3, kHits = 60;  // hits of each view
+  void SetUp() override {
+    Mesh mesh;
+    add_sphere(mesh, {-0.35f, 0, 0}, 0.3f, 24);
+    add_sphere(mesh, {0.35f, 0, 0}, 0.3f, 24);
+    for (const Vec3f& p : mesh.positions) {
+      made_of_.albedo.push_back({0.8f, 0.5f, 0.3f});
+      made_of_.material.push_back(p.x > 0 ? kCopper.material : kClay.material);
+    }
+    surface_ = std::make_shared<const Surface>(std::move(mesh));
+    turns_ = light_turns({Mat3f::identity(), about_axis({0, 0, 1}, 1), about_axis({0.6f, 0.8f, 0}, 2)});
+    for (size_t i = 0; i < kViews * kHits; ++i) {
+      hits_.push_back(some_hits(surface_->mesh(), i + 1).back());
+      views_.push_back(uint16_t(i / kHits));
+      materials_.push_back(hits_.back().position.x > 0 ? kCopper.material : kClay.material);
+    }
+    const Transport transport(surface_);
+    together_ = std::make_unique<Lighting>(device_, surface_, some_sky(),
+                                           turned_vertex_lights(transport, some_sky(), made_of_, &turns_));
+    for (const Mat3f& room_from_object : turns_.room_from_object) {
+      const SgMixture light = rotated(some_sky(), transpose(room_from_object));
+      apart_.emplace_back(device_, surface_, light, vertex_light(transport, light, made_of_));
+    }
+  }
+  HitBatch all() const { return {hits_, materials_, {&turns_, views_}}; }
+  HitBatch of_view(size_t view) const {
+    HitBatch batch = all().part(int(view * kHits), int((view + 1) * kHits));
+    batch.turned = {};
+    return batch;
+  }
+
+  Device device_ = make_device();
+  VertexMaterials made_of_;
+  std::shared_ptr<const Surface> surface_;
+  LightTurns turns_;
+  std::vector<Hit> hits_;
+  std::vector<uint16_t> views_;
+  std::vector<Material> materials_;
+  std::unique_ptr<Lighting> together_;
+  std::vector<Lighting> apart_;
+};
+
+void expect_close(Vec3f got, Vec3f want) { EXPECT_LT(length(got - want), 2e-3f * (1 + length(want))); }
+
+TEST_F(TurningLight, ShadesEveryViewAsItsTurnedLightDoes) {
+  const std::vector<Vec3f> albedo(hits_.size(), Vec3f{0.7f, 0.4f, 0.2f});
+  const Shading got = together_->shade(all(), albedo);
+  for (size_t view = 0; view < kViews; ++view) {
+    const Shading want = apart_[view].shade(of_view(view), std::span(albedo).first(kHits));
+    for (size_t i = 0; i < kHits; ++i) {
+      expect_close(got.diffuse[view * kHits + i], want.diffuse[i]);
+      expect_close(got.specular[view * kHits + i], want.specular[i]);
+    }
+  }
+}
+
+TEST_F(TurningLight, HasTheSlopesOfItsTurnedLight) {
+  const std::vector<Vec3f> albedo(hits_.size(), Vec3f{0.7f, 0.4f, 0.2f}),
+      weight(hits_.size(), Vec3f{0.5f, -1, 0.8f});
+  const ShadingSlopes got = together_->grad(all(), together_->incident_light(all()), albedo, weight);
+  for (size_t view = 0; view < kViews; ++view) {
+    const HitBatch batch = of_view(view);
+    const ShadingSlopes want =
+        apart_[view].grad(batch, apart_[view].incident_light(batch), std::span(albedo).first(kHits),
+                          std::span(weight).first(kHits));
+    for (size_t i = 0; i < kHits; ++i) {
+      expect_close(got.d_normal[view * kHits + i], want.d_normal[i]);
+      expect_close(got.d_view[view * kHits + i], want.d_view[i]);
+    }
+  }
 }
 
 // A convex body, so that nothing occludes a reflection, and the loss a random weight of every hit's radiance.

@@ -88,10 +88,12 @@ struct SelfReflection::Met {
   std::vector<Material> materials;
   std::vector<Vec3f> albedo, irradiance;
   std::vector<size_t> ray;
+  std::vector<uint32_t> owner;  // of the ray
 };
 
-SelfReflection::SelfReflection(const Device& device, const Surface& surface, const VertexLight& vertices,
-                               LobePlanes light, const VertexMaterials& seen)
+SelfReflection::SelfReflection(const Device& device, const Surface& surface,
+                               std::span<const VertexLight> vertices, LobePlanes light,
+                               const VertexMaterials& seen)
     : device_(device), surface_(surface), vertices_(vertices), light_(light), seen_(seen) {}
 
 Material SelfReflection::material_at(const Surface::RayHit& r) const {
@@ -103,7 +105,7 @@ Material SelfReflection::material_at(const Surface::RayHit& r) const {
   return {mean(&Material::roughness), mean(&Material::specular), mean(&Material::metalness)};
 }
 
-SelfReflection::Met SelfReflection::met_by(const Rays& rays) const {
+SelfReflection::Met SelfReflection::met_by(const Rays& rays, const TurnedHits& turned) const {
   std::vector<Surface::RayHit> far(rays.origins.size());
   surface_.intersect(rays.origins, rays.directions, 0, far);
   Met met;
@@ -114,61 +116,58 @@ SelfReflection::Met SelfReflection::met_by(const Rays& rays) const {
                         -rays.directions[k], r.triangle, r.b1, r.b2});
     met.materials.push_back(material_at(r));
     met.albedo.push_back(at(seen_.albedo, r));
-    met.irradiance.push_back(at(vertices_.irradiance, r));
+    met.irradiance.push_back(at(vertices_[turned.bin(rays.owner[k])].irradiance, r));
     met.ray.push_back(k);
+    met.owner.push_back(rays.owner[k]);
   }
   return met;
 }
 
-Vec3f SelfReflection::diffuse_radiance(const Surface::RayHit& r) const {
-  return at(seen_.albedo, r) * at(vertices_.irradiance, r) / kPi;
+Vec3f SelfReflection::diffuse_radiance(const Surface::RayHit& r, size_t bin) const {
+  return at(seen_.albedo, r) * at(vertices_[bin].irradiance, r) / kPi;
 }
 
-// Radiance along the axes of the reflection lobes of these points: of the environment, or of the surface met
-// there as if diffuse.
-std::vector<Vec3f> SelfReflection::mirrored(std::span<const Hit> hits,
-                                            std::span<const Material> materials) const {
-  const size_t n = hits.size(), stride = size_t(padded_to_panels(int(n)));
+// Radiance along the axes of the reflection lobes of some of the points met: of the environment, or of the
+// surface met there as if diffuse.
+std::vector<Vec3f> SelfReflection::mirrored(const Met& met, const std::vector<size_t>& which,
+                                            const TurnedHits& turned) const {
+  const size_t n = which.size(), stride = size_t(padded_to_panels(int(n)));
   std::vector<Vec3f> from(n), axes(n), out(n);
   std::vector<float> axis_planes(3 * stride, 0.0f), roughness(stride, 1.0f), sky(3 * stride);
   for (size_t k = 0; k < n; ++k) {
-    const ReflectionAxis<float> lobe = reflection_of(hits[k], materials[k]).base;
+    const ReflectionAxis<float> lobe = reflection_of(met.hits[which[k]], met.materials[which[k]]).base;
     axes[k] = lobe.axis;
-    from[k] = ray_origin(hits[k]);
+    from[k] = ray_origin(met.hits[which[k]]);
     roughness[k] = lobe.roughness;
-    store_planes(axis_planes.data(), int(stride), int(k), axes[k]);
+    store_planes(axis_planes.data(), int(stride), int(k), turned.in_room(met.owner[which[k]], lobe.axis));
   }
   device_.launch<SgReflection>({light_, int(stride), axis_planes.data(), roughness.data(), sky.data()},
                                int(stride));
   std::vector<Surface::RayHit> next(n);
   surface_.intersect(from, axes, 0, next);
   for (size_t k = 0; k < n; ++k)
-    out[k] = next[k].t < 0 ? load_planes<float>(sky.data(), int(stride), int(k)) : diffuse_radiance(next[k]);
+    out[k] = next[k].t < 0 ? load_planes<float>(sky.data(), int(stride), int(k))
+                           : diffuse_radiance(next[k], turned.bin(met.owner[which[k]]));
   return out;
 }
 
 // What the points met reflect. Dielectrics reflect so little that, inside another reflection, the mean over
 // all directions stands for it.
-std::vector<Vec3f> SelfReflection::reflected_at(const Met& met) const {
+std::vector<Vec3f> SelfReflection::reflected_at(const Met& met, const TurnedHits& turned) const {
   std::vector<Vec3f> out(met.hits.size());
-  std::vector<Hit> metals;
-  std::vector<Material> materials;
-  std::vector<size_t> of;
+  std::vector<size_t> metals;
   for (size_t k = 0; k < out.size(); ++k) {
     out[k] = met.irradiance[k] / kPi;
-    if (met.materials[k].metalness <= 0) continue;
-    metals.push_back(met.hits[k]);
-    materials.push_back(met.materials[k]);
-    of.push_back(k);
+    if (met.materials[k].metalness > 0) metals.push_back(k);
   }
   if (metals.empty()) return out;
-  const std::vector<Vec3f> radiance = mirrored(metals, materials);
-  for (size_t k = 0; k < of.size(); ++k) out[of[k]] = radiance[k];
+  const std::vector<Vec3f> radiance = mirrored(met, metals, turned);
+  for (size_t k = 0; k < metals.size(); ++k) out[metals[k]] = radiance[k];
   return out;
 }
 
-std::vector<Vec3f> SelfReflection::radiance_of(const Met& met) const {
-  std::vector<Vec3f> out = reflected_at(met);
+std::vector<Vec3f> SelfReflection::radiance_of(const Met& met, const TurnedHits& turned) const {
+  std::vector<Vec3f> out = reflected_at(met, turned);
   for (size_t k = 0; k < out.size(); ++k) {
     const Material& m = met.materials[k];
     const float nv = max(dot(met.hits[k].normal, met.hits[k].to_camera), kMinCosine);
@@ -194,19 +193,19 @@ void SelfReflection::add_rays(const Hit& h, const Material& m, uint32_t owner, c
   }
 }
 
-std::vector<SelfReflection::Seen> SelfReflection::seen_by(std::span<const Hit> hits,
-                                                          std::span<const Material> materials) const {
+std::vector<SelfReflection::Seen> SelfReflection::seen_by(const HitBatch& batch) const {
+  const auto& [hits, materials, turned] = batch;
   Rays rays;
   rays.reserve(hits.size() * kMinRays);
   Lobes lobes;
   for (size_t i = 0; i < hits.size(); ++i)
     add_rays(hits[i], materials[i], uint32_t(i),
              lobes.of(materials[i], dot(hits[i].normal, hits[i].to_camera)), rays);
-  const Met met = met_by(rays);
-  const std::vector<Vec3f> radiance = radiance_of(met);
+  const Met met = met_by(rays, turned);
+  const std::vector<Vec3f> radiance = radiance_of(met, turned);
   std::vector<Seen> out(hits.size());
   for (size_t k = 0; k < met.hits.size(); ++k) {
-    Seen& seen = out[rays.owner[met.ray[k]]];
+    Seen& seen = out[met.owner[k]];
     const float share = rays.share[met.ray[k]];
     seen.visibility -= share;
     seen.radiance += radiance[k] * share;

@@ -9,6 +9,7 @@
 
 #include "core/compute/device.h"
 #include "core/compute/kernels/lobes.h"
+#include "engine/render/hit_batch.h"
 #include "engine/render/vertex_light.h"
 #include "model/geometry/shape/surface.h"
 
@@ -16,9 +17,9 @@ namespace cei3d {
 
 class SelfReflection {
  public:
-  // vertices, light and seen must outlive the object. seen: what reflections see in place of
-  // vertices.made_of; may be it.
-  SelfReflection(const Device&, const Surface&, const VertexLight& vertices, LobePlanes light,
+  // All must outlive the object. vertices: by bin of the light's turns. seen: what reflections see the
+  // surface made of.
+  SelfReflection(const Device&, const Surface&, std::span<const VertexLight> vertices, LobePlanes light,
                  const VertexMaterials& seen);
 
   struct Seen {
@@ -26,19 +27,19 @@ class SelfReflection {
     Vec3f radiance{
         0, 0, 0};  // mean radiance over the lobe of the surface seen in the rest of it, times that fraction
   };
-  // #hits. Each depends on its own hit and material alone. materials: #hits
-  std::vector<Seen> seen_by(std::span<const Hit> hits, std::span<const Material> materials) const;
+  // #hits. Each depends on its own hit and material alone.
+  std::vector<Seen> seen_by(const HitBatch&) const;
 
  private:
   struct Rays;
   class Lobes;
   struct Met;
   void add_rays(const Hit&, const Material&, uint32_t owner, const std::vector<Vec3f>& lobe, Rays&) const;
-  Met met_by(const Rays&) const;
-  std::vector<Vec3f> mirrored(std::span<const Hit>, std::span<const Material>) const;
-  std::vector<Vec3f> reflected_at(const Met&) const;
-  std::vector<Vec3f> radiance_of(const Met&) const;
-  Vec3f diffuse_radiance(const Surface::RayHit&) const;
+  Met met_by(const Rays&, const TurnedHits&) const;
+  std::vector<Vec3f> mirrored(const Met&, const std::vector<size_t>& which, const TurnedHits&) const;
+  std::vector<Vec3f> reflected_at(const Met&, const TurnedHits&) const;
+  std::vector<Vec3f> radiance_of(const Met&, const TurnedHits&) const;
+  Vec3f diffuse_radiance(const Surface::RayHit&, size_t bin) const;
   template <class Where>  // a Hit or a Surface::RayHit
   Vec3f at(std::span<const Vec3f> of_vertices, const Where& w) const {
     return at_corners(of_vertices, surface_.mesh().triangles[w.triangle], w.b1, w.b2);
@@ -47,7 +48,7 @@ class SelfReflection {
 
   const Device& device_;
   const Surface& surface_;
-  const VertexLight& vertices_;
+  std::span<const VertexLight> vertices_;
   LobePlanes light_;
   const VertexMaterials& seen_;
 };

@@ -69,6 +69,17 @@ VertexLight vertex_light(const Transport& transport, const SgMixture& light, Ver
   return vertex_light_after({}, transport, light, std::move(made_of));
 }
 
+std::vector<VertexLight> turned_vertex_lights(const Transport& transport, const SgMixture& light,
+                                              const VertexMaterials& made_of, const LightTurns* turns) {
+  if (!turns) return {vertex_light(transport, light, made_of)};
+  std::vector<VertexLight> out;
+  for (const Mat3f& room_from_object : turns->bins) {
+    out.push_back(vertex_light(transport, rotated(light, transpose(room_from_object)), made_of));
+    if (out.size() > 1) out.back().made_of = {};
+  }
+  return out;
+}
+
 VertexLight vertex_light_after(VertexLight before, const Transport& transport, const SgMixture& light,
                                VertexMaterials made_of) {
   const size_t n = transport.surface().mesh().positions.size();

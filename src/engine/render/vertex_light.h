@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/render/transport.h"
+#include "model/light/light_turns.h"
 #include "model/light/sg_mixture.h"
 #include "model/material/material.h"
 
@@ -31,6 +32,10 @@ struct VertexLight {
 SkyRadiance sky_radiance(const SgMixture& light);
 
 VertexLight vertex_light(const Transport&, const SgMixture&, VertexMaterials);
+
+// Of each bin of the light's turns; null: of the light as it is. Only the first knows the materials.
+std::vector<VertexLight> turned_vertex_lights(const Transport&, const SgMixture&, const VertexMaterials&,
+                                              const LightTurns*);
 
 // After a change of geometry. transport: of the changed surface, for its changed vertices. Only those are lit
 // anew: the others keep their light, so that what did not change looks as before.

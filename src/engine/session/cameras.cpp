@@ -80,6 +80,10 @@ void set_files(std::vector<NamedCamera>& cameras) {
 
 }  // namespace
 
+bool shows_photographs(const CameraChoice& choice) {
+  return std::holds_alternative<ProjectViews>(choice) || std::holds_alternative<CaptureViews>(choice);
+}
+
 bool is_camera_file(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return false;

@@ -7,33 +7,13 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
+#include "core/math/rotation.h"
 #include "engine/io/image_file.h"
 #include "engine/io/npy.h"
 #include "model/light/fit.h"
 
 namespace cei3d {
 namespace {
-
-// Rotation by an angle about a unit axis, counter-clockwise when the axis points to the viewer. [Rodrigues]
-Mat3f about_axis(Vec3f k, float radians) {
-  const float s = std::sin(radians), c = 1 - std::cos(radians);
-  const Mat3f cross_k{{{0, -k.z, k.y}, {k.z, 0, -k.x}, {-k.y, k.x, 0}}};
-  const Mat3f squared = cross_k * cross_k;
-  Mat3f r = Mat3f::identity();
-  for (int i = 0; i < 3; ++i) r.row[i] += cross_k.row[i] * s + squared.row[i] * c;
-  return r;
-}
-
-// The shortest rotation that takes one unit vector to another.
-Mat3f turning(Vec3f from, Vec3f to) {
-  const Vec3f axis = cross(from, to);
-  const float sine = length(axis), cosine = dot(from, to);
-  if (sine < 1e-6f) {
-    const Vec3f any = std::abs(from.x) < 0.9f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0};
-    return cosine > 0 ? Mat3f::identity() : about_axis(normalize(cross(from, any)), kPi);
-  }
-  return about_axis(axis / sine, std::atan2(sine, cosine));
-}
 
 // Blender's lookup and the scenes' are one: center +X, row 0 +Z. "yup" and "mitsuba" are one as well.
 EnvUp row_zero(EnvConvention convention, Vec3f up) {

@@ -207,6 +207,7 @@ struct Turntable {
 };
 struct ProjectViews {};  // the project's held-out views, or all when it has none
 using CameraChoice = std::variant<ProjectViews, CaptureViews, CameraFile, Turntable>;
+bool shows_photographs(const CameraChoice&);        // the views of a capture
 bool is_camera_file(const std::filesystem::path&);  // JSON with a list "cameras"
 
 // By their names on the command line; nothing: there is no such.

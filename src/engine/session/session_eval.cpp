@@ -100,7 +100,6 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
     if (!request.residual) scene.residual = base.residual = nullptr;
     const EditLayer* edit = layer_of(scene, request.edit);
     const Scene without = edit ? scene_without(base, scene, request.edit) : scene;
-    const SceneLight lit = frames_->light(scene), lit_without = edit ? frames_->light(without) : lit;
     const auto trace = [&](const Scene& s, const View& v) {
       return frames_->trace(s, s.normalization.unit_from_input(v.camera), request.samples);
     };
@@ -112,9 +111,14 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
       progress.report({"eval", double(i) / double(views.size()), -1, views[i].name});
       const auto view = trace(scene, views[i]);
       EditPictures p;
-      p.after = rounded_srgb(frames_->shade(scene, lit, *view).rgb);
-      p.before =
-          edit ? rounded_srgb(frames_->shade(without, lit_without, *trace(without, views[i])).rgb) : p.after;
+      const Scene now = in_view(scene, views[i].camera);
+      p.after = rounded_srgb(frames_->shade(now, frames_->light(now), *view).rgb);
+      if (edit) {
+        const Scene before = in_view(without, views[i].camera);
+        p.before = rounded_srgb(frames_->shade(before, frames_->light(before), *trace(before, views[i])).rgb);
+      } else {
+        p.before = p.after;
+      }
       p.photo = rounded_srgb(load_linear_rgba(views[i]));
       report.views.push_back(score_view(views[i], p.before, p.photo, perceptual, sets));
       if (edit) scorer.add(views[i], p, edited_area(scene, *edit, view->buffer, p));

@@ -31,9 +31,11 @@ class ProjectCheckpoints : public Checkpoints {
 
 Json options_json(const ReconstructRequest& r) {
   const ReconstructOptions& o = r.options;
-  return {{"preset", o.preset}, {"seconds", o.seconds},     {"iterations", o.iterations},
-          {"seed", o.seed},     {"downscale", o.downscale}, {"test_every", o.test_every},
-          {"views", o.views},   {"format", r.format}};
+  return {{"preset", o.preset},         {"seconds", o.seconds},
+          {"iterations", o.iterations}, {"seed", o.seed},
+          {"downscale", o.downscale},   {"test_every", o.test_every},
+          {"views", o.views},           {"light", o.light ? light_motion_name(*o.light) : "auto"},
+          {"format", r.format}};
 }
 
 ReconstructOptions options_from_json(const Json& j) {
@@ -45,7 +47,8 @@ ReconstructOptions options_from_json(const Json& j) {
   o.seed = reader.require<uint64_t>("seed");
   o.downscale = reader.require<int>("downscale");
   o.test_every = reader.require<int>("test_every");
-  o.views = reader.optional("views", 0);  // older projects have none
+  o.views = reader.optional("views", 0);                                        // older projects have none
+  o.light = light_motion_named(reader.optional("light", std::string("auto")));  // nor that
   reader.has("format");
   reader.finish();
   return o;

@@ -78,7 +78,8 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
         chosen_light(*device_, request.light, scene.light, scene.up, {project().folder() / "cache"});
     if (!request.residual || !request.light.is_own()) scene.residual = nullptr;
     const double depth = depth_scale(cameras, scene.normalization);
-    const SceneLight light = frames_->light(scene);
+    // Its own light turns with the photographs; other cameras may be anywhere.
+    const bool turns = request.light.env.empty() && shows_photographs(request.cameras);
     RenderReport report;
     for (size_t i = 0; i < cameras.size(); ++i) {
       require_running(progress);
@@ -87,7 +88,8 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
       const auto view =
           frames_->trace(scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
       report.trace_seconds += watch.lap();
-      const Frame frame = frames_->shade(scene, light, *view);
+      const Scene lit = turns ? in_view(scene, cameras[i].camera) : scene;
+      const Frame frame = frames_->shade(lit, frames_->light(lit), *view);
       report.shade_seconds += watch.lap();
       for (const Channel c : request.channels)
         write_png(picture_path(request.out, c, cameras[i]), channel_picture(frame, c, depth),

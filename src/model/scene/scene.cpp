@@ -86,6 +86,26 @@ std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const std:
   return residual;
 }
 
+void save_light_frame(const LightFrame& frame, Json& head) {
+  const auto& r = frame.reference.row;
+  const Json reference = {r[0].x, r[0].y, r[0].z, r[1].x, r[1].y, r[1].z, r[2].x, r[2].y, r[2].z};
+  head["light_frame"] = {{"motion", light_motion_name(frame.motion)},
+                         {"axis", vector_json(to_double(frame.axis))},
+                         {"reference", reference}};
+}
+
+LightFrame load_light_frame(JsonReader& head) {
+  JsonReader reader = head.object("light_frame");
+  const auto motion = light_motion_named(reader.require<std::string>("motion"));
+  if (!motion) fail("the light moves in a way that this program does not know; update it");
+  LightFrame frame{*motion, to_float(vector_from(reader, "axis")), {}};
+  const std::array<double, 9> rows = reader.numbers<9>("reference");  // row by row
+  for (size_t i = 0; i < 3; ++i)
+    frame.reference.row[i] = {float(rows[3 * i]), float(rows[3 * i + 1]), float(rows[3 * i + 2])};
+  reader.finish();
+  return frame;
+}
+
 // Objects of project version 3 and below have one material.
 std::shared_ptr<const Field> load_materials(const Tensors& tensors, const Json& head) {
   std::shared_ptr<const Field> field = load_field("materials", tensors, head);
@@ -115,10 +135,21 @@ Scene with_layer(Scene scene, EditLayer layer) {
     fail("edit {} was made for another shape of the object; undo it, or make it again", layer.id);
   if (layer.light) {
     scene.light = *layer.light;
+    scene.light_frame = {};
     scene.residual = nullptr;
   }
   if (layer.reshape) scene = reshaped(std::move(scene), *layer.reshape);
   scene.layers.push_back(std::move(layer));
+  return scene;
+}
+
+SgMixture light_in_view(const Scene& scene, const Camera& camera) {
+  if (scene.light_frame.motion == LightMotion::world) return scene.light;
+  return rotated(scene.light, transpose(scene.light_frame.room_from_object(camera.world_from_cam)));
+}
+
+Scene in_view(Scene scene, const Camera& camera) {
+  scene.light = light_in_view(scene, camera);
   return scene;
 }
 
@@ -133,6 +164,7 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   save_field(scene.material.varying(), "materials", tensors, head);
   if (scene.surface) save_surface(*scene.surface, tensors, head);
   save_light(scene.light, tensors, head);
+  if (scene.light_frame.motion != LightMotion::world) save_light_frame(scene.light_frame, head);
   if (scene.residual) save_residual(*scene.residual, scene.sdf, tensors, head);
   if (scene.handlers) save_handlers(*scene.handlers, tensors, head);
   if (scene.explained)
@@ -157,6 +189,7 @@ Scene load_scene(const Tensors& tensors, const Json& head) {
     scene.albedo = load_field("albedo", tensors, head);
     if (reader.has("surface")) scene.surface = load_surface(tensors, reader.member("surface"));
     scene.light = load_light(tensors, reader.member("light"));
+    if (reader.has("light_frame")) scene.light_frame = load_light_frame(reader);
     if (reader.has("residual")) scene.residual = load_residual(tensors, scene.sdf, head);
     if (reader.has("handlers")) scene.handlers = load_handlers(tensors, reader.member("handlers"));
     if (reader.has("explained")) {

@@ -14,6 +14,7 @@
 #include "model/geometry/shape/handlers.h"
 #include "model/geometry/shape/pose.h"
 #include "model/geometry/shape/surface.h"
+#include "model/light/light_turns.h"
 #include "model/light/sg_mixture.h"
 #include "model/scene/layer.h"
 #include "model/scene/material_field.h"
@@ -36,7 +37,8 @@ struct Scene {
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear
   // Mesh of the zero level set with its visibility table; replaced by changes of shape.
   std::shared_ptr<const Surface> surface;
-  SgMixture light;  // that of the last edit that has one, when the layers have been put on
+  SgMixture light;         // that of the last edit that has one, when the layers have been put on
+  LightFrame light_frame;  // of the light as reconstructed; one that an edit has put there stands still
   MaterialField material;
   // What they cannot explain; null: nothing, or not any more, since the light was changed.
   std::shared_ptr<const Residual> residual;
@@ -48,6 +50,11 @@ struct Scene {
 
 // The scene with one more edit on top. Error: a change of shape that does not fit the surface.
 Scene with_layer(Scene scene, EditLayer layer);
+
+// The light of the scene as the object had it in the picture of a camera (of any frame that is not rotated
+// against the capture's).
+SgMixture light_in_view(const Scene&, const Camera&);
+Scene in_view(Scene, const Camera&);  // under that light
 
 // Writes a scene as named tensors and a small JSON head (sizes, material, transform). Layers are not part of
 // it: the project's stack keeps them. Errors of loading: missing tensor, wrong shape.

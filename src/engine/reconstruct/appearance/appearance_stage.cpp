@@ -73,7 +73,8 @@ class Descent {
   void fit_albedo(int steps, float rate) {
     const SurfaceSamples& samples = input_.samples;
     const std::vector<Material> materials = result_.material.at(device_, positions_of(samples.hits));
-    const std::vector<ShadingTerms<float>> terms = lighting_->terms({samples.hits, materials});
+    const std::vector<ShadingTerms<float>> terms =
+        lighting_->terms({samples.hits, materials, samples.turned});
     for (int step = 0; step < steps; ++step) {
       check_cancelled(progress_);
       choose_batch();
@@ -115,8 +116,9 @@ class Descent {
   void relight(const std::vector<Vec3f>& base_color) {
     lighting_ = std::make_unique<Lighting>(
         device_, input_.surface, result_.light,
-        vertex_light(*transport_, result_.light,
-                     {base_color, result_.material.at(device_, input_.surface->mesh().positions)}));
+        turned_vertex_lights(*transport_, result_.light,
+                             {base_color, result_.material.at(device_, input_.surface->mesh().positions)},
+                             input_.samples.turned.turns));
   }
 
   void choose_batch() {
@@ -151,9 +153,10 @@ class Descent {
     choose_batch();
     std::vector<Hit> hits(options_.batch);
     for (int i = 0; i < options_.batch; ++i) hits[i] = input_.samples.hits[batch_[i]];
+    const std::vector<uint16_t> views = views_of(input_.samples.turned, batch_);
     const std::vector<Vec3f> positions = positions_of(hits);
     const std::vector<Material> materials = result_.material.at(device_, positions);
-    const HitBatch batch{hits, materials};
+    const HitBatch batch{hits, materials, {input_.samples.turned.turns, views}};
     const std::vector<IncidentLight<float>> light = lighting_->incident_light(batch);
     const std::vector<ShadingTerms<float>> terms = lighting_->terms(batch, light);
     std::vector<Vec3f> albedo(hits.size()), d_radiance(hits.size());
@@ -180,13 +183,6 @@ class Descent {
         material_of_grad(out + kOutputs * (i - begin), d_material[size_t(i)], d_out + kOutputs * (i - begin));
     };
     material_trainer_->step(device_, positions, loss, rate);
-  }
-
-  static std::vector<Vec3f> positions_of(std::span<const Hit> hits) {
-    std::vector<Vec3f> out;
-    out.reserve(hits.size());
-    for (const Hit& h : hits) out.push_back(h.position);
-    return out;
   }
 
   const Device& device_;

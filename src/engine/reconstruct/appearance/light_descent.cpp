@@ -38,8 +38,8 @@ HitPlanes hit_planes(const Device& device, const HitBatch& batch, ReflectionPart
   for (size_t i = 0; i < batch.size(); ++i) {
     const SurfaceReflection<float> r = reflection_of(batch.hits[i], batch.materials[i]);
     const ReflectionAxis<float>& lobe = base ? r.base : r.fresnel;
-    normals.push_back(batch.hits[i].normal);
-    axes.push_back(lobe.axis);
+    normals.push_back(batch.turned.in_room(i, batch.hits[i].normal));
+    axes.push_back(batch.turned.in_room(i, lobe.axis));
     roughness.push_back(lobe.roughness);
     d_lobe.push_back(d_reflected[i] * (base ? r.share : 1 - r.share));
   }

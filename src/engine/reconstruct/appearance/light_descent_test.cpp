@@ -9,6 +9,7 @@
 #include "core/compute/kernels/shade.h"
 #include "core/math/dual.h"
 #include "core/math/rng.h"
+#include "core/math/rotation.h"
 #include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/render/hit_reflection.h"
 
@@ -93,6 +94,31 @@ TEST(LightDescent, GradientOfEveryLobeEqualsDualNumbers) {
             << device.name() << " lobe " << k << " member " << j;
       }
   }
+}
+
+// Turning the light against a hit is turning the hit the other way.
+TEST(LightDescent, GradientUnderATurningLightIsThatOfTurnedHits) {
+  const Problem p;
+  const LightTurns turns = light_turns({about_axis({0, 0, 1}, 1), about_axis({0.6f, 0, 0.8f}, -2)});
+  std::vector<uint16_t> views;
+  std::vector<Hit> turned = p.hits;
+  for (size_t i = 0; i < kHits; ++i) {
+    views.push_back(uint16_t(i % 2));
+    turned[i].normal = turns.room_from_object[i % 2] * p.hits[i].normal;
+    turned[i].to_camera = turns.room_from_object[i % 2] * p.hits[i].to_camera;
+  }
+  const LightDescent descent(p.light, false);
+  std::vector<float> planes(7 * kPanel, 0.0f);
+  for (int k = 0; k < kLobes; ++k)
+    for (int j = 0; j < 7; ++j)
+      planes[size_t(j * kPanel + k)] = float(dual_lobe(p.light.lobes[size_t(k)], -1)[size_t(j)].value);
+  const LobePlanes lobes{planes.data(), kLobes, kPanel};
+  const Device device = make_device();
+  const std::vector<float> got = lobes_grad(device, lobes, {p.hits, p.materials, {&turns, views}},
+                                            p.d_irradiance, p.d_reflected),
+                           want = lobes_grad(device, lobes, {turned, p.materials}, p.d_irradiance,
+                                             p.d_reflected);
+  for (size_t i = 0; i < got.size(); ++i) EXPECT_NEAR(got[i], want[i], 2e-3f * (10 + std::abs(want[i]))) << i;
 }
 
 // Squared distance of the light that a mixture sends to the hits from that of another one, and its gradient.

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/math/color.h"
+#include "engine/reconstruct/appearance/split_irradiance.h"
 #include "engine/reconstruct/appearance/split_solver.h"
 #include "model/light/envmap.h"
 
@@ -80,8 +81,9 @@ void make_light_gray(SplitSolution& s, int height) {
 }
 
 // Base colors, those of dielectrics unclamped: what they send out diffusely over what reaches them.
-std::vector<Vec3f> base_colors(const Transport& transport, const SplitSolution& s, int height) {
-  const std::vector<Vec3f> irradiance = split_irradiance(transport, s.x, s.materials, height);
+std::vector<Vec3f> base_colors(const Transport& transport, const SplitSolution& s, int height,
+                               const LightTurns* turns) {
+  const std::vector<Vec3f> irradiance = split_irradiance(transport, s.x, s.materials, height, turns);
   std::vector<Vec3f> color = s.materials.color;
   for (uint32_t v = 0; v < color.size(); ++v)
     for (int c = 0; c < 3 && !s.materials.is_metal(v); ++c)
@@ -99,12 +101,12 @@ float percentile(std::vector<float> values, double share) {
 // On surfaces that reflect less the light comes out too dark, and more diffuse light leaves them than
 // arrives. No base color is above one: that bounds the light from below, and the specular reflectance from
 // above.
-void brighten_light(const Transport& transport, SplitSolution& s, int height) {
+void brighten_light(const Transport& transport, SplitSolution& s, int height, const LightTurns* turns) {
   constexpr double kShare = 0.98;  // of the surface is believed
   constexpr int kRounds = 3;       // the bounce does not scale with the light
   float all = 1;
   for (int round = 0; round < kRounds; ++round) {
-    const std::vector<Vec3f> color = base_colors(transport, s, height);
+    const std::vector<Vec3f> color = base_colors(transport, s, height, turns);
     Vec3f gain;
     for (int c = 0; c < 3; ++c) {
       std::vector<float> channel;
@@ -125,31 +127,6 @@ std::vector<Vec3f> clamped(std::vector<Vec3f> v, float high) {
     for (int c = 0; c < 3; ++c) x[c] = clamp(x[c], 0.0f, high);
   return v;
 }
-
-}  // namespace
-
-SkyRadiance sky_radiance(const Image& light) {
-  const auto& sky = sky_directions();
-  SkyRadiance sum(sky.size(), Vec3f{0, 0, 0});
-  std::vector<float> total(sky.size(), 0);
-  // A pixel feeds the directions around it by a narrow lobe about as wide as their spacing.
-  for (int y = 0; y < light.height; ++y)
-    for (int x = 0; x < light.width; ++x) {
-      const Vec3f d = env_direction(float(x) + 0.5f, float(y) + 0.5f, light.width, light.height);
-      const float area = env_solid_angle(y, light.width, light.height);
-      for (size_t k = 0; k < sky.size(); ++k) {
-        const float c = dot(d, sky[k]);
-        if (c < 0.95f) continue;
-        const float w = area * std::exp(256 * (c - 1));
-        sum[k] += light.rgb(x, y) * w;
-        total[k] += w;
-      }
-    }
-  for (size_t k = 0; k < sky.size(); ++k) sum[k] = sum[k] / total[k];
-  return sum;
-}
-
-namespace {
 
 LinearSplitOptions search_options(const LinearSplitOptions& options, int hits) {
   LinearSplitOptions o = options;
@@ -175,7 +152,7 @@ OneMaterial search_one_material(SplitSolver search, const LinearSplitOptions& op
   const float roughness = search_roughness(
       [&](float r) { return (is_metal ? search.metal(r) : search.dielectric(r)).residual; }, options);
   trials = std::move(search.trials);
-  guess = search.guess();
+  guess = search.last();
   return {is_metal, roughness};
 }
 
@@ -191,7 +168,7 @@ std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMate
   if (found.roughness > kFirstRoughness) start = one(kFirstRoughness);
   SplitSolution several = search.several(std::move(start), max_residual);
   if (several.residual > max_residual) return {};
-  guess = search.guess();
+  guess = search.last();
   return std::move(several.materials);
 }
 
@@ -233,18 +210,24 @@ float smoothest_of(const std::vector<Material>& materials) {
 
 }  // namespace
 
+double dielectric_residual(const Transport& transport, const SurfaceSamples& samples,
+                           const LinearSplitOptions& options, float roughness, Progress& progress) {
+  return SplitSolver(transport, samples, options, progress).dielectric(roughness).residual;
+}
+
 LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples,
                          const LinearSplitOptions& options, Progress& progress) {
   LinearSplit result;
   SplitSolution s = solve(transport, samples, options, progress, result.trials);
   const auto& of = s.materials.of;
+  const LightTurns* turns = samples.turned.turns;
   s.x.diffuse = clamped(std::move(s.x.diffuse), 1e6f);
   const bool all_metal =
       std::all_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
   if (all_metal)
     make_light_gray(s, options.light_height);
   else
-    brighten_light(transport, s, options.light_height);
+    brighten_light(transport, s, options.light_height, turns);
   result.material = mean_of(of);
   if (std::any_of(of.begin(), of.end(), [&](const Material& m) { return !(m == of.front()); }))
     result.materials = of;
@@ -253,8 +236,8 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
   result.smoothest = smoothest_of(of);
   result.light = light_image(s.x.light, options.light_height);
   result.diffuse = std::move(s.x.diffuse);
-  result.albedo =
-      clamped(base_colors(transport, {{result.diffuse, s.x.light}, s.materials, 0}, options.light_height), 1);
+  result.albedo = clamped(
+      base_colors(transport, {{result.diffuse, s.x.light}, s.materials, 0}, options.light_height, turns), 1);
   return result;
 }
 

@@ -13,6 +13,7 @@
 #include "core/base/progress.h"
 #include "core/image/image.h"
 #include "engine/render/transport.h"
+#include "model/light/light_turns.h"
 #include "model/material/material.h"
 
 namespace cei3d {
@@ -24,6 +25,7 @@ struct SurfaceSamples {
   // #N, bit c: channel c is as bright as pictures get, and the radiance at least that; empty: no channel is.
   std::span<const uint8_t> clipped;
   std::span<const float> footprints = {};  // #N, of pixels (pixel_points()); empty: colors of points
+  TurnedHits turned = {};                  // #N
   bool is_clipped(size_t sample, int channel) const {
     return !clipped.empty() && (clipped[sample] >> channel & 1);
   }
@@ -61,7 +63,8 @@ struct LinearSplit {
 
 LinearSplit linear_split(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&);
 
-// Mean of a lat-long light (EnvUp::z) around each of sky_directions().
-SkyRadiance sky_radiance(const Image& light);
+// What a dielectric of that roughness leaves, as LinearSplit::Trial::residual.
+double dielectric_residual(const Transport&, const SurfaceSamples&, const LinearSplitOptions&,
+                           float roughness, Progress&);
 
 }  // namespace cei3d

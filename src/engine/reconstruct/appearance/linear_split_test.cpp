@@ -10,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/appearance_stage.h"
+#include "engine/reconstruct/appearance/find_light_frame.h"
 #include "engine/render/lighting.h"
 #include "model/light/envmap.h"
 
@@ -60,6 +61,8 @@ struct Drawn {
   std::vector<Vec3f> base;
   std::vector<Hit> hits;
   std::vector<Vec3f> colors;
+  std::vector<Camera> cameras;
+  std::vector<uint16_t> views;  // of the hits
   std::vector<uint8_t> clipped = {};
   SurfaceSamples samples() const { return {hits, colors, clipped}; }
 };
@@ -67,7 +70,16 @@ struct Drawn {
 using Materials = std::function<Material(Vec3f position)>;
 using Colors = std::function<Vec3f(Vec3f position)>;
 
-Drawn draw(const Materials& material_at, const Colors& color_at) {
+Camera looking_at_the_origin(Vec3f eye) {
+  const Vec3d z = to_double(normalize(-eye)), x = normalize(cross(z, Vec3d{0, 0, 1})), y = cross(z, x);
+  Camera camera;
+  camera.center = to_double(eye);
+  camera.world_from_cam = transpose(Mat3d{{x, y, z}});
+  return camera;
+}
+
+// motion: how the light turns from view to view, about +Z.
+Drawn draw(const Materials& material_at, const Colors& color_at, LightMotion motion = LightMotion::world) {
   Drawn d;
   d.surface = std::make_shared<const Surface>(bumpy_ball());
   d.transport = std::make_shared<Transport>(d.surface);
@@ -77,6 +89,7 @@ Drawn draw(const Materials& material_at, const Colors& color_at) {
   for (int view = 0; view < 40; ++view) {
     const float z = 1 - (2 * float(view) + 1) / 40, r = std::sqrt(1 - z * z), a = 2.39996323f * float(view);
     const Vec3f eye = Vec3f{r * std::cos(a), r * std::sin(a), z} * 3.0f;
+    d.cameras.push_back(looking_at_the_origin(eye));
     for (int k = 0; k < 800; ++k) {
       Rng rng(1, uint64_t(view), uint64_t(k));
       const Vec3f q = Vec3f{rng.normal(), rng.normal(), rng.normal()} * 0.4f;
@@ -92,6 +105,7 @@ Drawn draw(const Materials& material_at, const Colors& color_at) {
     const auto& t = m.triangles[far[i].triangle];
     const float b1 = far[i].b1, b2 = far[i].b2;
     const Vec3f n = normalize(m.normals[t[0]] * (1 - b1 - b2) + m.normals[t[1]] * b1 + m.normals[t[2]] * b2);
+    d.views.push_back(uint16_t(i / 800));
     d.hits.push_back({origins[i] + directions[i] * far[i].t, n, -directions[i], far[i].triangle, b1, b2});
     albedo.push_back(d.base[t[0]] * (1 - b1 - b2) + d.base[t[1]] * b1 + d.base[t[2]] * b2);
   }
@@ -99,10 +113,17 @@ Drawn draw(const Materials& material_at, const Colors& color_at) {
   std::vector<Material> of_vertices, of_hits;
   for (const Vec3f& p : m.positions) of_vertices.push_back(material_at(p));
   for (const Hit& h : d.hits) of_hits.push_back(material_at(h.position));
-  const Lighting lighting(device, d.surface, studio(),
-                          vertex_light(*d.transport, studio(), {d.base, of_vertices}));
-  const Shading s = lighting.shade({d.hits, of_hits}, albedo);
-  for (size_t i = 0; i < d.hits.size(); ++i) d.colors.push_back(s.diffuse[i] + s.specular[i]);
+  const LightFrame frame = light_frame(motion, d.cameras, {0, 0, 1});
+  for (size_t begin = 0, end; begin < d.hits.size(); begin = end) {
+    for (end = begin; end < d.hits.size() && d.views[end] == d.views[begin];) ++end;
+    const Mat3f room_from_object = frame.room_from_object(d.cameras[d.views[begin]].world_from_cam);
+    const SgMixture light = rotated(studio(), transpose(room_from_object));
+    const Lighting lighting(device, d.surface, light,
+                            vertex_light(*d.transport, light, {d.base, of_vertices}));
+    const Shading s = lighting.shade(HitBatch{d.hits, of_hits}.part(int(begin), int(end)),
+                                     std::span(albedo).subspan(begin, end - begin));
+    for (size_t i = 0; i < end - begin; ++i) d.colors.push_back(s.diffuse[i] + s.specular[i]);
+  }
   return d;
 }
 
@@ -168,6 +189,31 @@ TEST(LinearSplit, FindsLightRoughnessAndAlbedoOfADielectric) {
       EXPECT_GE(split.light.rgb(x, y).y, 0);
     }
   EXPECT_LT(match(got, truth).error, 0.45);  // a deconvolution: sharp spots come out spiky
+}
+
+// Many lights on every point: what no light that stands still explains.
+TEST(LinearSplit, FindsAlbedoUnderALightThatTurns) {
+  const Drawn d = draw([](Vec3f) { return Material{0.3f, 0.5f, 0}; }, paint, LightMotion::turntable);
+  Progress quiet;
+  const LightFrame frame =
+      find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, 1, quiet);
+  ASSERT_EQ(frame.motion, LightMotion::turntable);
+  const auto turns = turns_of(frame, d.cameras);
+  SurfaceSamples samples = d.samples();
+  samples.turned = {turns.get(), d.views};
+  const LinearSplit split = linear_split(*d.transport, samples, small(), quiet);
+  EXPECT_TRUE(split.materials.empty());
+  EXPECT_NEAR(split.material.roughness, 0.3f, 0.05f);
+  const Match albedo = match(pick(split.albedo, seen(d)), pick(d.base, seen(d)));
+  EXPECT_NEAR(albedo.scale, 1, 0.15);
+  EXPECT_LT(albedo.error, 0.05);
+}
+
+TEST(LinearSplit, TakesALightThatStandsStillForWhatItIs) {
+  const Drawn d = draw({0.3f, 0.5f, 0});
+  Progress quiet;
+  EXPECT_EQ(find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, 1, quiet).motion,
+            LightMotion::world);
 }
 
 // A body drawn 1.5 times whiter than white is one under a brighter light that reflects less than is taken for

@@ -43,8 +43,8 @@ struct OneCoefficient {
 // Least squares of color = diffuse * D + reflected * t, D >= 0 and free, as sums over a vertex' samples.
 struct ScaleSums {
   Vec3f dd{0, 0, 0}, dg{0, 0, 0}, gg{0, 0, 0}, dc{0, 0, 0}, gc{0, 0, 0};
-  void add(Vec3f weight, float diffuse, Vec3f reflected, Vec3f color) {
-    dd += weight * (diffuse * diffuse);
+  void add(Vec3f weight, Vec3f diffuse, Vec3f reflected, Vec3f color) {
+    dd += weight * diffuse * diffuse;
     dg += weight * reflected * diffuse;
     gg += weight * reflected * reflected;
     dc += weight * color * diffuse;
@@ -94,7 +94,7 @@ LitSamples::Seen LitSamples::seen_by(const SplitRow& row, float roughness) const
     return radiance_at(sky_, reflected_sky(row, part, roughness, light_height_));
   };
   return {sky(ReflectionPart::base) * s.scale, sky(ReflectionPart::fresnel) * s.bias,
-          diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness)};
+          row.diffuse_light * diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness)};
 }
 
 // Calls visit(row, its color, Seen) for the vertex' samples that mirror the sky. Returns their number.
@@ -116,7 +116,7 @@ int LitSamples::add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float*
   OneCoefficient dielectric, metal;
   const int count =
       for_samples(vertex, BlurLadder::roughness(level), [&](const SplitRow& row, Vec3f color, const Seen& s) {
-        dielectric.add(row.weight, white * s.diffuse_view, color - s.fresnel - s.base * f0);
+        dielectric.add(row.weight, s.diffuse, color - s.fresnel - s.base * f0);
         metal.add(row.weight, s.base, color - s.fresnel);
       });
   errors[level] = dielectric.error(black, max_diffuse);
@@ -145,7 +145,7 @@ LightScale LitSamples::light_scale(const SplitMaterials& materials) const {
     if (materials.is_metal(v)) continue;
     ScaleSums sums;
     for_samples(v, materials.of[v].roughness, [&](const SplitRow& row, Vec3f color, const Seen& s) {
-      sums.add(row.weight, s.diffuse_view, s.base * f0 + s.fresnel, color);
+      sums.add(row.weight, s.diffuse, s.base * f0 + s.fresnel, color);
     });
     sums.add_to(above, below);
   }

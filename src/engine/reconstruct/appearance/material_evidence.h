@@ -36,7 +36,7 @@ class LitSamples {
   // Of a row, if its surface has that roughness.
   struct Seen {
     Vec3f base, fresnel;  // reflected radiance that F0 scales, and the rest
-    float diffuse_view;
+    Vec3f diffuse;        // radiance from that of the vertex
   };
   Seen seen_by(const SplitRow&, float roughness) const;
   int add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float* errors) const;

@@ -11,7 +11,7 @@
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/reconstruct/appearance/pixel_points.h"
-#include "engine/render/scene_light.h"
+#include "engine/render/lighting.h"
 #include "model/field/gradients.h"
 #include "model/field/optimizer.h"
 #include "model/scene/appearance.h"
@@ -43,18 +43,23 @@ std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::
 std::vector<Vec3f> physical(const Device& device, const Scene& scene, const SurfaceSamples& samples,
                             const Progress& progress) {
   constexpr size_t kSlab = 1 << 17;  // hits at a time: shading takes more memory than they do
-  const SceneLight light(device, scene, scene_transports(scene));
+  const std::vector<Vec3f>& vertices = scene.surface->mesh().positions;
+  const Lighting light(
+      device, scene.surface, scene.light,
+      turned_vertex_lights(Transport(scene.surface), scene.light,
+                           {scene.albedo->eval3(device, vertices), scene.material.at(device, vertices)},
+                           samples.turned.turns));
   std::vector<Vec3f> out;
   out.reserve(samples.hits.size());
   for (size_t begin = 0; begin < samples.hits.size(); begin += kSlab) {
     check_cancelled(progress);
     const size_t n = std::min(kSlab, samples.hits.size() - begin);
     const std::span<const Hit> hits = samples.hits.subspan(begin, n);
-    Appearance look = appearance_at(device, scene, hits);
-    look.albedo =
+    const std::vector<Material> materials = scene.material.at(device, positions_of(hits));
+    const std::vector<Vec3f> albedo =
         pixel_colors(device, *scene.albedo, hits,
                      samples.footprints.empty() ? samples.footprints : samples.footprints.subspan(begin, n));
-    const Shading shading = light.shade(hits, look);
+    const Shading shading = light.shade({hits, materials, samples.turned.part(begin, n)}, albedo);
     for (size_t i = 0; i < n; ++i) out.push_back(shading.diffuse[i] + shading.specular[i]);
   }
   return out;

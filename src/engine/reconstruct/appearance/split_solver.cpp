@@ -7,13 +7,18 @@
 #include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "engine/reconstruct/appearance/split_irradiance.h"
 
 namespace cei3d {
 namespace {
 
 constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
 
-constexpr int kRounds = 3;         // of materials and light
+constexpr int kRounds = 3;  // of materials and light
+// Rounds of a turning light and of what it sends to matte surfaces: without a guess, and with one. The second
+// follows by half a step, the whole one overshoots as much as it corrects (docs/notebook/0019).
+constexpr int kFirstTurns = 8, kTurns = 6;
+constexpr float kTurnStep = 0.5f;
 constexpr int kDiffusion = 20;     // steps, of evidence over the surface
 constexpr float kMetalBy = 0.85f;  // a metal has to explain a place so much better than a dielectric
 // The brightest diffuse base color that a vertex may have, in multiples of white: while the scale of the
@@ -22,34 +27,11 @@ constexpr float kFirstWhite = 3, kLastWhite = 1.3f;
 
 }  // namespace
 
-Image light_image(const std::vector<Vec3f>& light, int height) {
-  Image map(2 * height, height, 3);
-  for (size_t i = 0; i < light.size(); ++i)
-    for (int c = 0; c < 3; ++c) map.data[3 * i + c] = light[i][c];
-  return map;
-}
-
-std::vector<Vec3f> diffuse_radiance(const Transport& transport, const SplitUnknowns& x,
-                                    const SplitMaterials& materials, int height) {
-  const std::vector<Vec3f> sky = transport.sky(sky_radiance(light_image(x.light, height)));
-  std::vector<Vec3f> out = x.diffuse;
-  for (uint32_t v = 0; v < out.size(); ++v)
-    if (materials.is_metal(v)) out[v] = materials.color[v] * sky[v] / kPi;
-  return out;
-}
-
-std::vector<Vec3f> split_irradiance(const Transport& transport, const SplitUnknowns& x,
-                                    const SplitMaterials& materials, int height) {
-  std::vector<Vec3f> out = transport.sky(sky_radiance(light_image(x.light, height)));
-  const std::vector<Vec3f> bounce = transport.bounce(diffuse_radiance(transport, x, materials, height));
-  for (size_t v = 0; v < out.size(); ++v) out[v] += bounce[v];
-  return out;
-}
-
 SplitSolver::SplitSolver(const Transport& transport, const SurfaceSamples& samples,
                          const LinearSplitOptions& options, Progress& progress, SplitGuess guess)
     : transport_(transport),
       mesh_(transport.surface().mesh()),
+      turns_(samples.turned.turns),
       rows_(make_split_rows(transport.surface(), samples, options)),
       options_(options),
       progress_(progress),
@@ -63,8 +45,14 @@ SplitUnknowns SplitSolver::uniform() const {
   return {mean_colors(mesh_.positions.size(), rows_), std::vector<Vec3f>(cells, mean)};
 }
 
+SplitSolution SplitSolver::guess(SplitMaterials materials) {
+  if (guess_.light.width == 0) return {uniform(), std::move(materials)};
+  SplitSolution s{guessed(), std::move(materials)};
+  if (!turned_) turn_diffuse_light(s, 1);
+  return s;
+}
+
 SplitUnknowns SplitSolver::guessed() const {
-  if (guess_.light.width == 0) return uniform();
   const int height = options_.light_height, width = 2 * height;
   SplitUnknowns x{guess_.diffuse, {}};
   for (int row = 0; row < height; ++row)
@@ -82,7 +70,14 @@ SplitSolution SplitSolver::solved(SplitSolution s, int rounds, int steps) {
   check_cancelled(progress_);
   system_.set_materials(s.materials);
   system_.solve(s.x, rounds, steps);
+  turn_diffuse_light(s, kTurnStep);
   return s;
+}
+
+void SplitSolver::turn_diffuse_light(const SplitSolution& s, float share) {
+  if (!turns_) return;
+  turned_ = true;
+  cei3d::turn_diffuse_light(transport_, s.x, s.materials, options_.light_height, *turns_, share, rows_);
 }
 
 SplitSolution SplitSolver::with_fitted_metals(SplitSolution s, int rounds, int steps) {
@@ -102,8 +97,11 @@ SplitSolution SplitSolver::finish(SplitSolution s, bool metal, float roughness) 
 }
 
 SplitSolution SplitSolver::dielectric(float roughness) {
-  SplitSolution s{guessed(), one_material(mesh_.positions.size(), {roughness, kSpecular, 0})};
-  s = solved(std::move(s), options_.rounds, options_.steps);
+  const bool first = guess_.light.width == 0;
+  SplitSolution s = guess(one_material(mesh_.positions.size(), {roughness, kSpecular, 0}));
+  const int turns = !turns_ ? 1 : first ? kFirstTurns : kTurns;
+  for (int turn = 0; turn < turns; ++turn)
+    s = solved(std::move(s), turns_ ? 2 : options_.rounds, options_.steps);
   remember(s.x);
   return finish(std::move(s), false, roughness);
 }
@@ -115,7 +113,7 @@ SplitSolution SplitSolver::metal(float roughness) {
 }
 
 std::vector<Vec3f> SplitSolver::white_radiance(const SplitSolution& s, float albedo) const {
-  std::vector<Vec3f> out = split_irradiance(transport_, s.x, s.materials, options_.light_height);
+  std::vector<Vec3f> out = split_irradiance(transport_, s.x, s.materials, options_.light_height, turns_);
   for (Vec3f& e : out) e = e * (albedo / kPi);
   return out;
 }
@@ -204,7 +202,7 @@ SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {
 }
 
 SplitSolution SplitSolver::with_materials(const SplitMaterials& materials) {
-  SplitSolution s{guessed(), materials};
+  SplitSolution s = guess(materials);
   for (int round = 0; round < 3; ++round) {
     s = solved(std::move(s), 3, 8);
     fix_scale(s);

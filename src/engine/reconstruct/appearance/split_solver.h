@@ -30,7 +30,7 @@ class SplitSolver {
   SplitSolver(const SplitSolver&) = delete;  // the system refers to the rows
 
   size_t rows() const { return rows_.size(); }
-  const SplitGuess& guess() const { return guess_; }
+  const SplitGuess& last() const { return guess_; }
   SplitSolution dielectric(float roughness);
   SplitSolution metal(float roughness);
   // Finds the materials of the vertices: by turns the materials that explain the samples best under the
@@ -45,6 +45,8 @@ class SplitSolver {
  private:
   SplitUnknowns uniform() const;  // light; each vertex the mean color of its samples
   SplitUnknowns guessed() const;
+  SplitSolution guess(SplitMaterials);
+  void turn_diffuse_light(const SplitSolution&, float share);
   void remember(const SplitUnknowns&);
   SplitSolution solved(SplitSolution, int rounds, int steps);
   SplitSolution with_fitted_metals(SplitSolution, int rounds, int steps);
@@ -56,20 +58,13 @@ class SplitSolver {
 
   const Transport& transport_;
   const Mesh& mesh_;
+  const LightTurns* turns_;  // null: the light stands still
+  bool turned_ = false;  // the rows' diffuse light has been set
   std::vector<SplitRow> rows_;
   LinearSplitOptions options_;
   Progress& progress_;
   SplitSystem system_;
   SplitGuess guess_;
 };
-
-// What every vertex sends out, reflections of metals as if they were diffuse. light: of `height` rows.
-std::vector<Vec3f> diffuse_radiance(const Transport&, const SplitUnknowns&, const SplitMaterials&,
-                                    int height);
-// Irradiance of every vertex, from the light and from the surface.
-std::vector<Vec3f> split_irradiance(const Transport&, const SplitUnknowns&, const SplitMaterials&,
-                                    int height);
-
-Image light_image(const std::vector<Vec3f>& light, int height);
 
 }  // namespace cei3d

@@ -49,8 +49,9 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     row = {};
     row.vertices = {t[0], t[1], t[2]};
     row.barycentric = {1 - h.b1 - h.b2, h.b1, h.b2};
-    row.normal = h.normal;
-    row.to_camera = h.to_camera;
+    row.normal = samples.turned.in_room(kept[k], h.normal);
+    row.to_camera = samples.turned.in_room(kept[k], h.to_camera);
+    row.light_bin = uint8_t(samples.turned.bin(kept[k]));
     row.nv = dot(h.normal, h.to_camera);
     row.color = samples.colors[kept[k]];
     for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_slope(max(row.color[c], kDarkest)));
@@ -168,8 +169,11 @@ Blurred SplitSystem::blurred(const std::vector<Vec3f>& light) const {
 Vec3f SplitSystem::predict(size_t i, const SplitUnknowns& x, const Blurred& blurred) const {
   const SplitRow& row = rows_[i];
   const Optics& o = optics_[i];
-  const Vec3f diffuse = between(x.diffuse, row.vertices, row.barycentric) * o.diffuse_view;
-  if (row.blocked) return diffuse + o.gain() * between(x.diffuse, row.far_vertices, row.far_barycentric);
+  const Vec3f diffuse =
+      between(x.diffuse, row.vertices, row.barycentric) * row.diffuse_light * o.diffuse_view;
+  if (row.blocked)
+    return diffuse +
+           o.gain() * row.far_diffuse_light * between(x.diffuse, row.far_vertices, row.far_barycentric);
   return diffuse + o.base_gain * radiance_at(blurred, o.base) +
          radiance_at(blurred, o.fresnel) * o.split_sum.bias;
 }
@@ -220,9 +224,10 @@ void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
       const Optics& o = optics_[i];
       if (!o.used) continue;
       const Vec3f y = row_value(i) * weights_[i];
-      for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += y * (row.barycentric[k] * o.diffuse_view);
+      const Vec3f here = y * row.diffuse_light * o.diffuse_view;
+      for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += here * row.barycentric[k];
       if (row.blocked) {
-        const Vec3f g = y * o.gain();
+        const Vec3f g = y * o.gain() * row.far_diffuse_light;
         for (int k = 0; k < 3; ++k) sum.diffuse[row.far_vertices[k]] += g * row.far_barycentric[k];
         continue;
       }
@@ -309,11 +314,12 @@ SplitUnknowns SplitSystem::diagonal() const {
     const SplitRow& row = rows_[i];
     const Optics& o = optics_[i];
     if (!o.used) continue;
-    const Vec3f gg = row.weight * o.gain() * o.gain();
+    const Vec3f gg = row.weight * o.gain() * o.gain(), here = row.diffuse_light, far = row.far_diffuse_light;
     for (int k = 0; k < 3; ++k)
-      d.diffuse[row.vertices[k]] += row.weight * square(row.barycentric[k] * o.diffuse_view);
+      d.diffuse[row.vertices[k]] += row.weight * here * here * square(row.barycentric[k] * o.diffuse_view);
     if (row.blocked)
-      for (int k = 0; k < 3; ++k) d.diffuse[row.far_vertices[k]] += gg * square(row.far_barycentric[k]);
+      for (int k = 0; k < 3; ++k)
+        d.diffuse[row.far_vertices[k]] += gg * far * far * square(row.far_barycentric[k]);
     else
       for (int k = 0; k < 4; ++k)
         mass[size_t(o.base.lobe.level) + (o.base.lobe.above > 0.5f)][o.base.taps.pixel[k]] +=
@@ -435,6 +441,7 @@ void SplitSystem::solve(SplitUnknowns& x, int rounds, int steps) {
 
 std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) {
   const Blurred sky = blurred(x.light);
+  // Ratios of sums: in least squares errors of the light would make all colors darker.
   const size_t n = mesh_.positions.size();
   std::vector<Vec3f> above(n, Vec3f{0, 0, 0}), below(n, Vec3f{0, 0, 0});
   for (size_t i = 0; i < rows_.size(); ++i) {
@@ -444,8 +451,8 @@ std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) {
     const Vec3f slope = radiance_at(sky, o.base) * o.split_sum.scale,
                 rest = row.color - radiance_at(sky, o.fresnel) * o.split_sum.bias;
     for (int k = 0; k < 3; ++k) {
-      above[row.vertices[k]] += weights_[i] * slope * rest * row.barycentric[k];
-      below[row.vertices[k]] += weights_[i] * slope * slope * row.barycentric[k];
+      above[row.vertices[k]] += weights_[i] * rest * row.barycentric[k];
+      below[row.vertices[k]] += weights_[i] * slope * row.barycentric[k];
     }
   }
   // Unseen vertices, and to a small part all, take the mean color.

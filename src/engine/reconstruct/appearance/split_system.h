@@ -18,7 +18,7 @@ namespace cei3d {
 struct SplitRow {
   std::array<uint32_t, 3> vertices;  // around the hit
   std::array<float, 3> barycentric;
-  Vec3f normal, to_camera;               // unit
+  Vec3f normal, to_camera;               // unit, in the frame of the light
   float nv;                              // their cosine
   bool blocked;                          // the mirror ray meets the surface again,
   std::array<uint32_t, 3> far_vertices;  // between these vertices
@@ -26,6 +26,9 @@ struct SplitRow {
   Vec3f color;      // linear
   Vec3f weight;     // squared slope of the display curve
   uint8_t clipped;  // SurfaceSamples::clipped
+  // Under a light that turns: its bin, and how much light the vertices get in this view, over their mean.
+  uint8_t light_bin = 0;
+  Vec3f diffuse_light{1, 1, 1}, far_diffuse_light{1, 1, 1};
 };
 
 std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&);

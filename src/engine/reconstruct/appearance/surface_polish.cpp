@@ -25,9 +25,10 @@ class Polish {
         albedo_(*appearance.albedo),
         trainer_(albedo_, {}),
         lighting_(device, input.surface, appearance.light,
-                  vertex_light(Transport(input.surface), appearance.light,
-                               {albedo_.eval3(device, input.surface->mesh().positions),
-                                appearance.material.at(device, input.surface->mesh().positions)})) {}
+                  turned_vertex_lights(Transport(input.surface), appearance.light,
+                                       {albedo_.eval3(device, input.surface->mesh().positions),
+                                        appearance.material.at(device, input.surface->mesh().positions)},
+                                       input.samples.turned.turns)) {}
 
   // share: of the polishing that is done, [0, 1).
   GeometryStats step(int step, double share) {
@@ -36,7 +37,8 @@ class Polish {
     std::vector<Vec3f> positions;
     for (const Hit& h : hits_) positions.push_back(h.position);
     materials_ = appearance_.material.at(device_, positions);
-    const HitBatch batch{hits_, materials_};
+    const std::vector<uint16_t> views = views_of(samples_.turned, batch_);
+    const HitBatch batch{hits_, materials_, {samples_.turned.turns, views}};
     const std::vector<IncidentLight<float>> light = lighting_.incident_light(batch);
     fit_albedo(positions, lighting_.terms(batch, light));
     std::vector<Vec3f> d_normals = lighting_.grad(batch, light, colors_, d_radiance_).d_normal, points;

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
+#include <vector>
 
 #include "core/math/mirror.h"
 
@@ -24,5 +26,12 @@ inline Vec3f ray_origin(const Hit& h) { return h.position + h.normal * kRayLift;
 
 // Where the light comes from that the camera sees mirrored at the hit. Unit.
 inline Vec3f mirror_direction(const Hit& h) { return mirrored_direction(h.normal, h.to_camera); }
+
+inline std::vector<Vec3f> positions_of(std::span<const Hit> hits) {
+  std::vector<Vec3f> out;
+  out.reserve(hits.size());
+  for (const Hit& h : hits) out.push_back(h.position);
+  return out;
+}
 
 }  // namespace cei3d

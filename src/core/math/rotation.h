@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rotations about axes.
+#pragma once
+
+#include <cmath>
+
+#include "core/math/vec.h"
+
+namespace cei3d {
+
+// By an angle about a unit axis, counter-clockwise when the axis points to the viewer. [Rodrigues]
+inline Mat3f about_axis(Vec3f k, float radians) {
+  const float s = std::sin(radians), c = 1 - std::cos(radians);
+  const Mat3f cross_k{{{0, -k.z, k.y}, {k.z, 0, -k.x}, {-k.y, k.x, 0}}};
+  const Mat3f squared = cross_k * cross_k;
+  Mat3f r = Mat3f::identity();
+  for (int i = 0; i < 3; ++i) r.row[i] += cross_k.row[i] * s + squared.row[i] * c;
+  return r;
+}
+
+// The shortest rotation that takes one unit vector to another.
+inline Mat3f turning(Vec3f from, Vec3f to) {
+  const Vec3f axis = cross(from, to);
+  const float sine = length(axis), cosine = dot(from, to);
+  if (sine < 1e-6f) {
+    const Vec3f any = std::abs(from.x) < 0.9f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0};
+    return cosine > 0 ? Mat3f::identity() : about_axis(normalize(cross(from, any)), kPi);
+  }
+  return about_axis(axis / sine, std::atan2(sine, cosine));
+}
+
+// The angle of the rotation about a unit axis that comes nearest to r, in radians: about_axis(axis, angle)
+// maximizes the trace of its transpose times r.
+inline float angle_about(Vec3f axis, const Mat3f& r) {
+  const Vec3f turn{r.row[2].y - r.row[1].z, r.row[0].z - r.row[2].x, r.row[1].x - r.row[0].y};
+  const float trace = r.row[0].x + r.row[1].y + r.row[2].z;
+  return std::atan2(dot(axis, turn), trace - dot(axis, r * axis));
+}
+
+}  // namespace cei3d

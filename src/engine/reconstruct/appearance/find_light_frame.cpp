@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/appearance/find_light_frame.h"
+
+#include "core/base/json.h"
+
+namespace cei3d {
+namespace {
+
+// A turning light has to leave so much less, and less by more than the noise of photographs, 37 dB.
+constexpr double kTurningBy = 0.8, kNoise = 2e-4;
+constexpr float kRoughness = 0.3f;
+
+}  // namespace
+
+LightFrame light_frame(LightMotion motion, std::span<const Camera> cameras, Vec3f axis) {
+  if (motion == LightMotion::world || cameras.empty()) return {};
+  const Mat3d& first = cameras.front().world_from_cam;
+  return {motion, axis, Mat3f{{to_float(first.row[0]), to_float(first.row[1]), to_float(first.row[2])}}};
+}
+
+std::shared_ptr<const LightTurns> turns_of(const LightFrame& frame, std::span<const Camera> cameras) {
+  if (frame.motion == LightMotion::world) return nullptr;
+  std::vector<Mat3f> rotations;
+  for (const Camera& c : cameras) rotations.push_back(frame.room_from_object(c.world_from_cam));
+  return std::make_shared<const LightTurns>(light_turns(std::move(rotations)));
+}
+
+LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16_t> views,
+                            std::span<const Camera> cameras, Vec3f axis, uint64_t seed, Progress& progress) {
+  LinearSplitOptions options;
+  options.most_hits = options.search_hits;
+  options.light_height = options.search_height;
+  options.seed = seed;
+  const Transport transport(input.surface);
+  const auto residual = [&](LightMotion motion) {
+    const auto turns = turns_of(light_frame(motion, cameras, axis), cameras);
+    SurfaceSamples samples = input.samples;
+    samples.turned = {turns.get(), views};
+    const double r = dielectric_residual(transport, samples, options, kRoughness, progress);
+    progress.log(
+        Json{{"stage", "light motion"}, {"motion", light_motion_name(motion)}, {"residual", r}}.dump());
+    return r;
+  };
+  const double still = residual(LightMotion::world);
+  double least = std::min(kTurningBy * still, still - kNoise);
+  LightMotion best = LightMotion::world;
+  for (const LightMotion motion : {LightMotion::camera, LightMotion::turntable}) {
+    const double r = least > 0 ? residual(motion) : still;
+    if (r >= least) continue;
+    least = r;
+    best = motion;
+  }
+  return light_frame(best, cameras, axis);
+}
+
+}  // namespace cei3d

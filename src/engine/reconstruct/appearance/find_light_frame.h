@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether the light stands still against the object, or turns with the camera.
+#pragma once
+
+#include "core/math/camera.h"
+#include "engine/reconstruct/appearance/appearance_stage.h"
+
+namespace cei3d {
+
+// The motion that explains the samples best, by a split for one dielectric: as many unknowns for each. A
+// light that stands still wins unless another motion leaves much less. input: its samples not turned. views:
+// #samples, index of the camera. cameras: of the training views; the first is the reference. axis: of a
+// turntable, unit.
+LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16_t> views,
+                            std::span<const Camera> cameras, Vec3f axis, uint64_t seed, Progress&);
+
+// The frame of that motion for these cameras.
+LightFrame light_frame(LightMotion, std::span<const Camera> cameras, Vec3f axis);
+
+// Null where the light stands still.
+std::shared_ptr<const LightTurns> turns_of(const LightFrame&, std::span<const Camera> cameras);
+
+}  // namespace cei3d

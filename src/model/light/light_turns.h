@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Light that turns against the object from picture to picture: on a turntable the object turns under lamps
+// that stand still, which in the object's frame is a light that goes round with the camera.
+// (docs/method.md#turning-light)
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/math/vec.h"
+
+namespace cei3d {
+
+enum class LightMotion {
+  world,     // stands still against the object
+  camera,    // is fixed to the camera: a flash, or a turntable before a camera that never moved
+  turntable  // goes round an axis with the camera's azimuth
+};
+const char* light_motion_name(LightMotion);
+std::optional<LightMotion> light_motion_named(const std::string&);
+
+// The frame in which a moving light is known: that of the object in one of its pictures.
+struct LightFrame {
+  LightMotion motion = LightMotion::world;
+  Vec3f axis{0, 0, 1};                  // of the turntable; unit, capture frame
+  Mat3f reference = Mat3f::identity();  // rotation of that picture's camera, world_from_cam
+
+  // From directions of the object in the picture of a camera to those in the reference picture.
+  Mat3f room_from_object(const Mat3d& world_from_cam) const;
+};
+
+// What rotations of the views of a capture are, as far as the light is concerned.
+struct LightTurns {
+  std::vector<Mat3f> room_from_object;  // #views
+  std::vector<uint8_t> bin;             // #views, which of `bins` is nearest
+  std::vector<Mat3f>
+      bins;  // a few of them that stand for all where light arrives blurred, as on matte surfaces
+};
+constexpr size_t kMaxLightBins = 32;
+LightTurns light_turns(std::vector<Mat3f> room_from_object);
+
+// Points of a surface, each as a view shows it.
+struct TurnedHits {
+  const LightTurns* turns = nullptr;     // null: the light stands still
+  std::span<const uint16_t> views = {};  // #points
+
+  size_t bins() const { return turns ? turns->bins.size() : 1; }
+  size_t bin(size_t i) const { return turns ? turns->bin[views[i]] : 0; }
+  Vec3f in_room(size_t i, Vec3f d) const { return turns ? turns->room_from_object[views[i]] * d : d; }
+  Vec3f in_object(size_t i, Vec3f d) const {
+    return turns ? transpose(turns->room_from_object[views[i]]) * d : d;
+  }
+  TurnedHits part(size_t begin, size_t count) const {
+    return turns ? TurnedHits{turns, views.subspan(begin, count)} : TurnedHits{};
+  }
+};
+
+// The views of some of the points; nothing where the light stands still.
+std::vector<uint16_t> views_of(const TurnedHits&, std::span<const uint32_t> points);
+
+}  // namespace cei3d
