@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/appearance/split_irradiance.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "core/base/parallel.h"
+#include "core/math/color.h"
 
 namespace cei3d {
 namespace {
@@ -73,20 +77,72 @@ std::vector<Vec3f> split_irradiance(const Transport& transport, const SplitUnkno
   return out;
 }
 
-void turn_diffuse_light(const Transport& transport, const SplitUnknowns& x, const SplitMaterials& materials,
-                        int height, const LightTurns& turns, float share, std::vector<SplitRow>& rows) {
-  DirectLight light = direct_light(transport, light_image(x.light, height), &turns);
-  const std::vector<Vec3f> bounce = bounce_of(transport, x, materials, light.mean);
-  const Vec3f dark{1e-6f, 1e-6f, 1e-6f};
-  for (std::vector<Vec3f>& bin : light.by_bin)
-    for (size_t v = 0; v < bin.size(); ++v)
-      bin[v] = (bin[v] + bounce[v] + dark) / (light.mean[v] + bounce[v] + dark);
-  for (SplitRow& row : rows) {
-    const std::vector<Vec3f>& bin = light.by_bin[row.light_bin];
-    const auto move = [&](Vec3f& from, Vec3f to) { from = from * (1 - share) + to * share; };
-    move(row.diffuse_light, between(bin, row.vertices, row.barycentric));
-    if (row.blocked) move(row.far_diffuse_light, between(bin, row.far_vertices, row.far_barycentric));
+namespace {
+
+// Irradiance of every vertex from each harmonic.
+std::vector<Harmonics> transfer_of(const Transport& transport) {
+  std::vector<Harmonics> out(transport.surface().mesh().positions.size());
+  for (size_t first = 0; first < kHarmonics; first += 3) {
+    const size_t count = std::min<size_t>(3, kHarmonics - first);  // a color carries three
+    SkyRadiance sky;
+    for (const Vec3f& d : sky_directions()) {
+      sky.push_back({0, 0, 0});
+      for (size_t c = 0; c < count; ++c) sky.back()[int(c)] = harmonics(d)[first + c];
+    }
+    const std::vector<Vec3f> irradiance = transport.sky(sky);
+    for (size_t v = 0; v < out.size(); ++v)
+      for (size_t c = 0; c < count; ++c) out[v][first + c] = irradiance[v][int(c)];
   }
+  return out;
+}
+
+}  // namespace
+
+TurningIrradiance::TurningIrradiance(const Transport& transport, const LightTurns& turns, int light_height)
+    : transport_(transport),
+      turns_(turns),
+      height_(light_height),
+      harmonics_(light_height),
+      transfer_(transfer_of(transport)) {
+  for (const Mat3f& rotation : turns.room_from_object) views_.push_back(turned_harmonics(rotation));
+  for (const Mat3f& rotation : turns.bins) {
+    const HarmonicMatrix m = turned_harmonics(rotation);
+    for (size_t i = 0; i < kHarmonics; ++i)
+      for (size_t j = 0; j < kHarmonics; ++j) mean_[i][j] += m[i][j] / float(turns.bins.size());
+  }
+}
+
+Harmonics TurningIrradiance::at(const SplitRow& row) const {
+  Harmonics sum{};
+  for (size_t k = 0; k < 3; ++k)
+    for (size_t j = 0; j < kHarmonics; ++j) sum[j] += transfer_[row.vertices[k]][j] * row.barycentric[k];
+  return sum;
+}
+
+DiffuseSlopes TurningIrradiance::turn(const SplitUnknowns& x, const SplitMaterials& materials,
+                                      std::vector<SplitRow>& rows) const {
+  const Vec3f dark{1e-6f, 1e-6f, 1e-6f};
+  DirectLight light = direct_light(transport_, light_image(x.light, height_), &turns_);
+  const std::vector<Vec3f> bounce = bounce_of(transport_, x, materials, light.mean);
+  for (size_t v = 0; v < bounce.size(); ++v) light.mean[v] += bounce[v] + dark;
+  for (std::vector<Vec3f>& bin : light.by_bin)
+    for (size_t v = 0; v < bin.size(); ++v) bin[v] = (bin[v] + bounce[v] + dark) / light.mean[v];
+  DiffuseSlopes slopes{std::vector<DiffuseSlopes::OfRow>(rows.size()), harmonics_.of(x.light)};
+  parallel_ranges(int(rows.size()), 4096, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      SplitRow& row = rows[size_t(i)];
+      const std::vector<Vec3f>& bin = light.by_bin[turns_.bin[row.view]];
+      row.diffuse_light = between(bin, row.vertices, row.barycentric);
+      if (row.blocked) row.far_diffuse_light = between(bin, row.far_vertices, row.far_barycentric);
+      DiffuseSlopes::OfRow& slope = slopes.rows[size_t(i)];
+      const Harmonics here = at(row), in_view = views_[row.view] * here, mean = mean_ * here;
+      const float share = luminance(row.diffuse_light);
+      for (size_t j = 0; j < kHarmonics; ++j) slope.by_light[j] = in_view[j] - share * mean[j];
+      slope.gain = between(x.diffuse, row.vertices, row.barycentric) /
+                   between(light.mean, row.vertices, row.barycentric);
+    }
+  });
+  return slopes;
 }
 
 }  // namespace cei3d

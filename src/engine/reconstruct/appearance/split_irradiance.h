@@ -16,9 +16,24 @@ SkyRadiance sky_radiance(const Image& light, const Mat3f& room_from_object = Mat
 std::vector<Vec3f> split_irradiance(const Transport&, const SplitUnknowns&, const SplitMaterials&, int height,
                                     const LightTurns* turns);
 
-// Moves the diffuse light of the rows by a share of the way to the irradiance of their bin over the mean that
-// split_irradiance() gives.
-void turn_diffuse_light(const Transport&, const SplitUnknowns&, const SplitMaterials&, int height,
-                        const LightTurns& turns, float share, std::vector<SplitRow>& rows);
+// What matte surfaces see of a light that turns.
+class TurningIrradiance {
+ public:
+  TurningIrradiance(const Transport&, const LightTurns&, int light_height);
+  // Sets the diffuse light of the rows: the irradiance in their view over the mean that split_irradiance()
+  // gives. Returns how it follows the light.
+  DiffuseSlopes turn(const SplitUnknowns&, const SplitMaterials&, std::vector<SplitRow>& rows) const;
+
+ private:
+  Harmonics at(const SplitRow&) const;
+
+  const Transport& transport_;
+  const LightTurns& turns_;
+  int height_;
+  LightHarmonics harmonics_;
+  std::vector<Harmonics> transfer_;    // #V: irradiance from the harmonics of a light
+  std::vector<HarmonicMatrix> views_;  // of each view's rotation
+  HarmonicMatrix mean_{};              // over the bins
+};
 
 }  // namespace cei3d

@@ -14,11 +14,8 @@ namespace {
 
 constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
 
-constexpr int kRounds = 3;  // of materials and light
-// Rounds of a turning light and of what it sends to matte surfaces: without a guess, and with one. The second
-// follows by half a step, the whole one overshoots as much as it corrects (docs/notebook/0019).
-constexpr int kFirstTurns = 8, kTurns = 6;
-constexpr float kTurnStep = 0.5f;
+constexpr int kRounds = 3;         // of materials and light
+constexpr int kTurns = 3;          // rounds of a turning light and of how matte surfaces follow it
 constexpr int kDiffusion = 20;     // steps, of evidence over the surface
 constexpr float kMetalBy = 0.85f;  // a metal has to explain a place so much better than a dielectric
 // The brightest diffuse base color that a vertex may have, in multiples of white: while the scale of the
@@ -36,7 +33,9 @@ SplitSolver::SplitSolver(const Transport& transport, const SurfaceSamples& sampl
       options_(options),
       progress_(progress),
       system_(mesh_, rows_, options),
-      guess_(std::move(guess)) {}
+      guess_(std::move(guess)) {
+  if (turns_) turning_ = std::make_unique<TurningIrradiance>(transport, *turns_, options.light_height);
+}
 
 SplitUnknowns SplitSolver::uniform() const {
   Vec3f mean{0, 0, 0};
@@ -48,7 +47,7 @@ SplitUnknowns SplitSolver::uniform() const {
 SplitSolution SplitSolver::guess(SplitMaterials materials) {
   if (guess_.light.width == 0) return {uniform(), std::move(materials)};
   SplitSolution s{guessed(), std::move(materials)};
-  if (!turned_) turn_diffuse_light(s, 1);
+  turn_diffuse_light(s);
   return s;
 }
 
@@ -70,14 +69,12 @@ SplitSolution SplitSolver::solved(SplitSolution s, int rounds, int steps) {
   check_cancelled(progress_);
   system_.set_materials(s.materials);
   system_.solve(s.x, rounds, steps);
-  turn_diffuse_light(s, kTurnStep);
+  turn_diffuse_light(s);
   return s;
 }
 
-void SplitSolver::turn_diffuse_light(const SplitSolution& s, float share) {
-  if (!turns_) return;
-  turned_ = true;
-  cei3d::turn_diffuse_light(transport_, s.x, s.materials, options_.light_height, *turns_, share, rows_);
+void SplitSolver::turn_diffuse_light(const SplitSolution& s) {
+  if (turning_) system_.set_diffuse_slopes(turning_->turn(s.x, s.materials, rows_));
 }
 
 SplitSolution SplitSolver::with_fitted_metals(SplitSolution s, int rounds, int steps) {
@@ -97,11 +94,9 @@ SplitSolution SplitSolver::finish(SplitSolution s, bool metal, float roughness) 
 }
 
 SplitSolution SplitSolver::dielectric(float roughness) {
-  const bool first = guess_.light.width == 0;
   SplitSolution s = guess(one_material(mesh_.positions.size(), {roughness, kSpecular, 0}));
-  const int turns = !turns_ ? 1 : first ? kFirstTurns : kTurns;
-  for (int turn = 0; turn < turns; ++turn)
-    s = solved(std::move(s), turns_ ? 2 : options_.rounds, options_.steps);
+  for (int turn = 0; turn < (turning_ ? kTurns : 1); ++turn)
+    s = solved(std::move(s), turning_ ? 2 : options_.rounds, options_.steps);
   remember(s.x);
   return finish(std::move(s), false, roughness);
 }

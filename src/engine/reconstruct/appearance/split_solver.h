@@ -5,6 +5,7 @@
 
 #include "core/base/progress.h"
 #include "engine/reconstruct/appearance/material_evidence.h"
+#include "engine/reconstruct/appearance/split_irradiance.h"
 
 namespace cei3d {
 
@@ -46,7 +47,7 @@ class SplitSolver {
   SplitUnknowns uniform() const;  // light; each vertex the mean color of its samples
   SplitUnknowns guessed() const;
   SplitSolution guess(SplitMaterials);
-  void turn_diffuse_light(const SplitSolution&, float share);
+  void turn_diffuse_light(const SplitSolution&);
   void remember(const SplitUnknowns&);
   SplitSolution solved(SplitSolution, int rounds, int steps);
   SplitSolution with_fitted_metals(SplitSolution, int rounds, int steps);
@@ -58,12 +59,12 @@ class SplitSolver {
 
   const Transport& transport_;
   const Mesh& mesh_;
-  const LightTurns* turns_;  // null: the light stands still
-  bool turned_ = false;  // the rows' diffuse light has been set
+  const LightTurns* turns_;
   std::vector<SplitRow> rows_;
   LinearSplitOptions options_;
   Progress& progress_;
   SplitSystem system_;
+  std::unique_ptr<TurningIrradiance> turning_;  // null: the light stands still
   SplitGuess guess_;
 };
 

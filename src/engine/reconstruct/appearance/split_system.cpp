@@ -51,7 +51,7 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     row.barycentric = {1 - h.b1 - h.b2, h.b1, h.b2};
     row.normal = samples.turned.in_room(kept[k], h.normal);
     row.to_camera = samples.turned.in_room(kept[k], h.to_camera);
-    row.light_bin = uint8_t(samples.turned.bin(kept[k]));
+    row.view = samples.turned.turns ? samples.turned.views[kept[k]] : 0;
     row.nv = dot(h.normal, h.to_camera);
     row.color = samples.colors[kept[k]];
     for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_slope(max(row.color[c], kDarkest)));
@@ -115,7 +115,11 @@ void scatter(const ReflectedSky& at, Vec3f radiance, Blurred& sum) {
 
 SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
                          const LinearSplitOptions& options)
-    : mesh_(mesh), rows_(rows), options_(options), blurs_(options.light_height) {
+    : mesh_(mesh),
+      rows_(rows),
+      options_(options),
+      blurs_(options.light_height),
+      harmonics_(options.light_height) {
   for (const SplitRow& row : rows) weights_.push_back(row.weight);
   for (const auto& t : mesh.triangles)
     for (int c = 0; c < 3; ++c)
@@ -159,27 +163,35 @@ void SplitSystem::set_materials(SplitMaterials materials) {
       in_use_[size_t(sky->lobe.level)] = in_use_[size_t(sky->lobe.level) + 1] = true;
 }
 
-Blurred SplitSystem::blurred(const std::vector<Vec3f>& light) const {
-  Blurred out;
+SplitSystem::Sky SplitSystem::sky_of(const std::vector<Vec3f>& light) const {
+  Sky out;
   for (int i = 0; i < BlurLadder::kLevels; ++i)
-    if (in_use_[size_t(i)]) blurs_.level(i).apply(light, out[size_t(i)]);
+    if (in_use_[size_t(i)]) blurs_.level(i).apply(light, out.blurred[size_t(i)]);
+  if (!slopes_.rows.empty()) out.harmonics = harmonics_.of(light);
   return out;
 }
 
-Vec3f SplitSystem::predict(size_t i, const SplitUnknowns& x, const Blurred& blurred) const {
+SplitSystem::Sky SplitSystem::sky_change(const std::vector<Vec3f>& light) const {
+  Sky sky = sky_of(light);
+  for (size_t j = 0; j < kHarmonics; ++j) sky.harmonics[j] += -slopes_.light[j];
+  return sky;
+}
+
+Vec3f SplitSystem::predict(size_t i, const SplitUnknowns& x, const Sky& sky) const {
   const SplitRow& row = rows_[i];
   const Optics& o = optics_[i];
-  const Vec3f diffuse =
-      between(x.diffuse, row.vertices, row.barycentric) * row.diffuse_light * o.diffuse_view;
+  Vec3f diffuse = between(x.diffuse, row.vertices, row.barycentric) * row.diffuse_light;
+  if (!slopes_.rows.empty()) diffuse += slopes_.rows[i].gain * dot(slopes_.rows[i].by_light, sky.harmonics);
+  diffuse = diffuse * o.diffuse_view;
   if (row.blocked)
     return diffuse +
            o.gain() * row.far_diffuse_light * between(x.diffuse, row.far_vertices, row.far_barycentric);
-  return diffuse + o.base_gain * radiance_at(blurred, o.base) +
-         radiance_at(blurred, o.fresnel) * o.split_sum.bias;
+  return diffuse + o.base_gain * radiance_at(sky.blurred, o.base) +
+         radiance_at(sky.blurred, o.fresnel) * o.split_sum.bias;
 }
 
 void SplitSystem::release_bounds(const SplitUnknowns& x) {
-  const Blurred sky = blurred(x.light);
+  const Sky sky = sky_change(x.light);
   parallel_ranges(int(rows_.size()), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
@@ -191,7 +203,7 @@ void SplitSystem::release_bounds(const SplitUnknowns& x) {
 }
 
 std::vector<Vec3f> SplitSystem::targets(const SplitUnknowns& x) const {
-  const Blurred sky = blurred(x.light);
+  const Sky sky = sky_change(x.light);
   std::vector<Vec3f> out(rows_.size());
   parallel_ranges(int(rows_.size()), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
@@ -211,6 +223,7 @@ void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
   struct Part {
     std::vector<Vec3f> diffuse;
     Blurred sky;
+    HarmonicLight harmonics{};
   };
   std::vector<Part> parts(kChunks);
   parallel_for(kChunks, [&](int chunk) {
@@ -226,6 +239,10 @@ void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
       const Vec3f y = row_value(i) * weights_[i];
       const Vec3f here = y * row.diffuse_light * o.diffuse_view;
       for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += here * row.barycentric[k];
+      if (!slopes_.rows.empty()) {
+        const Vec3f by_light = y * slopes_.rows[i].gain * o.diffuse_view;
+        for (size_t j = 0; j < kHarmonics; ++j) sum.harmonics[j] += by_light * slopes_.rows[i].by_light[j];
+      }
       if (row.blocked) {
         const Vec3f g = y * o.gain() * row.far_diffuse_light;
         for (int k = 0; k < 3; ++k) sum.diffuse[row.far_vertices[k]] += g * row.far_barycentric[k];
@@ -250,6 +267,8 @@ void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
     blurs_.level(level).apply_transposed(sum, light);
     for (size_t i = 0; i < cells; ++i) out.light[i] += light[i];
   }
+  for (const Part& part : parts)
+    if (!slopes_.rows.empty()) harmonics_.add_transposed(part.harmonics, out.light);
 }
 
 void SplitSystem::smooth(const SplitUnknowns& x, SplitUnknowns& out) const {
@@ -273,17 +292,23 @@ void SplitSystem::smooth(const SplitUnknowns& x, SplitUnknowns& out) const {
 }
 
 void SplitSystem::normal(const SplitUnknowns& x, SplitUnknowns& out) const {
-  const Blurred sky = blurred(x.light);
+  const Sky sky = sky_of(x.light);
   accumulate([&](size_t row) { return predict(row, x, sky); }, out);
   smooth(x, out);
 }
 
 void SplitSystem::right_side(SplitUnknowns& out) const {
-  accumulate([&](size_t row) { return rows_[row].color; }, out);
+  // Less what the slopes add to a light of zero.
+  const auto constant = [&](size_t row) {
+    if (slopes_.rows.empty()) return Vec3f{0, 0, 0};
+    const DiffuseSlopes::OfRow& s = slopes_.rows[row];
+    return s.gain * dot(s.by_light, slopes_.light) * (-optics_[row].diffuse_view);
+  };
+  accumulate([&](size_t row) { return rows_[row].color - constant(row); }, out);
 }
 
 double SplitSystem::residual(const SplitUnknowns& x) const {
-  const Blurred sky = blurred(x.light);
+  const Sky sky = sky_change(x.light);
   std::vector<double> sum(kChunks, 0), count(kChunks, 0);  // of rows and channels
   parallel_for(kChunks, [&](int chunk) {
     const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
@@ -440,7 +465,7 @@ void SplitSystem::solve(SplitUnknowns& x, int rounds, int steps) {
 }
 
 std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) {
-  const Blurred sky = blurred(x.light);
+  const Blurred sky = sky_of(x.light).blurred;
   // Ratios of sums: in least squares errors of the light would make all colors darker.
   const size_t n = mesh_.positions.size();
   std::vector<Vec3f> above(n, Vec3f{0, 0, 0}), below(n, Vec3f{0, 0, 0});

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/math/reflection_axis.h"
+#include "engine/reconstruct/appearance/light_harmonics.h"
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "engine/reconstruct/appearance/lobe_blur.h"
 #include "model/light/envmap.h"
@@ -26,9 +27,19 @@ struct SplitRow {
   Vec3f color;      // linear
   Vec3f weight;     // squared slope of the display curve
   uint8_t clipped;  // SurfaceSamples::clipped
-  // Under a light that turns: its bin, and how much light the vertices get in this view, over their mean.
-  uint8_t light_bin = 0;
+  // Under a light that turns: how much light the vertices get in this view, over their mean.
+  uint16_t view = 0;
   Vec3f diffuse_light{1, 1, 1}, far_diffuse_light{1, 1, 1};
+};
+
+// How the rows' diffuse radiance follows a change of a light that turns.
+struct DiffuseSlopes {
+  struct OfRow {
+    Harmonics by_light;  // of the irradiance over its mean, times that mean
+    Vec3f gain;          // D over the mean irradiance
+  };
+  std::vector<OfRow> rows;  // empty: it does not
+  HarmonicLight light{};    // from which on the change counts
 };
 
 std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&);
@@ -91,6 +102,7 @@ class SplitSystem {
   // Metals have no D, and their samples whose mirror ray is blocked are left out.
   void set_materials(SplitMaterials);
   const SplitMaterials& materials() const { return materials_; }
+  void set_diffuse_slopes(DiffuseSlopes slopes) { slopes_ = std::move(slopes); }
 
   // Improves x by rounds of conjugate gradients, light and D kept >= 0, clipped channels at least what they
   // show.
@@ -117,8 +129,14 @@ class SplitSystem {
     Vec3f gain() const { return base_gain + Vec3f{split_sum.bias, split_sum.bias, split_sum.bias}; }
   };
   Optics optics_of(const SplitRow&) const;
-  Blurred blurred(const std::vector<Vec3f>& light) const;
-  Vec3f predict(size_t row, const SplitUnknowns&, const Blurred&) const;
+  // What the rows see of a light.
+  struct Sky {
+    Blurred blurred;
+    HarmonicLight harmonics;
+  };
+  Sky sky_of(const std::vector<Vec3f>& light) const;
+  Sky sky_change(const std::vector<Vec3f>& light) const;  // harmonics from those of the slopes on
+  Vec3f predict(size_t row, const SplitUnknowns&, const Sky&) const;
   void smooth(const SplitUnknowns& x, SplitUnknowns& out) const;  // out += gradient of the priors
   void release_bounds(const SplitUnknowns& x);                    // sets weights_
   template <class F>
@@ -134,6 +152,8 @@ class SplitSystem {
   LinearSplitOptions options_;
   std::vector<std::array<uint32_t, 2>> edges_;
   mutable BlurLadder blurs_;
+  LightHarmonics harmonics_;
+  DiffuseSlopes slopes_;
   SplitMaterials materials_;
   std::vector<Optics> optics_;  // #rows
   std::array<bool, BlurLadder::kLevels> in_use_{};
