@@ -163,7 +163,7 @@ float colored_metal_peak(const SplitMaterials& materials) {
 // reflects .89 to 1 (docs/method.md#materials). The two are weighed by how well each is known.
 void SplitSolver::fix_scale(SplitSolution& s) {
   constexpr float kPeak = 0.94f;
-  constexpr float kPeakError = 0.1f, kDielectricError = 0.2f;  // of the logarithms
+  constexpr float kPeakError = 0.2f, kDielectricError = 0.1f;  // of the logarithms
   system_.set_materials(s.materials);
   s.materials.color = system_.fit_metal_color(s.x);
   const LightScale of_dielectrics = lit_samples(s.x).light_scale(s.materials);
