@@ -8,7 +8,7 @@ namespace cei3d {
 namespace {
 
 struct Options {
-  std::string capture, project, time, light = "auto";
+  std::string capture, project, time, light = "auto", light_color = "near-white";
   ReconstructRequest request;
 };
 
@@ -19,6 +19,9 @@ void run_reconstruct(const Options& o, Session& session, Console& console) {
   if (!o.capture.empty()) request.capture = parse_capture_spec(o.capture).path;
   request.project = o.project;
   request.options.light = light_motion_named(o.light);
+  const auto color = light_color_from(o.light_color);
+  if (!color) fail_usage("--light-color is free, near-white or three numbers above 0, as in 1,0.9,0.8.");
+  request.options.light_color = *color;
   if (!o.time.empty()) request.options.seconds = parse_duration(o.time);
   const ReconstructReport r = session.reconstruct(request, console);
   console.done(r.json(),
@@ -71,6 +74,10 @@ void add_reconstruct(Commands& commands) {
                    "under lamps that stood still. camera: the light is fixed to the camera. auto: what "
                    "explains the photographs best")
       ->check(CLI::IsMember({"auto", "world", "camera", "turntable"}))
+      ->capture_default_str();
+  verb->add_option("--light-color", o->light_color,
+                   "What is known of the light's color. near-white: that lamps are, unless highlights show "
+                   "otherwise. free: nothing. R,G,B: its mean color, linear, up to a factor")
       ->capture_default_str();
   verb->add_option("--format", o->request.format,
                    capture_format_names() + " (default: detected from the files)");

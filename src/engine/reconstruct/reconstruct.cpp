@@ -53,6 +53,7 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
                            .plan = make_plan(in, preset, views.train.pixels().size(), rates, progress),
                            .seed = in.options.seed,
                            .light = in.options.light,
+                           .light_color = in.options.light_color,
                            .progress = progress};
   RunState state = saved ? std::move(saved->state) : RunState();
   state.scene.normalization = in.normalization;

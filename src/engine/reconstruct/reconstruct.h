@@ -18,7 +18,8 @@ struct ReconstructOptions {
   int downscale = 1;                 // use images at 1/N of their size
   int test_every = 8;                // hold out every Nth view when the capture has no split; 0: none
   std::optional<LightMotion> light;  // how it moves against the object; nothing: to be found
-  int views = 0;                     // train on so many, spread evenly (engine/capture/spread.h); 0: on all
+  LightColorPrior light_color;
+  int views = 0;  // train on so many, spread evenly (engine/capture/spread.h); 0: on all
 };
 
 // Where the trainer puts its state. Both files of a checkpoint appear or neither.

@@ -26,6 +26,7 @@ struct RunContext {
   Plan plan;
   uint64_t seed;
   std::optional<LightMotion> light;  // nothing: to be found
+  LightColorPrior light_color;
   RunClock& progress;
 };
 

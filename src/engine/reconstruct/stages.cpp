@@ -90,6 +90,7 @@ void polish(const RunContext& run, RunState& state, int round) {
   AppearanceOptions brief = run.preset.appearance;
   brief.effort = Effort::brief;
   brief.seed = run.seed;
+  brief.light_color = run.light_color;
   const Turns turns = light_turns(run, state, all.surface, fewer);
   const AppearanceResult appearance =
       fit_appearance(run.device, {all.surface, fewer.samples(turns.get())}, brief, run.progress);
@@ -135,6 +136,7 @@ ObjectHits scene_hits(const RunContext& run, const Scene& scene, const HitOption
 AppearanceOptions appearance_options(const RunContext& run) {
   AppearanceOptions options = run.preset.appearance;
   options.effort = run.plan.effort;
+  options.light_color = run.light_color;
   options.seed = run.seed;
   return options;
 }
@@ -148,6 +150,7 @@ void estimate_appearance(const RunContext& run, RunState& state, const Stage::Ch
   check_cancelled(run.progress);
   state.hits = {};
   scene.light = std::move(made.light);
+  scene.light_error = relative_error(made.split.light_error);
   scene.material = made.material;
   scene.albedo = std::move(made.albedo);
 }

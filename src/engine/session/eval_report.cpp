@@ -81,6 +81,8 @@ EvalReport eval_report_from_json(const Json& j) {
   r.psnr_worst = decibels_from(j.at("psnr_worst"));
   r.worst_view = j.at("worst_view").get<std::string>();
   r.residual = j.value("residual", false);
+  if (j.contains("alone"))
+    r.alone = {decibels_from(j.at("alone").at("psnr")), decibels_from(j.at("alone").at("psnr_masked"))};
   r.lpips = number_from(j, "lpips");
   r.fid = number_from(j, "fid");
   if (j.contains("edit")) r.edit = edit_from(j.at("edit"));
@@ -96,6 +98,7 @@ Json EvalReport::json() const {
             {"worst_view", worst_view},
             {"background", "white"},
             {"residual", residual}};
+  if (alone) j["alone"] = {{"psnr", decibels(alone->psnr)}, {"psnr_masked", decibels(alone->psnr_masked)}};
   if (lpips) j["lpips"] = *lpips;
   if (fid) j["fid"] = *fid;
   if (edit) j["edit"] = edit_json(*edit);
@@ -122,6 +125,9 @@ std::string EvalReport::markdown() const {
     rule += "---|";
     row += fmt::format(" {} |", value);
   };
+  if (alone)
+    column("light and material alone", fmt::format("{} dB, {} dB in the mask", decibels_text(alone->psnr),
+                                                   decibels_text(alone->psnr_masked)));
   if (lpips) column("LPIPS", fmt::format("{:.4f}", *lpips));
   if (fid) column("FID", fmt::format("{:.1f}", *fid));
   std::string text = head + "\n" + rule + "\n" + row + "\n";

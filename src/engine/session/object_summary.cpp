@@ -10,6 +10,8 @@ ObjectSummary summary_of(const Device& device, const Scene& scene) {
   ObjectSummary out;
   out.mean = scene.material.mean();
   out.explained = scene.explained;
+  out.light_motion = scene.light_frame.motion;
+  out.light_error = scene.light_error;
   out.min_roughness = out.max_roughness = out.mean.roughness;
   out.metal_share = out.mean.metalness;
   out.varies = bool(scene.material.varying());

@@ -84,17 +84,30 @@ Json ObjectSummary::json() const {
   j["varies"] = varies;
   j["metal_share"] = metal_share;
   j["roughness_range"] = {min_roughness, max_roughness};
+  j["light"] = {{"motion", light_motion_name(light_motion)}};
+  if (light_error) j["light"]["relative_error"] = {light_error->x, light_error->y, light_error->z};
   if (explained)
     j["explained_db"] = {{"physical", explained->physical}, {"with_residual", explained->with_residual}};
   return j;
 }
 
-std::string ObjectSummary::text() const {
+std::string ObjectSummary::text() const { return material_text() + "; " + light_text(); }
+
+std::string ObjectSummary::material_text() const {
   if (!varies)
     return fmt::format("roughness {:.2f}, {}", mean.roughness,
                        mean.metalness > 0.5f ? "metal" : "dielectric");
   return fmt::format("several materials: roughness {:.2f} to {:.2f}, {:.0f} % metal", min_roughness,
                      max_roughness, 100 * metal_share);
+}
+
+std::string ObjectSummary::light_text() const {
+  const std::string motion = light_motion == LightMotion::world    ? "light that stands still"
+                             : light_motion == LightMotion::camera ? "light that moves with the camera"
+                                                                   : "light that turns, as on a turntable";
+  if (!light_error) return motion + ", its strength assumed";
+  return fmt::format("{}, its strength (and base color) known to {:.0f} %", motion,
+                     100 * max(light_error->x, max(light_error->y, light_error->z)));
 }
 
 std::string ObjectSummary::warning() const {

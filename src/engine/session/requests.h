@@ -51,9 +51,12 @@ struct ObjectSummary {
   float metal_share = 0;                       // of the surface
   float min_roughness = 0, max_roughness = 0;  // of all but the smoothest and the roughest twentieth
   std::optional<Explained> explained;          // none: not measured
+  LightMotion light_motion = LightMotion::world;
+  std::optional<Vec3f> light_error;  // relative, of the strength of its channels; none: not known
   // "3 dB less than ..." if light and material explain much less than is shown; else empty.
   std::string warning() const;
-  std::string text() const;  // of the material, half a line
+  std::string text() const;  // of material and light, half a line
+  std::string material_text() const, light_text() const;
   Json json() const;
 };
 
@@ -315,7 +318,11 @@ struct EvalReport {
   double psnr = 0, ssim = 0, psnr_masked = 0;  // means over views
   double psnr_worst = 0;
   std::string worst_view;
-  bool residual = false;             // what light and material cannot explain was in the pictures
+  bool residual = false;  // what light and material cannot explain was in the pictures
+  struct Alone {
+    double psnr = 0, psnr_masked = 0;
+  };
+  std::optional<Alone> alone;        // the same without it; none: there was none
   std::optional<double> lpips, fid;  // fid: between renders and photographs
   std::optional<EditScore> edit;
   Json json() const;

@@ -51,6 +51,13 @@ ViewScore score_view(const View& view, const Image& rendered, const Image& photo
   return {view.name, psnr(a, b), ssim(a, b), psnr_in_mask(a, b, mask_of(photo)), perceptual.distance(a, b)};
 }
 
+// The share of one view of many.
+void add_mean(const Image& rendered, const Image& photo, size_t views, EvalReport::Alone& mean) {
+  const Image a = over_background(rendered, 1), b = over_background(photo, 1);
+  mean.psnr += psnr(a, b) / double(views);
+  mean.psnr_masked += psnr_in_mask(a, b, mask_of(photo)).value_or(0) / double(views);
+}
+
 void summarise(EvalReport& r) {
   size_t masked = 0;
   r.psnr_worst = INFINITY;
@@ -103,25 +110,28 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
     const auto trace = [&](const Scene& s, const View& v) {
       return frames_->trace(s, s.normalization.unit_from_input(v.camera), request.samples);
     };
+    const auto picture = [&](const Scene& s, const View& v) {
+      const Scene lit = in_view(s, v.camera);
+      return rounded_srgb(frames_->shade(lit, frames_->light(lit), *trace(lit, v)).rgb);
+    };
     EvalReport report;
     Sets sets;
     EditScorer scorer(request.truth, request.masks, perceptual);
     for (size_t i = 0; i < views.size(); ++i) {
       if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Evaluation was interrupted.");
       progress.report({"eval", double(i) / double(views.size()), -1, views[i].name});
-      const auto view = trace(scene, views[i]);
       EditPictures p;
-      const Scene now = in_view(scene, views[i].camera);
-      p.after = rounded_srgb(frames_->shade(now, frames_->light(now), *view).rgb);
-      if (edit) {
-        const Scene before = in_view(without, views[i].camera);
-        p.before = rounded_srgb(frames_->shade(before, frames_->light(before), *trace(before, views[i])).rgb);
-      } else {
-        p.before = p.after;
-      }
+      p.after = picture(scene, views[i]);
+      p.before = edit ? picture(without, views[i]) : p.after;
       p.photo = rounded_srgb(load_linear_rgba(views[i]));
+      if (without.residual) {
+        Scene physical = without;
+        physical.residual = nullptr;
+        report.alone = report.alone.value_or(EvalReport::Alone{});
+        add_mean(picture(physical, views[i]), p.photo, views.size(), *report.alone);
+      }
       report.views.push_back(score_view(views[i], p.before, p.photo, perceptual, sets));
-      if (edit) scorer.add(views[i], p, edited_area(scene, *edit, view->buffer, p));
+      if (edit) scorer.add(views[i], p, edited_area(scene, *edit, trace(scene, views[i])->buffer, p));
       if (!request.pictures.empty())
         write_png(picture_like(request.pictures, views[i]), side_by_side(p, edit));
     }

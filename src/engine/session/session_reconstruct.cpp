@@ -31,10 +31,15 @@ class ProjectCheckpoints : public Checkpoints {
 
 Json options_json(const ReconstructRequest& r) {
   const ReconstructOptions& o = r.options;
-  return {{"preset", o.preset},         {"seconds", o.seconds},
-          {"iterations", o.iterations}, {"seed", o.seed},
-          {"downscale", o.downscale},   {"test_every", o.test_every},
-          {"views", o.views},           {"light", o.light ? light_motion_name(*o.light) : "auto"},
+  return {{"preset", o.preset},
+          {"seconds", o.seconds},
+          {"iterations", o.iterations},
+          {"seed", o.seed},
+          {"downscale", o.downscale},
+          {"test_every", o.test_every},
+          {"light_color", light_color_text(o.light_color)},
+          {"views", o.views},
+          {"light", o.light ? light_motion_name(*o.light) : "auto"},
           {"format", r.format}};
 }
 
@@ -49,6 +54,7 @@ ReconstructOptions options_from_json(const Json& j) {
   o.test_every = reader.require<int>("test_every");
   o.views = reader.optional("views", 0);                                        // older projects have none
   o.light = light_motion_named(reader.optional("light", std::string("auto")));  // nor that
+  o.light_color = light_color_from(reader.optional("light_color", std::string())).value_or(LightColorPrior());
   reader.has("format");
   reader.finish();
   return o;

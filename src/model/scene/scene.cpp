@@ -136,6 +136,7 @@ Scene with_layer(Scene scene, EditLayer layer) {
   if (layer.light) {
     scene.light = *layer.light;
     scene.light_frame = {};
+    scene.light_error = {};
     scene.residual = nullptr;
   }
   if (layer.reshape) scene = reshaped(std::move(scene), *layer.reshape);
@@ -144,6 +145,7 @@ Scene with_layer(Scene scene, EditLayer layer) {
 }
 
 SgMixture light_in_view(const Scene& scene, const Camera& camera) {
+  if (scene.light_error) head["light_error"] = vector_json(to_double(*scene.light_error));
   if (scene.light_frame.motion == LightMotion::world) return scene.light;
   return rotated(scene.light, transpose(scene.light_frame.room_from_object(camera.world_from_cam)));
 }
@@ -189,6 +191,7 @@ Scene load_scene(const Tensors& tensors, const Json& head) {
     scene.albedo = load_field("albedo", tensors, head);
     if (reader.has("surface")) scene.surface = load_surface(tensors, reader.member("surface"));
     scene.light = load_light(tensors, reader.member("light"));
+    if (reader.has("light_error")) scene.light_error = to_float(vector_from(reader, "light_error"));
     if (reader.has("light_frame")) scene.light_frame = load_light_frame(reader);
     if (reader.has("residual")) scene.residual = load_residual(tensors, scene.sdf, head);
     if (reader.has("handlers")) scene.handlers = load_handlers(tensors, reader.member("handlers"));

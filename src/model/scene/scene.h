@@ -37,7 +37,8 @@ struct Scene {
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear
   // Mesh of the zero level set with its visibility table; replaced by changes of shape.
   std::shared_ptr<const Surface> surface;
-  SgMixture light;         // that of the last edit that has one, when the layers have been put on
+  SgMixture light;                   // that of the last edit that has one, when the layers have been put on
+  std::optional<Vec3f> light_error;  // of its strength as reconstructed, relative; none: not known
   LightFrame light_frame;  // of the light as reconstructed; one that an edit has put there stands still
   MaterialField material;
   // What they cannot explain; null: nothing, or not any more, since the light was changed.

@@ -23,6 +23,7 @@ LinearSplitOptions split_options(const AppearanceOptions& o) {
   LinearSplitOptions s;
   s.seed = o.seed;
   s.fixed_roughness = o.roughness;
+  s.light_color = o.light_color;
   if (o.effort == Effort::brief) {
     s.most_hits = 200000;
     s.search_hits = 120000;

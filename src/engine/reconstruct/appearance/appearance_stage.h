@@ -27,6 +27,7 @@ struct AppearanceOptions {
   int lobe_steps = 800;      // of the fit of lobes to the split's light
   int material_steps = 400;  // of the fit of a field to the split's materials
   float roughness = 0;       // > 0: known, not searched
+  LightColorPrior light_color;
   uint64_t seed = 1;
   FieldConfig albedo;          // 3 outputs, sigmoid
   FieldConfig materials;       // MaterialField::kOutputs outputs, sigmoid

@@ -172,10 +172,32 @@ std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMate
   return std::move(several.materials);
 }
 
+bool all_metal(const SplitSolution& s) {
+  const auto& of = s.materials.of;
+  return std::all_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
+}
+
+// What is believed of the light's color, weighed against what the samples say. Returns what is left unknown.
+LightCovariance believe_light(SplitSolver& solver, const LinearSplitOptions& options, SplitSolution& s) {
+  if (all_metal(s)) return {};
+  const LightScale evidence = solver.light_scale(s);
+  Vec3f mean{0, 0, 0};
+  for (size_t i = 0; i < s.x.light.size(); ++i)
+    mean += s.x.light[i] * env_solid_angle(int(i) / (2 * options.light_height), 2 * options.light_height,
+                                           options.light_height);
+  const LightBelief belief = weigh_light_color(evidence.covariance, mean, options.light_color);
+  scale_light(s, belief.factor);
+  return belief.covariance;
+}
+
+struct Solved {
+  SplitSolution solution;
+  LightCovariance light_error;
+};
+
 // The solution of the final size, its materials found by searches of smaller ones.
-SplitSolution solve(const Transport& transport, const SurfaceSamples& samples,
-                    const LinearSplitOptions& options, Progress& progress,
-                    std::vector<LinearSplit::Trial>& trials) {
+Solved solve(const Transport& transport, const SurfaceSamples& samples, const LinearSplitOptions& options,
+             Progress& progress, std::vector<LinearSplit::Trial>& trials) {
   SplitGuess guess;
   const auto solver = [&](const LinearSplitOptions& o) {
     return SplitSolver(transport, samples, o, progress, guess);
@@ -186,12 +208,16 @@ SplitSolution solve(const Transport& transport, const SurfaceSamples& samples,
   if (options.fixed_roughness <= 0)
     materials = search_materials(solver(search_options(options, options.material_hits)), found, guess);
   SplitSolver fine = solver(options);
-  SplitSolution one = found.is_metal ? fine.metal(found.roughness) : fine.dielectric(found.roughness);
+  SplitSolution best = found.is_metal ? fine.metal(found.roughness) : fine.dielectric(found.roughness);
   trials.insert(trials.end(), fine.trials.begin(), fine.trials.end());
-  if (!materials) return one;
-  SplitSolution several = fine.with_materials(*materials);
-  progress.log(Json{{"stage", "materials"}, {"one", one.residual}, {"several", several.residual}}.dump());
-  return several.residual < std::min(kSeveralBy * one.residual, one.residual - kNoise) ? several : one;
+  if (materials) {
+    SplitSolution several = fine.with_materials(*materials);
+    progress.log(Json{{"stage", "materials"}, {"one", best.residual}, {"several", several.residual}}.dump());
+    if (several.residual < std::min(kSeveralBy * best.residual, best.residual - kNoise))
+      best = std::move(several);
+  }
+  const LightCovariance error = believe_light(fine, options, best);
+  return {std::move(best), error};
 }
 
 Material mean_of(const std::vector<Material>& materials) {
@@ -218,13 +244,12 @@ double dielectric_residual(const Transport& transport, const SurfaceSamples& sam
 LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples,
                          const LinearSplitOptions& options, Progress& progress) {
   LinearSplit result;
-  SplitSolution s = solve(transport, samples, options, progress, result.trials);
+  auto [s, light_error] = solve(transport, samples, options, progress, result.trials);
+  result.light_error = light_error;
   const auto& of = s.materials.of;
   const LightTurns* turns = samples.turned.turns;
   s.x.diffuse = clamped(std::move(s.x.diffuse), 1e6f);
-  const bool all_metal =
-      std::all_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
-  if (all_metal)
+  if (all_metal(s))
     make_light_gray(s, options.light_height);
   else
     brighten_light(transport, s, options.light_height, turns);

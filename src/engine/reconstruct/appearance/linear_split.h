@@ -13,6 +13,7 @@
 #include "core/base/progress.h"
 #include "core/image/image.h"
 #include "engine/render/transport.h"
+#include "model/light/light_color.h"
 #include "model/light/light_turns.h"
 #include "model/material/material.h"
 
@@ -41,8 +42,9 @@ struct LinearSplitOptions {
   float scan_step = 1.4f;      // from one roughness to the next, and
   int refinements = 3;         // bisections afterwards
   float fixed_roughness = 0;   // > 0: no search
-  float smoothness = 1e-4f;    // of the light, relative to the mean curvature of its unknowns
-  float tolerance = 0.008f;    // the largest roughness whose residual is within this of the best is taken
+  LightColorPrior light_color;
+  float smoothness = 1e-4f;  // of the light, relative to the mean curvature of its unknowns
+  float tolerance = 0.008f;  // the largest roughness whose residual is within this of the best is taken
   uint64_t seed = 1;
 };
 
@@ -50,9 +52,11 @@ struct LinearSplit {
   Material material;                // mean over the surface
   std::vector<Material> materials;  // #V, metalness 0 or 1; empty: `material` everywhere
   float smoothest = 0;              // roughness of the smoothest hundredth of the surface
-  Image light;                      // light_height rows, 2 light_height columns, RGB, linear, >= 0
-  std::vector<Vec3f> albedo;        // #V base color, linear, [0, 1]
-  std::vector<Vec3f> diffuse;       // #V view-independent radiance D; zero for metals
+  LightCovariance
+      light_error{};           // of the light; of metals alone none is known, their light is taken for gray
+  Image light;                 // light_height rows, 2 light_height columns, RGB, linear, >= 0
+  std::vector<Vec3f> albedo;   // #V base color, linear, [0, 1]
+  std::vector<Vec3f> diffuse;  // #V view-independent radiance D; zero for metals
   struct Trial {
     bool metal;
     float roughness;

@@ -138,21 +138,59 @@ MaterialEvidence LitSamples::evidence(const std::vector<Vec3f>& max_diffuse) con
   return out;
 }
 
-LightScale LitSamples::light_scale(const SplitMaterials& materials) const {
-  const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kSpecular, 0.0f);
+namespace {
+
+// The unit sphere in cubes, each a place of the surface that has its own errors.
+constexpr int kPlacesAcross = 5, kPlaces = kPlacesAcross * kPlacesAcross * kPlacesAcross;
+
+size_t place_of(Vec3f p) {
+  const auto cell = [](float x) {
+    return std::clamp(int((x + 1) / 2 * kPlacesAcross), 0, kPlacesAcross - 1);
+  };
+  return size_t((cell(p.x) * kPlacesAcross + cell(p.y)) * kPlacesAcross + cell(p.z));
+}
+
+// Numerator and denominator of the factor.
+struct Ratio {
   Vec3d above{0, 0, 0}, below{0, 0, 0};
+};
+
+LightScale scale_of(const std::vector<Ratio>& places) {
+  constexpr double kUnknown = 4;  // variance where there is nothing to see
+  Ratio all;
+  for (const Ratio& p : places) {
+    all.above += p.above;
+    all.below += p.below;
+  }
+  LightScale out{{1, 1, 1}, {{{kUnknown, 0, 0}, {0, kUnknown, 0}, {0, 0, kUnknown}}}};
+  if (!(min(all.below.x, min(all.below.y, all.below.z)) > 0)) return out;
+  const Vec3d t = all.above / all.below;
+  if (!(min(t.x, min(t.y, t.z)) > 0)) return out;
+  out.factor = to_float(t);
+  out.covariance = {};
+  for (const Ratio& p : places) {
+    const Vec3d error = (p.above - t * p.below) / all.above;
+    for (int c = 0; c < 3; ++c) out.covariance.row[c] += error * error[c];
+  }
+  return out;
+}
+
+}  // namespace
+
+LightScale LitSamples::light_scale(const SplitMaterials& materials,
+                                   const std::vector<Vec3f>& positions) const {
+  const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kSpecular, 0.0f);
+  std::vector<Ratio> places(kPlaces);
   for (uint32_t v = 0; v + 1 < start_.size(); ++v) {
     if (materials.is_metal(v)) continue;
     ScaleSums sums;
     for_samples(v, materials.of[v].roughness, [&](const SplitRow& row, Vec3f color, const Seen& s) {
       sums.add(row.weight, s.diffuse, s.base * f0 + s.fresnel, color);
     });
-    sums.add_to(above, below);
+    Ratio& place = places[place_of(positions[v])];
+    sums.add_to(place.above, place.below);
   }
-  LightScale scale{1, 1, 1};
-  for (int c = 0; c < 3; ++c)
-    if (below[c] > 0) scale[c] = float(above[c] / below[c]);
-  return scale;
+  return scale_of(places);
 }
 
 BestMaterials best_materials(const float* errors) {

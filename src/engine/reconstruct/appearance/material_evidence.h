@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/reconstruct/appearance/split_system.h"
+#include "model/light/light_color.h"
 
 namespace cei3d {
 
@@ -19,8 +20,12 @@ struct MaterialEvidence {
 };
 
 // The factor on the light, per channel, that fits the dielectrics' samples best when the diffuse radiance of
-// every vertex is free. 1 where there are none.
-using LightScale = Vec3f;
+// every vertex is free, and the covariance of its logarithms: how far places of the surface disagree, which
+// the errors of the model make them do. Without dielectrics 1, and anything may be.
+struct LightScale {
+  Vec3f factor{1, 1, 1};
+  LightCovariance covariance;
+};
 
 class LitSamples {
  public:
@@ -30,7 +35,8 @@ class LitSamples {
 
   // max_diffuse: #V, radiance that a white dielectric would send out.
   MaterialEvidence evidence(const std::vector<Vec3f>& max_diffuse) const;
-  LightScale light_scale(const SplitMaterials&) const;
+  // positions: of the vertices, unit-sphere frame.
+  LightScale light_scale(const SplitMaterials&, const std::vector<Vec3f>& positions) const;
 
  private:
   // Of a row, if its surface has that roughness.

@@ -130,12 +130,12 @@ void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, Spl
   }
 }
 
-namespace {
-
 void scale_light(SplitSolution& s, Vec3f factor) {
   for (Vec3f& l : s.x.light) l = l * factor;
   for (Vec3f& a : s.materials.color) a = a / factor;
 }
+
+namespace {
 
 // The brightest channel of the object's colored metals where they are clean: patina and dirt only darken. 0
 // where they are few. Metals that are nearly gray tell nothing, they reflect between .5 and .97.
@@ -166,7 +166,7 @@ void SplitSolver::fix_scale(SplitSolution& s) {
   constexpr float kPeakError = 0.2f, kDielectricError = 0.1f;  // of the logarithms
   system_.set_materials(s.materials);
   s.materials.color = system_.fit_metal_color(s.x);
-  const LightScale of_dielectrics = lit_samples(s.x).light_scale(s.materials);
+  const Vec3f of_dielectrics = light_scale(s).factor;
   scale_light(s, of_dielectrics);
   const float peak = colored_metal_peak(s.materials);
   progress_.log(Json{
@@ -178,6 +178,11 @@ void SplitSolver::fix_scale(SplitSolution& s) {
   const float share = square(kDielectricError) / (square(kDielectricError) + square(kPeakError));
   const float common = std::pow(peak / kPeak, share);
   scale_light(s, {common, common, common});
+}
+
+LightScale SplitSolver::light_scale(const SplitSolution& s) {
+  system_.set_materials(s.materials);
+  return lit_samples(s.x).light_scale(s.materials, mesh_.positions);
 }
 
 SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {

@@ -40,6 +40,8 @@ class SplitSolver {
   SplitSolution several(SplitSolution start, double max_residual);
   // The light for these materials.
   SplitSolution with_materials(const SplitMaterials&);
+  // What the samples say of its strength.
+  LightScale light_scale(const SplitSolution&);
 
   std::vector<LinearSplit::Trial> trials;  // of one material
 
@@ -67,5 +69,8 @@ class SplitSolver {
   std::unique_ptr<TurningIrradiance> turning_;  // null: the light stands still
   SplitGuess guess_;
 };
+
+// Times the light, metals darker by as much: what they reflect stays.
+void scale_light(SplitSolution&, Vec3f factor);
 
 }  // namespace cei3d

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/light/light_color.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "core/base/error.h"
+
+namespace cei3d {
+namespace {
+
+// Of the logarithms of red over green and blue over green. Between a clear sky and a lamp at dusk the
+// photographs of a camera that is balanced for neither differ by about that.
+constexpr double kNearWhite = 0.2;
+constexpr double kKnown = 1e-3;  // of a color that was given
+// No model of reflection is better than that: it counts as an error of every channel's own.
+constexpr double kModelError = 0.04;
+
+// From the logarithms of the channels to those of red over green and blue over green.
+constexpr std::array<std::array<double, 3>, 2> kRatios = {{{1, -1, 0}, {0, -1, 1}}};
+
+Mat3d with_diagonal(Mat3d m, double add) {
+  m.row[0].x += add;
+  m.row[1].y += add;
+  m.row[2].z += add;
+  return m;
+}
+
+}  // namespace
+
+std::string light_color_text(const LightColorPrior& p) {
+  if (p.kind == LightColorPrior::Kind::free) return "free";
+  if (p.kind == LightColorPrior::Kind::near_white) return "near-white";
+  return fmt::format("{:g},{:g},{:g}", p.color.x, p.color.y, p.color.z);
+}
+
+std::optional<LightColorPrior> light_color_from(const std::string& text) {
+  using Kind = LightColorPrior::Kind;
+  if (text == "free") return LightColorPrior{Kind::free, {1, 1, 1}};
+  if (text == "near-white") return LightColorPrior{Kind::near_white, {1, 1, 1}};
+  std::istringstream in(text);
+  Vec3f c;
+  char a = 0, b = 0;
+  if (!(in >> c.x >> a >> c.y >> b >> c.z) || a != ',' || b != ',' || !in.eof()) return {};
+  if (!(std::min({c.x, c.y, c.z}) > 0) || !(std::max({c.x, c.y, c.z}) <= 1e6f)) return {};
+  return LightColorPrior{Kind::known, c};
+}
+
+std::optional<Vec3f> relative_error(const LightCovariance& c) {
+  const Vec3d variance{c.row[0].x, c.row[1].y, c.row[2].z};
+  if (!(min(variance.x, min(variance.y, variance.z)) > 0)) return {};
+  return to_float(Vec3d{std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)});
+}
+
+// The least of s' C^-1 s + |q + B s|^2 / width^2 over the logarithms s of the factor: B s are its ratios of
+// channels, q those of the light over what is believed.
+LightBelief weigh_light_color(const LightCovariance& evidence, Vec3f mean, const LightColorPrior& prior) {
+  const LightCovariance measured = with_diagonal(evidence, kModelError * kModelError);
+  if (prior.kind == LightColorPrior::Kind::free) return {{1, 1, 1}, measured};
+  const double width = prior.kind == LightColorPrior::Kind::known ? kKnown : kNearWhite;
+  Vec3d logs;
+  for (int c = 0; c < 3; ++c)
+    logs[c] = std::log(std::max(double(mean[c]), 1e-9)) - std::log(double(prior.color[c]));
+  Mat3d precision = inverse(measured);
+  Vec3d pull{0, 0, 0};
+  for (const auto& b : kRatios) {
+    const Vec3d ratio{b[0], b[1], b[2]};
+    for (int i = 0; i < 3; ++i) precision.row[i] += ratio * (b[size_t(i)] / (width * width));
+    pull += ratio * (-dot(ratio, logs) / (width * width));
+  }
+  LightBelief out;
+  out.covariance = inverse(precision);
+  const Vec3d s = out.covariance * pull;
+  for (int c = 0; c < 3; ++c) out.factor[c] = float(std::exp(s[c]));
+  return out;
+}
+
+}  // namespace cei3d
