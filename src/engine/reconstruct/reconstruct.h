@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/base/progress.h"
+#include "model/light/light_color.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {

@@ -2,6 +2,7 @@
 #include "engine/render/transport.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "core/base/parallel.h"
@@ -71,19 +72,67 @@ Transport::Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t
   }
 }
 
+namespace {
+
+// Calls visit(direction) for the bits that are set.
+template <class F>
+void for_free(const uint8_t* bits, const F& visit) {
+  for (int byte = 0; byte < kSkyDirections / 8; ++byte)
+    for (int set = bits[byte]; set; set &= set - 1) visit(8 * byte + __builtin_ctz(set));
+}
+
+}  // namespace
+
 std::vector<Vec3f> Transport::sky(const SkyRadiance& radiance) const {
   const Mesh& mesh = surface_->mesh();
   const auto& sky = sky_directions();
   const uint8_t* bits = surface_->visibility().data();
   return per_vertex([&](int v) {
-    const uint8_t* row = bits + size_t(v) * (kSkyDirections / 8);
     Vec3f sum{0, 0, 0};
-    for (int byte = 0; byte < kSkyDirections / 8; ++byte)
-      for (int set = row[byte]; set; set &= set - 1) {
-        const int k = 8 * byte + __builtin_ctz(set);
-        sum += radiance[k] * max(dot(mesh.normals[v], sky[k]), 0.0f);
-      }
+    for_free(bits + size_t(v) * (kSkyDirections / 8),
+             [&](int k) { sum += radiance[k] * max(dot(mesh.normals[v], sky[k]), 0.0f); });
     return sum * kSolidAngle;
+  });
+}
+
+// for_directions(v, visit) calls visit(direction) for those that count for vertex v.
+template <class F>
+std::vector<std::vector<Vec3f>> Transport::sums_over_skies(std::span<const SkyRadiance> radiance,
+                                                           F for_directions) const {
+  constexpr size_t kMost = 16;  // at a time
+  const Mesh& mesh = surface_->mesh();
+  const auto& sky = sky_directions();
+  std::vector<std::vector<Vec3f>> out(radiance.size(), std::vector<Vec3f>(mesh.positions.size()));
+  for (size_t first = 0; first < radiance.size(); first += kMost) {
+    const size_t count = std::min(kMost, radiance.size() - first);
+    std::vector<std::array<Vec3f, kMost>> by_direction(size_t{kSkyDirections});
+    for (size_t k = 0; k < by_direction.size(); ++k)
+      for (size_t s = 0; s < count; ++s) by_direction[k][s] = radiance[first + s][k];
+    parallel_ranges(int(mesh.positions.size()), kGrain, [&](int begin, int end) {
+      for (int v = begin; v < end; ++v) {
+        if (!covers(size_t(v))) continue;
+        std::array<Vec3f, kMost> sum{};
+        for_directions(v, [&](int k) {
+          const float c = dot(mesh.normals[v], sky[k]) * kSolidAngle;
+          if (c <= 0) return;
+          for (size_t s = 0; s < kMost; ++s) sum[s] += by_direction[size_t(k)][s] * c;
+        });
+        for (size_t s = 0; s < count; ++s) out[first + s][size_t(v)] = sum[s];
+      }
+    });
+  }
+  return out;
+}
+
+std::vector<std::vector<Vec3f>> Transport::skies(std::span<const SkyRadiance> radiance) const {
+  const uint8_t* bits = surface_->visibility().data();
+  return sums_over_skies(
+      radiance, [&](int v, const auto& visit) { for_free(bits + size_t(v) * (kSkyDirections / 8), visit); });
+}
+
+std::vector<std::vector<Vec3f>> Transport::open_skies(std::span<const SkyRadiance> radiance) const {
+  return sums_over_skies(radiance, [](int, const auto& visit) {
+    for (int k = 0; k < kSkyDirections; ++k) visit(k);
   });
 }
 

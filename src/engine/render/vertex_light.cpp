@@ -17,9 +17,9 @@ Vec3f fraction(Vec3f part, Vec3f whole) {
 
 // Lights the vertices that the transport covers, by two diffuse bounces. A metal, which has no diffuse term,
 // scatters about as much of the light on average: its albedo is its reflectance.
-void relight(const Transport& transport, const SgMixture& light, VertexLight& v) {
-  const SkyRadiance sky = sky_radiance(light);
-  const std::vector<Vec3f> visible = transport.sky(sky), open = transport.open_sky(sky);
+// visible, open: irradiance of the vertices from the sky that they see, and if nothing were in the way.
+void relight(const Transport& transport, const std::vector<Vec3f>& visible, const std::vector<Vec3f>& open,
+             VertexLight& v) {
   const size_t n = visible.size();
   for (size_t i = 0; i < n; ++i) {
     if (!transport.covers(i)) continue;
@@ -49,6 +49,18 @@ void take_materials(const Transport& transport, VertexMaterials&& made_of, Verte
   }
 }
 
+VertexLight lit(VertexLight before, const Transport& transport, const std::vector<Vec3f>& visible,
+                const std::vector<Vec3f>& open, VertexMaterials made_of) {
+  const size_t n = transport.surface().mesh().positions.size();
+  if (made_of.albedo.size() != n || made_of.material.size() != n)
+    fail("lighting: {} albedos and {} materials for {} vertices", made_of.albedo.size(),
+         made_of.material.size(), n);
+  take_materials(transport, std::move(made_of), before);
+  for (auto* a : {&before.visibility, &before.bounce, &before.irradiance}) a->resize(n, {0, 0, 0});
+  relight(transport, visible, open, before);
+  return before;
+}
+
 }  // namespace
 
 SkyRadiance sky_radiance(const SgMixture& light) {
@@ -72,24 +84,22 @@ VertexLight vertex_light(const Transport& transport, const SgMixture& light, Ver
 std::vector<VertexLight> turned_vertex_lights(const Transport& transport, const SgMixture& light,
                                               const VertexMaterials& made_of, const LightTurns* turns) {
   if (!turns) return {vertex_light(transport, light, made_of)};
+  std::vector<SkyRadiance> skies;
+  for (const Mat3f& room_from_object : turns->bins)
+    skies.push_back(sky_radiance(rotated(light, transpose(room_from_object))));
+  const std::vector<std::vector<Vec3f>> visible = transport.skies(skies), open = transport.open_skies(skies);
   std::vector<VertexLight> out;
-  for (const Mat3f& room_from_object : turns->bins) {
-    out.push_back(vertex_light(transport, rotated(light, transpose(room_from_object)), made_of));
-    if (out.size() > 1) out.back().made_of = {};
+  for (size_t bin = 0; bin < skies.size(); ++bin) {
+    out.push_back(lit({}, transport, visible[bin], open[bin], made_of));
+    if (bin > 0) out.back().made_of = {};
   }
   return out;
 }
 
 VertexLight vertex_light_after(VertexLight before, const Transport& transport, const SgMixture& light,
                                VertexMaterials made_of) {
-  const size_t n = transport.surface().mesh().positions.size();
-  if (made_of.albedo.size() != n || made_of.material.size() != n)
-    fail("lighting: {} albedos and {} materials for {} vertices", made_of.albedo.size(),
-         made_of.material.size(), n);
-  take_materials(transport, std::move(made_of), before);
-  for (auto* a : {&before.visibility, &before.bounce, &before.irradiance}) a->resize(n, {0, 0, 0});
-  relight(transport, light, before);
-  return before;
+  const SkyRadiance sky = sky_radiance(light);
+  return lit(std::move(before), transport, transport.sky(sky), transport.open_sky(sky), std::move(made_of));
 }
 
 }  // namespace cei3d

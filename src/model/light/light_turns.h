@@ -40,7 +40,7 @@ struct LightTurns {
   std::vector<Mat3f>
       bins;  // a few of them that stand for all where light arrives blurred, as on matte surfaces
 };
-constexpr size_t kMaxLightBins = 32;
+constexpr size_t kMaxLightBins = 16;
 LightTurns light_turns(std::vector<Mat3f> room_from_object);
 
 // Points of a surface, each as a view shows it.

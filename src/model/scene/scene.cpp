@@ -145,7 +145,6 @@ Scene with_layer(Scene scene, EditLayer layer) {
 }
 
 SgMixture light_in_view(const Scene& scene, const Camera& camera) {
-  if (scene.light_error) head["light_error"] = vector_json(to_double(*scene.light_error));
   if (scene.light_frame.motion == LightMotion::world) return scene.light;
   return rotated(scene.light, transpose(scene.light_frame.room_from_object(camera.world_from_cam)));
 }
@@ -166,6 +165,7 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   save_field(scene.material.varying(), "materials", tensors, head);
   if (scene.surface) save_surface(*scene.surface, tensors, head);
   save_light(scene.light, tensors, head);
+  if (scene.light_error) head["light_error"] = vector_json(to_double(*scene.light_error));
   if (scene.light_frame.motion != LightMotion::world) save_light_frame(scene.light_frame, head);
   if (scene.residual) save_residual(*scene.residual, scene.sdf, tensors, head);
   if (scene.handlers) save_handlers(*scene.handlers, tensors, head);

@@ -19,7 +19,7 @@ namespace cei3d {
 
 namespace {
 
-LinearSplitOptions split_options(const AppearanceOptions& o) {
+LinearSplitOptions split_options(const AppearanceOptions& o, bool turning) {
   LinearSplitOptions s;
   s.seed = o.seed;
   s.fixed_roughness = o.roughness;
@@ -29,6 +29,11 @@ LinearSplitOptions split_options(const AppearanceOptions& o) {
     s.search_hits = 120000;
     s.refinements = 2;
     s.light_height = 32;
+  }
+  if (o.effort == Effort::brief && turning) {  // every solution takes twice as long
+    s.material_hits = s.most_hits;
+    s.scan_step = 1.7f;
+    s.refinements = 1;
   }
   return s;
 }
@@ -94,7 +99,7 @@ class Descent {
     LightDescent light(result_.light, keep_power);
     for (int step = 0; step < steps; ++step) {
       check_cancelled(progress_);
-      if (step % kRefresh == 0)
+      if (step % (input_.samples.turned.turns ? kTurningRefresh : kRefresh) == 0)
         relight(albedo_.eval3(device_, input_.surface->mesh().positions));
       else
         lighting_->set_lobes(result_.light);
@@ -106,7 +111,7 @@ class Descent {
   Field take_albedo() { return std::move(albedo_); }
 
  private:
-  static constexpr int kRefresh = 25;
+  static constexpr int kRefresh = 25, kTurningRefresh = 100;  // the latter takes many times as long
 
   void learn_materials(const Field& field) {
     materials_ = std::make_shared<Field>(field);
@@ -236,7 +241,8 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   AppearanceResult result;
   progress.report({"light", 0, -1, ""});
   const auto transport = std::make_shared<const Transport>(input.surface);
-  result.split = linear_split(*transport, input.samples, split_options(options), progress);
+  result.split = linear_split(*transport, input.samples,
+                              split_options(options, input.samples.turned.turns != nullptr), progress);
   const Material& mean = result.split.material;
   progress.log(Json{{"stage", "linear split"},
                     {"seconds", steady_seconds() - start},

@@ -6,9 +6,11 @@
 namespace cei3d {
 namespace {
 
-// A turning light has to leave so much less, and less by more than the noise of photographs, 37 dB.
-constexpr double kTurningBy = 0.8, kNoise = 2e-4;
+// A turning light has to leave so much less; where one that stands still leaves next to nothing, 43 dB, it
+// stays.
+constexpr double kTurningBy = 0.8, kExplained = 5e-5;
 constexpr float kRoughness = 0.3f;
+constexpr int kLightHeight = 24;  // a rough answer will do
 
 }  // namespace
 
@@ -29,7 +31,7 @@ LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16
                             std::span<const Camera> cameras, Vec3f axis, uint64_t seed, Progress& progress) {
   LinearSplitOptions options;
   options.most_hits = options.search_hits;
-  options.light_height = options.search_height;
+  options.light_height = kLightHeight;
   options.seed = seed;
   const Transport transport(input.surface);
   const auto residual = [&](LightMotion motion) {
@@ -42,10 +44,11 @@ LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16
     return r;
   };
   const double still = residual(LightMotion::world);
-  double least = std::min(kTurningBy * still, still - kNoise);
+  if (still < kExplained) return {};
+  double least = kTurningBy * still;
   LightMotion best = LightMotion::world;
   for (const LightMotion motion : {LightMotion::camera, LightMotion::turntable}) {
-    const double r = least > 0 ? residual(motion) : still;
+    const double r = residual(motion);
     if (r >= least) continue;
     least = r;
     best = motion;

@@ -97,20 +97,32 @@ float percentile(std::vector<float> values, double share) {
   return *at;
 }
 
+// The vertex nearest to each sample: what is seen much counts much, and pits and the inside next to nothing.
+std::vector<uint32_t> seen_vertices(const Mesh& mesh, const SurfaceSamples& samples) {
+  std::vector<uint32_t> seen;
+  for (const Hit& h : samples.hits) {
+    const auto& t = mesh.triangles[h.triangle];
+    const float b0 = 1 - h.b1 - h.b2;
+    seen.push_back(b0 >= h.b1 && b0 >= h.b2 ? t[0] : h.b1 >= h.b2 ? t[1] : t[2]);
+  }
+  return seen;
+}
+
 // Reflections show the product of light and specular reflectance; the split takes specular 0.5 for granted.
 // On surfaces that reflect less the light comes out too dark, and more diffuse light leaves them than
 // arrives. No base color is above one: that bounds the light from below, and the specular reflectance from
 // above.
-void brighten_light(const Transport& transport, SplitSolution& s, int height, const LightTurns* turns) {
-  constexpr double kShare = 0.98;  // of the surface is believed
+void brighten_light(const Transport& transport, const std::vector<uint32_t>& seen, SplitSolution& s,
+                    int height, const LightTurns* turns) {
+  constexpr double kShare = 0.98;  // of the samples is believed
   constexpr int kRounds = 3;       // the bounce does not scale with the light
   float all = 1;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<Vec3f> color = base_colors(transport, s, height, turns);
-    Vec3f gain;
+    Vec3f gain{1, 1, 1};
     for (int c = 0; c < 3; ++c) {
       std::vector<float> channel;
-      for (uint32_t v = 0; v < color.size(); ++v)
+      for (const uint32_t v : seen)
         if (!s.materials.is_metal(v)) channel.push_back(color[v][c]);
       if (channel.empty()) return;
       gain[c] = max(percentile(std::move(channel), kShare), 1.0f);
@@ -252,7 +264,8 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
   if (all_metal(s))
     make_light_gray(s, options.light_height);
   else
-    brighten_light(transport, s, options.light_height, turns);
+    brighten_light(transport, seen_vertices(transport.surface().mesh(), samples), s, options.light_height,
+                   turns);
   result.material = mean_of(of);
   if (std::any_of(of.begin(), of.end(), [&](const Material& m) { return !(m == of.front()); }))
     result.materials = of;

@@ -216,6 +216,35 @@ TEST(LinearSplit, TakesALightThatStandsStillForWhatItIs) {
             LightMotion::world);
 }
 
+// Ratios of channels of a light.
+Vec3f hue(const Image& light) {
+  Vec3f sum{0, 0, 0};
+  for (int y = 0; y < light.height; ++y)
+    for (int x = 0; x < light.width; ++x)
+      sum += light.rgb(x, y) * env_solid_angle(y, light.width, light.height);
+  return sum / sum.y;
+}
+
+// Under orange lamps: smooth surfaces show it, and so it stays; where nothing is known but what users say,
+// that counts.
+TEST(LinearSplit, TheColorOfTheLightIsWhatHighlightsShowOrUsersSay) {
+  constexpr Vec3f kOrange{1.4f, 1, 0.65f};
+  Drawn d = draw({0.3f, 0.5f, 0});
+  for (Vec3f& c : d.colors) c = c * kOrange;
+  LinearSplitOptions o = small();
+  o.fixed_roughness = 0.3f;
+  Progress quiet;
+  const LinearSplit believed = linear_split(*d.transport, d.samples(), o, quiet);
+  o.light_color.kind = LightColorPrior::Kind::free;
+  const Vec3f free = hue(linear_split(*d.transport, d.samples(), o, quiet).light);
+  EXPECT_LT(length(hue(believed.light) - free), 0.1f);
+  const auto error = relative_error(believed.light_error);
+  ASSERT_TRUE(error);
+  EXPECT_LT(max(error->x, max(error->y, error->z)), 0.2f);
+  o.light_color = {LightColorPrior::Kind::known, {1, 1, 1}};
+  EXPECT_LT(length(hue(linear_split(*d.transport, d.samples(), o, quiet).light) - Vec3f{1, 1, 1}), 0.02f);
+}
+
 // A body drawn 1.5 times whiter than white is one under a brighter light that reflects less than is taken for
 // granted.
 TEST(LinearSplit, MakesNoSurfaceSendOutMoreThanArrives) {

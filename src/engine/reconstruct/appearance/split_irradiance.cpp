@@ -20,11 +20,11 @@ DirectLight direct_light(const Transport& transport, const Image& light, const L
   if (!turns) return {{}, transport.sky(sky_radiance(light))};
   DirectLight out;
   out.mean.assign(transport.surface().mesh().positions.size(), Vec3f{0, 0, 0});
-  for (const Mat3f& room_from_object : turns->bins) {
-    out.by_bin.push_back(transport.sky(sky_radiance(light, room_from_object)));
-    for (size_t v = 0; v < out.mean.size(); ++v)
-      out.mean[v] += out.by_bin.back()[v] / float(turns->bins.size());
-  }
+  std::vector<SkyRadiance> skies;
+  for (const Mat3f& room_from_object : turns->bins) skies.push_back(sky_radiance(light, room_from_object));
+  out.by_bin = transport.skies(skies);
+  for (const std::vector<Vec3f>& bin : out.by_bin)
+    for (size_t v = 0; v < out.mean.size(); ++v) out.mean[v] += bin[v] / float(turns->bins.size());
   return out;
 }
 
@@ -82,17 +82,12 @@ namespace {
 // Irradiance of every vertex from each harmonic.
 std::vector<Harmonics> transfer_of(const Transport& transport) {
   std::vector<Harmonics> out(transport.surface().mesh().positions.size());
-  for (size_t first = 0; first < kHarmonics; first += 3) {
-    const size_t count = std::min<size_t>(3, kHarmonics - first);  // a color carries three
-    SkyRadiance sky;
-    for (const Vec3f& d : sky_directions()) {
-      sky.push_back({0, 0, 0});
-      for (size_t c = 0; c < count; ++c) sky.back()[int(c)] = harmonics(d)[first + c];
-    }
-    const std::vector<Vec3f> irradiance = transport.sky(sky);
-    for (size_t v = 0; v < out.size(); ++v)
-      for (size_t c = 0; c < count; ++c) out[v][first + c] = irradiance[v][int(c)];
-  }
+  std::vector<SkyRadiance> skies(kHarmonics);
+  for (const Vec3f& d : sky_directions())
+    for (size_t j = 0; j < kHarmonics; ++j) skies[j].push_back(Vec3f{1, 1, 1} * harmonics(d)[j]);
+  const std::vector<std::vector<Vec3f>> irradiance = transport.skies(skies);
+  for (size_t v = 0; v < out.size(); ++v)
+    for (size_t j = 0; j < kHarmonics; ++j) out[v][j] = irradiance[j][v].x;
   return out;
 }
 
@@ -106,7 +101,7 @@ TurningIrradiance::TurningIrradiance(const Transport& transport, const LightTurn
       transfer_(transfer_of(transport)) {
   for (const Mat3f& rotation : turns.room_from_object) views_.push_back(turned_harmonics(rotation));
   for (const Mat3f& rotation : turns.bins) {
-    const HarmonicMatrix m = turned_harmonics(rotation);
+    const HarmonicMatrix& m = bins_.emplace_back(turned_harmonics(rotation));
     for (size_t i = 0; i < kHarmonics; ++i)
       for (size_t j = 0; j < kHarmonics; ++j) mean_[i][j] += m[i][j] / float(turns.bins.size());
   }
@@ -132,14 +127,18 @@ DiffuseSlopes TurningIrradiance::turn(const SplitUnknowns& x, const SplitMateria
     for (int i = begin; i < end; ++i) {
       SplitRow& row = rows[size_t(i)];
       const std::vector<Vec3f>& bin = light.by_bin[turns_.bin[row.view]];
-      row.diffuse_light = between(bin, row.vertices, row.barycentric);
+      // From the bin's rotation to the view's by harmonics.
+      const Harmonics here = at(row), in_view = views_[row.view] * here,
+                      in_bin = bins_[turns_.bin[row.view]] * here, mean = mean_ * here;
+      const Vec3f mean_light = between(light.mean, row.vertices, row.barycentric),
+                  more = (dot(in_view, slopes.light) - dot(in_bin, slopes.light)) / mean_light;
+      row.diffuse_light = between(bin, row.vertices, row.barycentric) + more;
+      for (int c = 0; c < 3; ++c) row.diffuse_light[c] = max(row.diffuse_light[c], 0.0f);
       if (row.blocked) row.far_diffuse_light = between(bin, row.far_vertices, row.far_barycentric);
       DiffuseSlopes::OfRow& slope = slopes.rows[size_t(i)];
-      const Harmonics here = at(row), in_view = views_[row.view] * here, mean = mean_ * here;
       const float share = luminance(row.diffuse_light);
       for (size_t j = 0; j < kHarmonics; ++j) slope.by_light[j] = in_view[j] - share * mean[j];
-      slope.gain = between(x.diffuse, row.vertices, row.barycentric) /
-                   between(light.mean, row.vertices, row.barycentric);
+      slope.gain = between(x.diffuse, row.vertices, row.barycentric) / mean_light;
     }
   });
   return slopes;

@@ -33,7 +33,8 @@ class TurningIrradiance {
   LightHarmonics harmonics_;
   std::vector<Harmonics> transfer_;    // #V: irradiance from the harmonics of a light
   std::vector<HarmonicMatrix> views_;  // of each view's rotation
-  HarmonicMatrix mean_{};              // over the bins
+  std::vector<HarmonicMatrix> bins_;
+  HarmonicMatrix mean_{};  // over the bins
 };
 
 }  // namespace cei3d

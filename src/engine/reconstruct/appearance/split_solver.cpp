@@ -14,8 +14,9 @@ namespace {
 
 constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
 
-constexpr int kRounds = 3;         // of materials and light
-constexpr int kTurns = 3;          // rounds of a turning light and of how matte surfaces follow it
+constexpr int kRounds = 3;  // of materials and light
+// Rounds of a turning light and of how matte surfaces follow it: without a guess, and with one.
+constexpr int kFirstTurns = 3, kTurns = 2;
 constexpr int kDiffusion = 20;     // steps, of evidence over the surface
 constexpr float kMetalBy = 0.85f;  // a metal has to explain a place so much better than a dielectric
 // The brightest diffuse base color that a vertex may have, in multiples of white: while the scale of the
@@ -94,8 +95,10 @@ SplitSolution SplitSolver::finish(SplitSolution s, bool metal, float roughness) 
 }
 
 SplitSolution SplitSolver::dielectric(float roughness) {
+  const bool first = guess_.light.width == 0;
   SplitSolution s = guess(one_material(mesh_.positions.size(), {roughness, kSpecular, 0}));
-  for (int turn = 0; turn < (turning_ ? kTurns : 1); ++turn)
+  const int turns = !turning_ ? 1 : first ? kFirstTurns : kTurns;
+  for (int turn = 0; turn < turns; ++turn)
     s = solved(std::move(s), turning_ ? 2 : options_.rounds, options_.steps);
   remember(s.x);
   return finish(std::move(s), false, roughness);
