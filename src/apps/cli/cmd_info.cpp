@@ -24,13 +24,13 @@ std::string project_text(const ProjectInfo& i) {
     text += fmt::format("surface     {} vertices, {} triangles\n", i.vertices, i.triangles);
     text += fmt::format("handlers    {} points, {:.4g} apart (capture units)\n", i.handler_points,
                         i.handler_spacing);
-    text += fmt::format("material    {}\n", i.object.text());
+    text += fmt::format("material    {}\n", i.object.material_text());
     if (i.object.explained)
       text +=
           fmt::format("explained   {:.1f} dB by light and material, {:.1f} dB with the correction network\n",
                       i.object.explained->physical, i.object.explained->with_residual);
     if (const std::string w = i.object.warning(); !w.empty()) text += "            " + w + "\n";
-    text += fmt::format("light       {} lobes\n", i.lobes);
+    text += fmt::format("light       {} lobes; {}\n", i.lobes, i.object.light_text());
     text += fmt::format("edits       {}, {} of them on\n", i.edits, i.edits_active);
   } else {
     text += "object      not finished; continue with `cei3d reconstruct -o PROJECT --resume`\n";

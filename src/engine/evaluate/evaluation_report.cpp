@@ -73,6 +73,11 @@ const std::vector<Column> kNovelViews{
      }},
     {"SSIM", [](const EvaluationRow& r) { return fmt::format("{:.4f}", r.scores.ssim); }},
     {"PSNR in the mask", [](const EvaluationRow& r) { return db(r.scores.psnr_masked); }},
+    {"light and material alone: PSNR, in the mask",
+     [](const EvaluationRow& r) {
+       const auto& alone = r.scores.alone;
+       return alone ? fmt::format("{}, {}", db(alone->psnr), db(alone->psnr_masked)) : "";
+     }},
     {"LPIPS", [](const EvaluationRow& r) { return or_nothing(r.scores.lpips, "{:.4f}"); }},
     {"FID", [](const EvaluationRow& r) { return or_nothing(r.scores.fid, "{:.1f}"); }},
     {"rendered with", [](const EvaluationRow& r) {

@@ -15,6 +15,7 @@ namespace {
 // photographs of a camera that is balanced for neither differ by about that.
 constexpr double kNearWhite = 0.2;
 constexpr double kKnown = 1e-3;  // of a color that was given
+constexpr double kSplit = 0.7;   // of the light as it is, where nothing else is known
 // No model of reflection is better than that: it counts as an error of every channel's own.
 constexpr double kModelError = 0.04;
 
@@ -54,18 +55,21 @@ std::optional<Vec3f> relative_error(const LightCovariance& c) {
   return to_float(Vec3d{std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)});
 }
 
-// The least of s' C^-1 s + |q + B s|^2 / width^2 over the logarithms s of the factor: B s are its ratios of
-// channels, q those of the light over what is believed.
-LightBelief weigh_light_color(const LightCovariance& evidence, Vec3f mean, const LightColorPrior& prior) {
-  const LightCovariance measured = with_diagonal(evidence, kModelError * kModelError);
-  if (prior.kind == LightColorPrior::Kind::free) return {{1, 1, 1}, measured};
-  const double width = prior.kind == LightColorPrior::Kind::known ? kKnown : kNearWhite;
-  Vec3d logs;
-  for (int c = 0; c < 3; ++c)
+// The least of (s - e)' C^-1 (s - e) + |s|^2 / split^2 + |q + B s|^2 / width^2 over the logarithms s of the
+// factor: e is what the evidence says, B s are ratios of channels, q those of the light over what is
+// believed.
+LightBelief weigh_light_color(const LightScale& evidence, Vec3f mean, const LightColorPrior& prior) {
+  const Mat3d measured = inverse(with_diagonal(evidence.covariance, kModelError * kModelError));
+  Mat3d precision = with_diagonal(measured, 1 / (kSplit * kSplit));
+  Vec3d logs, said;
+  for (int c = 0; c < 3; ++c) {
     logs[c] = std::log(std::max(double(mean[c]), 1e-9)) - std::log(double(prior.color[c]));
-  Mat3d precision = inverse(measured);
-  Vec3d pull{0, 0, 0};
+    said[c] = std::log(double(evidence.factor[c]));
+  }
+  Vec3d pull = measured * said;
+  const double width = prior.kind == LightColorPrior::Kind::known ? kKnown : kNearWhite;
   for (const auto& b : kRatios) {
+    if (prior.kind == LightColorPrior::Kind::free) break;
     const Vec3d ratio{b[0], b[1], b[2]};
     for (int i = 0; i < 3; ++i) precision.row[i] += ratio * (b[size_t(i)] / (width * width));
     pull += ratio * (-dot(ratio, logs) / (width * width));

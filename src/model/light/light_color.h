@@ -25,6 +25,13 @@ std::optional<LightColorPrior> light_color_from(const std::string&);  // nothing
 // How well the strength of a light is known: the covariance of the logarithms of its three channels.
 using LightCovariance = Mat3d;
 
+// A factor on the light, per channel, and how well it is known.
+struct LightScale {
+  Vec3f factor{1, 1, 1};
+  LightCovariance covariance;
+  Vec3d reflected{0, 0, 0};  // mean square of what reflections vary in the photographs, display units
+};
+
 // The error of each channel, as a share of it; nothing where the covariance is zero.
 std::optional<Vec3f> relative_error(const LightCovariance&);
 
@@ -32,7 +39,7 @@ struct LightBelief {
   Vec3f factor{1, 1, 1};       // on the light, per channel
   LightCovariance covariance;  // of the light with that factor
 };
-// evidence: how far the photographs determine the light. mean: radiance of that light.
-LightBelief weigh_light_color(const LightCovariance& evidence, Vec3f mean, const LightColorPrior&);
+// evidence: what the photographs say of the light. mean: its radiance.
+LightBelief weigh_light_color(const LightScale& evidence, Vec3f mean, const LightColorPrior&);
 
 }  // namespace cei3d

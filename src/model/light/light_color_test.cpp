@@ -10,8 +10,8 @@ namespace {
 
 constexpr Vec3f kOrange{1, 0.7f, 0.45f};
 
-LightCovariance errors_of(double each) {
-  return {{{each * each, 0, 0}, {0, each * each, 0}, {0, 0, each * each}}};
+LightScale errors_of(double each) {
+  return {{1, 1, 1}, {{{each * each, 0, 0}, {0, each * each, 0}, {0, 0, each * each}}}};
 }
 
 Vec3f believed(double error, const LightColorPrior& prior) {
@@ -34,8 +34,8 @@ TEST(LightColor, WithoutHighlightsTheLightIsNearlyWhiteAndAsBright) {
 
 // Of two channels the one that is known better stays.
 TEST(LightColor, TheUncertainChannelMoves) {
-  LightCovariance evidence = errors_of(0.05);
-  evidence.row[2].z = 4;
+  LightScale evidence = errors_of(0.05);
+  evidence.covariance.row[2].z = 4;
   const Vec3f factor = weigh_light_color(evidence, kOrange, {}).factor;
   EXPECT_NEAR(factor.y, 1, 0.1f);
   EXPECT_GT(factor.z, 1.3f);
@@ -56,7 +56,14 @@ TEST(LightColor, ThePriorNarrowsRatiosOnly) {
                brightness =
                    (c.row[0].x + c.row[1].y + c.row[2].z + 2 * (c.row[0].y + c.row[0].z + c.row[1].z)) / 9;
   EXPECT_LT(std::sqrt(blue_over_green), 0.21);
-  EXPECT_NEAR(brightness, 1.0 / 3, 0.02);
+  EXPECT_NEAR(brightness, 1 / (3 * (1 / 1.0 + 1 / (0.7 * 0.7))), 0.02);
+}
+
+TEST(LightColor, WhatPhotographsSayIsFollowed) {
+  LightScale evidence = errors_of(0.02);
+  evidence.factor = {1 / kOrange.x, 1 / kOrange.y, 1 / kOrange.z};  // the light is white after all
+  const Vec3f color = kOrange * weigh_light_color(evidence, kOrange, {}).factor;
+  EXPECT_LT(length(color - Vec3f{1, 1, 1}), 0.02f);
 }
 
 TEST(LightColor, WordsAreReadAndWritten) {

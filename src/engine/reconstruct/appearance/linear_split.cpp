@@ -26,7 +26,8 @@ constexpr double kMetalBy = 0.5;
 // Several materials always explain a little more than one. They have to explain so much more, and more than
 // the noise of photographs, 37 dB.
 constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
-constexpr double kPlainlyOne = 0.85;  // a first guess at several that leaves more is not improved
+constexpr double kSharedError = 0.25;  // of the errors of a model is the same everywhere
+constexpr double kPlainlyOne = 0.85;   // a first guess at several that leaves more is not improved
 constexpr float kFirstRoughness =
     0.3f;  // at most, of the one material that the search for several begins with
 
@@ -119,17 +120,17 @@ void brighten_light(const Transport& transport, const std::vector<uint32_t>& see
   float all = 1;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<Vec3f> color = base_colors(transport, s, height, turns);
-    Vec3f gain{1, 1, 1};
+    float gain = 1;  // of all channels: the light's color is not told by this
     for (int c = 0; c < 3; ++c) {
       std::vector<float> channel;
       for (const uint32_t v : seen)
         if (!s.materials.is_metal(v)) channel.push_back(color[v][c]);
       if (channel.empty()) return;
-      gain[c] = max(percentile(std::move(channel), kShare), 1.0f);
+      gain = max(gain, percentile(std::move(channel), kShare));
     }
     for (Vec3f& l : s.x.light) l = l * gain;
     for (Vec3f& a : s.materials.color) a = a / gain;
-    all *= luminance(gain);
+    all *= gain;
   }
   for (Material& m : s.materials.of) m.specular /= all;
 }
@@ -190,15 +191,26 @@ bool all_metal(const SplitSolution& s) {
 }
 
 // What is believed of the light's color, weighed against what the samples say. Returns what is left unknown.
-LightCovariance believe_light(SplitSolver& solver, const LinearSplitOptions& options, SplitSolution& s) {
+LightCovariance believe_light(SplitSolver& solver, const LinearSplitOptions& options, SplitSolution& s,
+                              Progress& progress) {
   if (all_metal(s)) return {};
-  const LightScale evidence = solver.light_scale(s);
+  LightScale evidence = solver.light_scale(s);
+  // A model that errs as much as it explains may err everywhere alike.
+  for (int c = 0; c < 3; ++c)
+    evidence.covariance.row[c][c] +=
+        kSharedError * kSharedError * std::min(s.residual / std::max(evidence.reflected[c], 1e-12), 100.0);
   Vec3f mean{0, 0, 0};
   for (size_t i = 0; i < s.x.light.size(); ++i)
     mean += s.x.light[i] * env_solid_angle(int(i) / (2 * options.light_height), 2 * options.light_height,
                                            options.light_height);
-  const LightBelief belief = weigh_light_color(evidence.covariance, mean, options.light_color);
-  scale_light(s, belief.factor);
+  const LightBelief belief = weigh_light_color(evidence, mean, options.light_color);
+  solver.scale_light(s, belief.factor);
+  const auto list = [](Vec3f v) { return Json::array({v.x, v.y, v.z}); };
+  progress.log(Json{{"stage", "light color"},
+                    {"evidence", list(evidence.factor)},
+                    {"evidence_error", list(relative_error(evidence.covariance).value_or(Vec3f{0, 0, 0}))},
+                    {"factor", list(belief.factor)}}
+                   .dump());
   return belief.covariance;
 }
 
@@ -228,7 +240,7 @@ Solved solve(const Transport& transport, const SurfaceSamples& samples, const Li
     if (several.residual < std::min(kSeveralBy * best.residual, best.residual - kNoise))
       best = std::move(several);
   }
-  const LightCovariance error = believe_light(fine, options, best);
+  const LightCovariance error = believe_light(fine, options, best, progress);
   return {std::move(best), error};
 }
 

@@ -40,27 +40,6 @@ struct OneCoefficient {
   }
 };
 
-// Least squares of color = diffuse * D + reflected * t, D >= 0 and free, as sums over a vertex' samples.
-struct ScaleSums {
-  Vec3f dd{0, 0, 0}, dg{0, 0, 0}, gg{0, 0, 0}, dc{0, 0, 0}, gc{0, 0, 0};
-  void add(Vec3f weight, Vec3f diffuse, Vec3f reflected, Vec3f color) {
-    dd += weight * diffuse * diffuse;
-    dg += weight * reflected * diffuse;
-    gg += weight * reflected * reflected;
-    dc += weight * color * diffuse;
-    gc += weight * reflected * color;
-  }
-  // Adds numerator and denominator of t.
-  void add_to(Vec3d& above, Vec3d& below) const {
-    for (int c = 0; c < 3; ++c) {
-      if (dd[c] <= 0) continue;
-      const double share = dc[c] < dg[c] ? 0 : double(dg[c]) / dd[c];  // 0: D would be negative
-      above[c] += gc[c] - share * dc[c];
-      below[c] += gg[c] - share * dg[c];
-    }
-  }
-};
-
 // Minimum of errors over the levels, by a parabola through the least and its neighbors.
 void minimum(const float* e, float& roughness, float& error) {
   const int best = int(std::min_element(e, e + kLevels) - e);
@@ -150,47 +129,43 @@ size_t place_of(Vec3f p) {
   return size_t((cell(p.x) * kPlacesAcross + cell(p.y)) * kPlacesAcross + cell(p.z));
 }
 
-// Numerator and denominator of the factor.
-struct Ratio {
-  Vec3d above{0, 0, 0}, below{0, 0, 0};
-};
+}  // namespace
 
-LightScale scale_of(const std::vector<Ratio>& places) {
-  constexpr double kUnknown = 4;  // variance where there is nothing to see
-  Ratio all;
-  for (const Ratio& p : places) {
-    all.above += p.above;
-    all.below += p.below;
-  }
-  LightScale out{{1, 1, 1}, {{{kUnknown, 0, 0}, {0, kUnknown, 0}, {0, 0, kUnknown}}}};
-  if (!(min(all.below.x, min(all.below.y, all.below.z)) > 0)) return out;
-  const Vec3d t = all.above / all.below;
-  if (!(min(t.x, min(t.y, t.z)) > 0)) return out;
-  out.factor = to_float(t);
-  out.covariance = {};
-  for (const Ratio& p : places) {
-    const Vec3d error = (p.above - t * p.below) / all.above;
-    for (int c = 0; c < 3; ++c) out.covariance.row[c] += error * error[c];
-  }
+std::vector<ReflectionSample> LitSamples::of_dielectric(uint32_t vertex, const Material& m) const {
+  const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kSpecular, 0.0f);
+  std::vector<ReflectionSample> out;
+  for_samples(vertex, m.roughness, [&](const SplitRow& row, Vec3f color, const Seen& s) {
+    out.push_back({row.weight, s.diffuse, s.base * f0 + s.fresnel, color});
+  });
   return out;
 }
 
-}  // namespace
+std::vector<Vec3f> LitSamples::fit_diffuse(const SplitMaterials& materials, std::vector<Vec3f> before) const {
+  parallel_ranges(int(before.size()), kGrain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      if (materials.is_metal(uint32_t(v))) continue;
+      const std::vector<ReflectionSample> samples = of_dielectric(uint32_t(v), materials.of[size_t(v)]);
+      if (!samples.empty()) before[size_t(v)] = diffuse_of(samples);
+    }
+  });
+  return before;
+}
 
 LightScale LitSamples::light_scale(const SplitMaterials& materials,
                                    const std::vector<Vec3f>& positions) const {
-  const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kSpecular, 0.0f);
-  std::vector<Ratio> places(kPlaces);
-  for (uint32_t v = 0; v + 1 < start_.size(); ++v) {
-    if (materials.is_metal(v)) continue;
-    ScaleSums sums;
-    for_samples(v, materials.of[v].roughness, [&](const SplitRow& row, Vec3f color, const Seen& s) {
-      sums.add(row.weight, s.diffuse, s.base * f0 + s.fresnel, color);
-    });
-    Ratio& place = places[place_of(positions[v])];
-    sums.add_to(place.above, place.below);
-  }
-  return scale_of(places);
+  const auto for_dielectrics = [&](const auto& use) {
+    for (uint32_t v = 0; v + 1 < start_.size(); ++v)
+      if (!materials.is_metal(v) && start_[v + 1] > start_[v]) use(v, of_dielectric(v, materials.of[v]));
+  };
+  NoiseSums noise;
+  for_dielectrics([&](uint32_t, const std::vector<ReflectionSample>& samples) { noise.add(samples); });
+  std::vector<ScaleEquations> places(kPlaces);
+  for_dielectrics([&](uint32_t v, const std::vector<ReflectionSample>& samples) {
+    places[place_of(positions[v])].add(samples, noise.noise());
+  });
+  LightScale scale = cei3d::light_scale(places);
+  scale.reflected = noise.reflected();
+  return scale;
 }
 
 BestMaterials best_materials(const float* errors) {

@@ -5,8 +5,8 @@
 
 #include <vector>
 
+#include "engine/reconstruct/appearance/light_scale.h"
 #include "engine/reconstruct/appearance/split_system.h"
-#include "model/light/light_color.h"
 
 namespace cei3d {
 
@@ -19,14 +19,6 @@ struct MaterialEvidence {
   const float* of(size_t vertex) const { return &error[vertex * kHypotheses]; }
 };
 
-// The factor on the light, per channel, that fits the dielectrics' samples best when the diffuse radiance of
-// every vertex is free, and the covariance of its logarithms: how far places of the surface disagree, which
-// the errors of the model make them do. Without dielectrics 1, and anything may be.
-struct LightScale {
-  Vec3f factor{1, 1, 1};
-  LightCovariance covariance;
-};
-
 class LitSamples {
  public:
   // colors: #rows, SplitSystem::targets(). The rows must outlive the object.
@@ -35,7 +27,9 @@ class LitSamples {
 
   // max_diffuse: #V, radiance that a white dielectric would send out.
   MaterialEvidence evidence(const std::vector<Vec3f>& max_diffuse) const;
-  // positions: of the vertices, unit-sphere frame.
+  // Of the light, by the dielectrics. positions: of the vertices, unit-sphere frame.
+  // D of the dielectrics for the light, `before` where there are no samples. #V
+  std::vector<Vec3f> fit_diffuse(const SplitMaterials&, std::vector<Vec3f> before) const;
   LightScale light_scale(const SplitMaterials&, const std::vector<Vec3f>& positions) const;
 
  private:
@@ -46,6 +40,7 @@ class LitSamples {
   };
   Seen seen_by(const SplitRow&, float roughness) const;
   int add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float* errors) const;
+  std::vector<ReflectionSample> of_dielectric(uint32_t vertex, const Material&) const;
   template <class F>
   int for_samples(uint32_t vertex, float roughness, const F& visit) const;
 

@@ -106,6 +106,7 @@ SplitSolution SplitSolver::dielectric(float roughness) {
 
 SplitSolution SplitSolver::metal(float roughness) {
   SplitSolution s{uniform(), one_material(mesh_.positions.size(), {roughness, kSpecular, 1})};
+  system_.set_diffuse_slopes({});  // metals have no diffuse light
   for (int round = 0; round < 3; ++round) s = with_fitted_metals(std::move(s), 3, 8);
   return finish(std::move(s), true, roughness);
 }
@@ -133,9 +134,24 @@ void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, Spl
   }
 }
 
-void scale_light(SplitSolution& s, Vec3f factor) {
+namespace {
+
+void scale(SplitSolution& s, Vec3f factor) {
   for (Vec3f& l : s.x.light) l = l * factor;
   for (Vec3f& a : s.materials.color) a = a / factor;
+}
+
+}  // namespace
+
+// What dielectrics send out changes by as much as the best fit of each vertex alone does: that fit is noisy,
+// its change is not.
+void SplitSolver::scale_light(SplitSolution& s, Vec3f factor) {
+  system_.set_materials(s.materials);
+  const std::vector<Vec3f> before = lit_samples(s.x).fit_diffuse(s.materials, s.x.diffuse);
+  scale(s, factor);
+  const std::vector<Vec3f> after = lit_samples(s.x).fit_diffuse(s.materials, s.x.diffuse);
+  for (size_t v = 0; v < before.size(); ++v)
+    for (int c = 0; c < 3; ++c) s.x.diffuse[v][c] = max(s.x.diffuse[v][c] + after[v][c] - before[v][c], 0.0f);
 }
 
 namespace {
@@ -170,7 +186,7 @@ void SplitSolver::fix_scale(SplitSolution& s) {
   system_.set_materials(s.materials);
   s.materials.color = system_.fit_metal_color(s.x);
   const Vec3f of_dielectrics = light_scale(s).factor;
-  scale_light(s, of_dielectrics);
+  scale(s, of_dielectrics);
   const float peak = colored_metal_peak(s.materials);
   progress_.log(Json{
       {"stage", "scale"},
@@ -180,7 +196,7 @@ void SplitSolver::fix_scale(SplitSolution& s) {
   if (peak <= 0) return;
   const float share = square(kDielectricError) / (square(kDielectricError) + square(kPeakError));
   const float common = std::pow(peak / kPeak, share);
-  scale_light(s, {common, common, common});
+  scale(s, {common, common, common});
 }
 
 LightScale SplitSolver::light_scale(const SplitSolution& s) {

@@ -42,6 +42,8 @@ class SplitSolver {
   SplitSolution with_materials(const SplitMaterials&);
   // What the samples say of its strength.
   LightScale light_scale(const SplitSolution&);
+  // Times the light, metals darker by as much, dielectrics as the samples then want them.
+  void scale_light(SplitSolution&, Vec3f factor);
 
   std::vector<LinearSplit::Trial> trials;  // of one material
 
@@ -69,8 +71,5 @@ class SplitSolver {
   std::unique_ptr<TurningIrradiance> turning_;  // null: the light stands still
   SplitGuess guess_;
 };
-
-// Times the light, metals darker by as much: what they reflect stays.
-void scale_light(SplitSolution&, Vec3f factor);
 
 }  // namespace cei3d
