@@ -26,8 +26,10 @@ constexpr double kMetalBy = 0.5;
 // Several materials always explain a little more than one. They have to explain so much more, and more than
 // the noise of photographs, 37 dB.
 constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
-constexpr double kSharedError = 0.25;  // of the errors of a model is the same everywhere
-constexpr double kPlainlyOne = 0.85;   // a first guess at several that leaves more is not improved
+// Of the variance that a model leaves over that which reflections explain: how wrong their strength may be
+// everywhere alike, as errors of regressors are.
+constexpr double kSharedError = 0.1;
+constexpr double kPlainlyOne = 0.85;  // a first guess at several that leaves more is not improved
 constexpr float kFirstRoughness =
     0.3f;  // at most, of the one material that the search for several begins with
 
@@ -195,10 +197,9 @@ LightCovariance believe_light(SplitSolver& solver, const LinearSplitOptions& opt
                               Progress& progress) {
   if (all_metal(s)) return {};
   LightScale evidence = solver.light_scale(s);
-  // A model that errs as much as it explains may err everywhere alike.
   for (int c = 0; c < 3; ++c)
     evidence.covariance.row[c][c] +=
-        kSharedError * kSharedError * std::min(s.residual / std::max(evidence.reflected[c], 1e-12), 100.0);
+        square(kSharedError * std::min(s.residual / std::max(evidence.reflected[c], 1e-12), 20.0));
   Vec3f mean{0, 0, 0};
   for (size_t i = 0; i < s.x.light.size(); ++i)
     mean += s.x.light[i] * env_solid_angle(int(i) / (2 * options.light_height), 2 * options.light_height,
