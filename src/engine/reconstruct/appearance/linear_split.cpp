@@ -192,11 +192,19 @@ bool all_metal(const SplitSolution& s) {
   return std::all_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
 }
 
+bool has_metals(const SplitSolution& s) {
+  const auto& of = s.materials.of;
+  return std::any_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
+}
+
 // What is believed of the light's color, weighed against what the samples say. Returns what is left unknown.
 LightCovariance believe_light(SplitSolver& solver, const LinearSplitOptions& options, SplitSolution& s,
                               Progress& progress) {
   if (all_metal(s)) return {};
   LightScale evidence = solver.light_scale(s);
+  // The strength that all channels share has been weighed against the colors of the metals.
+  if (has_metals(s))
+    evidence.factor = evidence.factor / std::cbrt(evidence.factor.x * evidence.factor.y * evidence.factor.z);
   for (int c = 0; c < 3; ++c)
     evidence.covariance.row[c][c] +=
         square(kSharedError * std::min(s.residual / std::max(evidence.reflected[c], 1e-12), 20.0));
