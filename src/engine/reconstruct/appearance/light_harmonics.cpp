@@ -7,27 +7,6 @@
 
 namespace cei3d {
 
-// [Ramamoorthi and Hanrahan 2001] has the first three bands.
-Harmonics harmonics(Vec3f d) {
-  const float x = d.x, y = d.y, z = d.z;
-  return {0.282095f,
-          0.488603f * y,
-          0.488603f * z,
-          0.488603f * x,
-          1.092548f * x * y,
-          1.092548f * y * z,
-          0.315392f * (3 * z * z - 1),
-          1.092548f * x * z,
-          0.546274f * (x * x - y * y),
-          0.590044f * y * (3 * x * x - y * y),
-          2.890611f * x * y * z,
-          0.457046f * y * (5 * z * z - 1),
-          0.373176f * z * (5 * z * z - 3),
-          0.457046f * x * (5 * z * z - 1),
-          1.445306f * z * (x * x - y * y),
-          0.590044f * x * (x * x - 3 * y * y)};
-}
-
 LightHarmonics::LightHarmonics(int height) {
   const int width = 2 * height;
   for (int row = 0; row < height; ++row)

@@ -5,15 +5,11 @@
 #include <array>
 #include <vector>
 
-#include "core/math/vec.h"
+#include "core/math/harmonics.h"
 
 namespace cei3d {
 
-constexpr size_t kHarmonics = 16;
-using Harmonics = std::array<float, kHarmonics>;
 using HarmonicLight = std::array<Vec3f, kHarmonics>;
-
-Harmonics harmonics(Vec3f direction);  // unit; orthonormal over the sphere
 
 inline Vec3f dot(const Harmonics& a, const HarmonicLight& b) {
   Vec3f sum{0, 0, 0};
