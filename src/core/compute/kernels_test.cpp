@@ -11,6 +11,7 @@
 #include "core/compute/device.h"
 #include "core/compute/kernels/all.h"
 #include "core/math/rng.h"
+#include "core/math/rotation.h"
 
 namespace cei3d {
 namespace {
@@ -65,23 +66,36 @@ std::vector<float> adam_case(const Device& device, bool skip_zero) {
   return value;
 }
 
+// Another one for each sample.
+Mat3f sample_rotation(int i) {
+  return about_axis(normalize(Vec3f{1, 0.5f, -0.3f * float(i % 7)}), 0.37f * float(i));
+}
+std::vector<float> turned_panels() {  // [panels][9][32]
+  std::vector<float> out(kN * 9);
+  for (int i = 0; i < kN; ++i) store_rotation(out.data(), i, sample_rotation(i));
+  return out;
+}
+
 constexpr int kFeatures = 4;
 struct RadianceData {
+  bool turned = false;
+  std::vector<float> rotations = turned_panels();
   std::vector<float> points = noise(kN * 3, 10), directions = noise(kN * 3, 11),
                      jets = noise(kN * 4 * (1 + kFeatures), 12),
                      d_jets = std::vector<float>(kN * 4 * (1 + kFeatures), 0.0f),
                      input = std::vector<float>(kN * radiance_rows(kFeatures), 0.0f),
                      d_input = noise(kN * radiance_rows(kFeatures), 13);
   RadianceInput::Args forward() {
-    return {points.data(), directions.data(), jets.data(), input.data(), kFeatures};
+    return {points.data(), directions.data(), jets.data(), input.data(), kFeatures, turns()};
   }
   RadianceInputGrad::Args gradient() {
-    return {directions.data(), jets.data(), d_input.data(), d_jets.data(), kFeatures};
+    return {directions.data(), jets.data(), d_input.data(), d_jets.data(), kFeatures, turns()};
   }
+  const float* turns() const { return turned ? rotations.data() : nullptr; }
 };
 
-std::vector<float> radiance_case(const Device& device, bool gradient) {
-  RadianceData d;
+std::vector<float> radiance_case(const Device& device, bool gradient, bool turned) {
+  RadianceData d{turned};
   gradient ? device.launch<RadianceInputGrad>(d.gradient(), kN)
            : device.launch<RadianceInput>(d.forward(), kN);
   return gradient ? d.d_jets : d.input;
@@ -164,13 +178,15 @@ struct Parity<Adam> {
 template <>
 struct Parity<RadianceInput> {
   static Cases cases() {
-    return {{"", [](const Device& d) { return radiance_case(d, false); }}};
+    return {{"", [](const Device& d) { return radiance_case(d, false, false); }},
+            {"turned", [](const Device& d) { return radiance_case(d, false, true); }}};
   }
 };
 template <>
 struct Parity<RadianceInputGrad> {
   static Cases cases() {
-    return {{"", [](const Device& d) { return radiance_case(d, true); }}};
+    return {{"", [](const Device& d) { return radiance_case(d, true, false); }},
+            {"turned", [](const Device& d) { return radiance_case(d, true, true); }}};
   }
 };
 
@@ -224,9 +240,8 @@ TEST(Kernels, EncodePointWritesThePointAndItsUnitJet) {
                   c == 0 ? points[panel_at(i, 1, 0, 3, r)] : float(c == 1 + r));
 }
 
-TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
+void expect_radiance_gradient(RadianceData d) {
   const Device device = make_device("cpu/scalar");
-  RadianceData d;
   const std::vector<float>& weights = d.d_input;
   device.launch<RadianceInputGrad>(d.gradient(), kN);
   const auto loss = [&](int sample) {
@@ -258,6 +273,25 @@ TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
     }
   }
   EXPECT_GT(checked, 10);
+}
+
+TEST(Kernels, TurnedRadianceInputIsThatOfTurnedNormalsAndDirections) {
+  const Device device = make_device("cpu/scalar");
+  RadianceData turned{.turned = true}, by_hand;
+  for (int i = 0; i < kN; ++i) {
+    const Mat3f r = sample_rotation(i);
+    store_point(by_hand.directions.data(), i, r * load_point<float>(turned.directions.data(), i));
+    const Vec3f g = r * load_sdf_gradient<float>(turned.jets.data(), i, 1 + kFeatures);
+    for (int c = 0; c < 3; ++c) by_hand.jets[panel_at(i, 4, 1 + c, 1 + kFeatures, 0)] = g[c];
+  }
+  device.launch<RadianceInput>(turned.forward(), kN);
+  device.launch<RadianceInput>(by_hand.forward(), kN);
+  for (size_t k = 0; k < turned.input.size(); ++k) EXPECT_NEAR(turned.input[k], by_hand.input[k], 2e-4f);
+}
+
+TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
+  expect_radiance_gradient({});
+  expect_radiance_gradient({.turned = true});
 }
 
 void expect_plain_loops(int in, int out, int panels) {

@@ -49,7 +49,6 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
           {"start_seconds", state.start_seconds},
           {"polish_deadline", state.polish_deadline},
           {"look_seconds", state.look_seconds},
-          {"light_frame_known", state.light_frame_known},
           {"has_geometry", bool(state.geometry)}};
   if (state.geometry) {
     Tensors geometry;
@@ -70,12 +69,12 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   state.start_seconds = head.at("start_seconds").get<double>();
   state.polish_deadline = head.at("polish_deadline").get<double>();
   state.look_seconds = head.at("look_seconds").get<double>();
-  state.light_frame_known = head.value("light_frame_known", false);
+  state.scene = load_scene(without_prefix(kScene, tensors), head.at("scene"));
   if (head.at("has_geometry").get<bool>()) {
     state.geometry = make_geometry();
     state.geometry->load(without_prefix(kGeometry, tensors));
+    state.geometry->set_light(state.scene.light_frame);
   }
-  state.scene = load_scene(without_prefix(kScene, tensors), head.at("scene"));
   return state;
 }
 

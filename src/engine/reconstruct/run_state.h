@@ -20,8 +20,7 @@ struct RunState {
   double start_seconds = 0;                 // that comparing the starts took
   double polish_deadline = 0;  // of all rounds, in seconds of the run; 0: polishing has not begun
   double look_seconds = 0;     // that the last round took to estimate light and material before its descent
-  bool light_frame_known = false;  // that of the scene
-  Scene scene;                     // what of the object is finished
+  Scene scene;                 // what of the object is finished
 
   // Pixels of the appearance stage on scene.surface. A checkpoint leaves them out: they are found again.
   ObjectHits hits;

@@ -24,16 +24,38 @@ constexpr double kStartSteps = 50, kTrialsSteps = 1500, kLookSteps = 350, kSurfa
                  kAppearanceSteps = 600, kFinerMeshSteps = 400, kPolishStepLength = 3,
                  kResidualStepLength = 0.4;
 
+// How the light turns in the training views, found on the visual hull if it is not said: matte surfaces of a
+// rough shape tell it well enough.
+LightFrame light_frame_of(const RunContext& run) {
+  constexpr int kCells = 96;
+  constexpr size_t kHits = 100000;
+  const std::vector<Camera>& cameras = run.views.train.cameras();
+  const Vec3f axis = to_float(normalize(run.capture.up));
+  if (run.light) return light_frame(*run.light, cameras, axis);
+  run.progress.report({"light", 0, -1, ""});
+  const PixelStore& pixels = run.views.train;
+  GeometryStage rough(run.device, pixels, run.preset.trial.geometry, run.seed);
+  rough.prefit(start_shape(pixels, Start::hull, run.seed, run.preset.trial.shapes, run.progress),
+               run.progress);
+  MeshingOptions coarse = run.preset.meshing;
+  coarse.resolution = std::min(coarse.resolution, kCells);
+  const SurfaceAndHits hull =
+      extract_surface_and_hits(run.device, rough.sdf(), coarse, pixels, kHits, run.progress);
+  return find_light_frame(hull.input(nullptr), hull.hits.views, cameras, axis, run.seed, run.progress);
+}
+
 void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   const PixelStore& pixels = run.views.train;
   const double begin = run.progress.now();
-  const StartShape start =
-      run.plan.choose_start
-          ? choose_start(run.device, pixels, run.preset.trial, run.seed, run.progress)
-          : start_shape(pixels, Start::hull, run.seed, run.preset.trial.shapes, run.progress);
+  TrialOptions trial = run.preset.trial;
+  trial.light = state.scene.light_frame = light_frame_of(run);
+  const StartShape start = run.plan.choose_start
+                               ? choose_start(run.device, pixels, trial, run.seed, run.progress)
+                               : start_shape(pixels, Start::hull, run.seed, trial.shapes, run.progress);
   const double chosen = run.progress.now();
   state.start_seconds = chosen - begin;
   state.geometry = std::make_unique<GeometryStage>(run.device, pixels, run.preset.geometry, run.seed);
+  state.geometry->set_light(state.scene.light_frame);
   state.geometry->prefit(start, run.progress);
   run.progress.log(Json{{"stage", "prefit"}, {"seconds", run.progress.now() - chosen}}.dump());
 }
@@ -56,18 +78,8 @@ double polish_seconds(const RunContext& run, const RunState& state, int round) {
 
 using Turns = std::shared_ptr<const LightTurns>;
 
-// How the light turns in the training views; on first use it is found by the samples. Null: it stands still.
-Turns light_turns(const RunContext& run, RunState& state, const std::shared_ptr<const Surface>& surface,
-                  const ObjectHits& hits) {
-  const std::vector<Camera>& cameras = run.views.train.cameras();
-  const Vec3f axis = to_float(normalize(run.capture.up));
-  LightFrame& frame = state.scene.light_frame;
-  if (!state.light_frame_known)
-    frame = run.light ? light_frame(*run.light, cameras, axis)
-                      : find_light_frame({surface, hits.samples()}, hits.views, cameras, axis, run.seed,
-                                         run.progress);
-  state.light_frame_known = true;
-  return turns_of(frame, cameras);
+Turns light_turns(const RunContext& run, const RunState& state) {
+  return turns_of(state.scene.light_frame, run.views.train.cameras());
 }
 
 // Light and material for the present surface, then the surface for them. A round for which there is no time
@@ -91,7 +103,7 @@ void polish(const RunContext& run, RunState& state, int round) {
   brief.effort = Effort::brief;
   brief.seed = run.seed;
   brief.light_color = run.light_color;
-  const Turns turns = light_turns(run, state, all.surface, fewer);
+  const Turns turns = light_turns(run, state);
   const AppearanceResult appearance =
       fit_appearance(run.device, {all.surface, fewer.samples(turns.get())}, brief, run.progress);
   check_cancelled(run.progress);
@@ -144,7 +156,7 @@ AppearanceOptions appearance_options(const RunContext& run) {
 void estimate_appearance(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   Scene& scene = state.scene;
   if (state.hits.hits.empty()) state.hits = scene_hits(run, scene, {run.preset.max_hits});
-  const Turns turns = light_turns(run, state, scene.surface, state.hits);
+  const Turns turns = light_turns(run, state);
   AppearanceResult made = fit_appearance(run.device, {scene.surface, state.hits.samples(turns.get())},
                                          appearance_options(run), run.progress);
   check_cancelled(run.progress);
@@ -162,7 +174,7 @@ void refine(const RunContext& run, RunState& state, uint64_t subset) {
   Scene& scene = state.scene;
   const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, subset});
   AppearanceResult result{scene.light, scene.material, scene.albedo, {}};
-  const Turns turns = light_turns(run, state, scene.surface, hits);
+  const Turns turns = light_turns(run, state);
   refine_albedo(run.device, {scene.surface, hits.samples(turns.get())}, appearance_options(run), result,
                 run.progress, run.preset.refinement_steps);
   check_cancelled(run.progress);
@@ -183,7 +195,7 @@ void fit_scene_residual(const RunContext& run, RunState& state, const Stage::Che
   options.steps = plan.residual_steps;
   options.seed = run.seed;
   const ObjectHits hits = scene_hits(run, state.scene, {plan.residual_hits, kResidualSubset});
-  const Turns turns = light_turns(run, state, state.scene.surface, hits);
+  const Turns turns = light_turns(run, state);
   ResidualFit fit =
       fit_residual(run.device, state.scene, hits.samples(turns.get()), hits.views, options, run.progress);
   if (fit.residual) state.scene.residual = std::make_shared<const Residual>(std::move(*fit.residual));

@@ -104,7 +104,10 @@ std::vector<Vec3f> residual_at(const Device& device, const Residual& residual, s
     ResidualPass pass(features.config(), residual.network);
     for (int first = begin; first < end; first += ResidualPass::kMost) {
       const int n = std::min(ResidualPass::kMost, end - first);
-      pass.forward(device, features, feature_weights, weights, hits.subspan(size_t(first), size_t(n)));
+      std::vector<Hit> turned;
+      for (const Hit& h : hits.subspan(size_t(first), size_t(n)))
+        turned.push_back(with_rotated_directions(h, residual.room_from_object));
+      pass.forward(device, features, feature_weights, weights, turned);
       for (int i = 0; i < n; ++i) out[first + i] = pass.output(i);
     }
   });

@@ -22,6 +22,8 @@ struct Residual {
   std::shared_ptr<const Field> features;
   MlpConfig network;  // 3 outputs: linear radiance
   ParamSet params;
+  Mat3f room_from_object =
+      Mat3f::identity();  // of the light, where it turns: the network sees directions in its frame
 };
 
 inline constexpr int kResidualLayers = 3, kMaxResidualLayers = 8;
@@ -35,7 +37,8 @@ class ResidualPass {
   static constexpr int kMost = 512;  // hits
   ResidualPass(const FieldConfig& features, const MlpConfig& network);
 
-  // Returns the number of samples: hits rounded up to a panel. hits: in shape version 0.
+  // Returns the number of samples: hits rounded up to a panel. hits: in shape version 0, their directions in
+  // the frame of the light.
   int forward(const Device&, const Field& features, const MlpWeights& feature_weights,
               const MlpWeights& weights, std::span<const Hit> hits);
   Vec3f output(int hit) const;
@@ -52,7 +55,7 @@ class ResidualPass {
   AlignedVector<float> points_, directions_, jets_, d_jets_, d_input_;
 };
 
-// #hits
+// Linear radiance, #hits.
 std::vector<Vec3f> residual_at(const Device&, const Residual&, std::span<const Hit> hits);
 
 }  // namespace cei3d

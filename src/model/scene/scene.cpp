@@ -150,7 +150,13 @@ SgMixture light_in_view(const Scene& scene, const Camera& camera) {
 }
 
 Scene in_view(Scene scene, const Camera& camera) {
+  if (scene.light_frame.motion == LightMotion::world) return scene;
   scene.light = light_in_view(scene, camera);
+  if (scene.residual) {
+    Residual residual = *scene.residual;
+    residual.room_from_object = scene.light_frame.room_from_object(camera.world_from_cam);
+    scene.residual = std::make_shared<const Residual>(std::move(residual));
+  }
   return scene;
 }
 

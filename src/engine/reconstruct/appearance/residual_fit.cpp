@@ -97,7 +97,7 @@ class Trainer {
     std::vector<Hit> hits;
     for (size_t i = 0; i < apart_.size(); i += 1 + apart_.size() / kJudged) {
       judged.push_back(apart_[i]);
-      hits.push_back(samples_.hits[apart_[i]]);
+      hits.push_back(hit(apart_[i]));
     }
     const std::vector<Vec3f> values = residual_at(device_, residual_, hits);
     double with = 0, without = 1e-12;
@@ -146,11 +146,19 @@ class Trainer {
   int learn(ResidualPass& pass, const MlpWeights& feature_weights, const MlpWeights& weights,
             const std::vector<uint32_t>& chosen, float* gradient) {
     std::vector<Hit> hits;
-    for (const uint32_t s : chosen) hits.push_back(samples_.hits[s]);
+    for (const uint32_t s : chosen) hits.push_back(hit(s));
     const int n = pass.forward(device_, *features_, feature_weights, weights, hits);
     for (int i = 0; i < n; ++i) pass.set_slope(i, slope(chosen[i], pass.output(i)));
     pass.backward(device_, weights, n, gradient);
     return n;
+  }
+
+  // As the residual sees it.
+  Hit hit(uint32_t sample) const {
+    const Hit& h = samples_.hits[sample];
+    const TurnedHits& turned = samples_.turned;
+    return turned.turns ? with_rotated_directions(h, turned.turns->room_from_object[turned.views[sample]])
+                        : h;
   }
 
   double squared_error(uint32_t sample, Vec3f got) const {

@@ -65,6 +65,7 @@ void GeometryStage::refresh_grid(int64_t step, double u) {
 
 void GeometryStage::sample_training_rays(const Step& step, int chunk, Work& w) const {
   w.batch = training_rays(pixels_, errors_, {seed_, step.index, chunk * kChunkRays}, kChunkRays);
+  turn_light(light_, pixels_, w.batch);
   std::vector<float> jitter;
   for (int r = 0; r < kChunkRays; ++r)
     jitter.push_back(
@@ -81,7 +82,7 @@ GeometryStats GeometryStage::ray_gradients(const Step& step, int chunk, Work& w,
                     [&] { w.renderer.forward(step.networks, step.schedule, w.batch, w.samples); });
   StepTimes::thread(times_, StepPart::backward, [&] {
     step.objective.backward(w.batch, w.samples, w.renderer, stats);
-    w.renderer.backward_networks(step.networks, sdf_gradients_[chunk], radiance_gradients_[chunk]);
+    w.renderer.backward_networks(step.networks, w.batch, sdf_gradients_[chunk], radiance_gradients_[chunk]);
   });
   for (int r = 0; r < kChunkRays; ++r) {
     const Vec3f error = w.renderer.pixels()[r] - w.batch.targets[r].srgb;
@@ -163,7 +164,9 @@ GeometryStats GeometryStage::evaluate(const PixelStore& held_out, int rays, doub
   std::vector<GeometryStats> stats(chunks);
   parallel_for(chunks, [&](int c) {
     work_.with([&](Work& w) {
-      render(step, random_rays(held_out, {seed_, step.index, c * kChunkRays}, kChunkRays), w);
+      RayBatch rays = random_rays(held_out, {seed_, step.index, c * kChunkRays}, kChunkRays);
+      turn_light(light_, held_out, rays);
+      render(step, std::move(rays), w);
       for (int r = 0; r < w.batch.count(); ++r) {
         const Vec3f e = w.renderer.pixels()[r] - w.batch.targets[r].srgb;
         stats[c].squared_error += dot(e, e) / 3;
@@ -190,7 +193,10 @@ Image GeometryStage::render_radiance(const Camera& camera, int samples) {
         rays.push_back(camera.ray(i % camera.width + at.x, i / camera.width + at.y));
       }
     work_.with([&](Work& w) {
-      render(step, view_rays(std::move(rays)), w);
+      RayBatch batch = view_rays(std::move(rays));
+      if (light_.motion != LightMotion::world)
+        batch.room_from_object.assign(batch.rays.size(), light_.room_from_object(camera.world_from_cam));
+      render(step, std::move(batch), w);
       for (int r = 0; r < w.batch.count(); ++r) {
         const int i = c * pixels + r / per_pixel;
         for (int k = 0; k < 3; ++k)

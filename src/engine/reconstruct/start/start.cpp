@@ -54,6 +54,7 @@ StartShape shape_of(const VisualHull& hull, bool anchored, float matte_until) {
 double trial_psnr(const Device& device, const PixelStore& pixels, const TrialOptions& options,
                   const StartShape& shape, uint64_t seed, double done, Progress& progress) {
   GeometryStage stage(device, pixels, options.geometry, seed);
+  stage.set_light(options.light);
   stage.prefit(shape, progress);
   for (int step = 0; step < options.steps; ++step) {
     check_cancelled(progress);

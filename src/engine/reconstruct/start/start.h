@@ -31,6 +31,7 @@ struct TrialOptions {
   GeometryOptions geometry;
   int steps = 400;
   int rays = 32768;  // random training pixels that the result is compared with
+  LightFrame light;
 };
 
 // Trains briefly from each start and returns the one with the highest PSNR: no rule tells beforehand. Carving

@@ -27,6 +27,13 @@ inline Vec3f ray_origin(const Hit& h) { return h.position + h.normal * kRayLift;
 // Where the light comes from that the camera sees mirrored at the hit. Unit.
 inline Vec3f mirror_direction(const Hit& h) { return mirrored_direction(h.normal, h.to_camera); }
 
+// Its directions rotated, its position as it is.
+inline Hit with_rotated_directions(Hit h, const Mat3f& rotation) {
+  h.normal = rotation * h.normal;
+  h.to_camera = rotation * h.to_camera;
+  return h;
+}
+
 inline std::vector<Vec3f> positions_of(std::span<const Hit> hits) {
   std::vector<Vec3f> out;
   out.reserve(hits.size());
