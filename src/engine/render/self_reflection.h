@@ -9,6 +9,7 @@
 
 #include "core/compute/device.h"
 #include "core/compute/kernels/lobes.h"
+#include "engine/render/direction_map.h"
 #include "engine/render/hit_batch.h"
 #include "engine/render/vertex_light.h"
 #include "model/geometry/shape/surface.h"
@@ -17,15 +18,20 @@ namespace cei3d {
 
 class SelfReflection {
  public:
+  struct Light {
+    LobePlanes lobes;
+    const DirectionMap& sky;  // sky_map() of the lobes
+  };
   // All must outlive the object. vertices: by bin of the light's turns. seen: what reflections see the
   // surface made of.
-  SelfReflection(const Device&, const Surface&, std::span<const VertexLight> vertices, LobePlanes light,
+  SelfReflection(const Device&, const Surface&, std::span<const VertexLight> vertices, Light light,
                  const VertexMaterials& seen);
 
+  // What a reflection lobe meets of the surface.
   struct Seen {
-    float visibility = 1;  // fraction of the reflection lobe that sees the environment
-    Vec3f radiance{
-        0, 0, 0};  // mean radiance over the lobe of the surface seen in the rest of it, times that fraction
+    float hidden = 0;           // fraction of the lobe that does not see the environment
+    Vec3f hidden_sky{0, 0, 0};  // mean radiance of the environment behind that, times the fraction
+    Vec3f radiance{0, 0, 0};    // mean radiance of the surface there, times the fraction
   };
   // #hits. Each depends on its own hit and material alone.
   std::vector<Seen> seen_by(const HitBatch&) const;
@@ -49,7 +55,7 @@ class SelfReflection {
   const Device& device_;
   const Surface& surface_;
   std::span<const VertexLight> vertices_;
-  LobePlanes light_;
+  Light light_;
   const VertexMaterials& seen_;
 };
 
