@@ -81,7 +81,7 @@ Image disc_scribble(const Device& device, const Scene& scene, const Camera& came
     if (buffer.pixel_start[p + 1] > buffer.pixel_start[p])
       x += double(p % size_t(camera.width)), y += double(p / size_t(camera.width)), ++n;
   if (n == 0) fail("The project's first view does not show the object.");
-  const double radius = std::sqrt(n / 3.14159265) / 3;
+  const double radius = std::sqrt(n / M_PI) / 3;
   Image scribble(camera.width, camera.height, 4);
   for (int v = 0; v < camera.height; ++v)
     for (int u = 0; u < camera.width; ++u) {

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/math/quantile.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_images.h"
 
@@ -72,11 +73,6 @@ double reach(const Silhouette& s, Vec3d center) {
   for (const auto& p : s.outline)
     best = std::max(best, length(cross(direction(s.view->camera, p.x, p.y), to_center)));
   return best;
-}
-
-double median(std::vector<double> v) {
-  std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
-  return v[v.size() / 2];
 }
 
 Normalization first_box(const std::vector<Silhouette>& silhouettes) {

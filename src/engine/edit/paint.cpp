@@ -8,6 +8,7 @@
 #include "core/base/cancel.h"
 #include "core/base/clock.h"
 #include "core/base/error.h"
+#include "core/math/quantile.h"
 #include "core/math/rng.h"
 #include "engine/edit/material.h"
 #include "engine/edit/relearn.h"
@@ -57,11 +58,7 @@ struct Paint {
   float pixel = 1e9f;           // of the finest scribble, on the surface, unit frame
 };
 
-float pixel_of(const Stroke& s) {
-  std::vector<float> footprints = s.footprints;
-  std::nth_element(footprints.begin(), footprints.begin() + footprints.size() / 2, footprints.end());
-  return footprints[footprints.size() / 2] * float(s.scale);
-}
+float pixel_of(const Stroke& s) { return median(s.footprints) * float(s.scale); }
 
 // later: regions of the strokes after this one, which cover it.
 void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/math/color.h"
+#include "core/math/quantile.h"
 
 namespace cei3d {
 namespace {
@@ -177,10 +178,7 @@ Region::Points stroke_points(const Stroke& s) {
     footprints.push_back(s.footprints[i]);
   }
   if (painted.empty()) return {};
-  std::vector<float> sorted = footprints;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const float spacing =
-      0.5f * float(s.scale) * sorted[sorted.size() / 2];  // two points a pixel and direction
+  const float spacing = 0.5f * float(s.scale) * median(footprints);  // two points per pixel and direction
   HandlerPoints handlers = thin_hits(painted, footprints, spacing);
   Region::Points points{std::move(handlers.positions), std::move(handlers.normals),
                         std::move(handlers.footprints)};

@@ -29,6 +29,14 @@ void add_sphere(Mesh& m, Vec3f center, float radius, int n = 48) {
     }
 }
 
+// One of radius 0.5 at `lower_z` and one of radius 0.3 at 0.5 above the origin, which touch or overlap.
+Mesh two_spheres(float lower_z, int n = 48) {
+  Mesh mesh;
+  add_sphere(mesh, {0, 0, lower_z}, 0.5f, n);
+  add_sphere(mesh, {0, 0, 0.5f}, 0.3f, n);
+  return mesh;
+}
+
 // Hits in the middle of triangles, seen from random directions above them.
 std::vector<Hit> some_hits(const Mesh& m, size_t n) {
   std::vector<Hit> hits;
@@ -88,9 +96,7 @@ TEST(Lighting, AConvexBodyUnderAUniformSkyReflectsItsAlbedoAndItsReflectance) {
 }
 
 TEST(Lighting, AHitDoesNotCareAboutItsNeighborsInTheBatch) {
-  Mesh mesh;
-  add_sphere(mesh, {0, 0, -0.3f}, 0.5f);
-  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Mesh mesh = two_spheres(-0.3f);
   const auto surface = std::make_shared<const Surface>(mesh);
   const Device device = make_device();
   const std::vector<Vec3f> base(surface->mesh().positions.size(), Vec3f{0.5f, 0.4f, 0.3f});
@@ -112,9 +118,7 @@ TEST(Lighting, AHitDoesNotCareAboutItsNeighborsInTheBatch) {
 }
 
 TEST(Lighting, EveryHitIsShadedWithItsOwnMaterialWhateverElseIsInTheBatch) {
-  Mesh mesh;
-  add_sphere(mesh, {0, 0, -0.3f}, 0.5f, 24);
-  add_sphere(mesh, {0, 0, 0.5f}, 0.3f, 24);
+  const Mesh mesh = two_spheres(-0.3f, 24);
   const auto surface = std::make_shared<const Surface>(mesh);
   const Device device = make_device();
   const std::vector<Vec3f> base(surface->mesh().positions.size(), Vec3f{0.5f, 0.4f, 0.3f});
@@ -142,9 +146,7 @@ TEST(Lighting, EveryHitIsShadedWithItsOwnMaterialWhateverElseIsInTheBatch) {
 
 TEST(Lighting, IrradianceIsTheIntegralOverTheSkyThatIsSeen) {
   // Two spheres: brute-force integration with shadow rays, one bounce left out by a black surface.
-  Mesh mesh;
-  add_sphere(mesh, {0, 0, -0.35f}, 0.5f);
-  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Mesh mesh = two_spheres(-0.35f);
   const auto surface = std::make_shared<const Surface>(mesh);
   const Device device = make_device();
   const SgMixture sky = some_sky();
@@ -176,9 +178,7 @@ TEST(Lighting, IrradianceIsTheIntegralOverTheSkyThatIsSeen) {
 
 TEST(Transport, AWhiteCavityGlows) {
   // Inside the gap between two spheres, the bounce of a white surface replaces most of what it blocks.
-  Mesh mesh;
-  add_sphere(mesh, {0, 0, -0.4f}, 0.5f);
-  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Mesh mesh = two_spheres(-0.4f);
   const Transport transport(std::make_shared<const Surface>(mesh));
   const SkyRadiance sky(kSkyDirections, Vec3f{1, 1, 1});
   const auto seen = transport.sky(sky), open = transport.open_sky(sky);
@@ -264,9 +264,7 @@ Vec3f traced_reflection(const Surface& surface, const SgMixture& sky, const Hit&
 // Mean error, relative, of the reflections of two balls close to each other, where the other one fills much
 // of the lobe.
 double error_between_balls(const MadeOf& lower, const MadeOf& upper) {
-  Mesh mesh;
-  add_sphere(mesh, {0, 0, -0.35f}, 0.5f);
-  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Mesh mesh = two_spheres(-0.35f);
   const auto made_of = [&](Vec3f p) { return p.z < 0.175f ? lower : upper; };
   const auto surface = std::make_shared<const Surface>(mesh);
   const Device device = make_device();

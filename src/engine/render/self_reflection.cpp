@@ -98,11 +98,9 @@ SelfReflection::SelfReflection(const Device& device, const Surface& surface,
 
 Material SelfReflection::material_at(const Surface::RayHit& r) const {
   const auto& t = surface_.mesh().triangles[r.triangle];
-  const Material &a = seen_.material[t[0]], &b = seen_.material[t[1]], &c = seen_.material[t[2]];
-  if (a == b && b == c) return a;
-  const float w = 1 - r.b1 - r.b2;
-  const auto mean = [&](float Material::*x) { return a.*x * w + b.*x * r.b1 + c.*x * r.b2; };
-  return {mean(&Material::roughness), mean(&Material::specular), mean(&Material::metalness)};
+  const Material& first = seen_.material[t[0]];
+  if (first == seen_.material[t[1]] && first == seen_.material[t[2]]) return first;  // without rounding
+  return material_at_corners(seen_.material, t, r.b1, r.b2);
 }
 
 SelfReflection::Met SelfReflection::met_by(const Rays& rays, const TurnedHits& turned) const {

@@ -67,14 +67,12 @@ inline Scene sphere_with_handlers() {
 
 // Upright, of size x size pixels that the sphere fills for the greater part.
 inline Camera camera_towards_origin(Vec3d center, int size) {
-  const Vec3d z = -center / length(center), x = cross(z, Vec3d{0, 0, 1}) / length(cross(z, Vec3d{0, 0, 1}));
-  const Vec3d y = cross(z, x);
   Camera c;
   c.width = c.height = size;
   c.fx = c.fy = 150.0 / 96 * size;
   c.cx = c.cy = size / 2.0;
   c.center = center;
-  c.world_from_cam = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+  c.world_from_cam = upright_rotation(-center, {0, 0, 1});
   return c;
 }
 

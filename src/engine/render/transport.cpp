@@ -14,10 +14,8 @@ constexpr float kSolidAngle = 4 * kPi / kSkyDirections;
 constexpr int kGrain = 1024;     // vertices a chunk
 constexpr uint32_t kNone = ~0u;  // a blocker that the longer ray misses
 
-uint32_t nearest_corner(const Mesh& mesh, const Surface::RayHit& h) {
-  const auto& t = mesh.triangles[h.triangle];
-  const float b0 = 1 - h.b1 - h.b2;
-  return b0 >= h.b1 && b0 >= h.b2 ? t[0] : h.b1 >= h.b2 ? t[1] : t[2];
+uint32_t nearest_vertex(const Mesh& mesh, const Surface::RayHit& h) {
+  return nearest_corner(mesh.triangles[h.triangle], h.b1, h.b2);
 }
 
 }  // namespace
@@ -68,7 +66,7 @@ Transport::Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t
     hits.resize(origins.size());
     surface_->intersect(origins, directions, 0, hits);
     for (size_t i = 0; i < hits.size(); ++i)
-      blockers_[start_[begin] + i] = hits[i].t < 0 ? kNone : nearest_corner(mesh, hits[i]);
+      blockers_[start_[begin] + i] = hits[i].t < 0 ? kNone : nearest_vertex(mesh, hits[i]);
   }
 }
 

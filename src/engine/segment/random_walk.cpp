@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/quantile.h"
 #include "model/geometry/mesh/sparse.h"
 
 namespace cei3d {
@@ -21,8 +22,7 @@ float typical_step(const PointGraph& graph) {
   if (graph.edges.empty()) return kMinTypical;
   std::vector<float> steps(graph.edges.size());
   for (size_t i = 0; i < steps.size(); ++i) steps[i] = graph.edges[i].step();
-  std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
-  return max(steps[steps.size() / 2], kMinTypical);
+  return max(median(std::move(steps)), kMinTypical);
 }
 
 }  // namespace

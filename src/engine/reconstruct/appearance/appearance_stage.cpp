@@ -46,15 +46,6 @@ int joint_steps_for(const Material& mean, bool brief) {
   return mean.metalness > 0.05f ? (brief ? 60 : 200) : (brief ? 30 : 100);
 }
 
-// Mean of the values that a triangle has at its corners.
-Material material_between(const std::vector<Material>& of, const Mesh& mesh, const Hit& h) {
-  const auto& t = mesh.triangles[h.triangle];
-  const Material &a = of[t[0]], &b = of[t[1]], &c = of[t[2]];
-  const float w = 1 - h.b1 - h.b2;
-  const auto mean = [&](float Material::*x) { return a.*x * w + b.*x * h.b1 + c.*x * h.b2; };
-  return {mean(&Material::roughness), mean(&Material::specular), mean(&Material::metalness)};
-}
-
 // Descent on the fields of albedo and material under a light, and then on all three. bouncing: base colors of
 // the mesh's vertices to begin with.
 class Descent {

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/math/color.h"
+#include "core/math/quantile.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
 #include "engine/reconstruct/appearance/split_solver.h"
 #include "model/light/envmap.h"
@@ -77,8 +78,8 @@ void make_light_gray(SplitSolution& s, int height) {
   // No reflectance above one: the brightest hundredth decides the common scale.
   std::vector<float> peak;
   for (const Vec3f& a : s.materials.color) peak.push_back(std::max({a.x, a.y, a.z}));
-  std::nth_element(peak.begin(), peak.begin() + peak.size() * 99 / 100, peak.end());
-  const float k = max(1.0f, peak[peak.size() * 99 / 100]);
+  const size_t rank = peak.size() * 99 / 100;
+  const float k = max(1.0f, value_of_rank(std::move(peak), rank));
   for (Vec3f& l : s.x.light) l = l * k;
   for (Vec3f& a : s.materials.color) a = a / k;
 }
@@ -94,20 +95,16 @@ std::vector<Vec3f> base_colors(const Transport& transport, const SplitSolution& 
   return color;
 }
 
-float percentile(std::vector<float> values, double share) {
-  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+// share: [0, 1].
+float quantile(std::vector<float> values, double share) {
+  const auto rank = size_t(share * double(values.size() - 1));
+  return value_of_rank(std::move(values), rank);
 }
 
 // The vertex nearest to each sample: what is seen much counts much, and pits and the inside next to nothing.
 std::vector<uint32_t> seen_vertices(const Mesh& mesh, const SurfaceSamples& samples) {
   std::vector<uint32_t> seen;
-  for (const Hit& h : samples.hits) {
-    const auto& t = mesh.triangles[h.triangle];
-    const float b0 = 1 - h.b1 - h.b2;
-    seen.push_back(b0 >= h.b1 && b0 >= h.b2 ? t[0] : h.b1 >= h.b2 ? t[1] : t[2]);
-  }
+  for (const Hit& h : samples.hits) seen.push_back(nearest_corner(mesh.triangles[h.triangle], h.b1, h.b2));
   return seen;
 }
 
@@ -128,7 +125,7 @@ void brighten_light(const Transport& transport, const std::vector<uint32_t>& see
       for (const uint32_t v : seen)
         if (!s.materials.is_metal(v)) channel.push_back(color[v][c]);
       if (channel.empty()) return;
-      gain = max(gain, percentile(std::move(channel), kShare));
+      gain = max(gain, quantile(std::move(channel), kShare));
     }
     for (Vec3f& l : s.x.light) l = l * gain;
     for (Vec3f& a : s.materials.color) a = a / gain;
@@ -264,7 +261,7 @@ Material mean_of(const std::vector<Material>& materials) {
 float smoothest_of(const std::vector<Material>& materials) {
   std::vector<float> roughness;
   for (const Material& m : materials) roughness.push_back(m.roughness);
-  return percentile(std::move(roughness), 0.01);
+  return quantile(std::move(roughness), 0.01);
 }
 
 }  // namespace

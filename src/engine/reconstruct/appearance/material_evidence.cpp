@@ -17,8 +17,7 @@ constexpr float kMinMetal = 0.02f,
                 kMaxMetal = 4;  // reflectance of a metal, the light's scale being uncertain
 
 uint32_t nearest_vertex(const SplitRow& r) {
-  const auto& b = r.barycentric;
-  return b[0] >= b[1] && b[0] >= b[2] ? r.vertices[0] : b[1] >= b[2] ? r.vertices[1] : r.vertices[2];
+  return nearest_corner(r.vertices, r.barycentric[1], r.barycentric[2]);
 }
 
 // Least squares of one coefficient a channel: y = k s.

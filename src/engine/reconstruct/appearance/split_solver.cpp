@@ -7,6 +7,7 @@
 #include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/math/quantile.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
 
 namespace cei3d {
@@ -161,7 +162,7 @@ namespace {
 float colored_metal_peak(const SplitMaterials& materials) {
   constexpr float kColored = 1.25f;  // ratio of the brightest and the darkest channel
   constexpr double kFew = 0.02;      // of the vertices
-  constexpr double kClean = 0.7;     // the percentile; estimates of vertices scatter
+  constexpr double kClean = 0.7;     // the quantile; estimates of vertices scatter
   std::vector<float> peaks;
   for (uint32_t v = 0; v < materials.of.size(); ++v) {
     if (!materials.is_metal(v)) continue;
@@ -170,9 +171,8 @@ float colored_metal_peak(const SplitMaterials& materials) {
     if (peak > kColored * min(c.x, min(c.y, c.z))) peaks.push_back(peak);
   }
   if (double(peaks.size()) < kFew * double(materials.of.size())) return 0;
-  const auto at = peaks.begin() + std::ptrdiff_t(kClean * double(peaks.size()));
-  std::nth_element(peaks.begin(), at, peaks.end());
-  return *at;
+  const auto rank = size_t(kClean * double(peaks.size()));
+  return value_of_rank(std::move(peaks), rank);
 }
 
 }  // namespace
