@@ -29,8 +29,8 @@ std::vector<float> directions(int n, uint64_t seed) {  // [3][n]
 struct LobeScene {
   std::vector<float> lobes = directions(kLobes, 1), normals = directions(kPoints, 2),
                      mirrors = directions(kPoints, 3);
-  std::vector<float> y1 = noise(3 * kPoints, 4),
-                     y2 = noise(3 * kPoints, 5);  // weights of the outputs in the loss
+  // Weights of the outputs in the loss.
+  std::vector<float> y1 = noise(3 * kPoints, 4), y2 = noise(3 * kPoints, 5);
   std::vector<float> roughness;
   LobeScene() {
     for (int k = 0; k < kLobes; ++k) lobes.push_back(0.5f + 80 * square(Rng(6, 0, k).uniform()));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Irradiance of the free sky by the normal of what it falls on. It changes so slowly with the normal that a
-// table is as good as the sum over the lobes.
+// Table of the unoccluded sky irradiance over the normal. Irradiance varies slowly with the normal, so the
+// table is as accurate as the sum over the lobes.
 #pragma once
 
 #include <vector>

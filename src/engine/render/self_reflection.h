@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an object shows of itself in its reflections: rays of the reflection lobe that meet the surface again
-// see it shaded with its own material there; reflections seen in reflections end after one more.
+// Self reflection: rays of a hit's reflection lobe that meet the surface again get its radiance there, shaded
+// with its own material. At most two reflections in a row.
 #pragma once
 
 #include <memory>
@@ -17,17 +17,17 @@ namespace cei3d {
 
 class SelfReflection {
  public:
-  // All must outlive the object. vertices: by bin of the light's turns. seen: what reflections see the
-  // surface made of.
+  // All arguments must outlive the object. vertices: by bin of the turning light. seen: materials of the
+  // surface as seen in reflections.
   SelfReflection(const Device&, const Surface&, std::span<const VertexLight> vertices, LobePlanes light,
                  const VertexMaterials& seen);
 
   struct Seen {
-    float visibility = 1;  // fraction of the reflection lobe that sees the environment
-    Vec3f radiance{
-        0, 0, 0};  // mean radiance over the lobe of the surface seen in the rest of it, times that fraction
+    float visibility = 1;  // fraction of the reflection lobe that is not blocked by the surface
+    // Mean radiance over the whole lobe of the surface that blocks it; 0 where it is not blocked.
+    Vec3f radiance{0, 0, 0};
   };
-  // #hits. Each depends on its own hit and material alone.
+  // #hits. Each result depends only on its hit and material.
   std::vector<Seen> seen_by(const HitBatch&) const;
 
  private:

@@ -93,7 +93,7 @@ class Competition {
     }
   }
 
-  // Merges that cost more wait for a later round.
+  // Maximum cost of merges in this round.
   float cost_limit() const {
     std::vector<float> costs(best_.size());
     for (size_t i = 0; i < costs.size(); ++i) costs[i] = best_[i].first;

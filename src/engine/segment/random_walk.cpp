@@ -10,8 +10,8 @@
 namespace cei3d {
 namespace {
 
-// A step of a third of the typical one about halves the weight: walkers take the smoothest paths, which noise
-// leaves open and borders do not. Results hardly change between half and twice that.
+// A step of a third of the typical one about halves the weight: walkers take the smoothest paths, which exist
+// across noise but not across borders. Results hardly change between half and twice that.
 constexpr float kSharpness = 8;
 constexpr float kMinWeight = 1e-6f;    // minimum weight of an edge
 constexpr double kPrior = 1e-5;        // weight of the prior at a point

@@ -44,7 +44,7 @@ std::vector<NamedCamera> read_camera_file(const fs::path& path) {
     for (const Json& j : file.array("cameras")) {
       JsonReader camera(j, "A camera in " + path.string());
       cameras.push_back({camera.require<std::string>("name"), "", camera_from_json(camera)});
-      camera.has("file");  // the picture that was rendered
+      camera.has("file");  // the image that was rendered
       camera.finish();
     }
     file.finish();
@@ -104,7 +104,7 @@ Camera resized(Camera c, int width, int height) {
   const double sx = double(width) / c.width;
   c.cx = c.cx * sx;
   c.cy = (c.cy - c.height / 2.0) * sx +
-         height / 2.0;  // square pixels stay square: the center of the picture stays
+         height / 2.0;  // square pixels stay square: the center of the image stays
   c.fx *= sx;
   c.fy *= sx;
   c.skew *= sx;

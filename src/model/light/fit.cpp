@@ -40,7 +40,7 @@ Image blurred(const Image& map, float sharpness, EnvUp up) {
   return out;
 }
 
-// The lobe that becomes `seen` when blurred by a lobe of the given sharpness, energy kept.
+// The lobe that becomes `seen` when blurred by a lobe of the given sharpness; same energy.
 SgLobe unblurred(SgLobe seen, float sharpness) {
   const float lambda = min(seen.lambda * sharpness / (sharpness - seen.lambda), kSharpestLobe);
   return {seen.axis, lambda, seen.mu * (sg_integral(seen.lambda) / sg_integral(lambda))};
@@ -148,7 +148,7 @@ class LobeFit {
 
 SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOptions& options, EnvUp up,
                     const Progress& progress) {
-  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a color picture");
+  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a color image");
   for (const float x : lat_long.data)
     if (!std::isfinite(x)) fail("light map: a value is not finite");
   Image map = env_resample(lat_long, std::min(options.height, lat_long.height));

@@ -29,7 +29,7 @@ std::shared_ptr<const LightTurns> turns_of(const LightFrame& frame, std::span<co
 LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16_t> views,
                             std::span<const Camera> cameras, Vec3f axis, uint64_t seed, Progress& progress) {
   LinearSplitOptions options;
-  options.most_hits = options.search_hits;
+  options.max_hits = options.search_hits;
   options.light_height = kLightHeight;
   options.seed = seed;
   const Transport transport(input.surface);

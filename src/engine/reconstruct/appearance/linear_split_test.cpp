@@ -304,7 +304,7 @@ TEST(LinearSplit, IsTheSameEveryTimeAndSaysWhenThereIsTooLittle) {
   const Drawn d = draw({0.3f, 0.5f, 0});
   LinearSplitOptions o = small();
   o.fixed_roughness = 0.3f;
-  o.most_hits = 8000;
+  o.max_hits = 8000;
   Progress quiet;
   const LinearSplit a = linear_split(*d.transport, d.samples(), o, quiet),
                     b = linear_split(*d.transport, d.samples(), o, quiet);
