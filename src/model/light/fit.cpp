@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/compute/kernels/adam.h"
 #include "core/compute/kernels/light.h"
+#include "core/math/fibonacci.h"
 #include "core/math/sg.h"
 
 namespace cei3d {
@@ -69,10 +70,8 @@ class LobeFit {
       }
       weights_[i] = env_solid_angle(y, map.width, map.height);
     }
-    const double golden = M_PI * (3 - std::sqrt(5.0));
     for (int k = 0; k < lobes; ++k) {
-      const double z = 1 - (2 * k + 1.0) / lobes, r = std::sqrt(1 - z * z), a = golden * k;
-      const Vec3f axis{float(r * std::cos(a)), float(r * std::sin(a)), float(z)};
+      const Vec3f axis = fibonacci_direction(k, lobes);
       const Vec3f c = env_radiance(map, axis, up);
       for (int j = 0; j < 3; ++j) {
         row(raw_, j)[k] = axis[j];
