@@ -19,7 +19,7 @@ constexpr const char* kAbout =
     "cei3d: reconstructs an editable, relightable 3D object from posed photographs.\n"
     "\n"
     "  cei3d check CAPTURE                                    check that a capture can be used\n"
-    "  cei3d reconstruct CAPTURE -o PROJECT                   photographs to object\n"
+    "  cei3d reconstruct CAPTURE -o PROJECT                   reconstruct an object from photographs\n"
     "  cei3d edit PROJECT paint --view NAME --scribble S.png  paint on one view, see it in all\n"
     "  cei3d render PROJECT -o DIR                            images, also under another light\n"
     "  cei3d export PROJECT -o OBJECT.glb                     a model file\n"

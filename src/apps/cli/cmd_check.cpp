@@ -56,7 +56,7 @@ void add_check(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add(
       "check",
-      "Load a capture as `reconstruct` does; report what was understood and every problem with its fix");
+      "Load a capture as `reconstruct` does; report what it contains, and every problem with its fix");
   verb->add_option("capture", o->capture, "Folder of posed photographs, or its .json or .npz")->required();
   verb->add_option("--format", o->request.options.format,
                    capture_format_names() + " (default: detected from the files)");

@@ -19,17 +19,17 @@ void add_material_values(CLI::App* verb, MaterialEffects& e) {
   CLI::Option* roughness =
       verb->add_option("--roughness", e.roughness, "0 (mirror) to 1; the square root of GGX alpha");
   verb->add_option("--roughness-scale", e.roughness_scale,
-                   "Multiply the present roughness by this factor instead; the result is cut off at 1")
+                   "Multiply the present roughness by this factor instead; the result is clamped to 1")
       ->excludes(roughness);
   verb->add_option(
       "--specular", e.specular,
-      "Strength of the reflection of dielectrics, 0 to 1; 0.5 reflects 4 % along the normal, as most do");
+      "Strength of the reflection of dielectrics, 0 to 1; 0.5, typical, reflects 4 % along the normal");
   verb->add_option("--metalness", e.metalness, "0 (dielectric) to 1 (metal)");
 }
 
 void add_blend(CLI::App* verb, MaterialEffects& e) {
   verb->add_option("--blend", e.blend,
-                   "Share of the new material and color, 0 to 1; the rest is what is there (default: 1)");
+                   "Share of the new material and color, 0 to 1; the rest is the present value (default: 1)");
 }
 
 void add_effects(CLI::App* verb, MaterialEffects& e) {

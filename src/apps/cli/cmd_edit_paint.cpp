@@ -69,7 +69,7 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
   verb->add_option("--routing", o->routing,
                    "How painted surface is found. both: near handler points and inside the scribble's "
                    "outline. points, outline: one of them. none: retrain the object's albedo field instead, "
-                   "which changes other places too. For comparison")
+                   "which changes other places, too; for comparison")
       ->check(CLI::IsMember({"both", "points", "outline", "none"}))
       ->capture_default_str();
   add_material_values(verb, o->command.material);

@@ -161,11 +161,11 @@ void add_evaluate(Commands& commands) {
       "The paper's evaluation of a capture: novel views, a paint and a part edit, ablations, fewer and "
       "smaller photographs; a report with images. Can be interrupted and called again");
   verb->add_option("capture", o->capture, "Folder of posed photographs, or its .json")->required();
-  verb->add_option("-o,--output", o->out, "Folder for the report and everything it is made from")->required();
+  verb->add_option("-o,--output", o->out, "Folder for the report, its images and objects")->required();
   add_object(verb, *o);
   add_edits(verb, *o);
   verb->add_option("--only", o->sections,
-                   "Sections to run beside the novel views: paint,part,views,sizes (default: all)");
+                   "Sections to run besides the novel views: paint,part,views,sizes (default: all)");
   verb->add_option("--samples", o->request.samples,
                    "Samples per pixel and axis; twice as many at the silhouette")
       ->check(CLI::Range(1, 16))

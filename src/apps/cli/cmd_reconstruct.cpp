@@ -30,15 +30,8 @@ void run_reconstruct(const Options& o, Session& session, Console& console) {
                            r.object.text(), r.object.warning().empty() ? "" : "\n", r.object.warning()));
 }
 
-}  // namespace
-
-void add_reconstruct(Commands& commands) {
-  auto o = std::make_shared<Options>();
-  ReconstructOptions& options = o->request.options;
-  CLI::App* verb = commands.add("reconstruct", "Make an editable object (a project) from posed photographs");
-  verb->add_option("capture", o->capture,
-                   "Folder of posed photographs, or its .json or .npz; not needed with --resume");
-  verb->add_option("-o,--output", o->project, "Project folder to create")->required();
+void add_schedule_options(CLI::App* verb, Options& o) {
+  ReconstructOptions& options = o.request.options;
   verb->add_option(
           "--preset", options.preset,
           "fast: small networks, minutes. balanced: as fast with four times the steps; with --time the same "
@@ -46,7 +39,7 @@ void add_reconstruct(Commands& commands) {
       ->check(CLI::IsMember({"fast", "balanced", "paper"}))
       ->capture_default_str();
   CLI::Option* time =
-      verb->add_option("--time", o->time,
+      verb->add_option("--time", o.time,
                        "Time for the whole reconstruction: seconds, or 90s, 10m, 1h30m; the schedule is "
                        "fitted to it (default: the preset's number of steps, see --iterations)");
   verb->add_option("--iterations", options.iterations,
@@ -58,6 +51,9 @@ void add_reconstruct(Commands& commands) {
   verb->add_option("--seed", options.seed,
                    "Random seed. Without --time the same seed gives the same object, bit for bit")
       ->capture_default_str();
+}
+
+void add_view_options(CLI::App* verb, ReconstructOptions& options) {
   verb->add_option("--downscale", options.downscale, "Use the images at 1/N of their size")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
@@ -69,16 +65,32 @@ void add_reconstruct(Commands& commands) {
                    "Train on N views only, spread evenly; the others become validation views. 0: all")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
-  verb->add_option("--light", o->light,
+}
+
+void add_light_options(CLI::App* verb, Options& o) {
+  verb->add_option("--light", o.light,
                    "How the light moves against the object. world: not at all. turntable: the object turned "
-                   "under lamps that stood still. camera: the light is fixed to the camera. auto: what "
-                   "explains the photographs best")
+                   "under fixed lamps. camera: the light is fixed to the camera. auto: the one that explains "
+                   "the photographs best")
       ->check(CLI::IsMember({"auto", "world", "camera", "turntable"}))
       ->capture_default_str();
-  verb->add_option("--light-color", o->light_color,
-                   "What is known of the light's color. near-white: that lamps are, unless highlights show "
-                   "otherwise. free: nothing. R,G,B: its mean color, linear, up to a factor")
+  verb->add_option("--light-color", o.light_color,
+                   "Assumption on the light's color. near-white: nearly white, unless highlights show "
+                   "otherwise. free: none. R,G,B: its mean color, linear, up to a factor")
       ->capture_default_str();
+}
+
+}  // namespace
+
+void add_reconstruct(Commands& commands) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = commands.add("reconstruct", "Make an editable object (a project) from posed photographs");
+  verb->add_option("capture", o->capture,
+                   "Folder of posed photographs, or its .json or .npz; not needed with --resume");
+  verb->add_option("-o,--output", o->project, "Project folder to create")->required();
+  add_schedule_options(verb, *o);
+  add_view_options(verb, o->request.options);
+  add_light_options(verb, *o);
   verb->add_option("--format", o->request.format,
                    capture_format_names() + " (default: detected from the files)");
   CLI::Option* resume = verb->add_flag("--resume", o->request.resume,

@@ -20,7 +20,7 @@ RenderRequest request_of(const Options& o) {
   if (!o.cameras.empty()) r.cameras = parse_cameras(o.cameras);
   if (o.turntable > 0) r.cameras = Turntable{o.turntable};
   if (!o.size.empty()) {
-    const PictureSize size = parse_size(o.size);
+    const ImageExtent size = parse_size(o.size);
     r.width = size.width;
     r.height = size.height;
   }
@@ -38,7 +38,7 @@ void render(const Options& o, Session& session, Console& console) {
   const RenderReport r = session.render(request, console);
   console.done(
       r.json(),
-      fmt::format("{}: {} view{}, {} channel{} in {:.1f} s ({:.2f} s a view: trace {:.2f}, shade {:.2f}).",
+      fmt::format("{}: {} view{}, {} channel{} in {:.1f} s ({:.2f} s per view: trace {:.2f}, shade {:.2f}).",
                   o.out, r.views, r.views == 1 ? "" : "s", r.folders.size(), r.folders.size() == 1 ? "" : "s",
                   r.seconds, r.seconds / double(r.views), r.trace_seconds / double(r.views),
                   r.shade_seconds / double(r.views)));

@@ -15,7 +15,7 @@ struct Options {
   SynthRequest request;
 };
 
-// "lid=0.3,0.5,0,#c04020" or with a second color: roughness, specular, metalness, base color.
+// "lid=0.3,0.5,0,#c04020" or with a second color: roughness, specular, metalness, albedo.
 RegionFinish parse_region(const std::string& text) {
   const size_t equals = text.find('='), color = text.find(",#");
   if (equals == std::string::npos || color == std::string::npos || color < equals)
@@ -49,7 +49,7 @@ SynthRequest request_of(const Options& o) {
     else
       r.regions.push_back(parse_region(m));
   }
-  const PictureSize size = parse_size(o.size);
+  const ImageExtent size = parse_size(o.size);
   r.width = size.width, r.height = size.height;
   if (!o.tint.empty()) r.light_tint = parse_tint(o.tint);
   if (o.roughness >= 0) r.roughness = float(o.roughness);
@@ -88,15 +88,15 @@ void add_scene_options(CLI::App* verb, Options& o) {
 
 void add_drawing_options(CLI::App* verb, Options& o) {
   SynthRequest& r = o.request;
-  verb->add_option("--size", o.size, "Size of the pictures in pixels, WxH")->capture_default_str();
+  verb->add_option("--size", o.size, "Size of the images in pixels, WxH")->capture_default_str();
   verb->add_option("--views", r.views, "Training views")->check(CLI::Range(1, 1000))->capture_default_str();
   verb->add_option("--test-views", r.test_views, "Test views; every second one is relit")
       ->check(CLI::Range(0, 1000))
       ->capture_default_str();
-  verb->add_option("--samples", r.samples, "Paths a pixel; a power of two is spread best")
+  verb->add_option("--samples", r.samples, "Paths per pixel; powers of two are stratified best")
       ->check(CLI::Range(1, 65536))
       ->capture_default_str();
-  verb->add_option("--bounces", r.bounces, "How often light may go from one place of the object to another")
+  verb->add_option("--bounces", r.bounces, "Maximum number of interreflections")
       ->check(CLI::Range(0, 16))
       ->capture_default_str();
   verb->add_option("--diffuse", o.diffuse,
@@ -105,10 +105,10 @@ void add_drawing_options(CLI::App* verb, Options& o) {
       ->check(CLI::IsMember({"burley", "lambert"}))
       ->capture_default_str();
   verb->add_option("--noise", r.noise,
-                   "Standard deviation of the noise on the training pictures, of sRGB values from 0 to 1")
+                   "Standard deviation of the noise on the training images, of sRGB values from 0 to 1")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  verb->add_option("--seed", r.seed, "Of the random numbers")->capture_default_str();
+  verb->add_option("--seed", r.seed, "Random seed")->capture_default_str();
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ namespace cei3d {
 
 enum class LogLevel { error, warn, info, debug };
 
-// Answers, warnings and errors are for the thread that made it, while no work runs.
+// answer(), done(), warn() and error() may be called only by the thread that made the object, while no work
+// runs.
 class Console : public Progress {
  public:
   Console(std::ostream& out, std::ostream& err, bool err_is_terminal)

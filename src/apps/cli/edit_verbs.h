@@ -28,7 +28,7 @@ void finish_edit(Session&, Console&, const EditSummary&, std::string text, const
 // --material, --roughness, --roughness-scale, --specular, --metalness
 void add_material_values(CLI::App* verb, MaterialEffects&);
 void add_blend(CLI::App* verb, MaterialEffects&);
-// Those and --color, --replace.
+// The options of add_material_values() and add_blend(), and --color, --replace.
 void add_effects(CLI::App* verb, MaterialEffects&);
 
 void add_edit_paint(Commands&, CLI::App* edit, ProjectName);

@@ -45,8 +45,8 @@ std::string duration_text(double seconds) {
                   : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
-PictureSize parse_size(const std::string& text) {
-  PictureSize size;
+ImageExtent parse_size(const std::string& text) {
+  ImageExtent size;
   char x = 0, rest = 0;
   if (std::sscanf(text.c_str(), "%d%c%d%c", &size.width, &x, &size.height, &rest) != 3 || x != 'x' ||
       size.width < 1 || size.height < 1 || size.width > 65535 || size.height > 65535)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values from words of the command line. Errors are usage errors that name the option.
+// Parses values of command line options. All errors are usage errors that name the option.
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@ namespace cei3d {
 
 double parse_duration(const std::string& text);  // "90", "90s", "10m", "1h30m": seconds
 std::string duration_text(double seconds);       // "0:07", "12:30", "1:02:03"
-struct PictureSize {
+struct ImageExtent {
   int width = 0, height = 0;
 };
-PictureSize parse_size(const std::string& text);               // "800x600"
+ImageExtent parse_size(const std::string& text);               // "800x600"
 std::vector<Channel> parse_channels(const std::string& text);  // "rgb,normal"
 EnvConvention parse_env_convention(const std::string& text);
 // "1.5,-2,0": exactly `count` finite numbers. option: its name, for the error.

@@ -26,7 +26,7 @@ struct LineAllocator {
   }
 };
 
-// Starts at the start of a cache line.
+// A vector whose first element begins a cache line.
 template <class T>
 using AlignedVector = std::vector<T, LineAllocator<T>>;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Numbers as bytes. All files of the program hold little-endian numbers, and memory is copied to and from
-// them as it is: whoever does that includes this file, which refuses other machines.
+// them unchanged. Files that do so include this header, which does not compile for big-endian machines.
 #pragma once
 
 #include <bit>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The check that every loop makes which can take longer than a few seconds.
+// Cancellation: every loop that can take longer than a few seconds calls check_cancelled().
 #pragma once
 
 #include "core/base/error.h"

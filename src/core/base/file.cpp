@@ -89,8 +89,8 @@ std::string read_file(const fs::path& path) {
   if (fd.get() < 0 || ::fstat(fd.get(), &info) != 0)
     fail("Cannot read {}: {}.", path.string(), reason(errno));
   if (S_ISDIR(info.st_mode)) fail("Cannot read {}: {}.", path.string(), reason(EISDIR));
-  std::string bytes(S_ISREG(info.st_mode) ? size_t(info.st_size) + 1 : 65536,
-                    '\0');  // +1: sees the end at once
+  // +1: sees the end at once.
+  std::string bytes(S_ISREG(info.st_mode) ? size_t(info.st_size) + 1 : 65536, '\0');
   size_t used = 0;
   while (true) {  // to the end, not to st_size: pipes and growing files
     if (used == bytes.size()) bytes.resize(2 * used);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole files: read at once, written under a temporary name and renamed, so that nobody ever sees half a
+// Whole files: read at once, written under a temporary name and renamed, so that no reader sees a partial
 // file.
 #pragma once
 
@@ -12,12 +12,12 @@ namespace cei3d {
 // All bytes of a file. Errors: missing, a folder, unreadable.
 std::string read_file(const std::filesystem::path&);
 
-// Makes missing parent folders, writes "<name>.tmp-<process>-<count>" beside the target, fsyncs, renames.
-// Whatever goes wrong (full disk, no permission), the old file stands untouched, no temporary file stays, and
-// the error says why.
+// Makes missing parent folders, writes "<name>.tmp-<process>-<count>" beside the target, fsyncs, renames. On
+// any error (full disk, no permission) the old file is unchanged, the temporary file is removed, and the
+// error says why.
 void write_file_atomic(const std::filesystem::path&, std::string_view bytes);
 
-// In one piece at the end, also where several processes write; makes the file where it is missing. Error: it
+// Appends the bytes in one piece, also when several processes append; creates the file if missing. Error: it
 // cannot be written.
 void append_to_file(const std::filesystem::path&, std::string_view bytes);
 

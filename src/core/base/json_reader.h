@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a JSON object key by key and refuses what it does not know: a key that nobody has asked for by
-// finish() is an error that names it and the nearest key that was asked for.
+// Reads a JSON object key by key and rejects unknown keys: finish() throws an error that names a key that was
+// not read, and the nearest key that was.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values by key, as many of those used last as fit into a number of bytes. For one thread at a time; the
+// A cache that keeps the most recently used values within a number of bytes. For one thread at a time; the
 // values are shared and outlive the cache.
 #pragma once
 
@@ -16,7 +16,7 @@ struct CacheCount {
   size_t found = 0, missed = 0;  // calls of find()
 };
 
-// Key: compared by ==, one after the other: for tens of entries, not for thousands.
+// Lookup is linear, by == of keys: for tens of entries, not for thousands.
 template <class Key, class Value>
 class LruCache {
  public:

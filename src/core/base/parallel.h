@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads. Work is cut into chunks whose borders do not depend on the number of threads, so results don't
-// either.
+// Threads. Work is cut into chunks whose borders do not depend on the number of threads, so neither do
+// results.
 #pragma once
 
 #include <functional>
@@ -11,8 +11,8 @@
 
 namespace cei3d {
 
-// Calls body(chunk) for chunk in [0, chunks), in any order, on the threads of the Threads object that the
-// caller runs in; outside of all, on all cores.
+// Calls body(chunk) for chunk in [0, chunks), in any order, on the threads of the Threads object whose run()
+// is active on the calling thread; without one, on all cores.
 void parallel_for(int chunks, const std::function<void(int)>& body);
 
 // Calls body(begin, end) on consecutive ranges of [0, n) of `grain` items (the last may be shorter).

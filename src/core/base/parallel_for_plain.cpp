@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// parallel_for for ThreadSanitizer, in place of parallel_for.cpp (CEI3D_PLAIN_THREADS): it does not see how
-// oneTBB hands work from thread to thread, and would report every result as a race. Threads made for each
-// call are slow and exact.
+// parallel_for for ThreadSanitizer, in place of parallel_for.cpp (CEI3D_PLAIN_THREADS): ThreadSanitizer does
+// not see the synchronization of oneTBB and would report every result as a race. Creating threads for each
+// call is slow but is analyzed correctly.
 #include <atomic>
 #include <exception>
 #include <mutex>

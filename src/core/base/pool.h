@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work memory shared by chunks: the one given back last is handed out first, while it is still in cache.
+// Reusable work memory: the object returned last is handed out first, while it is still in cache.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ class Pool {
  public:
   explicit Pool(std::function<std::unique_ptr<T>()> make) : make_(std::move(make)) {}
 
-  // Calls body with an object that nobody else has meanwhile.
+  // Calls body with an object that no other thread has meanwhile.
   template <class F>
   void with(F body) {
     std::unique_ptr<T> object = take();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long work talks to whoever asked for it.
+// Progress reports, log lines and cancellation of long work.
 #pragma once
 
 #include <mutex>
@@ -33,7 +33,7 @@ class Progress {
     const std::lock_guard lock(mutex_);
     on_log(json_line);
   }
-  // Whether the work is asked to stop: to save and return early.
+  // True when the work shall stop: save and return early.
   bool cancelled() const { return is_cancelled(); }
 
  private:

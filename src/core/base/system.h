@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program asks of the operating system, beside files (core/base/file.h): the one place to port.
+// The operating system beside files (core/base/file.h): the one place to port.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,7 @@ std::string utc_text(const char* format);  // the time now, by a format of strft
 
 std::filesystem::path make_temporary_folder();  // a new, empty one
 
-// A lock on a file, for one process at a time; it goes with the process, however that ends.
+// A lock on a file, held by one process at a time and released when the process ends, however it ends.
 class FileLock {
  public:
   // Makes the file where it is missing. None: another process has the lock. Error: it cannot be locked.

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A new folder below the system's folder for temporary files, removed with all that is in it when the object
-// goes.
+// A new folder below the system's folder for temporary files, removed with its contents by the destructor.
 #pragma once
 
 #include <filesystem>

@@ -91,7 +91,7 @@ void require_consistent(const std::string& name, const Tensor& t) {
     fail("Cannot store array '{}': its shape does not match its values (an error in the program).", name);
 }
 
-// Depth-limited, since the JSON parser recurses on nothing but its destructor does on deep nesting.
+// Limits the depth of nesting: the destructor of a deeply nested JSON value is recursive.
 Json parse_header(const char* text, uint64_t size, const std::string& file) {
   const auto limit_depth = [&](int depth, Json::parse_event_t, Json&) {
     if (depth > 8) malformed(file, "its header is nested too deep");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named arrays: what models, checkpoints and projects are made of on disk (safetensors files).
+// Named arrays: models, checkpoints and projects on disk (safetensors files).
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct Tensor {
 using Tensors = std::map<std::string, Tensor>;
 
 // Whole-file read and atomic write (temporary name, fsync, rename) in the safetensors format (dtypes F32 and
-// U8). Errors: missing, truncated or malformed file; a full disk (the old file then stands untouched).
+// U8). Errors: missing, truncated or malformed file; a full disk (the old file is then unchanged).
 Tensors read_tensors(const std::filesystem::path&);
 void write_tensors(const std::filesystem::path&, const Tensors&);
 std::string tensors_to_bytes(const Tensors&);

@@ -21,14 +21,14 @@ constexpr int kernel_index();
 // What one instruction set offers: compiled from cpu/run.cpp.
 struct LaunchTable {
   const char* isa;  // "scalar", "avx2", "avx512"
-  int width;        // samples a register
+  int width;        // samples per register
   void (*const* kernels)(const void* args, int n);
   void (*linear)(const LinearArgs&);
   void (*linear_weight_grad)(const LinearWeightGradArgs&);
-  double (*fma_peak)();  // spins on multiply-adds in registers; FLOPs done, for the caller to time
-  double (*gather_peak)(const float* pairs,
-                        uint32_t mask);                 // random 8-byte gathers from mask + 1 pairs; how many
-  double (*scatter_peak)(float* pairs, uint32_t mask);  // adds to random ones of mask + 1 pairs; how many
+  // Loops that the caller times. Each returns how many operations it has done.
+  double (*fma_peak)();                                      // floating-point operations in registers
+  double (*gather_peak)(const float* pairs, uint32_t mask);  // random 8-byte gathers from mask + 1 pairs
+  double (*scatter_peak)(float* pairs, uint32_t mask);       // additions to random ones of mask + 1 pairs
 };
 
 class Device {

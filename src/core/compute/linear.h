@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Linear layers over panels: one of the few operations that each backend implements itself, instead of as a
-// kernel.
+// Linear layers over panels: an operation that each backend implements itself instead of as a kernel.
 //
 // A panel holds 32 samples, feature-major: [feature][32]. A batch is a sequence of panels, `stride` rows of
 // 32 floats apart.

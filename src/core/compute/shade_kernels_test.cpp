@@ -29,8 +29,8 @@ std::vector<float> directions(int n, uint64_t seed) {  // [3][n]
 struct LobeScene {
   std::vector<float> lobes = directions(kLobes, 1), normals = directions(kPoints, 2),
                      mirrors = directions(kPoints, 3);
-  std::vector<float> y1 = noise(3 * kPoints, 4),
-                     y2 = noise(3 * kPoints, 5);  // weights of the outputs in the loss
+  // Weights of the outputs in the loss.
+  std::vector<float> y1 = noise(3 * kPoints, 4), y2 = noise(3 * kPoints, 5);
   std::vector<float> roughness;
   LobeScene() {
     for (int k = 0; k < kLobes; ++k) lobes.push_back(0.5f + 80 * square(Rng(6, 0, k).uniform()));
@@ -151,6 +151,27 @@ TEST(ShadeKernels, EveryDeviceAgreesWithTheScalarOne) {
   }
 }
 
+// Vector k of three rows of `count` numbers.
+Vec3f vector_at(const std::vector<float>& rows, size_t count, size_t k) {
+  return {rows[k], rows[count + k], rows[2 * count + k]};
+}
+
+// Checks the derivative of the loss by unit vector k of some rows of the scene against moving that vector
+// along the sphere.
+void expect_slope_along_the_sphere(const LobeScene& scene, std::vector<float> LobeScene::*rows, size_t count,
+                                   size_t k, Vec3f gradient, double tolerance) {
+  const Vec3f a = vector_at(scene.*rows, count, k), t = normalize(cross(a, Vec3f{0.3f, 0.5f, 0.8f}));
+  const Device device = make_device("cpu/scalar");
+  const auto loss_at = [&](float h) {
+    LobeScene moved = scene;
+    const Vec3f b = normalize(a + t * h);
+    for (int c = 0; c < 3; ++c) (moved.*rows)[size_t(c) * count + k] = b[c];
+    return moved.loss(device);
+  };
+  const double slope = (loss_at(0.005f) - loss_at(-0.005f)) / 0.01;
+  EXPECT_NEAR(dot(gradient, t), slope, 0.02 * std::abs(slope) + tolerance) << k;
+}
+
 TEST(ShadeKernels, AdjointEqualsDifferencesOfTheForwardPass) {
   const Device device = make_device("cpu/scalar");
   LobeScene s;
@@ -182,40 +203,16 @@ TEST(ShadeKernels, AdjointOfAnAxisEqualsDifferencesAlongTheSphere) {
   for (size_t i = 0; i < e.size(); ++i)
     if (e[i] <= 0) s.y1[i] = 0;
   const std::vector<float> g = s.gradient(device);
-  const auto axis = [&](const std::vector<float>& p, int k) {
-    return Vec3f{p[k], p[kLobes + k], p[2 * kLobes + k]};
-  };
-  for (const int k : {2, 13, 30}) {
-    const Vec3f a = axis(s.lobes, k), t = normalize(cross(a, Vec3f{0.3f, 0.5f, 0.8f}));
-    const auto loss_at = [&](float h) {
-      LobeScene moved = s;
-      const Vec3f b = normalize(a + t * h);
-      for (int c = 0; c < 3; ++c) moved.lobes[size_t(c) * kLobes + k] = b[c];
-      return moved.loss(device);
-    };
-    const double slope = (loss_at(0.005f) - loss_at(-0.005f)) / 0.01;
-    EXPECT_NEAR(dot(axis(g, k), t), slope, 0.02 * std::abs(slope) + 0.02) << k;
-  }
+  for (const size_t k : {2, 13, 30})
+    expect_slope_along_the_sphere(s, &LobeScene::lobes, kLobes, k, vector_at(g, kLobes, k), 0.02);
 }
 
 TEST(ShadeKernels, AdjointOfAMirrorDirectionEqualsDifferencesAlongTheSphere) {
   const Device device = make_device("cpu/scalar");
   const LobeScene s;
   const std::vector<float> g = s.point_gradient(device);
-  const auto at = [](const std::vector<float>& p, int i) {
-    return Vec3f{p[i], p[kPoints + i], p[2 * kPoints + i]};
-  };
-  for (const int i : {0, 5, 40, 63}) {
-    const Vec3f r = at(s.mirrors, i), t = normalize(cross(r, Vec3f{0.3f, 0.5f, 0.8f}));
-    const auto loss_at = [&](float h) {
-      LobeScene moved = s;
-      const Vec3f b = normalize(r + t * h);
-      for (int c = 0; c < 3; ++c) moved.mirrors[size_t(c) * kPoints + i] = b[c];
-      return moved.loss(device);
-    };
-    const double slope = (loss_at(0.005f) - loss_at(-0.005f)) / 0.01;
-    EXPECT_NEAR(dot(at(g, i), t), slope, 0.02 * std::abs(slope) + 0.005) << i;
-  }
+  for (const size_t i : {0, 5, 40, 63})
+    expect_slope_along_the_sphere(s, &LobeScene::mirrors, kPoints, i, vector_at(g, kPoints, i), 0.005);
 }
 
 TEST(ShadeKernels, AdjointOfTheRoughnessEqualsDifferences) {

@@ -14,9 +14,10 @@ using Area = std::vector<uint8_t>;
 // The area grown by `radius` pixels along both axes (by a square).
 Area dilated(const Area& area, int width, int height, int radius);
 
-// The image with `background` in all channels outside the area.
+// The image with all channels set to `background` outside the area.
 Image shown_in(const Image& image, const Area& area, float background);
 
+// Number of pixels in the area.
 size_t pixels_in(const Area& area);
 
 }  // namespace cei3d

@@ -8,12 +8,12 @@
 
 namespace cei3d {
 
-// F0 of a dielectric is kDielectricF0 * specular: 0.04 for the default specular of 0.5. [Burley 2012,
-// sec. 5.5]
+// F0 of a dielectric is kDielectricF0 * specular, 0.04 for the default specular of 0.5. [Burley 2012, sec.
+// 5.5]
 inline constexpr float kDielectricF0 = 0.08f;
 
-// Smoother surfaces are shaded with this roughness: sharper lobes are beyond single precision, and no picture
-// shows the difference.
+// Smoother surfaces are shaded with this roughness: sharper lobes exceed single precision, and the difference
+// is not visible in images.
 inline constexpr float kMinRoughness = 0.05f;
 
 template <class T>

@@ -33,6 +33,13 @@ struct Camera {
   }
 };
 
+// world_from_cam of an upright camera that looks along `forward`. up: not parallel to it; neither needs unit
+// length.
+inline Mat3d upright_rotation(Vec3d forward, Vec3d up) {
+  const Vec3d z = normalize(forward), x = normalize(cross(z, up)), y = cross(z, x);
+  return transpose(Mat3d{{x, y, z}});
+}
+
 // The camera of the image at 1/n of its size. Columns and rows that do not fill an n x n block are cut off.
 inline Camera scaled(Camera c, int n) {
   c.width /= n;

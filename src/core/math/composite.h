@@ -14,7 +14,7 @@ struct SampleWeight {
   T weight;         // share of the sample's color in the pixel
 };
 
-// What is left of the light as samples come, front to back.
+// Transmittance along a ray as samples are passed front to back.
 template <class T>
 struct Transmittance {
   T left{1.0f};
@@ -61,7 +61,7 @@ class CompositeGrad {
   // Samples back to front, each with what Composite::add gave for it.
   HD CompositeSampleGrad<T> add(T alpha, const SampleWeight<T>& w, Vec3<T> color) {
     const T d_weight = dot(d_pixel_, color - background_);
-    // At an opacity of one nothing lies behind, and the quotient stays below what it is at 1 - 1e-4.
+    // At an opacity of one no sample behind has weight; the floor keeps the quotient finite.
     const T d_alpha = w.transmittance * d_weight - behind_ / max(T(1.0f) - alpha, T(1e-4f));
     behind_ = behind_ + w.weight * d_weight;
     return {d_alpha, d_pixel_ * w.weight};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Forward-mode automatic differentiation, for tests: a number and its derivative along one direction.
 // Dual<double> gives first derivatives to machine precision, Dual<Dual<double>> second ones. Has the
-// functions of scalar.h; comparisons look at the value only, so at a kink the derivative is that of the
-// branch taken.
+// functions of scalar.h; comparisons use the value only, so at a kink the derivative is that of the branch
+// taken.
 #pragma once
 
 #include "core/math/scalar.h"

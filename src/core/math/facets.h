@@ -6,14 +6,14 @@
 
 namespace cei3d {
 
-// Calls visit(weight, direction of the light, cosine of facet and viewer): the weights times the Fresnel term
-// add up to what the surface reflects of uniform light, and are distributed over directions as the light that
-// reaches the viewer. Frame: the normal is (0, 0, 1), the viewer is at cosine nv in (0, 1], with y = 0;
-// directions with y < 0 mirror those that are visited.
+// Calls visit(weight, direction of the light, cosine of facet and viewer). The sum of weight times Fresnel
+// term is the fraction of uniform light that the surface reflects towards the viewer; over directions, the
+// weights are distributed like the reflected light. Frame: the normal is (0, 0, 1), the viewer is at cosine
+// nv in (0, 1], with y = 0; directions with y < 0 mirror those that are visited.
 //
 // Facets are drawn with the density of GGX: at u their cosine is sqrt((1 - u) / (1 + (alpha^2 - 1) u)). The
-// integrand is steep near u = 1, so the nodes are dense there: u = 1 - (1 - t)^3. Error of the sums below
-// 1e-3 everywhere, 5e-4 nearly so.
+// integrand is steep near u = 1, so the nodes are dense there: u = 1 - (1 - t)^3. Error of the sums: below
+// 1e-3, mostly below 5e-4.
 template <class F>
 void for_reflections(double nv, double roughness, const F& visit) {
   constexpr int kRings = 40, kSteps = 16;  // steps: on half a turn

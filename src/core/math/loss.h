@@ -37,8 +37,8 @@ HD LossValue<T, Vec3<T>> eikonal(Vec3<T> g) {
 }
 
 // softplus(-sdf): pushes a point outside that lies on a ray through background. The color loss cannot open a
-// gap that has closed: where a ray is opaque its opacity does not change with the distance any more, but this
-// still does. inv_s: of the opacity; the penalty turns over within a distance of 1 / inv_s.
+// gap that has closed, because the opacity of an opaque ray has no slope; this penalty has one. inv_s: of the
+// opacity; the penalty turns over within a distance of 1 / inv_s.
 template <class T>
 HD LossValue<T> empty_push(T sdf, float inv_s) {
   const ActivationValue<T> inside = Softplus::eval(-sdf, inv_s);

@@ -9,7 +9,7 @@
 
 namespace cei3d {
 
-// Swaps the inner and the outer half of the square, where the upper and the lower half of the octahedron lie.
+// Swaps the inner half of the square (upper half of the octahedron) and the outer half (lower half).
 inline Vec2f octahedron_folded(Vec2f p) {
   return {std::copysign(1 - std::abs(p.y), p.x), std::copysign(1 - std::abs(p.x), p.y)};
 }
@@ -21,7 +21,7 @@ inline Vec2f octahedron_from_direction(Vec3f d) {
   return d.z < 0 ? octahedron_folded(upper) : upper;
 }
 
-// Unit direction of a position in the square; inverse of the above.
+// Unit direction of a position in the square; inverse of octahedron_from_direction().
 inline Vec3f direction_from_octahedron(Vec2f p) {
   const float z = 1 - std::abs(p.x) - std::abs(p.y);
   const Vec2f upper = z < 0 ? octahedron_folded(p) : p;

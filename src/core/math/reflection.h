@@ -68,7 +68,7 @@ HD ReflectionLobeGrad<T> reflection_lobe_grad(T roughness) {
   ReflectionLobeGrad<T> g{reflection_lobe(roughness), {}, {}};
   for (int j = 0; j < kReflectionLobes; ++j) {
     g.d_lambda[j] = T(reflection_node(j)) * d_scale;
-    const T d_integral = sg_integral_slope(g.lobe.lambda[j]) * g.d_lambda[j];
+    const T d_integral = sg_integral_grad(g.lobe.lambda[j]) * g.d_lambda[j];
     g.d_weight[j] = -(g.lobe.weight[j] * d_integral / sg_integral(g.lobe.lambda[j]));
   }
   return g;
@@ -90,7 +90,7 @@ template <class T>
 HD SgReflectedGrad<T> sg_reflected_grad(T lambda, const ReflectionLobe<T>& lobe, T q) {
   SgReflectedGrad<T> sum{T(0.0f), T(0.0f), T(0.0f)};
   for (int j = 0; j < kReflectionLobes; ++j) {
-    const SgInnerSlopes<T> s = sg_inner_slopes(lambda, lobe.lambda[j], q);
+    const SgInnerGrad<T> s = sg_inner_grad(lambda, lobe.lambda[j], q);
     sum.value += lobe.weight[j] * s.value;
     sum.d_lambda += lobe.weight[j] * s.d_lambda1;
     sum.d_q += lobe.weight[j] * s.d_q;
@@ -106,7 +106,7 @@ template <class T>
 HD SgReflectedMaterialGrad<T> sg_reflected_material_grad(T lambda, const ReflectionLobeGrad<T>& g, T q) {
   SgReflectedMaterialGrad<T> sum{T(0.0f), T(0.0f)};
   for (int j = 0; j < kReflectionLobes; ++j) {
-    const SgInnerSlopes<T> s = sg_inner_slopes(lambda, g.lobe.lambda[j], q);
+    const SgInnerGrad<T> s = sg_inner_grad(lambda, g.lobe.lambda[j], q);
     sum.d_q += g.lobe.weight[j] * s.d_q;
     sum.d_roughness += g.d_weight[j] * s.value + g.lobe.weight[j] * s.d_lambda2 * g.d_lambda[j];
   }

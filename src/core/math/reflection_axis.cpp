@@ -33,7 +33,7 @@ double mean_length(double roughness) {
   return sum;
 }
 
-// How far reflection_lobe() is from a single direction, by roughness.
+// Table of the length of the mean direction of reflection_lobe() over roughness, and its inverse.
 class Widths {
  public:
   Widths() {
@@ -55,7 +55,7 @@ class Widths {
 };
 
 // Share s of the normal with which mirror direction (1 - s) + normal s points along the mean; below 0 where
-// the mean is flatter than the mirror direction.
+// the mean is at a more grazing angle than the mirror direction.
 double share_of_normal(double nv, Vec3d mean) {
   constexpr double kMin = -0.5;
   const double sine = std::sqrt(1 - nv * nv), towards = -mean.x / mean.z;  // tangent of the axis' angle
@@ -63,8 +63,8 @@ double share_of_normal(double nv, Vec3d mean) {
   return normal / (1 + normal);
 }
 
-// Beyond these cosines mirror direction and normal are too close to tell shares, and Fresnel's part is too
-// small to matter.
+// Above these cosines the mirror direction is too close to the normal to determine the share, and the Fresnel
+// part is negligible.
 constexpr double frontal(ReflectionPart part) { return part == ReflectionPart::base ? 0.999 : 0.85; }
 
 PairTable make_table(ReflectionPart part) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the reflection lobes of a rough surface point and how wide they are. They are not round about the
 // mirror direction: masking and the horizon turn them towards the normal (at roughness .5 and 60 degrees by
-// 14 degrees), and seen flat they are narrower. The part of the reflection that Fresnel's term adds at
-// grazing angles, the bias of the split sum, has a lobe of its own: it is narrower and stays near the mirror
-// direction, and makes most of the highlights of rough dielectrics. The round lobe of core/math/reflection.h,
-// turned and scaled, gets the mean direction of each: its axis, and the length of the mean as a measure of
-// its width.
+// 14 degrees), and they are narrower at grazing angles. The part of the reflection that Fresnel's term adds
+// at grazing angles, the bias of the split sum, has a lobe of its own: it is narrower and stays near the
+// mirror direction, and makes most of the highlights of rough dielectrics. The round lobe of
+// core/math/reflection.h, turned and scaled, gets the mean direction of each: its axis, and the length of the
+// mean as a measure of its width.
 #pragma once
 
 #include "core/math/mirror.h"
@@ -13,7 +13,8 @@
 
 namespace cei3d {
 
-// The parts of the split sum: what F0 reflects, and what Fresnel's term adds.
+// The parts of the split sum: base is scaled by F0, fresnel is what Schlick's term adds to it at grazing
+// angles.
 enum class ReflectionPart { base, fresnel };
 
 // The table of (share of the normal in the axis, lobe's roughness over the surface's). Made on first use
@@ -59,7 +60,7 @@ HD ReflectionAxisGrad<T> reflection_axis_grad(const float* table, Vec3<T> n, Vec
   return g;
 }
 
-// Share of the base part in what is reflected of uniform light. A metal's F0 is taken to be kMetalF0 in every
+// Share of the base part in the reflection of uniform light. A metal's F0 is taken to be kMetalF0 in every
 // channel, so that the share does not depend on its color.
 inline constexpr float kMetalF0 = 0.8f;
 template <class T>
@@ -73,8 +74,8 @@ struct ReflectionTables {
 };
 ReflectionTables reflection_tables();  // on the host
 
-// The two lobes of a surface point. What arrives along them, weighted, is what its whole reflectance applies
-// to: the mean radiance over the reflection lobe.
+// The two lobes of a surface point. Their weighted sum of incident radiance is the mean radiance over the
+// reflection lobe, which the reflectance multiplies.
 template <class T>
 struct SurfaceReflection {
   ReflectionAxis<T> base, fresnel;

@@ -8,7 +8,8 @@
 
 namespace cei3d {
 
-// By an angle about a unit axis, counter-clockwise when the axis points to the viewer. [Rodrigues]
+// Rotation by an angle about the unit axis k, counter-clockwise when the axis points to the viewer
+// (Rodrigues' formula).
 inline Mat3f about_axis(Vec3f k, float radians) {
   const float s = std::sin(radians), c = 1 - std::cos(radians);
   const Mat3f cross_k{{{0, -k.z, k.y}, {k.z, 0, -k.x}, {-k.y, k.x, 0}}};

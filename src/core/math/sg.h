@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Spherical Gaussians G(w) = mu exp(lambda (w . axis - 1)): integrals in closed form, for unit mu, and their
 // derivatives. Two axes enter by their squared distance q = |axis1 - axis2|^2 = 2 (1 - cosine), which keeps
-// sharp lobes exact in single precision. [Wang et al. 2009; Meder and Bruederlin 2018; docs/method.md#light]
+// sharp lobes accurate in single precision. [Wang et al. 2009; Meder and Bruederlin 2018;
+// docs/method.md#light]
 #pragma once
 
 #include "core/math/vec.h"
@@ -21,7 +22,7 @@ HD T sg_integral(T lambda) {
   return T(4 * kPi) * sg_decay(T(2.0f) * lambda);
 }
 template <class T>
-HD T sg_integral_slope(T lambda) {  // d / d lambda
+HD T sg_integral_grad(T lambda) {  // d / d lambda
   const T e = exp(T(-2.0f) * lambda), f = sg_integral(lambda);
   return (T(4 * kPi) * e - f) / lambda;
 }
@@ -46,17 +47,17 @@ HD T sg_inner(T lambda1, T lambda2, T q) {
   return exp(p.log_peak) * sg_integral(p.lambda);
 }
 template <class T>
-struct SgInnerSlopes {
+struct SgInnerGrad {
   T value, d_lambda1, d_lambda2, d_q;
 };
 template <class T>
-HD SgInnerSlopes<T> sg_inner_slopes(T lambda1, T lambda2, T q) {
+HD SgInnerGrad<T> sg_inner_grad(T lambda1, T lambda2, T q) {
   const SgProduct<T> p = sg_product(lambda1, lambda2, q);
   const T peak = exp(p.log_peak), integral = sg_integral(p.lambda);
   const T value = peak * integral;
   // With n = lambda of the product: log_peak = n - lambda1 - lambda2, dn/dlambda1 = (lambda1 + lambda2 -
   // lambda2 q / 2) / n, dn/dq = -lambda1 lambda2 / (2 n).
-  const T sum = lambda1 + lambda2, d_n = value + peak * sg_integral_slope(p.lambda);
+  const T sum = lambda1 + lambda2, d_n = value + peak * sg_integral_grad(p.lambda);
   const T half = T(0.5f) * q, inverse = T(1.0f) / p.lambda;
   return {value, d_n * (sum - lambda2 * half) * inverse - value,
           d_n * (sum - lambda1 * half) * inverse - value, d_n * (T(-0.5f) * lambda1 * lambda2 * inverse)};
@@ -65,11 +66,11 @@ HD SgInnerSlopes<T> sg_inner_slopes(T lambda1, T lambda2, T q) {
 // Integral over the hemisphere around a normal at cosine c to the axis, lambda >= 0.02: a fit that blends the
 // integrals over the hemispheres around the axis and against it by s = (1 + tanh(t c / 2) / tanh(t / 2)) / 2.
 template <class T>
-struct SgSlopes {
+struct SgCosineGrad {
   T value, d_lambda, d_cosine;
 };
 template <class T>
-HD SgSlopes<T> sg_hemisphere_slopes(T lambda, T c) {
+HD SgCosineGrad<T> sg_hemisphere_grad(T lambda, T c) {
   const T root = sqrt(lambda), inverse = T(1.0f) / lambda;
   const T up = T(1.6988f) + T(10.8438f) * inverse,
           down = T(1.0f) + inverse * (T(6.2201f) + T(10.2415f) * inverse);
@@ -116,11 +117,11 @@ HD T sg_irradiance(T lambda, T c) {
          T(kCosineFloor) * sg_hemisphere(lambda, c);
 }
 template <class T>
-HD SgSlopes<T> sg_irradiance_slopes(T lambda, T c) {
+HD SgCosineGrad<T> sg_irradiance_grad(T lambda, T c) {
   const T l2(kCosineLambda), q = T(2.0f) * (T(1.0f) - c);
   const SgProduct<T> p = sg_product(lambda, l2, q);
   const T n = p.lambda, cp = (lambda * c + l2) / n;
-  const SgSlopes<T> over = sg_hemisphere_slopes(n, cp), under = sg_hemisphere_slopes(lambda, c);
+  const SgCosineGrad<T> over = sg_hemisphere_grad(n, cp), under = sg_hemisphere_grad(lambda, c);
   const T peak = T(kCosinePeak) * exp(p.log_peak);
   const T n_lambda = (lambda + l2 * c) / n, n_c = lambda * l2 / n;  // dn/dlambda, dn/dc
   const T cp_lambda = (c - cp * n_lambda) / n, cp_c = (lambda - cp * n_c) / n;

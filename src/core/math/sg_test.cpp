@@ -67,7 +67,7 @@ TEST(Sg, SlopesOfTheInnerProductMatchDualNumbers) {
   for (const double l1 : {0.7, 12.0, 300.0})
     for (const double l2 : {0.4, 45.0})
       for (const double q : {1e-4, 0.3, 2.0, 3.9}) {
-        const auto s = sg_inner_slopes(l1, l2, q);
+        const auto s = sg_inner_grad(l1, l2, q);
         const double unit = s.value + 1e-300;
         EXPECT_NEAR(s.value / unit, sg_inner(l1, l2, q) / unit, 1e-12);
         EXPECT_NEAR(s.d_lambda1 / unit, derivative_of(sg_inner(D(l1, 1.0), D(l2), D(q))) / unit, 1e-9);
@@ -79,11 +79,11 @@ TEST(Sg, SlopesOfTheInnerProductMatchDualNumbers) {
 TEST(Sg, SlopesOfHemisphereAndIrradianceMatchDualNumbers) {
   for (const double l : {0.2, 1.7, 25.0, 700.0})
     for (const double c : {-0.95, -0.2, 0.1, 0.999}) {
-      const auto h = sg_hemisphere_slopes(l, c);
+      const auto h = sg_hemisphere_grad(l, c);
       EXPECT_NEAR(h.value, sg_hemisphere(l, c), 1e-11);
       EXPECT_NEAR(h.d_lambda, derivative_of(sg_hemisphere(D(l, 1.0), D(c))), 1e-9);
       EXPECT_NEAR(h.d_cosine, derivative_of(sg_hemisphere(D(l), D(c, 1.0))), 1e-9);
-      const auto e = sg_irradiance_slopes(l, c);
+      const auto e = sg_irradiance_grad(l, c);
       EXPECT_NEAR(e.value, sg_irradiance(l, c), 1e-10);
       EXPECT_NEAR(e.d_lambda, derivative_of(sg_irradiance(D(l, 1.0), D(c))), 1e-8);
       EXPECT_NEAR(e.d_cosine, derivative_of(sg_irradiance(D(l), D(c, 1.0))), 1e-8);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The split-sum approximation [Karis 2013]: what a GGX surface reflects of uniform light towards a viewer at
-// cosine nv is F0 * scale + bias, with scale and bias tabulated over (nv, roughness). Error of the
-// interpolation: below .0015 for nv > .08; .03 for smooth surfaces at nv = .02.
+// The split-sum approximation [Karis 2013]: the fraction of uniform light that a GGX surface reflects towards
+// a viewer at cosine nv is F0 * scale + bias, with scale and bias tabulated over (nv, roughness). Error of
+// the interpolation: below .0015 for nv > .08; .03 for smooth surfaces at nv = .02.
 #pragma once
 
 #include "core/math/pair_table.h"

@@ -118,6 +118,9 @@ HD Mat3<T> inverse(const Mat3<T>& m) {
 }
 
 inline Vec3f to_float(Vec3d v) { return {float(v.x), float(v.y), float(v.z)}; }
+inline Mat3f to_float(const Mat3d& m) {
+  return {{to_float(m.row[0]), to_float(m.row[1]), to_float(m.row[2])}};
+}
 inline Vec3d to_double(Vec3f v) { return {v.x, v.y, v.z}; }
 
 }  // namespace cei3d

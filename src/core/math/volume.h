@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Opacity of a signed distance field along rays, so that a surface can be found by gradient descent. The
-// distance of a point is taken to be known up to a logistic error with inverse standard deviation `inv_s`:
-// Phi(f) = sigmoid(inv_s f) is the logistic distribution function, and a section of a ray on which Phi falls
-// from Phi(before) to Phi(after) absorbs the share max(0, 1 - Phi(after) / Phi(before)) of the light that
-// reaches it. [Wang et al. 2021 (NeuS), eq. 13]
+// Opacity of a signed distance field along rays, differentiable, for gradient descent. The distance of a
+// point is known up to a logistic error with inverse standard deviation `inv_s`: Phi(f) = sigmoid(inv_s f) is
+// the logistic distribution function, and a section of a ray on which Phi falls from Phi(before) to
+// Phi(after) absorbs the share max(0, 1 - Phi(after) / Phi(before)) of the light that reaches it. [Wang et
+// al. 2021 (NeuS), eq. 13]
 #pragma once
 
 #include "core/math/activation.h"

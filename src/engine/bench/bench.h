@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast this machine is, and how much of it the program uses: kernels as fractions of measured peaks, a
-// training step by its parts, a frame, an edit. Every figure carries its spread, so that bench/compare can
-// tell a change from noise.
+// Speed measurements: kernels as fractions of the measured peaks of the machine, a training step by its
+// parts, a frame, an edit. Every figure has its spread, so that bench/compare can tell a change from noise.
 #pragma once
 
 #include <filesystem>
@@ -17,20 +16,20 @@ namespace cei3d {
 class Device;
 class Session;
 
-// Of repeated measurements of one quantity.
+// Statistics of repeated measurements of one quantity.
 struct Spread {
   double median = 0;
   double deviation = 0;  // median absolute deviation from the median
-  double best = 0;       // least disturbed by others: the greatest of rates, the least of times
+  double best = 0;       // the least disturbed measurement: maximum of rates, minimum of times
   int repeats = 0;
 };
 // values: at least one. Error otherwise.
 Spread spread_of(std::vector<double> values, bool higher_is_better);
 
 struct BenchFigure {
-  std::string group;    // "machine", "kernels", "training", "object"
-  std::string subject;  // what it was measured on, where that is not the machine itself: only figures of one
-                        // subject can be compared
+  std::string group;  // "machine", "kernels", "training", "object"
+  std::string
+      subject;  // capture or project that it was measured on; figures of different ones do not compare
   std::string name, unit;
   bool higher_is_better = true;
   Spread spread;
@@ -38,10 +37,10 @@ struct BenchFigure {
 };
 
 struct BenchRequest {
-  std::filesystem::path capture;  // empty: samples/spot below the working folder, else a ball that is made up
+  std::filesystem::path capture;  // empty: samples/spot below the working folder, or else a synthetic ball
   std::filesystem::path project;  // empty: no frame and no edit
   double seconds = 6;             // of training steps
-  int repeats = 21;               // of kernels; frames and edits take a third of them
+  int repeats = 21;               // repetitions of kernels; frames and edits take a third of them
 };
 struct BenchReport {
   MachineInfo machine;
@@ -59,10 +58,11 @@ std::vector<BenchFigure> bench_kernels(const Device&, int repeats);
 struct TrainingBench {
   std::filesystem::path capture;  // as in BenchRequest
   double seconds = 6;
-  int warm_up = 150;  // steps before, from the start of the schedule to its middle, after at most twice as
-                      // many of prefit
-  int block = 25;     // steps a measurement: as many as between two looks at the occupancy grid
-  int least = 7;      // measurements, however long they take
+  // Steps before the measurement, from the start of the schedule to its middle, after at most twice as many
+  // prefit steps.
+  int warm_up = 150;
+  int block = 25;  // steps per measurement, as many as between two updates of the occupancy grid
+  int min_measurements = 7;
 };
 std::vector<BenchFigure> bench_training(const Device&, const TrainingBench&, Progress&);
 // A 512 x 512 frame of the project's first held-out view, and later ones in the same session; two paint

@@ -21,8 +21,8 @@ constexpr const char* kGather = "gather peak";
 constexpr const char* kScatter = "read-modify-write peak";
 
 struct LinearData {
-  static constexpr int kPanels = 64, kSize = 64,
-                       kRounds = 40;  // 64 panels of 64 rows: what a training chunk passes on
+  // 64 panels of 64 rows: what a training chunk passes on.
+  static constexpr int kPanels = 64, kSize = 64, kRounds = 40;
   AlignedVector<float> x = AlignedVector<float>(size_t(kPanels) * kSize * kPanel, 0.5f), y = x,
                        w = AlignedVector<float>(size_t(kSize) * kSize, 0.01f), d_w = w,
                        bias = AlignedVector<float>(kSize, 0.1f);
@@ -69,7 +69,7 @@ double grid_backward(const Device& device, GridData& d) {
   return 8.0 * d.kSamples * d.kRounds;
 }
 
-// Bytes read and written by copies of more than caches hold.
+// Bytes read and written by copies of arrays larger than the caches.
 double copy_bytes(std::vector<char>& a, std::vector<char>& b) {
   std::memcpy(b.data(), a.data(), a.size());
   std::swap(a, b);
@@ -85,9 +85,8 @@ struct Kernel {
   std::function<double()> run;     // returns the work done
 };
 
-// Work a second of this thread's processor time, kernel by kernel, round after round: what disturbs the
-// machine for a while disturbs all of them, and shows as their spread. The first round, which warms up, does
-// not count.
+// Work per second of this thread's processor time. Kernels run in turn, round after round, so that a
+// disturbance affects all of them and shows in their spread. The first round is a warm-up and is not counted.
 std::vector<Spread> measure(const std::vector<Kernel>& kernels, int repeats) {
   std::vector<std::vector<double>> rates(kernels.size());
   for (int k = 0; k <= repeats; ++k)

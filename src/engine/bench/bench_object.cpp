@@ -46,7 +46,7 @@ void add_frames(const Device& device, const Scene& scene, const Camera& camera, 
   }
 }
 
-// All that a session does for a frame, but for writing it.
+// The work of a session for a frame, without writing it.
 double frame_seconds(RenderCache& frames, const Scene& scene, const Camera& camera, int samples) {
   Stopwatch watch;
   const auto view = frames.trace(scene, camera, samples);
@@ -81,7 +81,7 @@ Image disc_scribble(const Device& device, const Scene& scene, const Camera& came
     if (buffer.pixel_start[p + 1] > buffer.pixel_start[p])
       x += double(p % size_t(camera.width)), y += double(p / size_t(camera.width)), ++n;
   if (n == 0) fail("The project's first view does not show the object.");
-  const double radius = std::sqrt(n / 3.14159265) / 3;
+  const double radius = std::sqrt(n / M_PI) / 3;
   Image scribble(camera.width, camera.height, 4);
   for (int v = 0; v < camera.height; ++v)
     for (int u = 0; u < camera.width; ++u) {
@@ -97,14 +97,14 @@ PaintCommand disc_command(const Device& device, const fs::path& folder, const fs
   const Project project = Project::open(folder, Project::Mode::read);
   const Scene scene = project.scene();
   const View& view = project.capture().views.front();
-  write_png(scribble, disc_scribble(device, scene, scene.normalization.unit_from_input(view.camera)));
+  write_png(scribble, disc_scribble(device, scene, scene.normalization.unit_from_capture(view.camera)));
   PaintCommand command;
   command.strokes = {{view.name, scribble}};
   return command;
 }
 
-// What `edit paint` does between its start and its end, on a fresh copy of the project each time; a second
-// one in the same session, and the frame after it.
+// Times `edit paint` on a fresh copy of the project, a second edit in the same session, and the frame after
+// it.
 std::vector<BenchFigure> paint_figures(Session& session, const fs::path& folder, const Camera& camera,
                                        const std::string& subject, int repeats, Progress& progress) {
   const TempFolder temp;
@@ -144,7 +144,7 @@ std::vector<BenchFigure> bench_object(Session& session, const fs::path& folder, 
                           project.base().surface->mesh().triangles.size());
     progress.report({"frame", 0.7, -1, ""});
     const Scene scene = project.scene();
-    camera = scene.normalization.unit_from_input(
+    camera = scene.normalization.unit_from_capture(
         choose_cameras(project, ProjectViews{}, kSize, kSize).front().camera);
     add_frames(session.device(), scene, camera, subject, repeats, figures);
     add_later_frames(session.device(), project, camera, subject, repeats, figures);

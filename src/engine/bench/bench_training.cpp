@@ -22,7 +22,7 @@ namespace {
 
 constexpr const char* kInterrupted = "The measurement was interrupted.";
 constexpr int kRim = 6;            // as reconstruct() has it
-constexpr double kPosition = 0.5;  // in the schedule: all levels open, the surface soft still
+constexpr double kPosition = 0.5;  // in the schedule: all hash levels in use, before the density is sharp
 
 struct Subject {
   std::string name;
@@ -45,12 +45,12 @@ Subject read_subject(const fs::path& path) {
   s.name = fmt::format("{}, {} views of {} x {}", fs::path(path / "").parent_path().filename().string(),
                        views.size(), images[0].width, images[0].height);
   for (size_t i = 0; i < views.size(); ++i)
-    add_view(s, normalization.unit_from_input(views[i].camera), images[i]);
+    add_view(s, normalization.unit_from_capture(views[i].camera), images[i]);
   s.footprint /= double(views.size());
   return s;
 }
 
-// A ball of many colors, seen from all around: for machines where no capture is at hand.
+// A ball of many colors, seen from all around: used when no capture is available.
 Subject made_up_subject() {
   constexpr int kViews = 24, kSize = 160;
   const Shape ball = ball_shape(0.7f);
@@ -152,7 +152,7 @@ std::vector<BenchFigure> bench_training(const Device& device, const TrainingBenc
   stage.time_into(&times);
   Samples samples;
   double seconds = options.seconds;
-  for (Stopwatch watch; int(samples.whole.size()) < options.least || seconds > 0;) {
+  for (Stopwatch watch; int(samples.whole.size()) < options.min_measurements || seconds > 0;) {
     check_cancelled(progress, kInterrupted);
     progress.report({"training", 0.5, -1, ""});
     measure_block(stage, times, options.block, step, samples);

@@ -25,7 +25,7 @@ Capture load_capture(const std::filesystem::path& path, const CaptureOptions& op
 
 // "nerf-synthetic, physg, ...": the formats that load_capture() reads.
 std::string capture_format_names();
-// The programs and the files of each format.
+// One line per format: name, programs and files.
 std::string capture_format_layouts(const std::string& separator);
 
 const char* split_name(Split split);
@@ -33,7 +33,7 @@ std::optional<Split> split_from_name(const std::string& name);
 std::vector<View> views_of(const Capture& capture, Split split);
 
 // The view of a name: "train/r_055", "./train/r_055", either with an image suffix, or a bare "r_055" (that of
-// the only split that has it, else the training view). Usage error with similar names when there is none.
+// the only split that has it, or else of train). Usage error if there is none; it lists similar names.
 const View& find_view(const Capture& capture, const std::string& name);
 
 struct CaptureSpec {

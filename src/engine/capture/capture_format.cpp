@@ -87,7 +87,7 @@ Matrix34 matrix_of(const Json& j, const std::string& where) {
   return m;
 }
 
-std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder) {
+std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code error;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
@@ -96,12 +96,12 @@ std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& fold
   return files;
 }
 
-ImageSize size_of_picture(const std::filesystem::path& path) {
+ImageSize size_of_image(const std::filesystem::path& path) {
   if (path.empty() || !std::filesystem::exists(path)) return {};
   try {
     return read_image_size(path);
   } catch (const Error&) {
-    return {};  // a broken picture among good ones: check() reports it with all the others
+    return {};  // a broken image among good ones: check() reports it with all the others
   }
 }
 

@@ -53,8 +53,8 @@ Matrix34 matrix_of(const Json& j, const std::string& where);
 Camera camera_from_projection(const Matrix34& p, const std::string& where);
 
 // Image files in a folder, sorted; none if the folder does not exist.
-std::vector<std::filesystem::path> pictures_in(const std::filesystem::path& folder);
+std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder);
 // Size of an image file; {0, 0} if it is missing or broken.
-ImageSize size_of_picture(const std::filesystem::path& path);
+ImageSize size_of_image(const std::filesystem::path& path);
 
 }  // namespace cei3d

@@ -23,7 +23,7 @@ struct Mask {
 // alpha > 0.5. Errors as above.
 Mask load_mask(const View& view);
 
-// Loads on demand. downscale N: images at 1/N of their size, which belong to scaled(camera, N).
+// Loads images on demand. downscale N: at 1/N of their size; their cameras are scaled(camera, N).
 class CaptureImages : public ImageSource {
  public:
   explicit CaptureImages(int downscale = 1) : downscale_(downscale) {}

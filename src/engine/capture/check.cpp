@@ -65,7 +65,7 @@ int border_pixels(const Mask& m) {
 }
 
 void look_at_picture(const View& view, ViewResult& out) {
-  load_linear_rgba(view);  // decodes all of it, and refuses NaN
+  load_linear_rgba(view);  // decodes the whole file and rejects NaN
   out.mask = load_mask(view);
   const size_t n = out.mask.object.size(),
                set = size_t(std::count(out.mask.object.begin(), out.mask.object.end(), 1));

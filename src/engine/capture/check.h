@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Check of a capture: what was understood, and every problem with its fix.
+// Check of a capture: what the loader understood, and every problem with its fix.
 #pragma once
 
 #include <optional>
@@ -30,11 +30,11 @@ struct SplitReport {
 
 struct CaptureReport {
   std::string format;
-  Vec3d up{0, 0, 1};                           // input frame
+  Vec3d up{0, 0, 1};                           // capture frame
   std::vector<SplitReport> splits;             // splits with views
-  std::optional<Normalization> normalization;  // none when it could not be found
-  double distance_min = 0, distance = 0,
-         distance_max = 0;        // training cameras to the object's center, input units
+  std::optional<Normalization> normalization;  // none: it could not be determined
+  // Training cameras to the object's center, input units.
+  double distance_min = 0, distance = 0, distance_max = 0;
   std::vector<Finding> findings;  // errors first
 
   bool usable() const;

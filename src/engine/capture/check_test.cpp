@@ -150,10 +150,10 @@ TEST_F(Check, DrawsCameras) {
   const Image image = draw_cameras(capture, *report.normalization, 200);
   EXPECT_EQ(image.width, 400);
   // A camera sits where it should: its dot is blue in the panel from above.
-  const Vec3d p = report.normalization->unit_from_input(capture.views[0].camera.center);
+  const Vec3d p = report.normalization->unit_from_capture(capture.views[0].camera.center);
   double reach = 1;
   for (const View& v : capture.views)
-    reach = std::max(reach, length(report.normalization->unit_from_input(v.camera.center)));
+    reach = std::max(reach, length(report.normalization->unit_from_capture(v.camera.center)));
   const Vec3d right = normalize(cross(Vec3d{1, 0, 0}, Vec3d{0, 0, 1})), away = cross(Vec3d{0, 0, 1}, right);
   const int x = int((dot(p, right) / (1.1 * reach) * 0.5 + 0.5) * 200),
             y = int((0.5 - dot(p, away) / (1.1 * reach) * 0.5) * 200);

@@ -62,7 +62,7 @@ Image draw_cameras(const Capture& capture, const Normalization& normalization, i
               away = cross(up, right);
   double reach = 1;
   for (const View& v : capture.views)
-    if (const double d = length(normalization.unit_from_input(v.camera.center)); std::isfinite(d))
+    if (const double d = length(normalization.unit_from_capture(v.camera.center)); std::isfinite(d))
       reach = std::max(reach, d);
 
   Image image(2 * size, size, 3, 1.0f);
@@ -72,7 +72,7 @@ Image draw_cameras(const Capture& capture, const Normalization& normalization, i
     panel->circle(kObjectRadius, {0.4f, 0.4f, 0.4f});
   }
   for (const View& v : capture.views) {
-    const Vec3d p = normalization.unit_from_input(v.camera.center),
+    const Vec3d p = normalization.unit_from_capture(v.camera.center),
                 q = p + to_double(v.camera.forward()) * (0.12 * reach);
     if (!std::isfinite(dot(p, q))) continue;
     const Vec3f color = color_of(v.split);

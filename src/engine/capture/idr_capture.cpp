@@ -95,7 +95,7 @@ Files match(std::span<const int64_t> cameras, const Files& files, const fs::path
 Files match_folder(const fs::path& root, std::initializer_list<const char*> names,
                    std::span<const int64_t> cameras, Capture& capture) {
   for (const char* name : names)
-    if (const Files files = pictures_in(root / name); !files.empty())
+    if (const Files files = images_in(root / name); !files.empty())
       return match(cameras, files, root / name, capture);
   return {};
 }
@@ -165,7 +165,7 @@ Capture load_idr(const fs::path& path) {
   const Files masks = match_folder(root, {"mask", "masks"}, cameras, capture);
 
   ImageSize size;
-  for (size_t i = 0; i < images.size() && size.width == 0; ++i) size = size_of_picture(images[i]);
+  for (size_t i = 0; i < images.size() && size.width == 0; ++i) size = size_of_image(images[i]);
   if (size.width == 0) fail("No image in {} can be read.", (root / "image").string());
   for (size_t i = 0; i < cameras.size(); ++i) {
     const std::string name = fmt::format("world_mat_{}", cameras[i]);

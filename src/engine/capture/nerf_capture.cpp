@@ -172,8 +172,7 @@ std::vector<View> read_split(const CameraFile& file) {
   }
   ImageSize known;
   if (!j.contains("w") || !j.contains("h"))
-    for (size_t i = 0; i < views.size() && known.width == 0; ++i)
-      known = size_of_picture(views[i].image_path);
+    for (size_t i = 0; i < views.size() && known.width == 0; ++i) known = size_of_image(views[i].image_path);
   for (size_t i = 0; i < views.size(); ++i) {
     const std::string where = fmt::format("frame {} of {}", i, file.path.string());
     require_pinhole(j["frames"][i], j, where);

@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/math/quantile.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_images.h"
 
@@ -74,11 +75,6 @@ double reach(const Silhouette& s, Vec3d center) {
   return best;
 }
 
-double median(std::vector<double> v) {
-  std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
-  return v[v.size() / 2];
-}
-
 Normalization first_box(const std::vector<Silhouette>& silhouettes) {
   std::vector<Vec3d> origins, axes;
   for (const Silhouette& s : silhouettes) {
@@ -101,7 +97,7 @@ Normalization first_box(const std::vector<Silhouette>& silhouettes) {
 }
 
 struct Vote {
-  std::vector<Vec3d> cells;  // centers of inside cells, input frame
+  std::vector<Vec3d> cells;  // centers of inside cells, capture frame
   double half_diagonal = 0;  // of a cell
 };
 
@@ -109,14 +105,14 @@ struct Vote {
 Vote vote(std::span<const HullMask> masks, const Normalization& box, int n, int tolerated,
           const std::optional<ObjectBall>& region = {}) {
   std::vector<HullMask> local(masks.begin(), masks.end());
-  for (HullMask& m : local) m.camera = box.unit_from_input(m.camera);
+  for (HullMask& m : local) m.camera = box.unit_from_capture(m.camera);
   const int min_seen = std::max(2, int(masks.size()) / 3);
   const VisualHull hull = visual_hull(local, n, {-1, -1, -1}, {1, 1, 1}, tolerated, min_seen);
   Vote out;
   for (size_t i = 0; i < hull.inside.size(); ++i) {
     if (!hull.inside[i]) continue;
     const Vec3d cell{double(i % n), double(i / n % n), double(i / n / n)};
-    const Vec3d middle = box.input_from_unit((cell + Vec3d{0.5, 0.5, 0.5}) * (2.0 / n) - Vec3d{1, 1, 1});
+    const Vec3d middle = box.capture_from_unit((cell + Vec3d{0.5, 0.5, 0.5}) * (2.0 / n) - Vec3d{1, 1, 1});
     if (!region || length(middle - region->center) <= region->radius) out.cells.push_back(middle);
   }
   out.half_diagonal = std::sqrt(3.0) / n / box.scale;

@@ -19,12 +19,12 @@ inline constexpr double kObjectRadius = 0.9;  // of the hull's bounding sphere a
 // Loads the training masks (all threads). Errors: those of normalization_from_masks(), unreadable images.
 Normalization find_normalization(const Capture& capture);
 
-// masks: cameras in the input frame. First a box from the rays through the silhouettes' centers and their
+// masks: cameras in the capture frame. First a box from the rays through the silhouettes' centers and their
 // widths, then a coarse hull in it, then a finer one in the coarse hull's box, whose bounding sphere gets the
-// radius kObjectRadius. Up to one wrong mask in twenty is outvoted, with a warning. region (input frame):
-// what lies outside is not part of the object; without it images that cut the object off give a far too large
-// hull. A region that contains none of the hull is ignored with a warning. Errors: fewer than two views with
-// a silhouette, all cameras on one line with the object, an empty hull (masks and poses disagree).
+// radius kObjectRadius. Up to one wrong mask in twenty is tolerated, with a warning. region (capture frame):
+// what lies outside is not part of the object; without it, images that cut the object off give a far too
+// large hull. A region that contains none of the hull is ignored with a warning. Errors: fewer than two views
+// with a silhouette, all cameras on one line with the object, an empty hull (masks and poses disagree).
 Normalization normalization_from_masks(std::span<const HullMask> masks,
                                        std::vector<std::string>* warnings = nullptr,
                                        const std::optional<ObjectBall>& region = {});

@@ -44,7 +44,7 @@ TEST(Normalize, FindsABallAtAnyPlaceAndScale) {
 
 TEST(Normalize, IsInvertible) {
   const Normalization n{{1, 2, 3}, 0.25};
-  EXPECT_NEAR(length(n.input_from_unit(n.unit_from_input(Vec3d{4, 5, 6})) - Vec3d{4, 5, 6}), 0, 1e-12);
+  EXPECT_NEAR(length(n.capture_from_unit(n.unit_from_capture(Vec3d{4, 5, 6})) - Vec3d{4, 5, 6}), 0, 1e-12);
 }
 
 TEST(Normalize, ViewsThatCutTheObjectAreNoEvidenceAgainstIt) {
@@ -74,8 +74,8 @@ TEST(Normalize, AStatedRegionHoldsWhatThePicturesCut) {
 TEST(Normalize, OneWrongMaskInTwentyIsOutvotedAndSaid) {
   const TestBall ball;
   MaskSet set = ball_masks(ball, test_views(ball, 40, 120, 90));
-  std::fill(set.pixels[7].begin() + 45 * 120, set.pixels[7].end(),
-            uint8_t(0));  // half of the object is missing
+  // Half of the object is missing.
+  std::fill(set.pixels[7].begin() + 45 * 120, set.pixels[7].end(), uint8_t(0));
   std::vector<std::string> warnings;
   expect_ball(normalization_from_masks(set.views, &warnings), ball);
   EXPECT_EQ(warnings.size(), 1u);

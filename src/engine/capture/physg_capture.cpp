@@ -84,14 +84,14 @@ void read_part(const Part& part, Capture& capture) {
   std::vector<std::string> keys;
   for (const auto& [key, value] : j.items()) keys.push_back(key);
   std::sort(keys.begin(), keys.end());
-  const Files images = pictures_in(part.folder / "image"), masks = pictures_in(part.folder / "mask");
+  const Files images = images_in(part.folder / "image"), masks = images_in(part.folder / "mask");
   const Files image_of =
       images.empty() ? Files(keys.size()) : match(keys, images, part.folder / "image", capture);
   const Files mask_of =
       masks.empty() ? Files(keys.size()) : match(keys, masks, part.folder / "mask", capture);
 
   ImageSize size;
-  for (size_t i = 0; i < keys.size() && size.width == 0; ++i) size = size_of_picture(image_of[i]);
+  for (size_t i = 0; i < keys.size() && size.width == 0; ++i) size = size_of_image(image_of[i]);
   for (size_t i = 0; i < keys.size(); ++i) {
     const std::string where = fmt::format("'{}' of {}", keys[i], file.string());
     View view;

@@ -7,9 +7,9 @@
 namespace cei3d {
 
 // Keeps `count` training views whose cameras are far from each other (greedily: the first view, then always
-// the one farthest from all chosen); smaller subsets are contained in larger ones. The others become
-// validation views: they are not trained on, but keep their names, so that a scribble on one of them still
-// has its view. 0: keeps all. Usage errors: fewer than 2, or more than there are.
+// the one farthest from those chosen), so that smaller subsets are contained in larger ones. The others
+// become validation views: not trained on, but known by name, so that a scribble on one of them still has its
+// view. count 0: keeps all. Usage errors: fewer than 2, or more than there are.
 void keep_training_views(Capture& capture, int count);
 
 }  // namespace cei3d

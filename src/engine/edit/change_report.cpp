@@ -46,7 +46,7 @@ ChangeReport compare_views(const Device& device, RenderCache& frames, const Scen
                            const Camera& camera, int samples) {
   const auto a = frames.trace(before, camera, samples), b = frames.trace(after, camera, samples);
   ChangeReport r;
-  // Shaded without the memory of each other's hits: this is what shows whether they agree.
+  // Shaded independently, without shared memory of hits, so that the comparison is a real check.
   r.before = shade_view(device, before, frames.light(before), a->buffer);
   r.after = shade_view(device, after, frames.light(after), b->buffer);
   const std::vector<uint8_t> inside =

@@ -16,9 +16,9 @@ struct ChangeReport {
   Frame before, after;
 };
 
-// camera: unit-sphere frame. A pixel is inside when one of its samples meets matter that the layer contains
-// or that it reshaped, or matter elsewhere than before. An edit that is not local (light, the whole object)
-// has the whole object inside. before: the scene below the last layer of `after`.
+// camera: unit frame. A pixel is inside if one of its samples hits surface that the layer contains or
+// reshaped, or hits another place than before. For an edit that is not local (light, the whole object) the
+// whole object is inside. before: the scene below the last layer of `after`.
 ChangeReport compare_views(const Device&, RenderCache&, const Scene& before, const Scene& after,
                            const Camera& camera, int samples);
 

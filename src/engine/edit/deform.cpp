@@ -17,16 +17,16 @@ namespace {
 
 constexpr float kDefaultRadius = 0.3f, kRadiusPerDrag = 1.5f;
 constexpr float kNear = 0.05f;  // maximum distance of a given handle from the surface
-// Share of the radius that moves rigidly with the handle, and over which bending is resisted. A single vertex
-// would draw out a spike; about a sixth leaves most of the radius to the fall-off. (On the ear of spot shares
-// of 0, 0.15, 0.25 differ from an artist's smooth fall-off by 0.10, 0.06, 0.09 of the drag.)
+// Share of the radius that moves rigidly with the handle, and over which bending is resisted. Dragging a
+// single vertex makes a spike; with about a sixth, most of the radius remains for the fall-off. (On the ear
+// of spot shares of 0, 0.15, 0.25 differ from an artist's smooth fall-off by 0.10, 0.06, 0.09 of the drag.)
 constexpr float kHandleShare = 0.15f;
 // Iterations for a few seconds of work: 60 up to ten thousand vertices, fewer for larger regions, where the
 // last dozens move the surface by one or two hundredths of the drag.
 constexpr int kMaxIterations = 60, kMinIterations = 12, kVertexIterations = 600'000;
 
 std::string in_capture(const Scene& scene, Vec3f p) {
-  Vec3d q = scene.normalization.input_from_unit(to_double(p));
+  Vec3d q = scene.normalization.capture_from_unit(to_double(p));
   for (int i = 0; i < 3; ++i)
     if (abs(q[i]) < 1e-6 / scene.normalization.scale) q[i] = 0;  // rounding
   return fmt::format("{:.4g},{:.4g},{:.4g}", q.x, q.y, q.z);

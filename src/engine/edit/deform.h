@@ -15,14 +15,14 @@ namespace cei3d {
 struct DeformRequest {
   std::string id;               // of the new layer
   Vec3f from, to;               // unit frame; from: on or near the surface
-  std::optional<float> radius;  // distance along the surface up to which vertices move, unit frame
+  std::optional<float> radius;  // distance along the surface within which vertices move, unit frame
   std::string part;             // only this part moves; empty: the whole object
 };
 
 struct DeformReport {
   size_t vertices = 0;  // number of moved vertices
   float farthest = 0;   // largest movement, unit frame
-  float radius = 0;     // distance along the surface up to which vertices moved, unit frame
+  float radius = 0;     // distance along the surface within which vertices moved, unit frame
   int iterations = 0;
   double seconds = 0;
 };
@@ -34,9 +34,9 @@ struct DeformResult {
 
 // Default radius: 0.3 of the unit sphere's, or one and a half times the drag if that is more.
 //
-// Works on the mesh instead of on handler points: a radius contains some thousand vertices, which are solved
-// for exactly in a fraction of a second, and nothing has to be interpolated between handler points, whose
-// spacing highlights would show. Handler points are carried along by the mesh.
+// Works on the mesh instead of on handler points: the radius contains some thousand vertices, which are
+// solved for exactly in a fraction of a second, and no interpolation between handler points shows in
+// highlights. Handler points move with the mesh.
 //
 // Pure: the scene is not changed. Errors: no surface near the handle, a handle that is not on the part, a
 // drag of no length or out of the unit sphere, nothing or everything within the radius, no such part,

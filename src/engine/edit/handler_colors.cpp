@@ -28,7 +28,7 @@ std::vector<Vec3f> handler_colors(const Device& device, const Scene& scene) {
   return appearance_at(device, scene, handler_hits(scene)).albedo;
 }
 
-Image base_color_picture(const Device& device, const Scene& scene, const Camera& camera) {
+Image albedo_image(const Device& device, const Scene& scene, const Camera& camera) {
   const GBuffer traced = trace_view(device, scene, camera);
   const std::vector<Vec3f> albedo = appearance_at(device, scene, traced.hits).albedo;
   Image picture(traced.width, traced.height, 4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Albedo of the edited object at its handler points and as an image. Parts are told apart by it, because it
-// has no light, shadows or highlights.
+// Albedo of the edited object at its handler points and as an image. Parts are selected by it, because it has
+// no shadows or highlights.
 #pragma once
 
 #include <vector>
@@ -17,6 +17,6 @@ std::vector<Hit> handler_hits(const Scene&);
 std::vector<Vec3f> handler_colors(const Device&, const Scene&);
 
 // Albedo image: RGBA, linear, straight alpha, of the camera's size. camera: unit frame.
-Image base_color_picture(const Device&, const Scene&, const Camera& camera);
+Image albedo_image(const Device&, const Scene&, const Camera& camera);
 
 }  // namespace cei3d

@@ -12,11 +12,11 @@
 namespace cei3d {
 namespace {
 
-// By how much two points of one material may differ.
+// Maximum differences between two points of one material.
 constexpr float kRoughness = 0.1f, kMetalness = 0.25f;
 constexpr float kColor = 0.12f;  // distance in sRGB
 
-// 1: as different as may be.
+// Difference over the maximum; 1: the limit.
 float material_difference(const Material& a, const Material& b) {
   return max(abs(a.roughness - b.roughness) / kRoughness, abs(a.metalness - b.metalness) / kMetalness);
 }

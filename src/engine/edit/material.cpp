@@ -86,12 +86,12 @@ MaterialResult change_material(const Device& device, const Scene& scene, const M
   layer.material = request.change;
   if (request.part.empty()) {
     layer.everywhere = true;
-    layer.pose = scene.poses.empty() ? 0 : int(scene.poses.size()) - 1;
+    layer.shape_version = scene.shape_versions.empty() ? 0 : int(scene.shape_versions.size()) - 1;
   } else {
     const EditLayer& part = part_layer(scene, request.part);
     layer.everywhere = part.everywhere;
     layer.region = part.region;
-    layer.pose = part.pose;
+    layer.shape_version = part.shape_version;
   }
   const Inside inside(scene, layer);
   if (inside.hits.empty())

@@ -13,7 +13,7 @@ namespace cei3d {
 struct MaterialRequest {
   std::string id;              // of the new layer
   std::string part;            // empty: the whole object
-  MaterialChange change;       // its blend is also that of the color
+  MaterialChange change;       // its blend applies to the color, too
   std::optional<Vec3f> color;  // linear
   bool keep_texture = true;    // scale the present texture to the color instead of replacing it
 };
@@ -30,14 +30,13 @@ struct MaterialResult {
 };
 
 // Usage errors: nothing to change, values outside [0, 1], a negative scale, anything not finite, no such
-// part. Error: the part has no surface any more.
+// part. Error: no surface is left of the part.
 MaterialResult change_material(const Device&, const Scene&, const MaterialRequest&);
 
 // Usage errors: values outside [0, 1], a negative scale, anything not finite, a roughness and a scale.
 void check_change(const MaterialChange&);
 
-// Mean linear albedo below the layer over the surface in its region, weighted by area. Error: the region is
-// empty.
+// Area-weighted mean of the linear albedo below the layer, over its region. Error: the region is empty.
 Vec3f mean_color_inside(const Device&, const Scene&, const EditLayer&);
 
 }  // namespace cei3d

@@ -8,6 +8,7 @@
 #include "core/base/cancel.h"
 #include "core/base/clock.h"
 #include "core/base/error.h"
+#include "core/math/quantile.h"
 #include "core/math/rng.h"
 #include "engine/edit/material.h"
 #include "engine/edit/relearn.h"
@@ -57,13 +58,9 @@ struct Paint {
   float pixel = 1e9f;           // of the finest scribble, on the surface, unit frame
 };
 
-float pixel_of(const Stroke& s) {
-  std::vector<float> footprints = s.footprints;
-  std::nth_element(footprints.begin(), footprints.begin() + footprints.size() / 2, footprints.end());
-  return footprints[footprints.size() / 2] * float(s.scale);
-}
+float pixel_of(const Stroke& s) { return median(s.footprints) * float(s.scale); }
 
-// later: regions of the strokes after this one, which cover it.
+// later: regions of later strokes, which cover this one.
 void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
   paint.pixel = min(paint.pixel, pixel_of(s));
   for (size_t i = 0; i < s.hits.size(); ++i) {
@@ -73,12 +70,12 @@ void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
       continue;
     paint.hits.push_back(h);
     paint.targets.push_back(s.targets[i]);
-    paint.inside.push_back(s.coverage[i] >= s.least_alpha);
+    paint.inside.push_back(s.coverage[i] >= s.min_alpha);
   }
 }
 
-// Replaces the targets by the albedos that show them in the light once the material is changed; returns the
-// fraction of the targets that no albedo reaches.
+// Replaces the targets by the albedos that give them under the light, after the change of material; returns
+// the fraction of targets that no albedo gives.
 float solve_for_albedo(const Device& device, const Scene& scene, const SceneLight& light,
                        const MaterialChange& change, Paint& paint) {
   constexpr float kVisible = 0.02f;  // linear radiance

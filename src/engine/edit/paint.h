@@ -17,8 +17,8 @@ class SceneLight;  // engine/render/scene_light.h
 
 struct Scribble {
   Camera camera;  // of the painted view, unit frame
-  // RGBA, sRGB, straight alpha, of the camera's size. Painted where alpha >= 0.5; with semi-transparent
-  // strokes (alpha that is not only at smooth edges) alpha blends the color with what lies below.
+  // RGBA, sRGB, straight alpha, of the camera's size. Painted where alpha >= 0.5; in semi-transparent strokes
+  // (partial alpha elsewhere than at smooth edges) alpha blends the color with the albedo below.
   Image image;
 };
 
@@ -28,19 +28,19 @@ struct PaintRequest {
   uint64_t seed = 1;                // for the branch's weights and batches
   bool erase = false;  // restore the base's albedo and material; the scribbles' colors are ignored
   Routing routing = Routing::both;
-  bool unlit = false;  // show the painted color as it is, under every light
+  bool unlit = false;  // show the painted color without light
   // null: the painted colors are display colors of the albedo. Else: of the radiance under this light.
   const SceneLight* seen_in = nullptr;
-  MaterialChange material{};     // of what is painted with a weight above kMaterialWeight
+  MaterialChange material{};     // where the weight of the paint is above kMaterialWeight
   std::optional<Vec3f> color{};  // linear; instead of the scribbles' colors
 };
 
 struct PaintReport {
   int painted_pixels = 0;
-  int missed_pixels = 0;                        // painted pixels without a surface that faces the view
-  size_t points = 0;                            // edited handler points
-  float mean_error = 0, max_error = 0;          // of the branch on the painted surface, linear
-  float out_of_reach = 0;                       // share of the paint whose color no albedo shows in the light
+  int missed_pixels = 0;                // painted pixels without a surface that faces the view
+  size_t points = 0;                    // edited handler points
+  float mean_error = 0, max_error = 0;  // of the branch on the painted surface, linear
+  float out_of_reach = 0;  // share of the paint whose color no albedo in [0, 1] gives under the light
   double trace_seconds = 0, train_seconds = 0;  // stages
 };
 

@@ -218,7 +218,7 @@ TEST_F(PaintTest, SemiTransparentPaintIsMixedWithWhatLiesBelow) {
   for (size_t i = 0; i < hits.size(); ++i)
     for (int c = 0; c < 3; ++c)
       EXPECT_NEAR(above.albedo[i][c], 0.7f * below.albedo[i][c] + 0.3f * blue[c], 0.3f * 0.02f);
-  // ... and ends where it ends.
+  // The paint ends where the scribble ends.
   for (const auto& [x, y] : {std::pair{30, 30}, {70, 48}, {48, 60}}) {
     const Ray ray = front().ray(x, y);
     const float b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - kRadius * kRadius;
@@ -233,9 +233,9 @@ TEST_F(PaintTest, SmoothEdgesAreNotSemiTransparentPaint) {
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x)
       if (y < 38 || y >= 58) smooth.at(x, y)[3] = 0;
-  EXPECT_EQ(least_alpha(smooth), 0.5f);
-  EXPECT_EQ(least_alpha(square(kRed, 1)), 0.5f);
-  EXPECT_LT(least_alpha(square(kRed, 0.7f)), 1.0f / 255);
+  EXPECT_EQ(min_alpha(smooth), 0.5f);
+  EXPECT_EQ(min_alpha(square(kRed, 1)), 0.5f);
+  EXPECT_LT(min_alpha(square(kRed, 0.7f)), 1.0f / 255);
 }
 
 TEST_F(PaintTest, ALaterScribbleOfTheSameEditCoversAnEarlierOne) {
@@ -355,7 +355,7 @@ TEST_F(PaintTest, WithoutRoutingTheScribbleIsLearntAndTheUnseenSideChanges) {
   EXPECT_GT(unseen / n_unseen, 1.3 * beside / n_beside);
   Progress quiet;
   Scene reshaped = *before_;
-  reshaped.poses.resize(1);
+  reshaped.shape_versions.resize(1);
   EXPECT_THROW(relearn(device, reshaped, {}, {}, 1, quiet), Error);
 }
 

@@ -36,8 +36,10 @@ std::vector<float> existing_scores(const Scene& scene, const std::string& part) 
   std::vector<float> scores(inside.begin(), inside.end());
   if (layer.region.scored().empty()) return scores;
   for (size_t i = 0; i < scores.size(); ++i) {
-    if (!scene.poses.empty() && scene.poses.back()->born_in(hits[i].triangle) > layer.pose) continue;
-    const SurfacePoint p = in_pose(scene.poses, hits[i], layer.pose);
+    if (!scene.shape_versions.empty() &&
+        scene.shape_versions.back()->born_in(hits[i].triangle) > layer.shape_version)
+      continue;
+    const SurfacePoint p = in_version(scene.shape_versions, hits[i], layer.shape_version);
     scores[i] = layer.region.scored().score(p.position, p.normal);
   }
   return scores;
@@ -118,7 +120,7 @@ PartResult select_part(const Device& device, const Scene& scene, const PartReque
   EditLayer& layer = result.layer;
   layer.id = r.id;
   layer.part = r.name;
-  layer.pose = scene.poses.empty() ? 0 : int(scene.poses.size()) - 1;
+  layer.shape_version = scene.shape_versions.empty() ? 0 : int(scene.shape_versions.size()) - 1;
   layer.region = Region(ScoredPoints({points.positions, points.normals, std::move(scores), points.spacing}));
   result.report.share = vertex_share(scene, layer);
   set_effects(device, scene, r, layer);

@@ -23,10 +23,10 @@ struct PartCombination {
   std::string part;
 };
 
-// A part by what it is made of.
+// Selection of a part by its material.
 struct PartLikeness {
-  Vec2f pixel;         // of the view; the surface seen there is the example
-  bool color = false;  // its base color counts, too
+  Vec2f pixel;         // of the view (column, row); its surface is the example
+  bool color = false;  // compare the albedo, too
 };
 
 struct PartRequest {
@@ -36,11 +36,11 @@ struct PartRequest {
   Camera camera;     // of the view, unit frame
   Prompts clicks;    // in the view; at least one positive unless there is a mask or a likeness
   Image mask;        // instead of clicks: 1 channel, of the view's size; inside where >= 0.5
-  std::optional<PartLikeness> like;  // instead of clicks: what has the material of this pixel
+  std::optional<PartLikeness> like;  // instead of clicks: by the material at a pixel
   // If set, finds the part from the clicks instead of growing it on the handler points. Returns #handlers
   // scores in [0, 1].
   std::function<std::vector<float>(const Scene&, const PartRequest&, Progress&)> network;
-  bool in_view = false;  // only what the view shows of the part, for comparison
+  bool in_view = false;  // only the part that the view shows, for comparison
   std::optional<PartCombination> combination;
   MaterialChange change;       // its blend is also that of the color
   std::optional<Vec3f> color;  // linear
@@ -60,8 +60,8 @@ struct PartResult {
 
 // Pure: the scene is not changed. Usage errors: no positive click, clicks outside the image, a positive and a
 // negative click on the same point, a mask of another size, no part to combine with. Errors: clicks on the
-// background, a mask without any of the object, a likeness that the whole object has, a part that is empty or
-// the whole object, cancelled.
+// background, a mask that shows none of the object, a material that the whole object has, a part that is
+// empty or the whole object, cancelled.
 PartResult select_part(const Device&, const Scene&, const PartRequest&, Progress&);
 
 }  // namespace cei3d

@@ -56,7 +56,7 @@ ColorSamples beside_strokes(const Device& device, const Scene& scene, const std:
 
 std::shared_ptr<const Field> relearn(const Device& device, const Scene& scene, const ColorSamples& painted,
                                      const ColorSamples& beside, uint64_t seed, Progress& progress) {
-  if (!scene.poses.empty())
+  if (!scene.shape_versions.empty())
     fail(
         "The shape of the object was edited, and its single albedo field cannot follow that; use another "
         "--routing.");

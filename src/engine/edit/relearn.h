@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Paint without handler points, as the paper's ablation has it: the object's only albedo field is trained on
-// the scribble. The surface that the painted view shows beside the scribble is held, nothing else is.
+// Paint without handler points, the paper's ablation: the albedo field of the object itself is trained on the
+// scribble. Only the surface that the painted view shows beside the scribble is kept at its color.
 #pragma once
 
 #include <memory>

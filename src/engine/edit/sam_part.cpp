@@ -12,13 +12,14 @@ namespace {
 
 constexpr float kSure = 0.9f;  // scores from which (and 1 minus it, below which) the votes are kept
 
-// Prior of points without votes: they follow neighbors of similar color, and are outside if there are none.
+// Prior of points without votes: they get the score of neighbors of similar color, or are outside without
+// such neighbors.
 constexpr float kUntold = 0.49f;
 
 // Runs the network on albedo images, each encoded once.
-class BaseColorViews : public ViewSegmenter {
+class AlbedoViews : public ViewSegmenter {
  public:
-  BaseColorViews(const Device& device, const Scene& scene, const SamPartRequest& request)
+  AlbedoViews(const Device& device, const Scene& scene, const SamPartRequest& request)
       : device_(device),
         scene_(scene),
         cameras_(request.views.cameras),
@@ -27,7 +28,7 @@ class BaseColorViews : public ViewSegmenter {
   Image mask(int view, std::span<const Vec2f> positive, std::span<const Vec2f> negative) override {
     auto it = pictures_.find(view);
     if (it == pictures_.end())
-      it = pictures_.emplace(view, sam_.encode(base_color_picture(device_, scene_, cameras_[view]))).first;
+      it = pictures_.emplace(view, sam_.encode(albedo_image(device_, scene_, cameras_[view]))).first;
     return sam_.mask(it->second, positive, negative);
   }
 
@@ -36,14 +37,14 @@ class BaseColorViews : public ViewSegmenter {
   const Scene& scene_;
   const std::vector<Camera>& cameras_;
   Sam sam_;
-  std::map<int, SamPicture> pictures_;
+  std::map<int, SamImage> pictures_;
 };
 
 }  // namespace
 
 PropagateResult sam_part(const Device& device, const Scene& scene, const SamPartRequest& request,
                          Progress& progress) {
-  BaseColorViews views(device, scene, request);
+  AlbedoViews views(device, scene, request);
   PropagateResult result = propagate(*scene.handlers, *scene.surface, request.views, views, progress);
   std::vector<Seed> seeds;
   for (float& score : result.scores) {

@@ -17,8 +17,8 @@ struct SamPartRequest {
 };
 
 // Scores like those of grow() (#handlers, [0, 1], to be interpolated by ScoredPoints), and the views that
-// were used. The network sees the albedo in each view, without shadows and highlights that look like borders;
-// afterwards random_walk() moves the border of its votes to where the color changes. Pure; results do not
+// were used. The network segments renders of the albedo, which have no shadows or highlights that look like
+// borders; random_walk() then moves the border of the votes to where the color changes. Pure; results do not
 // depend on threads. Errors: no network (with what to do), nothing found at the clicks, cancelled.
 PropagateResult sam_part(const Device&, const Scene&, const SamPartRequest&, Progress&);
 

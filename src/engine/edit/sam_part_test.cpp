@@ -45,7 +45,7 @@ TEST(HandlerColors, PictureShowsTheColorWhereThePointIs) {
   const Device device = make_device();
   const Scene scene = scene_with_handlers();
   const Camera camera = camera_towards_origin({2, 1, 0.5}, 64);
-  const Image picture = base_color_picture(device, scene, camera);
+  const Image picture = albedo_image(device, scene, camera);
   EXPECT_EQ(picture.at(0, 0)[3], 0);
   const float* middle = picture.at(32, 32);
   EXPECT_EQ(middle[3], 1);

@@ -5,11 +5,12 @@
 #include <cmath>
 
 #include "core/math/color.h"
+#include "core/math/quantile.h"
 
 namespace cei3d {
 namespace {
 
-constexpr float kHard = 0.5f, kSoft = 0.5f / 255;  // least_alpha
+constexpr float kHard = 0.5f, kSoft = 0.5f / 255;  // min_alpha
 constexpr float kMinFacing = 0.1f;  // minimum cosine between the normal and the direction to the camera
 constexpr int kMaxScale = 4;
 constexpr int64_t kMaxRays = 300000;    // in the crop: about half a second
@@ -23,7 +24,7 @@ bool beside_opaque(const Image& rgba, int x, int y) {
 }
 
 int count_painted(const Image& rgba) {
-  const float least = least_alpha(rgba);
+  const float least = min_alpha(rgba);
   int n = 0;
   for (size_t i = 3; i < rgba.data.size(); i += 4) n += rgba.data[i] >= least;
   return n;
@@ -56,7 +57,7 @@ const float* nearest_color(const Stroke& s, float u, float v) {
   const int cx = int(u), cy = int(v);
   for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, s.alpha.height - 1); ++y) {
     for (int x = std::max(cx - 1, 0); x <= std::min(cx + 1, s.alpha.width - 1); ++x) {
-      if (*s.alpha.at(x, y) < s.least_alpha) continue;
+      if (*s.alpha.at(x, y) < s.min_alpha) continue;
       const float d = square(float(x) + 0.5f - u) + square(float(y) + 0.5f - v);
       if (d >= best_distance) continue;
       best_distance = d;
@@ -87,13 +88,13 @@ void add_hit(Stroke& s, const Projector& mask, int x, int y, const Hit& hit, flo
 // Number of painted pixels without any painted hit.
 int count_missed(const Stroke& s, const std::vector<uint8_t>& reached) {
   int missed = 0;
-  for (size_t i = 0; i < reached.size(); ++i) missed += s.alpha.data[i] >= s.least_alpha && !reached[i];
+  for (size_t i = 0; i < reached.size(); ++i) missed += s.alpha.data[i] >= s.min_alpha && !reached[i];
   return missed;
 }
 
 }  // namespace
 
-float least_alpha(const Image& rgba) {
+float min_alpha(const Image& rgba) {
   int veils = 0, edges = 0;
   for (int y = 0; y < rgba.height; ++y)
     for (int x = 0; x < rgba.width; ++x) {
@@ -104,7 +105,7 @@ float least_alpha(const Image& rgba) {
 }
 
 PixelBox painted_box(const Image& rgba, int margin) {
-  const float least = least_alpha(rgba);
+  const float least = min_alpha(rgba);
   int x0 = rgba.width, y0 = rgba.height, x1 = -1, y1 = -1;
   for (int y = 0; y < rgba.height; ++y) {
     for (int x = 0; x < rgba.width; ++x) {
@@ -140,7 +141,7 @@ Stroke trace_stroke(const Device& device, const Scene& scene, const Camera& came
   const PixelBox box = painted_box(rgba, 2);
   s.painted_pixels = count_painted(rgba);
   if (s.painted_pixels == 0) return s;
-  s.least_alpha = least_alpha(rgba);
+  s.min_alpha = min_alpha(rgba);
   s.scale = affordable_scale(box, s.painted_pixels);
   s.camera = crop_camera(camera, box, s.scale);
   cut_out(rgba, box, s);
@@ -172,15 +173,12 @@ Region::Points stroke_points(const Stroke& s) {
   std::vector<Hit> painted;
   std::vector<float> footprints;
   for (size_t i = 0; i < s.hits.size(); ++i) {
-    if (s.coverage[i] < s.least_alpha) continue;
+    if (s.coverage[i] < s.min_alpha) continue;
     painted.push_back(s.hits[i]);
     footprints.push_back(s.footprints[i]);
   }
   if (painted.empty()) return {};
-  std::vector<float> sorted = footprints;
-  std::nth_element(sorted.begin(), sorted.begin() + sorted.size() / 2, sorted.end());
-  const float spacing =
-      0.5f * float(s.scale) * sorted[sorted.size() / 2];  // two points a pixel and direction
+  const float spacing = 0.5f * float(s.scale) * median(footprints);  // two points per pixel and direction
   HandlerPoints handlers = thin_hits(painted, footprints, spacing);
   Region::Points points{std::move(handlers.positions), std::move(handlers.normals),
                         std::move(handlers.footprints)};
@@ -196,7 +194,7 @@ Projector stroke_projector(const Stroke& s) {
   projector.alpha = s.alpha;
   projector.depth = s.depth;
   projector.min_facing = kMinFacing;
-  projector.least_alpha = s.least_alpha;
+  projector.min_alpha = s.min_alpha;
   return projector;
 }
 

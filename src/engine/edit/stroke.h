@@ -16,24 +16,24 @@ struct PixelBox {
   int x0 = 0, y0 = 0, width = 0, height = 0;
 };
 // Alpha from which a pixel of the scribble counts as painted: one half where partial alpha occurs only at
-// smooth edges of opaque strokes; else, with semi-transparent strokes, the least that 8 bits can express.
-float least_alpha(const Image& rgba);
+// smooth edges of opaque strokes; else, with semi-transparent strokes, half an 8-bit step.
+float min_alpha(const Image& rgba);
 // Bounding box of the painted pixels plus `margin` pixels, within the image. Width 0: nothing is painted.
 PixelBox painted_box(const Image& rgba, int margin);
 // The camera of the box, at `scale` pixels per pixel.
 Camera crop_camera(const Camera& camera, const PixelBox& box, int scale);
 
-// Rays through the painted part of a view, finer than its pixels where that is affordable.
+// Rays through the painted part of a view, several per pixel where the painted area is small.
 struct Stroke {
-  Camera camera;             // crop_camera(), unit frame
-  int scale = 1;             // its pixels per pixel of the scribble
-  float least_alpha = 0.5f;  // alpha from which a pixel is painted; below one half: alpha is a weight
-  Image colors, alpha;       // the scribble's crop: linear RGB; 1 channel
+  Camera camera;           // crop_camera(), unit frame
+  int scale = 1;           // its pixels per pixel of the scribble
+  float min_alpha = 0.5f;  // alpha from which a pixel is painted; below one half: alpha is a weight
+  Image colors, alpha;     // the scribble's crop: linear RGB; 1 channel
   int painted_pixels = 0;
   int missed_pixels = 0;        // painted pixels without surface, or whose surface faces away (cosine <= 0.1)
   std::vector<Hit> hits;        // in and just around the paint, facing the camera
   std::vector<Vec3f> targets;   // #hits, linear albedo of the nearest painted pixel
-  std::vector<float> coverage;  // #hits, interpolated alpha; >= least_alpha: painted
+  std::vector<float> coverage;  // #hits, interpolated alpha; >= min_alpha: painted
   // #hits, distance between neighboring rays on the surface, unit frame
   std::vector<float> footprints;
   Image depth;  // of the crop at its finer scale, 0: nothing hit

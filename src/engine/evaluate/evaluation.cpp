@@ -94,7 +94,7 @@ class Job {
     write_file_atomic(r_.out / "report.md", report_.markdown());
   }
 
-  // The kept row, or a new one.
+  // The stored row, or a new one.
   EvaluationRow row(const std::string& name, const std::string& what, const Json& settings,
                     const std::function<void(EvaluationRow&, Progress&)>& work) {
     if (progress_.cancelled()) throw Error(ErrorCode::interrupted, kInterrupted);
@@ -224,7 +224,7 @@ class Job {
         if (r_.paint) return score_edit(paint(PaintTarget::albedo, Routing::both, p), r_.paint_truth, row, p);
         row.scores = session_.evaluate(eval_request(row.name), p);
       });
-    } catch (const Error& e) {  // too few or too small photographs: the others may do
+    } catch (const Error& e) {  // too few or too small photographs; go on with the other rows
       if (e.code() != ErrorCode::failed) throw;
       return {name, what, e.what(), 0, {}, {}};
     }

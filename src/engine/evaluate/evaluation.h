@@ -13,7 +13,7 @@
 
 namespace cei3d {
 
-// True images of an edit and masks of where it is, as in EvalRequest; both or none.
+// Folders of true images and masks of an edit, as in EvalRequest; both or none.
 struct EditTruth {
   std::filesystem::path pictures, masks;
 };
@@ -24,10 +24,10 @@ struct PartTrial {
 
 struct EvaluationRequest {
   std::filesystem::path capture, out;
-  std::string format;                // of the capture; empty: detected from the files
-  ReconstructOptions options;        // of the object; trials differ in views, downscale and seconds
-  std::filesystem::path project;     // existing object of this capture to evaluate; empty: reconstruct one
-  double trial_seconds = 0;          // for each object from fewer or smaller photographs; 0: options.seconds
+  std::string format;             // of the capture; empty: detected from the files
+  ReconstructOptions options;     // of the object; the other objects differ in views, downscale and seconds
+  std::filesystem::path project;  // existing object of this capture to evaluate; empty: reconstruct one
+  double trial_seconds = 0;       // for each object from fewer or smaller photographs; 0: options.seconds
   std::optional<PaintStroke> paint;  // none: no paint edit is scored
   EditTruth paint_truth;
   std::optional<PartTrial> part;
@@ -40,7 +40,7 @@ struct EvaluationRequest {
 struct EvaluationRow {
   std::string name;     // of its folder of images: "paint-none"
   std::string what;     // short description
-  std::string skipped;  // why there are no scores; empty: there are
+  std::string skipped;  // why there are no scores; empty: scored
   double seconds = 0;   // of the edit, or of the reconstruction
   Json details;         // report of the edit or of the reconstruction
   EvalReport scores;    // of held-out views, and of the edit if there is one
@@ -60,7 +60,7 @@ struct EvaluationReport {
   std::string markdown() const;
 };
 
-// Writes OUT/report.md, report.json and pictures/. Usage errors: no such view, a folder of another job. An
+// Writes OUT/report.md, report.json and images/. Usage errors: no such view, a folder of another job. An
 // interrupted Error keeps finished rows.
 EvaluationReport evaluate_capture(Session&, const EvaluationRequest&, Progress&);
 

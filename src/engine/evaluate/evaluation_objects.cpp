@@ -90,7 +90,7 @@ double EvaluationObjects::open(const EvaluationObject& o, Progress& progress) {
 
 double EvaluationObjects::make(const EvaluationObject& o, const fs::path& folder, Progress& progress) {
   const bool begun = !o.given && Project::is_project(folder);
-  if (!begun) fs::remove_all(folder);  // what a kill left of a copy or a beginning
+  if (!begun) fs::remove_all(folder);  // remains of an interrupted copy or start
   if (o.given) {
     fs::create_directories(folder.parent_path());
     fs::copy(r_.project, folder, fs::copy_options::recursive);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Results of long computations, kept in a folder together with the settings they depend on.
+// Results of long computations, stored in a folder together with the settings that they depend on.
 #pragma once
 
 #include <filesystem>

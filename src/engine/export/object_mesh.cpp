@@ -12,7 +12,7 @@ namespace cei3d {
 namespace {
 
 std::vector<Vec3f> in_capture_frame(std::vector<Vec3f> points, const Normalization& n) {
-  for (Vec3f& p : points) p = to_float(n.input_from_unit(to_double(p)));
+  for (Vec3f& p : points) p = to_float(n.capture_from_unit(to_double(p)));
   return points;
 }
 
@@ -68,7 +68,7 @@ ColoredMesh colored_mesh(const Device& device, const Scene& scene) {
   mesh.colors = std::move(look.albedo);
   if (scene.material.varying()) look.material = rounded(std::move(look.material));
   MeshMaterials materials = mesh_materials(mesh, look.material);
-  if (!scene.poses.empty()) mesh = compact(mesh);
+  if (!scene.shape_versions.empty()) mesh = compact(mesh);
   mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);
   return {std::move(mesh), std::move(materials)};
 }

@@ -9,7 +9,7 @@
 namespace cei3d {
 
 // Values as stored, /255 or /65535. Channels: 1 (gray), 3 or 4; palettes, few bits and gray with alpha are
-// expanded. Errors name `name`: truncated, corrupt, larger than 65,535 pixels a side.
+// expanded. Errors name `name`: truncated, corrupt, larger than 65,535 pixels per side.
 Image decode_png(const std::string& bytes, const std::string& name);
 
 // image: 1, 3 or 4 channels, values as they are stored in the file (display-encoded for color), clamped to

@@ -15,7 +15,7 @@ namespace {
 // Mean of a set, and deviations of its images from it, divided by sqrt(n - 1): the covariance is X^T X.
 struct Spread {
   Eigen::RowVectorXd mean;
-  Eigen::MatrixXd x;  // #pictures x dimensions
+  Eigen::MatrixXd x;  // #images x dimensions
 };
 
 Spread spread_of(const FeatureSet& s) {
@@ -65,7 +65,7 @@ std::vector<float> FeatureNetwork::features(const Image& rgb) const {
   if (rgb.channels != 3 || rgb.empty())
     fail("Features are of images with three channels, not {}.", rgb.channels);
   const std::string& output = network_.outputs().front();
-  const OnnxTensor input = picture_tensor(resized_for_features(rgb, kSize, kSize), 1, 0);
+  const OnnxTensor input = image_tensor(resized_for_features(rgb, kSize, kSize), 1, 0);
   OnnxTensors out = network_.run({{network_.inputs().front(), input}}, {output});
   std::vector<float>& values = out.at(output).data;
   if (values.empty() || !std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))

@@ -7,7 +7,7 @@
 
 namespace cei3d {
 
-OnnxTensor picture_tensor(const Image& rgb, float scale, float shift) {
+OnnxTensor image_tensor(const Image& rgb, float scale, float shift) {
   OnnxTensor t;
   t.shape = {1, 3, rgb.height, rgb.width};
   const size_t pixels = size_t(rgb.width) * rgb.height;
@@ -32,7 +32,7 @@ double Lpips::distance(const Image& a, const Image& b) const {
          b.width, b.height, b.channels);
   const std::string& output = network_.outputs().front();
   const OnnxTensors out = network_.run(
-      {{network_.inputs()[0], picture_tensor(a, 2, -1)}, {network_.inputs()[1], picture_tensor(b, 2, -1)}},
+      {{network_.inputs()[0], image_tensor(a, 2, -1)}, {network_.inputs()[1], image_tensor(b, 2, -1)}},
       {output});
   const std::vector<float>& value = out.at(output).data;
   if (value.size() != 1 || !std::isfinite(value[0]))

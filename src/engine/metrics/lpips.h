@@ -27,6 +27,6 @@ class Lpips {
 };
 
 // [1, 3, H, W] tensor of an image with 3 channels: value * scale + shift.
-OnnxTensor picture_tensor(const Image& rgb, float scale, float shift);
+OnnxTensor image_tensor(const Image& rgb, float scale, float shift);
 
 }  // namespace cei3d

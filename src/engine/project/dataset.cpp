@@ -27,8 +27,8 @@ fs::path below(const fs::path& root, const std::string& file) {
   return file.empty() ? fs::path() : (root / file).lexically_normal();  // an absolute file stays absolute
 }
 
-// Where the capture is now: where it was, or where it lies relative to the project when both were moved
-// together.
+// Present folder of the capture: the stored absolute path, or the stored relative path if both folders were
+// moved together.
 fs::path find_root(JsonReader& reader, const fs::path& project) {
   const fs::path root = reader.require<std::string>("root");
   const fs::path from_project = reader.require<std::string>("root_from_project");

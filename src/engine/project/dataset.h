@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// dataset.json: the capture as we understood it, so that verbs on a project need not read the capture again.
+// dataset.json: the capture as the loader understood it, so that commands on a project need not read the
+// capture again.
 #pragma once
 
 #include <string>
@@ -9,8 +10,9 @@
 
 namespace cei3d {
 
-// Cameras stay in the capture's frame. Pictures are named relative to the capture's folder, whose absolute
-// path and whose path relative to the project stand beside each other: either may move, or both together.
+// Cameras stay in the capture's frame. Images are named relative to the capture's folder, whose absolute path
+// and whose path relative to the project are both stored: the project is found to fit when either folder
+// moves, or both together.
 Json dataset_json(const Capture&, const std::filesystem::path& project);
 struct Dataset {
   Capture capture;
@@ -18,7 +20,7 @@ struct Dataset {
 };
 Dataset dataset_from_json(const Json&, const std::filesystem::path& project);
 
-// Changes when a view, a camera or the size of a picture changes. Pictures that are missing count as size 0.
+// Hash of views, cameras and image sizes; the size of a missing image counts as 0.
 std::string capture_fingerprint(const Capture&);
 
 Json camera_json(const Camera&);

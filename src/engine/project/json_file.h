@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The project's JSON files: reading turns what is damaged into a sentence that names the file.
+// The JSON files of a project: damage becomes an Error that names the file.
 #pragma once
 
 #include <filesystem>
@@ -19,7 +19,8 @@ inline Json parse_json_file(const std::filesystem::path& path) {
   }
 }
 
-// Runs `read` on the file's JSON; a key that is missing or of another type becomes a sentence about the file.
+// Calls read(JSON of the file); a key that is missing or of another type becomes an Error that names the
+// file.
 template <class F>
 auto read_json_file(const std::filesystem::path& path, F read) {
   const Json j = parse_json_file(path);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One writer a project. The lock belongs to the process: it is gone with it, however it ends.
+// One writer per project. The lock is released when the process ends, however it ends.
 #pragma once
 
 #include <filesystem>

@@ -35,7 +35,7 @@ void check_version(const Json& j, const fs::path& path) {
         "{} was written by a newer program (format {}; this one reads up to {}); update cei3d. Nothing was "
         "changed.",
         path.string(), version, kProjectVersion);
-  if (version < 1) fail("{} has the impossible format version {}.", path.string(), version);
+  if (version < 1) fail("{} has the invalid format version {}.", path.string(), version);
 }
 
 ProjectHead read_head(const fs::path& path) {
@@ -116,7 +116,7 @@ void Project::check_place(const fs::path& folder, bool replace) {
   if (is_project(folder)) {
     if (!replace)
       fail_usage(
-          "{} is a project already; use --resume to go on with it, --force to replace it, or another folder.",
+          "{} is a project already; use --resume to continue it, --force to replace it, or another folder.",
           folder.string());
     check_version(parse_json_file(folder / "project.json"), folder / "project.json");
     return;
@@ -129,7 +129,7 @@ void Project::discard_if_empty() {
   require_writable();
   if (has_base() || !checkpoint_files().empty()) return;
   std::error_code error;
-  // project.json first: half removed, it is no project.
+  // project.json first: a half-removed folder is then not a project.
   for (const char* name :
        {"project.json", "dataset.json", "stack.json", "history.jsonl", "base", "objects", "runs", ".lock"})
     fs::remove_all(file(name), error);
@@ -153,7 +153,7 @@ Project Project::create(const fs::path& folder, const ProjectHead& head, const C
   check_place(folder, replace);
   if (is_project(folder)) {
     const ProjectLock lock(folder);
-    // base/ first: without it nothing of the old object can be shown with the new one's cameras.
+    // base/ first: so that the old object is never shown with the new cameras.
     for (const char* name : {"base", "stack.json", "edits", "objects", "cache", "runs"})
       fs::remove_all(folder / name);
     write_json_file(folder / "stack.json", Stack().to_json());
@@ -239,7 +239,7 @@ bool Project::has_base() const {
 
 Scene Project::base() const {
   if (!has_base())
-    fail("Project {} holds no finished object; go on with `cei3d reconstruct --resume -o {}`.",
+    fail("Project {} holds no finished object; continue with `cei3d reconstruct --resume -o {}`.",
          folder_.string(), folder_.string());
   return read_json_file(file("base/scene.json"), [&](const Json& j) {
     JsonReader reader(j, file("base/scene.json").string());
@@ -285,7 +285,7 @@ void Project::collect_garbage() {
     for (const StackEntry& e : stack_.entries())
       for (const std::string& object : edit_objects(e.id)) keep.insert(object);
   } catch (const Error&) {
-    return;  // what cannot be read might name any object: nothing is thrown away
+    return;  // an unreadable file might name any object: nothing is removed
   }
   std::error_code error;
   for (const fs::path& p : children(file("edits")))

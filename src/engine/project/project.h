@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The project folder: a reconstructed object, its edits and what they were made from.
+// The project folder: a reconstructed object, its edits and their inputs.
 //
 //   project.json            format version, normalization, options of the reconstruction
-//   dataset.json            cameras, splits, pictures (engine/project/dataset.h)
+//   dataset.json            cameras, splits, images (engine/project/dataset.h)
 //   base/NNNNNN.ckpt.json   the last two training states; base/latest names the newest
 //   base/scene.json         the reconstructed object
 //   stack.json              ordered edits, on or off, and the cursor
-//   edits/0001-paint/       edit.json, the pictures it was made from
+//   edits/0001-paint/       edit.json, the images it was made from
 //   cache/                  what can be computed again; may be deleted at any time
 //   objects/ab/cdef...      tensors by content hash
 //   history.jsonl           what the user did
 //   runs/<time>-<verb>/     logs
 //
-// Every file is written under a temporary name and renamed, objects before the file that names them: whenever
-// the program dies, the folder is the project as it was before or after the running change.
+// Every file is written under a temporary name and renamed, objects before the file that names them: when the
+// program dies at any moment, the folder holds the project from before or from after the running change.
 #pragma once
 
 #include <filesystem>
@@ -33,7 +33,7 @@
 
 namespace cei3d {
 
-// 1: an edit has one result, that of its first making. 2: results by what they depend on. 3: the residual has
+// 1: one result per edit. 2: one result per state that the edit depends on. 3: the correction network has
 // features of its own. 4: materials may vary over the surface.
 inline constexpr int kProjectVersion = 4;
 
@@ -45,11 +45,12 @@ struct ProjectHead {
 struct EditRecord {
   std::string id;      // "0001-paint"
   std::string op;      // "paint"
-  int op_version = 1;  // of the operation: its results may change when this does
-  Json params;         // what was asked for: view, seed, ...; lengths and positions in the capture's frame
-  Aspects depends;     // what of the scene below it its result depends on, beside the base
-  Json report;         // what came of it: points, seconds, ...
-  std::vector<std::pair<std::string, std::string>> inputs;  // file name, bytes; not filled when read back
+  int op_version = 1;  // of the operation
+  Json params;         // of the edit: view, seed, ...; lengths and positions in the capture frame
+  Aspects depends;     // aspects of the scene below that its result depends on, besides the base
+  Json report;         // of its result: points, seconds, ...
+  // File name, bytes; empty when read back, see Project::edit_inputs().
+  std::vector<std::pair<std::string, std::string>> inputs;
 };
 
 struct TrainingState {
@@ -58,7 +59,7 @@ struct TrainingState {
 };
 
 // For one thread at a time: reading fills caches. The scenes that it returns are immutable and may be used
-// from any number of threads, also when the project has changed or is gone.
+// from any number of threads, also after the project was changed or closed.
 class Project {
  public:
   enum class Mode { read, write };
@@ -75,8 +76,7 @@ class Project {
   // nothing.
   static Project open(const std::filesystem::path& folder, Mode);
 
-  // Removes a project that holds neither an object nor a training state: what a reconstruction leaves that
-  // failed at once.
+  // Removes a project without object and training state, which a reconstruction leaves that failed early.
   void discard_if_empty();
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -92,26 +92,27 @@ class Project {
   void save_base(const Scene&);  // the reconstruction's result, without layers
   bool has_base() const;
   Scene base() const;  // error when the reconstruction was not finished
-  Scene scene()
-      const;  // base and the edits that are on, up to the cursor; what did not change is kept in memory
+  // Base and the edits that are on, up to the cursor. Unchanged parts are kept in memory between calls.
+  Scene scene() const;
   const SceneCache& scene_cache() const { return scenes_; }
 
-  // One edit more, at the cursor. record.id must be stack().next_id(record.op), which is also the layer's.
+  // Adds an edit at the cursor. record.id must be stack().next_id(record.op), which is also the layer's.
   void add_edit(const EditRecord& record, const EditLayer& layer);
   EditRecord edit(const std::string& id) const;
   std::vector<std::pair<std::string, std::string>> edit_inputs(const std::string& id) const;
-  // Moves of the cursor and the switch. Error: an edit would stand that has to be made anew first.
+  // Move the cursor; switch an edit. Error: an active edit has to be remade first, see first_stale().
   std::string undo();  // id of the edit
   std::string redo();
   bool toggle(const std::string& id);  // the new state
 
-  // What an edit made depends on its record, the base and those edits before it that change what it depends
-  // on; all that it ever made is kept by that key. With another stack, an edit that is on may have to be made
-  // anew: the first such one, the scene below it, and a place for what it makes.
+  // The result of an edit depends on its record, the base and those earlier edits that change an aspect it
+  // depends on; all results are kept, by a hash of these. With another stack an active edit may have no
+  // result and must be remade: first_stale() is the first such edit, scene_below() its input, add_result()
+  // stores its result.
   std::optional<std::string> first_stale(const Stack&) const;
   Scene scene_below(const Stack&, const std::string& id) const;
-  // op_version: of the operation that made it; where the edit was first made by another one, its report says
-  // so.
+  // op_version: of the operation that made the result; the report notes if the edit was first made by another
+  // version.
   void add_result(const Stack&, const std::string& id, const EditLayer& layer, int op_version);
 
   void add_history(Json event);                            // one line of history.jsonl; "time" is added
@@ -146,8 +147,8 @@ class Project {
   std::string fingerprint_;
   Stack stack_;
   ObjectStore store_;
-  // What base() read last, and the hash of what it was read from: scenes of one project share their surface,
-  // and what depends on it.
+  // Cache of base(): the last scene and its hash, so that scenes of one project share their surface and what
+  // depends on it.
   mutable std::string loaded_key_;
   mutable Scene loaded_base_;
   mutable SceneCache scenes_;

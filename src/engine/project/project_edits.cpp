@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The project's edits: their records, what they made, and the scene that comes of them.
+// The edits of a project: records, results, and the scene made of them.
 #include <algorithm>
 
 #include "core/base/hash.h"
@@ -12,7 +12,7 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-// Removes what a failed edit has written, unless it stands.
+// Removes the files of an edit unless keep() was called.
 class EditGuard {
  public:
   explicit EditGuard(fs::path folder) : folder_(std::move(folder)) {}
@@ -31,13 +31,13 @@ class EditGuard {
 
 std::string object_of(const Json& j) { return j.at("object").get<std::string>(); }
 
-constexpr const char* kAnyKey = "";  // of the one result that an edit of the first format has
+constexpr const char* kAnyKey = "";  // key of the only result of an edit in format 1
 
 }  // namespace
 
-// What an edit made once.
+// A stored result of an edit.
 struct Project::StoredResult {
-  std::string key;     // what it depended on
+  std::string key;     // hash of what it depends on
   std::string object;  // its tensors
   Json head;
   Aspects changes;
@@ -46,7 +46,7 @@ struct Project::StoredResult {
   std::string fingerprint() const { return content_hash(object + head.dump()); }
 };
 
-// The results of the edits that are on, in order, up to the first that has to be made anew.
+// Results of the active edits, in order, up to the first that must be remade.
 struct Project::Resolved {
   std::vector<StoredResult> results;
   std::string stale, stale_key;  // of that edit; empty: there is none
@@ -120,8 +120,8 @@ Scene Project::scene() const {
   const Resolved resolved = resolve(stack_);
   if (!resolved.stale.empty())
     fail(
-        "Edit {} has to be made anew for the object as it is, which only a command that writes can do: "
-        "switch it off and on again with `cei3d toggle`.",
+        "Edit {} must be remade for the present object, which only a command that writes can do: switch it "
+        "off and on again with `cei3d toggle`.",
         resolved.stale);
   return with_results(base, resolved.results);
 }
@@ -158,7 +158,7 @@ void Project::add_result(const Stack& stack, const std::string& id, const EditLa
   j.at("results").update(store_result(resolved.stale_key, layer));
   if (const int first = j.at("op_version").get<int>(); first != op_version)
     j.at("report")["note"] =
-        fmt::format("made anew by version {} of the operation, first made by version {}", op_version, first);
+        fmt::format("remade by version {} of the operation, first made by version {}", op_version, first);
   write_json_file(edit_file(id), j);
 }
 
@@ -204,7 +204,7 @@ EditRecord Project::edit(const std::string& id) const {
     r.op_version = reader.require<int>("op_version");
     r.params = reader.member("params");
     r.report = reader.member("report");
-    // Read elsewhere, where they are needed; "result" is that of the first format.
+    // Read elsewhere; "result" is from format 1.
     for (const char* key : {"time", "inputs", "depends", "result", "results"}) reader.has(key);
     reader.finish();
     return r;
@@ -229,8 +229,7 @@ std::vector<std::pair<std::string, std::string>> Project::edit_inputs(const std:
 
 void Project::move_to(const Stack& next, Json event) {
   require_writable();
-  if (const auto id = first_stale(next))
-    fail("Edit {} has to be made anew first (an error in the program).", *id);
+  if (const auto id = first_stale(next)) fail("Edit {} must be remade first (an error in the program).", *id);
   save_stack(next);
   add_history(std::move(event));
 }

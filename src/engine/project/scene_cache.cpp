@@ -8,8 +8,8 @@
 namespace cei3d {
 namespace {
 
-// Of what the scene does not share with the one below it: a new surface with its index of rays, or a copy of
-// the list of layers.
+// Bytes that the scene does not share with the one below: a new surface with its ray index, or a copy of the
+// list of layers.
 size_t own_bytes(const Scene& scene) {
   constexpr size_t kLayer = size_t(64) << 10, kRayIndexPerTriangle = 96;
   size_t bytes = scene.layers.size() * kLayer;

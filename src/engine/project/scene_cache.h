@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scenes that a stack of edits passes through, kept in memory: a stack that begins as one before it is
-// built from where the two part. Nothing is ever stale, because a scene's key is the content of all that it
-// is made of.
+// A cache of the scenes below each edit of a stack: a stack that shares its first edits with an earlier one
+// is built from there. No entry is ever stale, because the key of a scene is the content of everything in it.
 #pragma once
 
 #include <functional>
@@ -17,12 +16,12 @@ class SceneCache {
  public:
   static constexpr size_t kMaxBytes = size_t(512) << 20;  // changed surfaces are nearly all of it
 
-  // base_key: content of the base. layer_keys: content of the layers, in order. layer(i): called for those
-  // from the first on that no scene is kept for.
+  // base_key: content of the base. layer_keys: content of the layers, in order. layer(i): loads layer i;
+  // called from the first layer on whose scene is not cached.
   Scene scene(const std::string& base_key, const Scene& base, std::span<const std::string> layer_keys,
               const std::function<EditLayer(size_t)>& layer);
 
-  size_t layers_added() const { return layers_added_; }  // since the beginning: the work that was done
+  size_t layers_added() const { return layers_added_; }  // layers loaded so far
 
  private:
   LruCache<std::string, const Scene> scenes_{kMaxBytes};  // by the hash of the base's and the layers' keys

@@ -50,7 +50,7 @@ std::vector<std::string> Stack::push(const std::string& id) {
 }
 
 std::string Stack::undo() {
-  if (cursor_ == 0) fail_usage("Nothing to undo: no edit stands.");
+  if (cursor_ == 0) fail_usage("Nothing to undo: there is no edit.");
   return entries_[--cursor_].id;
 }
 

@@ -19,13 +19,13 @@ struct StackEntry {
 class Stack {
  public:
   const std::vector<StackEntry>& entries() const { return entries_; }
-  size_t cursor() const { return cursor_; }  // entries before it are done, those from it on undone
-  std::vector<std::string> active() const;   // ids that shape the object now, in order
+  size_t cursor() const { return cursor_; }  // entries before it are done, the others undone
+  std::vector<std::string> active() const;   // ids that are done and on, in order
   bool contains(const std::string& id) const;
 
   std::string next_id(const std::string& op) const;  // "0003-paint"; a number is never used twice
 
-  // Adds an edit at the cursor. What was undone is gone: returns the ids dropped.
+  // Adds an edit at the cursor and drops those that were undone. Returns the dropped ids.
   std::vector<std::string> push(const std::string& id);
   std::string undo();                  // id of the edit that is undone now; usage error: nothing left
   std::string redo();                  // id of the edit that is done again; usage error: nothing left

@@ -32,7 +32,7 @@ std::string ObjectStore::put(const Tensors& tensors) {
   const std::string hash = content_hash(bytes);
   const fs::path file = path(hash);
   std::error_code error;
-  // Same name and size: the same object, unless the disk lied; then writing it again heals it.
+  // Same name and size: the same object, unless the file is damaged; then writing it again repairs it.
   if (fs::file_size(file, error) == bytes.size() && !error && content_hash(read_file(file)) == hash)
     return hash;
   write_file_atomic(file, bytes);

@@ -15,8 +15,8 @@ class ObjectStore {
  public:
   explicit ObjectStore(std::filesystem::path root) : root_(std::move(root)) {}
 
-  std::string put(const Tensors&);  // the hash; a file that stands already is not written again
-  // Errors: missing object, or one whose bytes are not those that were stored (truncated, flipped bits).
+  std::string put(const Tensors&);  // returns the hash; an existing file is not written again
+  // Errors: the object is missing, or its bytes do not match its hash.
   Tensors get(const std::string& hash) const;
   void remove_all_but(const std::set<std::string>& keep);
 

@@ -81,7 +81,7 @@ class Training {
   RunState& state_;
   const PixelStore& judged_;
   const char* judged_name_;
-  double begin_;        // of the training by the run's clock, as if it had not been interrupted
+  double begin_;        // start of the training on the clock of the run, as if it had not been interrupted
   double seconds_ = 0;  // of the schedule; 0: by steps
   double next_evaluation_ = kEvaluationSeconds, next_report_ = kReportSeconds, last_save_ = 0;  // elapsed()
   double psnr_ = 0;
@@ -128,7 +128,7 @@ void log_radiance_psnr(const RunContext& run, GeometryStage& stage) {
   for (size_t i = 0; i < held_out.size(); ++i) {
     if (i > 0 && i * kViews / held_out.size() == (i - 1) * kViews / held_out.size()) continue;
     const Image photograph = run.images.load(*held_out[i]);
-    Camera band = run.normalization.unit_from_input(held_out[i]->camera);
+    Camera band = run.normalization.unit_from_capture(held_out[i]->camera);
     if (photograph.width != band.width) return;  // downscaled
     const int height = band.height;
     double error = 0;

@@ -9,8 +9,8 @@ namespace cei3d {
 // Trains state.geometry from state.step to the end of the schedule.
 void train_geometry(const RunContext&, RunState& state, const Stage::Checkpoint& checkpoint);
 
-// Logs how well the radiance field draws the held-out views, which is what the physical model is compared
-// with. Of up to 8 views, as many as 15 s allow. Stops when progress.cancelled().
+// Logs the PSNR of the radiance field on held-out views, for comparison with shading by light and material.
+// Up to 8 views, as many as 15 s allow. Stops when progress.cancelled().
 void log_radiance_psnr(const RunContext&, GeometryStage&);
 
 }  // namespace cei3d

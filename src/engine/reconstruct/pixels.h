@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The training pixels that matter (the object and a rim around it), packed: 12 bytes each, so that 100 views
-// of 800^2 fit in memory.
+// The training pixels of the object and a rim around it, packed into 12 bytes each, so that 100 views of 800
+// x 800 fit in memory.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ class PixelStore {
   const std::vector<Pixel>& pixels() const { return pixels_; }
   // The view's alpha > 0.5, row-major.
   const std::vector<std::vector<uint8_t>>& masks() const { return masks_; }
-  // Through the middle of one of its pixels, or as far away from it as is said, in pixels.
+  // Ray through the center of a pixel plus `away` (pixels), unit frame.
   Ray ray(const Pixel& p, Vec2f away = {0, 0}) const {
     return cameras_[p.view].ray(float(p.x) + 0.5f + away.x, float(p.y) + 0.5f + away.y);
   }
@@ -38,7 +38,7 @@ class PixelStore {
   std::vector<std::vector<uint8_t>> masks_;
 };
 
-// Color over white and coverage, display-encoded.
+// Display-encoded color over white, and coverage.
 struct Target {
   Vec3f srgb;
   float alpha;

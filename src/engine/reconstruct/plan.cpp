@@ -9,37 +9,38 @@ namespace cei3d {
 
 namespace {
 
-// Work that is not measured by itself, in multiples of work that is: ratios seen in runs on spot.
-constexpr double kMesh = 1.6;  // an object's surface: so many times the sphere's that Rates::mesh is of
-constexpr double kGeometryStep = 13;   // a step of the geometry stage: so many of Rates::sdf_step
-constexpr double kStartShapes = 3500;  // carving and stereo: so many of Rates::trial_step
-constexpr double kPolishStep = 68;     // a step of polishing: so many of Rates::sdf_step
-constexpr double kResidualStep = 8;    // a step of the residual's training: so many of Rates::sdf_step
-constexpr double kFullSplit = 2e7, kBriefSplit = 1.2e7;  // the linear split: so many of Rates::hit_shaded
-constexpr double kFullDescent = 2500,
-                 kBriefDescent = 750;  // lobes and descents: so many of Rates::albedo_step
-constexpr double kRefinementStep = 2;  // a step of a refinement: so many of Rates::albedo_step
-constexpr double kReserve = 3;         // reading and writing files: so many of the first surface
+// Costs of work that is not measured, in multiples of measured rates; from runs on spot.
+constexpr double kMesh = 1.6;          // surface of an object over that of the sphere of Rates::mesh
+constexpr double kGeometryStep = 13;   // a step of the geometry stage, in Rates::sdf_step
+constexpr double kStartShapes = 3500;  // carving and stereo, in Rates::trial_step
+constexpr double kPolishStep = 68;     // a step of polishing, in Rates::sdf_step
+constexpr double kResidualStep = 8;    // a training step of the correction network, in Rates::sdf_step
+constexpr double kFullSplit = 2e7, kBriefSplit = 1.2e7;  // the linear separation, in Rates::hit_shaded
+// Fit of lobes and descents, in Rates::albedo_step.
+constexpr double kFullDescent = 2500, kBriefDescent = 750;
+constexpr double kRefinementStep = 2;  // a step of a refinement, in Rates::albedo_step
+constexpr double kReserve = 3;         // reading and writing files, in times of the first surface
 
-// Shares of all steps: fewer are not worth the time.
+// Minimum shares of all steps; fewer are not worth the time.
 constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinResidualShare = 0.13;
 constexpr size_t kUntimedResidualHits = 1000000;
 
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
-// another subset. They begin where there are so many times more pixels; one for each so many times more.
+// another subset. Refinements begin above the first ratio of pixels to max_hits, with one for each further
+// multiple of the second.
 constexpr double kSubsetsToRefine = 4, kSubsetsOfRefinement = 2.4;
 
-// Shares of the whole time, at most.
+// Maximum shares of the whole time.
 constexpr double kPolishShare = 0.1;        // a round's descent
 constexpr double kPolishRoundsShare = 0.3;  // all rounds
 constexpr double kFullEffortShare = 0.36;   // the appearance stage at full effort; else it is brief
 constexpr double kRefinementsShare = 0.1;
 constexpr double kFinerMeshShare = 1.0 / 40;
-constexpr double kResidualShare = 0.1;           // the residual's training,
-constexpr double kResidualShadingShare = 0.018;  // and the shading of its pixels before
-constexpr double kTrialsShare = 0.25;            // comparing starts, of the geometry stage
+constexpr double kResidualShare = 0.1;           // training of the correction network
+constexpr double kResidualShadingShare = 0.018;  // shading of the pixels of the correction network
+constexpr double kTrialsShare = 0.25;  // comparison of start shapes, as a share of the geometry stage
 
-constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // of the whole time, at least
+constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // minimum shares of the whole time
 
 // Seconds.
 struct Costs {
@@ -122,7 +123,7 @@ double rest_of(const Plan& p) {
          p.residual + p.reserve;
 }
 
-// Leaves out what is worth least; false: there is nothing more to leave out.
+// Removes the least valuable stage; false: nothing is left to remove.
 bool leave_one_out(const Costs& c, Plan& p) {
   if (p.refinements > 0) {
     --p.refinements;

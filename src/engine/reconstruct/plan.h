@@ -8,12 +8,12 @@
 
 namespace cei3d {
 
-// Of a run by steps all seconds are 0: no limit, the numbers of steps decide.
+// Of a run by steps all seconds are 0: no limit, the step counts decide.
 struct Plan {
   bool choose_start = false;  // short trainings compare three start shapes; else the visual hull
   double geometry = 0;        // s, the comparison of starts included
   int iterations = 0;         // steps of the geometry stage where `geometry` is 0
-  int polish_rounds = 0;      // of the surface by its reflections
+  int polish_rounds = 0;      // of polishing
   double look = 0;            // s that a round takes to make a mesh and estimate light and material briefly
   double polish = 0;          // s of a round's descent after that, at most
   int polish_steps = 0;       // of a round's descent, at most
@@ -23,9 +23,9 @@ struct Plan {
   double refinement = 0;         // s of one refinement
   bool has_finer_mesh = false;   // Preset::finer_meshing
   double finer_mesh = 0;         // s of the finer mesh
-  int residual_steps = 0;        // of the residual's training, at most; 0: no residual
-  size_t residual_hits = 0;      // training pixels of the residual, at most
-  double residual = 0;           // s of the residual: shading of its pixels and training
+  int residual_steps = 0;        // of training the correction network, at most; 0: none
+  size_t residual_hits = 0;      // training pixels of the correction network, at most
+  double residual = 0;           // s of the correction network: shading of its pixels and training
   double reserve = 0;            // s for the first surface and for reading and writing files
 };
 

@@ -3,16 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "engine/reconstruct/test_rates.h"
+
 namespace cei3d {
 namespace {
-
-// Of "fast" on two cores.
-constexpr Rates kRates{.sdf_step = 1.5e-3,
-                       .trial_step = 1.5e-3,
-                       .albedo_step = 3.5e-3,
-                       .mesh = 2.5e-5,
-                       .hit_traced = 1.2e-6,
-                       .hit_shaded = 6e-7};
 
 Rates times(Rates r, double factor) {
   for (double* rate : {&r.sdf_step, &r.trial_step, &r.albedo_step, &r.mesh, &r.hit_traced, &r.hit_shaded})
@@ -25,7 +19,7 @@ Plan plan_for(const char* name, double seconds, size_t pixels, double slowness) 
   options.seconds = seconds;
   Preset preset = preset_by_name(name);
   fit_to_footprint(preset, 0.004);
-  return plan_of(options, preset, pixels, times(kRates, slowness));
+  return plan_of(options, preset, pixels, times(kTestRates, slowness));
 }
 
 double sum_of(const Plan& p) {

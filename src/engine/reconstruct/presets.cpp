@@ -52,12 +52,12 @@ Preset paper() {
   p.geometry.radiance_width = 512;
   p.geometry.layer_rate = 5e-4f;
   p.geometry.prefit_steps = 1000;
-  // The paper takes 2048 pixels of the whole picture, of which two in three miss the object. These are all
-  // near the object, and a smaller batch makes more steps in the same time.
+  // The paper takes 2048 pixels of the whole image, of which two in three miss the object. Here all rays pass
+  // near the object, and a smaller batch allows more steps in the same time.
   p.geometry.rays = 256;
   p.geometry.refresh_every = 40;
   p.geometry.anchor_until = 0.4f;
-  p.geometry.hold_start = true;  // a network without grid soon forgets places it is not trained at
+  p.geometry.hold_start = true;  // a network without a grid forgets regions that it is not trained on
   p.appearance.albedo.encoding.frequencies = 10;
   p.appearance.albedo.hidden_layers = 4;
   p.appearance.albedo.width = 512;

@@ -14,7 +14,7 @@ namespace cei3d {
 
 struct Preset {
   GeometryOptions geometry;
-  TrialOptions trial;  // with the fastest networks, whatever the preset: the best start is the same for all
+  TrialOptions trial;  // with the networks of "fast" in all presets
   AppearanceOptions appearance;
   PolishOptions polish;
   MeshingOptions meshing;              // of the surface on which light and material are fitted, by vertex
@@ -28,14 +28,15 @@ struct Preset {
   int trials_from_iterations = 4000;   // geometry steps from which an untimed run compares start shapes
   size_t max_hits = 1500000;           // training pixels of the appearance stage
   size_t brief_hits = 300000;          // training pixels of its brief runs between polishing rounds
-  size_t max_residual_hits = 4000000;  // training pixels of the residual; of fewer it learns the noise
+  // Training pixels of the correction network; it overfits the noise of fewer.
+  size_t max_residual_hits = 4000000;
 };
 
 // "fast" (hash grids), "balanced" (the same for longer), "paper" (the paper's networks: 8x512 SDF, 4x512
 // albedo, frequency encodings). Usage error for any other name.
 Preset preset_by_name(const std::string& name);
 
-// Sets the hash grids and meshes from the size of a pixel on the object (unit-sphere units): all those of a
+// Sets the hash grids and meshes from the size of a pixel on the object (unit frame): all those of a
 // preset that asks for it, the trial's always.
 void fit_to_footprint(Preset& preset, double pixel_footprint);
 

@@ -20,11 +20,11 @@ namespace {
 
 constexpr int kSdfPoints = 2048;
 constexpr int kLobes = 128;        // of the light, as many as a fitted one has
-constexpr int kMeshShare = 4;      // the measured mesh has 1/4 of the preset's cells an axis,
-constexpr size_t kHitShare = 100;  // and 1/100 of its hits are traced and shaded
+constexpr int kMeshShare = 4;      // the measured mesh has 1/4 of the preset's cells per axis
+constexpr size_t kHitShare = 100;  // 1/100 of the preset's hits are traced and shaded
 
-// The shortest of three times: other programs can only make a piece of work longer, and the first includes
-// reserving memory.
+// The shortest of three times: other programs only lengthen a measurement, and the first includes memory
+// allocation.
 template <class Work>
 double seconds_of(const Clock& clock, const Progress& progress, const Work& work) {
   double shortest = std::numeric_limits<double>::max();

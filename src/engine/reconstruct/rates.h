@@ -12,7 +12,7 @@
 
 namespace cei3d {
 
-// Seconds.
+// Seconds per unit of work.
 struct Rates {
   double sdf_step = 0;     // a step of Adam on the SDF field alone, 2048 points
   double trial_step = 0;   // the same for the network of the trials (Preset::trial)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Photographs to an editable object. The stages are in engine/reconstruct/stages.h.
+// From photographs to an editable object. The stages are in engine/reconstruct/stages.h.
 #pragma once
 
 #include <optional>
@@ -13,17 +13,18 @@ namespace cei3d {
 
 struct ReconstructOptions {
   std::string preset = "fast";  // "fast", "balanced" or "paper" (engine/reconstruct/presets.h)
-  double seconds = 0;           // for the whole run; 0: as long as the preset's steps take
-  int iterations = 0;  // of the geometry stage, instead of seconds: makes a run a function of the seed alone
+  double seconds = 0;           // time of the whole run; 0: no limit, the steps of the preset decide
+  // Steps of the geometry stage, instead of seconds; the result is then a function of the seed.
+  int iterations = 0;
   uint64_t seed = 1;
   int downscale = 1;                 // use images at 1/N of their size
   int test_every = 8;                // hold out every Nth view when the capture has no split; 0: none
-  std::optional<LightMotion> light;  // how it moves against the object; nothing: to be found
+  std::optional<LightMotion> light;  // how the light moves against the object; none: to be found
   LightColorPrior light_color;
-  int views = 0;  // train on so many, spread evenly (engine/capture/spread.h); 0: on all
+  int views = 0;  // number of training views, by keep_training_views(); 0: all
 };
 
-// Where the trainer puts its state. Both files of a checkpoint appear or neither.
+// Storage of training states. Head and tensors of a checkpoint are stored together or not at all.
 class Checkpoints {
  public:
   struct State {
@@ -32,7 +33,7 @@ class Checkpoints {
   };
   virtual ~Checkpoints() = default;
   virtual void save(const State&) = 0;
-  virtual std::optional<State> latest() = 0;  // what to resume from; nothing: start anew
+  virtual std::optional<State> latest() = 0;  // the state to resume from; none: start anew
 };
 
 // Error: interrupted, after saving a checkpoint, when progress.cancelled().

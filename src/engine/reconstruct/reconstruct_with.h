@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reconstruction with everything that decides its course as an argument, for tests.
+// reconstruct() with preset, clock and rates as arguments, for tests.
 #pragma once
 
 #include <optional>

@@ -8,7 +8,7 @@ namespace cei3d {
 
 namespace {
 
-constexpr double kMaxFraction = 0.99;  // of a run that is not over, however late
+constexpr double kMaxFraction = 0.99;  // reported before the end of a run, however late
 
 std::string message_of(const std::string& stage, const ProgressReport& r) {
   if (r.stage.empty() || r.stage == stage) return r.message;

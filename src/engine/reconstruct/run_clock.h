@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The time of a reconstruction, and its progress as a part of the whole.
+// The clock of a reconstruction, and the progress of its stages as fractions of the whole run.
 #pragma once
 
 #include <string>
@@ -9,8 +9,8 @@
 
 namespace cei3d {
 
-// Stages report which fraction of themselves is done; what is passed on is the fraction of the whole run,
-// which never falls. A run with a time limit is as far as its clock.
+// Stages report their own fraction; passed on is the fraction of the whole run, which never decreases. With a
+// time limit it is the elapsed share of the time.
 class RunClock : public Progress {
  public:
   // seconds: of the whole run, which begins now; 0: no limit.

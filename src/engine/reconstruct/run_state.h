@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a reconstruction has made so far: the one object that its stages work on and that a checkpoint holds.
+// The state of a reconstruction, which its stages change and a checkpoint holds.
 #pragma once
 
 #include <functional>
@@ -16,13 +16,13 @@ namespace cei3d {
 struct RunState {
   std::unique_ptr<GeometryStage> geometry;  // until its field becomes the scene's
   int64_t step = 0;                         // steps of the geometry stage that are done
-  double training_seconds = 0;              // that they took
-  double start_seconds = 0;                 // that comparing the starts took
-  double polish_deadline = 0;  // of all rounds, in seconds of the run; 0: polishing has not begun
-  double look_seconds = 0;     // that the last round took to estimate light and material before its descent
-  Scene scene;                 // what of the object is finished
+  double training_seconds = 0;              // s that these steps took
+  double start_seconds = 0;                 // s that the comparison of start shapes took
+  double polish_deadline = 0;  // end of all polishing rounds, s since the start of the run; 0: not begun
+  double look_seconds = 0;     // s that the last round took to estimate light and material
+  Scene scene;                 // the finished parts of the object
 
-  // Pixels of the appearance stage on scene.surface. A checkpoint leaves them out: they are found again.
+  // Hits of the appearance stage on scene.surface. Not in checkpoints: they are recomputed.
   ObjectHits hits;
 };
 
@@ -31,10 +31,10 @@ using MakeGeometry = std::function<std::unique_ptr<GeometryStage>()>;
 void save_state(const RunState&, Tensors& tensors, Json& head);
 RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry& make_geometry);
 
-// Where a run was when its checkpoint was written.
+// Position of a run when its checkpoint was written.
 struct RunPosition {
   std::string stage;
-  bool finished = false;  // the stage; else it is resumed in the middle
+  bool finished = false;  // whether the stage is finished; else it is resumed in the middle
   double elapsed = 0;     // s of the run
   Json rates;             // measured (engine/reconstruct/rates.h); null in a run by steps
 };
@@ -45,7 +45,7 @@ struct SavedRun {
   RunPosition position;
   RunState state;
 };
-// Reads those of programs that knew the geometry stage alone, too. Error: it is damaged.
+// Also reads checkpoints of older programs, which had only a geometry stage. Error: it is damaged.
 SavedRun read_checkpoint(const Checkpoints::State&, const MakeGeometry&);
 
 }  // namespace cei3d

@@ -41,7 +41,8 @@ void StageRunner::run(const std::vector<Stage>& stages, RunState& state,
     if (i >= first) {
       context_.progress.enter(stages[i].name, before, after);
       run_stage(stages[i], state);
-      if (i + 1 < stages.size()) save(stages[i], true, state);  // the caller saves what the last one made
+      if (i + 1 < stages.size())
+        save(stages[i], true, state);  // the caller saves the result of the last stage
     }
     before = after;
   }

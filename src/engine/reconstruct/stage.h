@@ -25,7 +25,7 @@ struct RunContext {
   const Preset& preset;
   Plan plan;
   uint64_t seed;
-  std::optional<LightMotion> light;  // nothing: to be found
+  std::optional<LightMotion> light;  // none: to be found
   LightColorPrior light_color;
   RunClock& progress;
 };

@@ -15,9 +15,9 @@ namespace {
 
 constexpr uint64_t kResidualSubset = 1000;  // of pixels; the albedo's refinements take 1, 2, ...
 constexpr float kHandlerSpacing = 1.5f;     // of handler points, in pixels
-constexpr float kMaxLevel = 0.002f;  // shift of the zero level; the shell of the sharpest density is as thick
-constexpr double kMinPolishSeconds =
-    10;  // a shorter descent is not worth another estimate of light and material
+constexpr float kMaxLevel = 0.002f;  // maximum shift of the zero level: the thickness of the sharpest density
+// A shorter descent is not worth another estimate of light and material.
+constexpr double kMinPolishSeconds = 10;
 
 // Lengths of the stages of a run by steps, in steps of the geometry stage.
 constexpr double kStartSteps = 50, kTrialsSteps = 1500, kLookSteps = 350, kSurfaceSteps = 80,
@@ -68,8 +68,8 @@ void run_geometry(const RunContext& run, RunState& state, const Stage::Checkpoin
   check_cancelled(run.progress);
 }
 
-// Seconds of this round's descent, when the estimate before it has taken state.look_seconds and each later
-// round's is expected to take as long.
+// Seconds of this round's descent, if the estimate before it took state.look_seconds and those of later
+// rounds take as long.
 double polish_seconds(const RunContext& run, const RunState& state, int round) {
   const int rounds_left = run.plan.polish_rounds - round;
   const double left = state.polish_deadline - run.progress.elapsed() - (rounds_left - 1) * state.look_seconds;
@@ -78,12 +78,13 @@ double polish_seconds(const RunContext& run, const RunState& state, int round) {
 
 using Turns = std::shared_ptr<const LightTurns>;
 
+// Rotations of the light in the training views. Null: the light is fixed to the object.
 Turns light_turns(const RunContext& run, const RunState& state) {
   return turns_of(state.scene.light_frame, run.views.train.cameras());
 }
 
-// Light and material for the present surface, then the surface for them. A round for which there is no time
-// is left out.
+// One round of polishing: estimates light and material of the present surface, then improves the surface
+// under them. Skipped if there is no time.
 void polish(const RunContext& run, RunState& state, int round) {
   const Plan& plan = run.plan;
   const bool timed = plan.polish > 0;
@@ -119,7 +120,7 @@ void polish(const RunContext& run, RunState& state, int round) {
   run.progress.log(Json{{"stage", "polish"}, {"look_seconds", state.look_seconds}}.dump());
 }
 
-// The field with the surface that the silhouettes show at its zero level.
+// Shifts the field so that the surface of the silhouettes becomes its zero level.
 Field at_silhouettes(const RunContext& run, Field sdf) {
   const float level = silhouette_level(run.device, sdf, run.views.train, kMaxLevel, run.seed, run.progress);
   sdf.params().all().back().value[0] -= level;  // the last layer's bias
@@ -167,7 +168,7 @@ void estimate_appearance(const RunContext& run, RunState& state, const Stage::Ch
   scene.albedo = std::move(made.albedo);
 }
 
-// Left out when time is short.
+// Skipped when time is short.
 void refine(const RunContext& run, RunState& state, uint64_t subset) {
   const Plan& plan = run.plan;
   if (run.progress.left() < plan.refinement + plan.finer_mesh + plan.residual) return;
@@ -188,7 +189,7 @@ void make_finer_mesh(const RunContext& run, RunState& state, const Stage::Checkp
 void fit_scene_residual(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   const Plan& plan = run.plan;
   ResidualOptions options;
-  // Late: half of the planned time at least, which the training needs to be worth anything.
+  // If the run is late, at least half of the planned time: less training is useless.
   const double left = run.progress.left() - 0.5 * plan.reserve;
   options.seconds = plan.residual > 0 ? std::clamp(left, 0.5 * plan.residual, plan.residual) : 0;
   options.clock = run.progress.clock();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface of a field, and the points of it that the training pictures show.
+// The surface of a field, and its hits by training pixels.
 #pragma once
 
 #include <memory>
@@ -17,16 +17,16 @@ struct ObjectHits {
   std::vector<Vec3f> colors;      // linear
   std::vector<uint8_t> clipped;   // SurfaceSamples::clipped
   std::vector<uint16_t> views;    // index of the camera
-  std::vector<float> footprints;  // distance between neighboring pixels on the surface, unit-sphere units
-  // turns: of the cameras; null: the light stands still.
+  std::vector<float> footprints;  // distance between neighboring pixels on the surface, unit frame
+  // turns: of the cameras; null: the light is fixed to the object.
   SurfaceSamples samples(const LightTurns* turns = nullptr) const {
     return {hits, colors, clipped, footprints, {turns, views}};
   }
 };
 
 struct HitOptions {
-  size_t max_hits;      // about; a random subset of the pixels beyond that
-  uint64_t subset = 0;  // another number, another random subset
+  size_t max_hits;      // approximate maximum; beyond it a random subset of the pixels
+  uint64_t subset = 0;  // index of the random subset
 };
 
 // Error: interrupted.
@@ -43,7 +43,7 @@ struct SurfaceAndHits {
   AppearanceInput input(const LightTurns* turns) const { return {surface, hits.samples(turns)}; }
 };
 
-// Errors: no picture shows the surface; interrupted.
+// Errors: no image shows the surface; interrupted.
 SurfaceAndHits extract_surface_and_hits(const Device&, const Field& sdf, const MeshingOptions&,
                                         const PixelStore&, size_t max_hits, const Progress&);
 

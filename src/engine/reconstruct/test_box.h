@@ -34,7 +34,7 @@ Image box_picture(const Camera& camera, const ColorAt& color_at) {
   return draw_unlit(pit_box(), camera, [&](Vec3f p) { return color_at(p - pit_box().normal(p) * 2e-3f); });
 }
 
-// On a sphere of radius 2.5 around the origin, looking at it; `size` pixels an axis.
+// On a sphere of radius 2.5 around the origin, looking at it; `size` pixels per axis.
 inline Camera box_camera(double height, double turn, int size) {
   const double flat = std::sqrt(1 - height * height);
   return look_at(Vec3d{flat * std::cos(turn), flat * std::sin(turn), height} * 2.5, {0, 0, 0},

@@ -5,18 +5,11 @@
 #include <algorithm>
 #include <memory>
 
+#include "engine/reconstruct/test_rates.h"
 #include "engine/reconstruct/test_run.h"
 
 namespace cei3d {
 namespace {
-
-// Of the hash grids on two cores.
-constexpr Rates kRates{.sdf_step = 1.5e-3,
-                       .trial_step = 1.5e-3,
-                       .albedo_step = 3.5e-3,
-                       .mesh = 2.5e-5,
-                       .hit_traced = 1.2e-6,
-                       .hit_shaded = 6e-7};
 
 class TimedRun {
  public:
@@ -24,7 +17,7 @@ class TimedRun {
       : capture_(capture), preset_(preset), time_(0.01 * limit / 6) {
     options_.seconds = limit;
   }
-  void run(const Rates& rates = kRates) {
+  void run(const Rates& rates = kTestRates) {
     scene = reconstruct({.device = device_,
                          .capture = capture_.capture(),
                          .images = capture_,
@@ -108,7 +101,7 @@ TEST(TimedRun, ResumedKeepsItsPlanAndItsTime) {
   EXPECT_THROW(r.run(), Error);
   const Json plan = r.plan();
   r.progress = std::make_unique<ScriptedProgress>();
-  Rates slower = kRates;
+  Rates slower = kTestRates;
   slower.albedo_step *= 10;
   r.run(slower);  // not read: the checkpoint has those of the first part
   EXPECT_EQ(r.plan(), plan);

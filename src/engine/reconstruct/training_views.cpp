@@ -12,9 +12,9 @@ namespace {
 constexpr int kRim = 6;            // pixels around the object that are trained on
 constexpr size_t kMaxHeldOut = 8;  // held-out views that are read
 
-// The camera in unit-sphere coordinates, for a picture of this width (pictures may be downscaled).
+// The camera in the unit frame, for an image of this width (images may be downscaled).
 Camera camera_of(const View& view, const Normalization& normalization, const Image& image) {
-  Camera camera = normalization.unit_from_input(view.camera);
+  Camera camera = normalization.unit_from_capture(view.camera);
   const double scale = double(image.width) / camera.width;
   camera.width = image.width;
   camera.height = image.height;
@@ -39,7 +39,7 @@ TrainingViews load_training_views(const Capture& capture, const ImageSource& ima
     if (train) v.footprint += length(camera.center) / camera.fx, ++trained;
   }
   v.footprint /= std::max(trained, 1);
-  if (v.train.pixels().empty()) fail("no training picture shows the object: every mask is empty");
+  if (v.train.pixels().empty()) fail("no training image shows the object: every mask is empty");
   return v;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The capture's pictures as training needs them.
+// The images of a capture as pixels for training.
 #pragma once
 
 #include "core/base/progress.h"
@@ -11,10 +11,10 @@ namespace cei3d {
 
 struct TrainingViews {
   PixelStore train, held_out;
-  double footprint = 0;  // of a pixel at the object's center, mean over the training views, unit-sphere units
+  double footprint = 0;  // of a pixel at the object's center, mean over the training views, unit frame
 };
 
-// Errors: no training picture shows the object; a picture cannot be read; interrupted.
+// Errors: no training image shows the object; an image cannot be read; interrupted.
 TrainingViews load_training_views(const Capture&, const ImageSource&, const Normalization&, Progress&);
 
 }  // namespace cei3d

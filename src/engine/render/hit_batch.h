@@ -11,7 +11,7 @@
 
 namespace cei3d {
 
-// Hits, the material of each, and how the light is turned in the view that shows it.
+// Hits, the material of each, and the rotation of a turning light in its view.
 struct HitBatch {
   std::span<const Hit> hits;
   std::span<const Material> materials;  // #hits

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a frame leaves behind for the next one of the same buffer: how its hits were lit and their residuals.
+// What a frame keeps for the next frame of the same buffer: the light on its hits and the outputs of the
+// correction network.
 #pragma once
 
 #include <memory>
@@ -12,8 +13,8 @@ namespace cei3d {
 
 struct HitMemory {
   std::optional<LitHits> lit;                // none: no frame yet
-  std::shared_ptr<const Residual> residual;  // that the values below are of
-  std::vector<Vec3f> residuals;              // #hits; meaningful where has_residual is 1
+  std::shared_ptr<const Residual> residual;  // the network that gave `residuals`
+  std::vector<Vec3f> residuals;              // #hits, linear radiance; valid where has_residual is 1
   std::vector<uint8_t> has_residual;         // #hits
 };
 

@@ -11,7 +11,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kBlock = 2048;  // hits a chunk: its planes stay in the second-level cache
+constexpr int kBlock = 2048;  // hits per chunk: its planes stay in the second-level cache
 
 // Planes of one chunk of hits.
 template <int kRows>
@@ -85,7 +85,7 @@ template <class T>
 void put(const std::vector<T>& part, size_t first, std::vector<T>& out) {
   std::copy(part.begin(), part.end(), out.begin() + std::ptrdiff_t(first));
 }
-void put(const ShadingSlopes& part, size_t first, ShadingSlopes& out) {
+void put(const ShadingGrads& part, size_t first, ShadingGrads& out) {
   put(part.d_albedo, first, out.d_albedo);
   put(part.d_normal, first, out.d_normal);
   put(part.d_view, first, out.d_view);
@@ -296,11 +296,11 @@ std::vector<SurfaceReflectionGrad<float>> Lighting::reflection_grad(
   return out;
 }
 
-ShadingSlopes Lighting::block_grad(const HitBatch& batch, std::span<const IncidentLight<float>> light,
-                                   std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const {
+ShadingGrads Lighting::block_grad(const HitBatch& batch, std::span<const IncidentLight<float>> light,
+                                  std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const {
   using Rows = ShadingRows;
   Planes<Rows::kRows> d_points = shade_grad(device_, batch, light, albedo, d_radiance);
-  ShadingSlopes out(batch.size());
+  ShadingGrads out(batch.size());
   for (size_t i = 0; i < batch.size(); ++i) {
     const IncidentLight<float> d =
         incident_light_grad(light[i], d_points.get(Rows::kIrradiance, i), d_points.get(Rows::kReflected, i));
@@ -322,9 +322,9 @@ ShadingSlopes Lighting::block_grad(const HitBatch& batch, std::span<const Incide
   return out;
 }
 
-ShadingSlopes Lighting::grad(const HitBatch& batch, std::span<const IncidentLight<float>> light,
-                             std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const {
-  ShadingSlopes out(batch.size());
+ShadingGrads Lighting::grad(const HitBatch& batch, std::span<const IncidentLight<float>> light,
+                            std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const {
+  ShadingGrads out(batch.size());
   parallel_ranges(int(batch.size()), kBlock, [&](int begin, int end) {
     const HitBatch part = batch.part(begin, end);
     const size_t first = size_t(begin), n = part.size();

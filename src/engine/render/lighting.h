@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Shading of hits under a light of lobes: core/math/shading.h with the light that arrives at each hit. Direct
 // light in closed form, dimmed by the visibility of the environment from the vertices around the hit, plus
-// diffuse bounces; reflections in closed form, replaced by the surface itself where rays of the reflection
-// lobe meet it.
+// diffuse bounces; reflections in closed form, replaced by the radiance of the surface where rays of the
+// reflection lobe meet it.
 #pragma once
 
 #include <memory>
@@ -28,8 +28,8 @@ struct Shading {
 Shading shading_of(std::span<const ShadingTerms<float>>, std::span<const Vec3f> albedo);
 
 // dL/d(everything that the radiance of a batch of hits depends on), #hits each.
-struct ShadingSlopes {
-  explicit ShadingSlopes(size_t hits)
+struct ShadingGrads {
+  explicit ShadingGrads(size_t hits)
       : d_albedo(hits),
         d_normal(hits),
         d_view(hits),
@@ -37,26 +37,26 @@ struct ShadingSlopes {
         d_sky_irradiance(hits),
         d_sky_reflection(hits) {}
   std::vector<Vec3f> d_albedo;
-  std::vector<Vec3f> d_normal;       // tangent to the unit sphere at the hit's normal
-  std::vector<Vec3f> d_view;         // tangent at the direction to the camera
-  std::vector<Material> d_material;  // derivatives by the three numbers
-  std::vector<Vec3f>
-      d_sky_irradiance;  // by the unoccluded light of the environment, for a descent on its lobes
-  std::vector<Vec3f> d_sky_reflection;
+  std::vector<Vec3f> d_normal;          // tangent to the unit sphere at the hit's normal
+  std::vector<Vec3f> d_view;            // tangent to the unit sphere at the direction to the camera
+  std::vector<Material> d_material;     // derivatives by roughness, specular and metalness
+  std::vector<Vec3f> d_sky_irradiance;  // by IncidentLight::sky_irradiance
+  std::vector<Vec3f> d_sky_reflection;  // by IncidentLight::sky_reflection
 };
 
 class Lighting {
  public:
+  // The device must outlive the object.
   Lighting(const Device&, std::shared_ptr<const Surface>, const SgMixture&, VertexLight);
-  // For hits under a light that turns: turned_vertex_lights().
+  // For hits under a turning light. by_bin: turned_vertex_lights().
   Lighting(const Device&, std::shared_ptr<const Surface>, const SgMixture&, std::vector<VertexLight> by_bin);
-  // With the vertices' light computed: albedo (#V) and material are those of the unedited object, as bounces
-  // and reflections see it. The transport can be shared by lights; without one it is computed (a second).
+  // Computes the light at the vertices. albedo (#V), material: of the unedited object, used for bounces and
+  // reflections. transport: can be shared by several lights; null: computed (about a second).
   Lighting(const Device&, std::shared_ptr<const Surface>, const SgMixture&, std::span<const Vec3f> albedo,
            const Material&, std::shared_ptr<const Transport> transport = nullptr);
 
-  // The result of a hit depends on nothing but that hit, its albedo and its material. seen: what reflections
-  // see in place of the vertices' own materials; empty: these.
+  // The result of a hit depends only on that hit, its albedo and its material. seen: vertex materials for
+  // surface seen in reflections; empty: those of the vertices.
   Shading shade(const HitBatch&, std::span<const Vec3f> albedo, const VertexMaterials& seen = {}) const;
 
   std::vector<IncidentLight<float>> incident_light(const HitBatch&, const VertexMaterials& seen = {}) const;
@@ -64,11 +64,11 @@ class Lighting {
   std::vector<ShadingTerms<float>> terms(const HitBatch&, std::span<const IncidentLight<float>>) const;
   std::vector<ShadingTerms<float>> terms(const HitBatch&, const VertexMaterials& seen = {}) const;
   // The adjoint. Irradiance is taken at the mesh's normals, so that only reflection and reflectance depend on
-  // the hit's; visibility, bounces and what the object shows of itself count as fixed.
-  ShadingSlopes grad(const HitBatch&, std::span<const IncidentLight<float>>, std::span<const Vec3f> albedo,
-                     std::span<const Vec3f> d_radiance) const;
+  // the hit's; visibility, bounces and self reflection are held constant.
+  ShadingGrads grad(const HitBatch&, std::span<const IncidentLight<float>>, std::span<const Vec3f> albedo,
+                    std::span<const Vec3f> d_radiance) const;
 
-  // Another light close to the first one: bounces and visibility stay. For a descent on the light.
+  // Replaces the lobes and keeps visibility and bounces: for descent on a light, whose steps are small.
   void set_lobes(const SgMixture&);
 
  private:
@@ -76,8 +76,8 @@ class Lighting {
   std::vector<Vec3f> sky_reflection(const HitBatch&) const;
   std::vector<SurfaceReflectionGrad<float>> reflection_grad(const HitBatch&,
                                                             std::span<const Vec3f> d_reflection) const;
-  ShadingSlopes block_grad(const HitBatch&, std::span<const IncidentLight<float>>,
-                           std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const;
+  ShadingGrads block_grad(const HitBatch&, std::span<const IncidentLight<float>>,
+                          std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const;
   IncidentLight<float> incident_at(const HitBatch&, size_t hit, Vec3f sky_reflection,
                                    const SelfReflection::Seen&) const;
 

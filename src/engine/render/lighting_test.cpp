@@ -4,61 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "core/math/rng.h"
 #include "core/math/rotation.h"
+#include "engine/render/test_balls.h"
 
 namespace cei3d {
 namespace {
-
-void add_sphere(Mesh& m, Vec3f center, float radius, int n = 48) {
-  const uint32_t first = uint32_t(m.positions.size());
-  for (int i = 0; i <= n; ++i)
-    for (int j = 0; j < 2 * n; ++j) {
-      const float t = kPi * float(i) / float(n), p = kPi * float(j) / float(n);
-      const Vec3f d{std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)};
-      m.positions.push_back(center + d * radius);
-      m.normals.push_back(d);
-    }
-  const auto at = [&](int i, int j) { return first + uint32_t(i * 2 * n + j % (2 * n)); };
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < 2 * n; ++j) {
-      m.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
-      m.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
-    }
-}
-
-// Hits in the middle of triangles, seen from random directions above them.
-std::vector<Hit> some_hits(const Mesh& m, size_t n) {
-  std::vector<Hit> hits;
-  for (size_t i = 0; i < n; ++i) {
-    Rng rng(3, 0, i);
-    const uint32_t f = rng.below(uint32_t(m.triangles.size()));
-    const auto& t = m.triangles[f];
-    const Vec3f p = (m.positions[t[0]] + m.positions[t[1]] + m.positions[t[2]]) / 3.0f;
-    const Vec3f normal = normalize(m.normals[t[0]] + m.normals[t[1]] + m.normals[t[2]]);
-    Vec3f v = normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()});
-    if (dot(v, normal) < 0) v = -v;
-    hits.push_back({p, normal, normalize(v + normal * 0.3f), f, 1.0f / 3, 1.0f / 3});
-  }
-  return hits;
-}
-
-SgMixture uniform_sky() {
-  return {{{{0, 0, 1}, kBroadestLobe, {1, 1, 1}}, {{0, 0, -1}, kBroadestLobe, {1, 1, 1}}}};
-}
-
-SgMixture some_sky() {
-  SgMixture light;
-  for (uint64_t k = 0; k < 20; ++k) {
-    Rng rng(9, 0, k);
-    light.lobes.push_back({normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()}),
-                           1 + 60 * rng.uniform(),
-                           {rng.uniform(), rng.uniform(), rng.uniform()}});
-  }
-  return light;
-}
 
 TEST(Lighting, AConvexBodyUnderAUniformSkyReflectsItsAlbedoAndItsReflectance) {
   Mesh mesh;
@@ -88,9 +40,7 @@ TEST(Lighting, AConvexBodyUnderAUniformSkyReflectsItsAlbedoAndItsReflectance) {
 }
 
 TEST(Lighting, AHitDoesNotCareAboutItsNeighborsInTheBatch) {
-  Mesh mesh;
-  add_sphere(mesh, {0, 0, -0.3f}, 0.5f);
-  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Mesh mesh = two_spheres(-0.3f);
   const auto surface = std::make_shared<const Surface>(mesh);
   const Device device = make_device();
   const std::vector<Vec3f> base(surface->mesh().positions.size(), Vec3f{0.5f, 0.4f, 0.3f});
@@ -112,9 +62,7 @@ TEST(Lighting, AHitDoesNotCareAboutItsNeighborsInTheBatch) {
 }
 
 TEST(Lighting, EveryHitIsShadedWithItsOwnMaterialWhateverElseIsInTheBatch) {
-  Mesh mesh;
-  add_sphere(mesh, {0, 0, -0.3f}, 0.5f, 24);
-  add_sphere(mesh, {0, 0, 0.5f}, 0.3f, 24);
+  const Mesh mesh = two_spheres(-0.3f, 24);
   const auto surface = std::make_shared<const Surface>(mesh);
   const Device device = make_device();
   const std::vector<Vec3f> base(surface->mesh().positions.size(), Vec3f{0.5f, 0.4f, 0.3f});
@@ -142,9 +90,7 @@ TEST(Lighting, EveryHitIsShadedWithItsOwnMaterialWhateverElseIsInTheBatch) {
 
 TEST(Lighting, IrradianceIsTheIntegralOverTheSkyThatIsSeen) {
   // Two spheres: brute-force integration with shadow rays, one bounce left out by a black surface.
-  Mesh mesh;
-  add_sphere(mesh, {0, 0, -0.35f}, 0.5f);
-  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Mesh mesh = two_spheres(-0.35f);
   const auto surface = std::make_shared<const Surface>(mesh);
   const Device device = make_device();
   const SgMixture sky = some_sky();
@@ -176,9 +122,7 @@ TEST(Lighting, IrradianceIsTheIntegralOverTheSkyThatIsSeen) {
 
 TEST(Transport, AWhiteCavityGlows) {
   // Inside the gap between two spheres, the bounce of a white surface replaces most of what it blocks.
-  Mesh mesh;
-  add_sphere(mesh, {0, 0, -0.4f}, 0.5f);
-  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
+  const Mesh mesh = two_spheres(-0.4f);
   const Transport transport(std::make_shared<const Surface>(mesh));
   const SkyRadiance sky(kSkyDirections, Vec3f{1, 1, 1});
   const auto seen = transport.sky(sky), open = transport.open_sky(sky);
@@ -190,126 +134,6 @@ TEST(Transport, AWhiteCavityGlows) {
     // rays).
     EXPECT_NEAR(seen[v].x + bounce[v].x, open[v].x, 0.12f);
   }
-}
-
-struct Path {
-  Vec3f position, normal, to_camera, weight{1, 1, 1};
-};
-
-// Continues it in a random direction; false where it ends.
-bool reflect(Path& path, Vec3f& out, Vec3f f0, float roughness, Rng& rng) {
-  const float alpha = roughness * roughness, u = rng.uniform(), a = 2 * kPi * rng.uniform();
-  const float c = std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)), r = std::sqrt(1 - c * c);
-  const Vec3f n = path.normal, v = path.to_camera;
-  const Vec3f x = normalize(cross(n, std::abs(n.x) > 0.9f ? Vec3f{0, 1, 0} : Vec3f{1, 0, 0})),
-              y = cross(n, x);
-  const Vec3f h = x * (r * std::cos(a)) + y * (r * std::sin(a)) + n * c;
-  const float vh = dot(v, h), nv = dot(n, v);
-  out = h * (2 * vh) - v;
-  const float nl = dot(n, out);
-  if (vh <= 0 || nl <= 0 || nv <= 0) return false;
-  for (int k = 0; k < 3; ++k)
-    path.weight[k] *= schlick(f0[k], vh) * smith_g1(nv, alpha) * smith_g1(nl, alpha) * vh / (c * nv);
-  return true;
-}
-
-bool scatter(Path& path, Vec3f& out, Vec3f diffuse, Rng& rng) {
-  out = normalize(path.normal + normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()}));
-  path.weight = path.weight * diffuse;
-  return dot(out, path.normal) > 0;
-}
-
-// What the surface is made of at a point.
-struct MadeOf {
-  Vec3f albedo;
-  Material material;
-};
-using MadeOfAt = std::function<MadeOf(Vec3f)>;
-
-// Brute force: the reflection at a point, GGX facets sampled, of paths of up to four bounces that may be
-// diffuse after it.
-Vec3f traced_reflection(const Surface& surface, const SgMixture& sky, const Hit& first,
-                        const MadeOfAt& made_of, uint64_t key) {
-  constexpr int kPaths = 3000;
-  Vec3f sum{0, 0, 0};
-  for (int s = 0; s < kPaths; ++s) {
-    Rng rng(17, key, uint64_t(s));
-    Path path{first.position, first.normal, first.to_camera};
-    for (int bounce = 0; bounce < 4; ++bounce) {
-      const auto [albedo, material] = made_of(path.position);
-      const float m = material.metalness;
-      const Vec3f f0 = f0_of(albedo, material.specular, m), diffuse = albedo * (1 - m);
-      const bool choose = m < 1 && bounce > 0;
-      if (choose) path.weight = path.weight * 2.0f;
-      Vec3f l;
-      if (!(choose && rng.uniform() < 0.5f ? scatter(path, l, diffuse, rng)
-                                           : reflect(path, l, f0, material.roughness, rng)))
-        break;
-      const Vec3f from = path.position + path.normal * kRayLift;
-      Surface::RayHit far;
-      surface.intersect(std::span(&from, 1), std::span(&l, 1), 0, std::span(&far, 1));
-      if (far.t < 0) {
-        sum += path.weight * radiance(sky, l);
-        break;
-      }
-      const auto& t = surface.mesh().triangles[far.triangle];
-      path.normal = normalize(at_corners(surface.mesh().normals, t, far.b1, far.b2));
-      path.position = from + l * far.t;
-      path.to_camera = -l;
-    }
-  }
-  return sum / float(kPaths);
-}
-
-// Mean error, relative, of the reflections of two balls close to each other, where the other one fills much
-// of the lobe.
-double error_between_balls(const MadeOf& lower, const MadeOf& upper) {
-  Mesh mesh;
-  add_sphere(mesh, {0, 0, -0.35f}, 0.5f);
-  add_sphere(mesh, {0, 0, 0.5f}, 0.3f);
-  const auto made_of = [&](Vec3f p) { return p.z < 0.175f ? lower : upper; };
-  const auto surface = std::make_shared<const Surface>(mesh);
-  const Device device = make_device();
-  VertexMaterials vertices;
-  for (const Vec3f p : mesh.positions) {
-    vertices.albedo.push_back(made_of(p).albedo);
-    vertices.material.push_back(made_of(p).material);
-  }
-  const Lighting lighting(device, surface, some_sky(),
-                          vertex_light(Transport(surface), some_sky(), vertices));
-  const auto hits = some_hits(surface->mesh(), 400);
-  std::vector<Material> materials;
-  std::vector<Vec3f> albedo;
-  for (const Hit& h : hits) {
-    albedo.push_back(made_of(h.position).albedo);
-    materials.push_back(made_of(h.position).material);
-  }
-  const std::vector<IncidentLight<float>> light = lighting.incident_light({hits, materials});
-  const Shading shading = lighting.shade({hits, materials}, albedo);
-  double error = 0, total = 0;
-  int judged = 0;
-  for (size_t i = 0; i < hits.size(); ++i) {
-    if (light[i].mirror_visibility.y > 0.7f || dot(hits[i].normal, hits[i].to_camera) < 0.4f) continue;
-    const Vec3f truth = traced_reflection(*surface, some_sky(), hits[i], made_of, i);
-    error += std::abs(shading.specular[i].y - truth.y);
-    total += truth.y;
-    ++judged;
-  }
-  EXPECT_GT(judged, 15);
-  return error / total;
-}
-
-constexpr MadeOf kCopper{{0.9f, 0.6f, 0.4f}, {0.3f, 0.5f, 1}}, kClay{{0.6f, 0.4f, 0.3f}, {0.3f, 0.5f, 0}},
-    kGreenPaint{{0.1f, 0.7f, 0.2f}, {0.5f, 0.5f, 0}};
-
-TEST(Lighting, AMetalReflectsItself) {
-  EXPECT_LT(error_between_balls(kCopper, kCopper), 0.2);  // .35 if what it reflects were taken to be diffuse
-}
-
-TEST(Lighting, ADielectricReflectsItself) { EXPECT_LT(error_between_balls(kClay, kClay), 0.2); }
-
-TEST(Lighting, AMetalReflectsADielectricAsADielectric) {
-  EXPECT_LT(error_between_balls(kCopper, kGreenPaint), 0.2);
 }
 
 // Two balls in three views, between which the light turns: each view has to look as under a light that stands
@@ -375,10 +199,10 @@ TEST_F(TurningLight, ShadesEveryViewAsItsTurnedLightDoes) {
 TEST_F(TurningLight, HasTheSlopesOfItsTurnedLight) {
   const std::vector<Vec3f> albedo(hits_.size(), Vec3f{0.7f, 0.4f, 0.2f}),
       weight(hits_.size(), Vec3f{0.5f, -1, 0.8f});
-  const ShadingSlopes got = together_->grad(all(), together_->incident_light(all()), albedo, weight);
+  const ShadingGrads got = together_->grad(all(), together_->incident_light(all()), albedo, weight);
   for (size_t view = 0; view < kViews; ++view) {
     const HitBatch batch = of_view(view);
-    const ShadingSlopes want =
+    const ShadingGrads want =
         apart_[view].grad(batch, apart_[view].incident_light(batch), std::span(albedo).first(kHits),
                           std::span(weight).first(kHits));
     for (size_t i = 0; i < kHits; ++i) {
@@ -405,7 +229,7 @@ class LightingGrad : public testing::Test {
       albedo_.push_back({random(0), random(1), random(2)});
       weight_.push_back({2 * random(3) - 1, 2 * random(4) - 1, 2 * random(5) - 1});
     }
-    slopes_ = std::make_unique<ShadingSlopes>(lighting_->grad(
+    slopes_ = std::make_unique<ShadingGrads>(lighting_->grad(
         {hits_, materials_}, lighting_->incident_light({hits_, materials_}), albedo_, weight_));
   }
   double loss(size_t i, const Hit& hit, const Material& material, Vec3f albedo) const {
@@ -425,7 +249,7 @@ class LightingGrad : public testing::Test {
   std::vector<Hit> hits_;
   std::vector<Material> materials_;
   std::vector<Vec3f> albedo_, weight_;
-  std::unique_ptr<ShadingSlopes> slopes_;
+  std::unique_ptr<ShadingGrads> slopes_;
 };
 
 TEST_F(LightingGrad, OfMaterialAndAlbedoEqualsDifferences) {

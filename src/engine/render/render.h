@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Pictures of a scene, in two steps: trace (expensive, cacheable) and shade (cheap; all that light and paint
+// Images of a scene, in two steps: trace (expensive, cacheable) and shade (cheap; all that light and paint
 // change).
 #pragma once
 
@@ -20,44 +20,42 @@ struct GBuffer {
   int width = 0, height = 0;
   std::vector<uint8_t> samples;       // #pixels, along an axis: a grid of samples x samples
   std::vector<Hit> hits;              // #H
-  std::vector<float> depths;          // #H, z-depth in unit-sphere units
+  std::vector<float> depths;          // #H, z-depth in unit frame
   std::vector<uint16_t> sub_pixels;   // #H, which sample of its pixel, see core/math/sub_pixel.h
   std::vector<uint32_t> pixel_start;  // #pixels + 1: pixel p owns hits [start[p], start[p + 1])
   int samples_of(size_t pixel) const { return int(samples[pixel]) * samples[pixel]; }
 };
-// The hits of those rays (unit-sphere frame) that meet the surface, in order; ray_of_hit: #hits.
+// Hits of the rays (unit frame) that meet the surface, in order. ray_of_hit: written, #hits.
 std::vector<Hit> trace_rays(const Device&, const Field& sdf, const Surface&, std::span<const Ray> rays,
                             std::vector<uint32_t>& ray_of_hit);
 
-// Moves hits along their rays (directions: #hits, unit) onto the zero set of the field; normals (and edges,
-// if asked for) are sdf_normals().
+// Moves hits along their rays (directions: #hits, unit) onto the zero set of the field, and sets their
+// normals (and `edges`, if not empty) by sdf_normals().
 void refine_hits(const Device&, const Field& sdf, std::span<const Vec3f> directions, std::span<Hit> hits,
                  std::span<float> edges = {});
 
-// ... of the scene, edits of its shape included.
+// The same for the scene with its changes of shape.
 std::vector<Hit> trace_rays(const Device&, const Scene&, std::span<const Ray> rays,
                             std::vector<uint32_t>& ray_of_hit);
 
-// camera: unit-sphere frame. samples: a pixel and axis, at most 16; where the silhouette passes twice as
-// many, unless a single one is asked for: those are few pixels, and coverage shows every missing step
-// (docs/notebook/0015).
+// camera: unit frame. samples: per pixel and axis, at most 16. If more than 1, pixels on the silhouette get
+// twice as many: they are few, and coverage needs the steps (docs/notebook/0015).
 GBuffer trace_view(const Device&, const Scene&, const Camera& camera, int samples = 2);
 
-// A pixel is the tent-weighted mean of the samples within one pixel of its center, which is close to the
-// filters that renderers and lenses have (Blackman-Harris of 1.5 pixels, Gaussians): on ground-truth surfaces
-// its coverage comes 9 dB nearer to the truth than a box's.
+// A pixel is the tent-weighted mean of the samples within one pixel of its center, close to the filters of
+// renderers and lenses (Blackman-Harris of 1.5 pixels, Gaussians): on ground-truth surfaces its coverage is 9
+// dB closer to the truth than a box filter's.
 struct Frame {
   Image rgb, albedo, diffuse, specular;  // RGBA, linear, straight alpha
   Image normal;                          // RGB, unit vectors in the capture's axes; 0 where nothing was hit
   Image depth;                           // 1 channel, z-depth in capture units; 0 where nothing was hit
   Image roughness, metalness;            // 1 channel; 0 where nothing was hit
   Image mask;                            // 1 channel, coverage
-  std::vector<uint8_t>
-      edited;  // #pixels, 1 where any sample of the pixel's mean lies in the region of an edit
+  std::vector<uint8_t> edited;           // #pixels, 1: a sample of the pixel lies in the region of an edit
 };
 Frame shade_view(const Device&, const Scene&, const SceneLight&, const GBuffer&);
-// The same bits; `memory` (see engine/render/hit_memory.h) takes over what it has of an earlier frame of the
-// same buffer, and keeps this one.
+// The same bit for bit. memory: of an earlier frame of the same buffer (engine/render/hit_memory.h); what is
+// unchanged is taken over, and this frame is kept in it.
 Frame shade_view(const Device&, const Scene&, const SceneLight&, const GBuffer&, HitMemory& memory);
 Frame shade_view(const Device&, const Scene&, const GBuffer&);  // for a single view
 

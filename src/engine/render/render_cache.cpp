@@ -18,14 +18,14 @@ size_t bytes_of(const GBuffer& g) {
          g.samples.size() * (sizeof(uint8_t) + sizeof(uint32_t));
 }
 
-// Of HitMemory, when it is full: appearance, radiance and residual of each hit.
+// Bytes of a full HitMemory: appearance, radiance and network output of each hit.
 size_t memory_bytes(const GBuffer& g) { return g.hits.size() * (4 * sizeof(Vec3f) + 6 * sizeof(float)); }
 
 // Four values at each vertex; the lighting has a copy.
-size_t bytes_of(const PoseLight& light) { return 8 * light.vertices.visibility.size() * sizeof(Vec3f); }
+size_t bytes_of(const VersionLight& light) { return 8 * light.vertices.visibility.size() * sizeof(Vec3f); }
 
-std::shared_ptr<const Surface> surface_before(const Scene& scene, size_t pose) {
-  return pose == 0 ? nullptr : surface_of_pose(scene, pose - 1);
+std::shared_ptr<const Surface> surface_before(const Scene& scene, size_t version) {
+  return version == 0 ? nullptr : surface_of_version(scene, version - 1);
 }
 
 }  // namespace
@@ -37,26 +37,26 @@ RenderCache::RenderCache(const Device& device, RenderCacheLimits limits)
       views_(limits.views),
       seen_(limits.colors) {}
 
-std::shared_ptr<const Transport> RenderCache::transport(const Scene& scene, size_t pose) {
-  TransportKey key{surface_of_pose(scene, pose), surface_before(scene, pose)};
+std::shared_ptr<const Transport> RenderCache::transport(const Scene& scene, size_t version) {
+  TransportKey key{surface_of_version(scene, version), surface_before(scene, version)};
   if (auto kept = transports_.find(key)) return kept;
-  const auto made = transport_of_pose(scene, pose);
+  const auto made = transport_of_version(scene, version);
   return transports_.put(std::move(key), made, made->bytes());
 }
 
-std::shared_ptr<const PoseLight> RenderCache::pose_light(const Scene& scene, size_t pose,
-                                                         const PoseLight* before) {
-  LightKey key{surface_of_pose(scene, pose), surface_before(scene, pose), scene.albedo, scene.material,
-               to_array(scene.light)};
+std::shared_ptr<const VersionLight> RenderCache::version_light(const Scene& scene, size_t version,
+                                                               const VersionLight* before) {
+  LightKey key{surface_of_version(scene, version), surface_before(scene, version), scene.albedo,
+               scene.material, to_array(scene.light)};
   if (auto kept = lights_.find(key)) return kept;
-  const auto made = light_on_pose(device_, scene, pose, *transport(scene, pose), before);
+  const auto made = light_on_version(device_, scene, version, *transport(scene, version), before);
   return lights_.put(std::move(key), made, bytes_of(*made));
 }
 
 SceneLight RenderCache::light(const Scene& scene) {
-  PoseLights lights;
-  for (size_t k = 0; k < std::max<size_t>(scene.poses.size(), 1); ++k)
-    lights.push_back(pose_light(scene, k, lights.empty() ? nullptr : lights.back().get()));
+  VersionLights lights;
+  for (size_t k = 0; k < std::max<size_t>(scene.shape_versions.size(), 1); ++k)
+    lights.push_back(version_light(scene, k, lights.empty() ? nullptr : lights.back().get()));
   return SceneLight(device_, scene, std::move(lights), &seen_);
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What frames of one object share, kept in memory within limits: how light reaches each shape, the lights on
-// it, the traced views and how their hits were lit. Every value is found by all that it is made of (a shape
-// by its surface), so nothing is ever stale, and a frame has the same bits with the cache and without. For
-// one thread at a time; the values are immutable.
+// Data that frames of one object share, kept in memory within limits: transport and light of each shape
+// version, traced views and the light on their hits. The key of a value is everything that it depends on, so
+// no value is ever stale, and a frame is the same bit for bit with the cache and without. For one thread at a
+// time; the values are immutable.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,8 @@
 
 namespace cei3d {
 
-// Bytes. A 512 x 512 frame of 2 x 2 samples that the object half fills takes about 50 MB of `views`.
+// Limits in bytes. A 512 x 512 frame of 2 x 2 samples that the object half fills takes about 50 MB of
+// `views`.
 struct RenderCacheLimits {
   size_t transports = size_t(512) << 20, lights = size_t(256) << 20, views = size_t(256) << 20,
          colors = size_t(64) << 20;
@@ -29,7 +30,7 @@ class RenderCache {
   explicit RenderCache(const Device& device, RenderCacheLimits limits = {});
 
   SceneLight light(const Scene&);  // must not outlive the cache
-  // camera: unit-sphere frame. See trace_view().
+  // camera: unit frame. See trace_view().
   std::shared_ptr<TracedView> trace(const Scene&, const Camera& camera, int samples);
   // view: of the scene's present shape.
   Frame shade(const Scene&, const SceneLight&, TracedView& view);
@@ -37,14 +38,14 @@ class RenderCache {
   const CacheCount& transport_count() const { return transports_.count(); }
   const CacheCount& light_count() const { return lights_.count(); }
   const CacheCount& view_count() const { return views_.count(); }
-  // Hits of all frames so far whose light was computed, and whose light was that of the frame before.
+  // Hits of all frames so far whose light was computed, and whose light was taken over from the frame before.
   size_t hits_lit() const { return hits_lit_; }
   size_t hits_kept() const { return hits_kept_; }
 
  private:
   using SurfacePtr = std::shared_ptr<const Surface>;
   struct TransportKey {
-    SurfacePtr surface, before;  // of the pose and the pose before it; null: pose 0
+    SurfacePtr surface, before;  // of the shape version and the one before it; null for version 0
     bool operator==(const TransportKey&) const = default;
   };
   struct LightKey {
@@ -61,12 +62,12 @@ class RenderCache {
     int samples;
     bool operator==(const ViewKey&) const = default;
   };
-  std::shared_ptr<const Transport> transport(const Scene&, size_t pose);
-  std::shared_ptr<const PoseLight> pose_light(const Scene&, size_t pose, const PoseLight* before);
+  std::shared_ptr<const Transport> transport(const Scene&, size_t version);
+  std::shared_ptr<const VersionLight> version_light(const Scene&, size_t version, const VersionLight* before);
 
   const Device& device_;
   LruCache<TransportKey, const Transport> transports_;
-  LruCache<LightKey, const PoseLight> lights_;
+  LruCache<LightKey, const VersionLight> lights_;
   LruCache<ViewKey, TracedView> views_;
   SeenMaterialsCache seen_;
   size_t hits_lit_ = 0, hits_kept_ = 0;

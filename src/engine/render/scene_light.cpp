@@ -7,22 +7,22 @@
 namespace cei3d {
 namespace {
 
-// As reconstructed, in the first shape.
+// Vertex materials as reconstructed, in shape version 0.
 VertexMaterials rest_materials(const Device& device, const Scene& scene, const Surface& rest) {
   const auto& positions = rest.mesh().positions;
   return {scene.albedo->eval3(device, positions), scene.material.at(device, positions)};
 }
 
-// With the vertices that an edit has added.
+// Extends them by the vertices that an edit has added.
 VertexMaterials with_added(VertexMaterials m, const std::vector<Vec3f>& colors, const Material& material) {
   m.albedo.insert(m.albedo.end(), colors.begin() + std::ptrdiff_t(m.albedo.size()), colors.end());
   m.material.resize(m.albedo.size(), material);
   return m;
 }
 
-// Vertices that a pose moved or made. #V of the pose.
-std::vector<uint8_t> changed_in(const Poses& poses, size_t k) {
-  const Mesh &now = poses[k]->surface->mesh(), &before = poses[k - 1]->surface->mesh();
+// #V, 1 for vertices that shape version k moved or added.
+std::vector<uint8_t> changed_in(const ShapeVersions& versions, size_t k) {
+  const Mesh &now = versions[k]->surface->mesh(), &before = versions[k - 1]->surface->mesh();
   std::vector<uint8_t> mask(now.positions.size(), 1);
   const auto same = [](Vec3f a, Vec3f b) { return a.x == b.x && a.y == b.y && a.z == b.z; };
   for (size_t v = 0; v < before.positions.size(); ++v)
@@ -30,27 +30,27 @@ std::vector<uint8_t> changed_in(const Poses& poses, size_t k) {
   return mask;
 }
 
-// For each pose, which of its triangles the present one was.
-std::vector<std::vector<uint32_t>> triangle_ids(const Poses& poses) {
-  std::vector<std::vector<uint32_t>> ids(poses.size());
-  const size_t n = poses.back()->surface->mesh().triangles.size();
+// For each shape version, the ids in it of the present triangles.
+std::vector<std::vector<uint32_t>> triangle_ids(const ShapeVersions& versions) {
+  std::vector<std::vector<uint32_t>> ids(versions.size());
+  const size_t n = versions.back()->surface->mesh().triangles.size();
   ids.back().resize(n);
   for (uint32_t t = 0; t < n; ++t) ids.back()[t] = t;
-  for (size_t k = poses.size() - 1; k > 0; --k)
-    for (const uint32_t t : ids[k]) ids[k - 1].push_back(poses[k]->before[t]);
+  for (size_t k = versions.size() - 1; k > 0; --k)
+    for (const uint32_t t : ids[k]) ids[k - 1].push_back(versions[k]->before[t]);
   return ids;
 }
 
-// Whether the layer was there when that pose of the object was the present one.
-bool was_on(const EditLayer& l, int pose) {
-  return l.pose <= pose && !(l.reshape && max(l.pose, 0) + 1 > pose);
+// Whether the layer was made while that shape version was the present one, or before.
+bool was_on(const EditLayer& l, int version) {
+  return l.shape_version <= version && !(l.reshape && max(l.shape_version, 0) + 1 > version);
 }
 
-// The scene as it was when that layer had been put on, as far as it has to do with that pose.
-Scene as_of(Scene scene, int layer, int pose) {
+// The scene after that layer was added, reduced to what affects that shape version.
+Scene as_of(Scene scene, int layer, int version) {
   scene.layers.resize(size_t(layer) + 1);
-  std::erase_if(scene.layers, [&](const EditLayer& l) { return !was_on(l, pose); });
-  if (!scene.poses.empty()) scene.poses.resize(size_t(pose) + 1);
+  std::erase_if(scene.layers, [&](const EditLayer& l) { return !was_on(l, version); });
+  if (!scene.shape_versions.empty()) scene.shape_versions.resize(size_t(version) + 1);
   return scene;
 }
 
@@ -62,7 +62,7 @@ bool same_materials(const SeenMaterials& a, const SeenMaterials& b) {
          a->material == b->material;
 }
 
-size_t pose_count(const Scene& scene) { return std::max<size_t>(scene.poses.size(), 1); }
+size_t version_count(const Scene& scene) { return std::max<size_t>(scene.shape_versions.size(), 1); }
 
 // Unlit albedo shows its own color in every light.
 std::vector<ShadingTerms<float>> with_unlit(std::vector<ShadingTerms<float>> terms, const Appearance& look) {
@@ -75,7 +75,7 @@ std::vector<ShadingTerms<float>> with_unlit(std::vector<ShadingTerms<float>> ter
   return terms;
 }
 
-// Which hits are lit as they were.
+// Finds the hits whose light is unchanged since the last frame.
 class Comparison {
  public:
   // before: null: none is.
@@ -93,9 +93,9 @@ class Comparison {
 
  private:
   bool same_group(size_t a, size_t b) const {
-    const int pose = now_.groups.keys[b].first;
-    return before_->groups.keys[a].first == pose &&
-           before_->lights[size_t(pose)] == now_.lights[size_t(pose)] &&
+    const int version = now_.groups.keys[b].first;
+    return before_->groups.keys[a].first == version &&
+           before_->lights[size_t(version)] == now_.lights[size_t(version)] &&
            same_materials(before_->seen[a], now_.seen[b]);
   }
 
@@ -106,54 +106,56 @@ class Comparison {
 
 }  // namespace
 
-const std::shared_ptr<const Surface>& surface_of_pose(const Scene& scene, size_t k) {
-  return scene.poses.empty() ? scene.surface : scene.poses[k]->surface;
+const std::shared_ptr<const Surface>& surface_of_version(const Scene& scene, size_t k) {
+  return scene.shape_versions.empty() ? scene.surface : scene.shape_versions[k]->surface;
 }
 
-std::shared_ptr<const Transport> transport_of_pose(const Scene& scene, size_t k) {
-  return std::make_shared<const Transport>(surface_of_pose(scene, k),
-                                           k == 0 ? std::vector<uint8_t>() : changed_in(scene.poses, k));
+std::shared_ptr<const Transport> transport_of_version(const Scene& scene, size_t k) {
+  return std::make_shared<const Transport>(
+      surface_of_version(scene, k), k == 0 ? std::vector<uint8_t>() : changed_in(scene.shape_versions, k));
 }
 
 Transports scene_transports(const Scene& scene) {
   Transports out;
-  for (size_t k = 0; k < pose_count(scene); ++k) out.push_back(transport_of_pose(scene, k));
+  for (size_t k = 0; k < version_count(scene); ++k) out.push_back(transport_of_version(scene, k));
   return out;
 }
 
-std::shared_ptr<const PoseLight> light_on_pose(const Device& device, const Scene& scene, size_t k,
-                                               const Transport& transport, const PoseLight* before) {
-  auto out = std::make_shared<PoseLight>();
-  out->surface = surface_of_pose(scene, k);
-  out->vertices = before ? vertex_light_after(before->vertices, transport, scene.light,
-                                              with_added(before->vertices.made_of, scene.poses[k]->colors,
-                                                         scene.material.mean()))
-                         : vertex_light(transport, scene.light, rest_materials(device, scene, *out->surface));
+std::shared_ptr<const VersionLight> light_on_version(const Device& device, const Scene& scene, size_t k,
+                                                     const Transport& transport, const VersionLight* before) {
+  auto out = std::make_shared<VersionLight>();
+  out->surface = surface_of_version(scene, k);
+  out->vertices = before
+                      ? vertex_light_after(before->vertices, transport, scene.light,
+                                           with_added(before->vertices.made_of,
+                                                      scene.shape_versions[k]->colors, scene.material.mean()))
+                      : vertex_light(transport, scene.light, rest_materials(device, scene, *out->surface));
   out->lighting = std::make_shared<const Lighting>(device, out->surface, scene.light, out->vertices);
   return out;
 }
 
 SceneLight::SceneLight(const Device& device, const Scene& scene, const Transports& transports)
-    : SceneLight(device, scene, PoseLights(), nullptr) {
-  for (size_t k = 0; k < pose_count(scene); ++k)
+    : SceneLight(device, scene, VersionLights(), nullptr) {
+  for (size_t k = 0; k < version_count(scene); ++k)
     lights_.push_back(
-        light_on_pose(device, scene, k, *transports.at(k), k == 0 ? nullptr : lights_.back().get()));
+        light_on_version(device, scene, k, *transports.at(k), k == 0 ? nullptr : lights_.back().get()));
 }
 
-SceneLight::SceneLight(const Device& device, const Scene& scene, PoseLights lights, SeenMaterialsCache* seen)
+SceneLight::SceneLight(const Device& device, const Scene& scene, VersionLights lights,
+                       SeenMaterialsCache* seen)
     : device_(device), scene_(scene), lights_(std::move(lights)), seen_(seen) {
-  if (!scene.poses.empty()) triangles_ = triangle_ids(scene.poses);
+  if (!scene.shape_versions.empty()) triangles_ = triangle_ids(scene.shape_versions);
   for (size_t l = 0; l < scene.layers.size(); ++l)
     if (scene.layers[l].everywhere) everywhere_ = int(l);
 }
 
-// Of the vertices of that pose; null: as they were reconstructed.
-SeenMaterials SceneLight::materials_as_of(int layer, int pose) const {
-  SeenMaterialsKey key{surface_of_pose(scene_, size_t(pose)), scene_.albedo, scene_.material, {}};
+// Materials of the vertices of that shape version; null: as reconstructed.
+SeenMaterials SceneLight::materials_as_of(int layer, int version) const {
+  SeenMaterialsKey key{surface_of_version(scene_, size_t(version)), scene_.albedo, scene_.material, {}};
   bool changed = false, stored = seen_;
   for (int l = 0; l <= layer; ++l) {
     const EditLayer& layer_l = scene_.layers[size_t(l)];
-    if (!was_on(layer_l, pose)) continue;
+    if (!was_on(layer_l, version)) continue;
     changed = changed || layer_l.albedo || layer_l.erase || layer_l.erase_material || layer_l.tint ||
               !layer_l.material.empty();
     stored = stored && !layer_l.content.empty();
@@ -162,7 +164,7 @@ SeenMaterials SceneLight::materials_as_of(int layer, int pose) const {
   if (!changed) return nullptr;
   if (stored)
     if (const SeenMaterials kept = seen_->find(key)) return kept;
-  Appearance look = appearance_at(device_, as_of(scene_, layer, pose), vertex_hits(key.surface->mesh()));
+  Appearance look = appearance_at(device_, as_of(scene_, layer, version), vertex_hits(key.surface->mesh()));
   const auto made_of = std::make_shared<const VertexMaterials>(
       VertexMaterials{std::move(look.albedo), std::move(look.material)});
   if (stored)
@@ -172,10 +174,11 @@ SeenMaterials SceneLight::materials_as_of(int layer, int pose) const {
 
 HitGroups SceneLight::groups_of(std::span<const Hit> hits, std::span<const int> layers) const {
   HitGroups groups;
-  uint32_t last = 0;  // neighbors are mostly of one group
+  uint32_t last = 0;  // neighboring hits mostly have the same group
   for (size_t i = 0; i < hits.size(); ++i) {
-    const int pose = scene_.poses.empty() ? 0 : scene_.poses.back()->shaped_in(hits[i].triangle);
-    const std::pair<int, int> key{pose, max(layers[i], everywhere_)};
+    const int version =
+        scene_.shape_versions.empty() ? 0 : scene_.shape_versions.back()->shaped_in(hits[i].triangle);
+    const std::pair<int, int> key{version, max(layers[i], everywhere_)};
     if (last >= groups.keys.size() || groups.keys[last] != key)
       last = uint32_t(std::find(groups.keys.begin(), groups.keys.end(), key) - groups.keys.begin());
     if (last == groups.keys.size()) groups.keys.push_back(key);
@@ -187,20 +190,20 @@ HitGroups SceneLight::groups_of(std::span<const Hit> hits, std::span<const int> 
 // which: indices of hits of that group.
 void SceneLight::light_group(uint32_t group, std::span<const uint32_t> which, std::span<const Hit> hits,
                              LitHits& out) const {
-  const auto pose = size_t(out.groups.keys[group].first);
-  const Lighting& lighting = *lights_[pose]->lighting;
+  const auto version = size_t(out.groups.keys[group].first);
+  const Lighting& lighting = *lights_[version]->lighting;
   const VertexMaterials none, &seen = out.seen[group] ? *out.seen[group] : none;
-  if (which.size() == hits.size() && triangles_.empty()) {  // all of them, as they are
+  if (which.size() == hits.size() && triangles_.empty()) {  // all hits, with unchanged triangles
     out.terms = lighting.terms({hits, out.look.material}, seen);
     return;
   }
-  std::vector<Hit> own;  // with the triangles of the pose
+  std::vector<Hit> own;  // with triangle ids of the shape version
   std::vector<Material> materials;
   own.reserve(which.size());
   materials.reserve(which.size());
   for (const uint32_t i : which) {
     own.push_back(hits[i]);
-    if (!triangles_.empty()) own.back().triangle = triangles_[pose][hits[i].triangle];
+    if (!triangles_.empty()) own.back().triangle = triangles_[version][hits[i].triangle];
     materials.push_back(out.look.material[i]);
   }
   const std::vector<ShadingTerms<float>> part = lighting.terms({own, materials}, seen);
@@ -213,7 +216,7 @@ LitHits SceneLight::light_hits(std::span<const Hit> hits, Appearance look, const
   out.look = std::move(look);
   out.lights = lights_;
   out.groups = groups_of(hits, out.look.layer);
-  for (const auto& [pose, layer] : out.groups.keys) out.seen.push_back(materials_as_of(layer, pose));
+  for (const auto& [version, layer] : out.groups.keys) out.seen.push_back(materials_as_of(layer, version));
   const Comparison comparison(before, out);
   std::vector<std::vector<uint32_t>> changed(out.groups.keys.size());  // hits by group
   for (uint32_t i = 0; i < hits.size(); ++i) {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The scene's light on its surface; made once and used for every view. Each shape version of the object
-// ("pose") is lit as it was when it was made, and a hit is lit in the pose that gave its triangle its present
-// shape: an edit changes no pixel outside its region. For the same reason bounces are those of the unedited
-// albedo, and what an edited point reflects has the albedo and the material that it had when that point was
-// edited last.
+// The scene's light on its surface, computed once for all views. Each shape version keeps the light from when
+// it was made, and a hit is lit in the version that gave its triangle its present shape, so that an edit
+// changes no pixel outside its region. For the same reason bounces use the unedited albedo, and surface seen
+// in a reflection has the albedo and material that it had when the reflecting point was last edited.
 #pragma once
 
 #include <memory>
@@ -17,81 +16,82 @@
 
 namespace cei3d {
 
-using Transports = std::vector<std::shared_ptr<const Transport>>;  // by pose, pose 0 first
-using SeenMaterials = std::shared_ptr<const VertexMaterials>;      // of the vertices of a pose
+using Transports = std::vector<std::shared_ptr<const Transport>>;  // by shape version
+using SeenMaterials = std::shared_ptr<const VertexMaterials>;      // of the vertices of a shape version
 
-// The light on one pose; does not depend on the layers, except through the shapes and the light.
-struct PoseLight {
+// The light on one shape version. Depends on the layers only through the shape and the light.
+struct VersionLight {
   std::shared_ptr<const Surface> surface;
-  VertexLight vertices;  // what the light on the next pose starts from
+  VertexLight vertices;  // from which those of the next version are made
   std::shared_ptr<const Lighting> lighting;
 };
-using PoseLights = std::vector<std::shared_ptr<const PoseLight>>;  // by pose
+using VersionLights = std::vector<std::shared_ptr<const VersionLight>>;  // by version
 
-// Of pose k. before: of the pose before it; null for pose 0.
-std::shared_ptr<const PoseLight> light_on_pose(const Device&, const Scene&, size_t k, const Transport&,
-                                               const PoseLight* before);
+// Light on shape version k. before: light on version k - 1; null for version 0.
+std::shared_ptr<const VersionLight> light_on_version(const Device&, const Scene&, size_t k, const Transport&,
+                                                     const VersionLight* before);
 
-// What the materials of a pose's vertices depend on.
+// Everything that the materials of the vertices of a shape version depend on.
 struct SeenMaterialsKey {
   std::shared_ptr<const Surface> surface;
   std::shared_ptr<const Field> albedo;
   MaterialField material;
-  std::string layers;  // content of all of them
+  std::string layers;  // EditLayer::content of all layers, one after the other
   bool operator==(const SeenMaterialsKey&) const = default;
 };
 using SeenMaterialsCache = LruCache<SeenMaterialsKey, const VertexMaterials>;
 
-// Hits by the pose that lights them and the last layer that has to do with them; -1: none.
+// Hits grouped by the shape version that lights them and the last layer that affects them (-1: none).
 struct HitGroups {
-  std::vector<std::pair<int, int>> keys;  // pose, layer
+  std::vector<std::pair<int, int>> keys;  // version, layer
   std::vector<uint32_t> of;               // #hits, index of the hit's key
 };
 
-// How hits were lit, for the next time that the same hits are.
+// The light on a batch of hits, from which the next frame with the same hits takes over unchanged terms.
 struct LitHits {
-  std::vector<ShadingTerms<float>> terms;  // #hits, of albedo that light falls on
+  std::vector<ShadingTerms<float>> terms;  // #hits, of albedo shown with light
   Appearance look;
-  PoseLights lights;
+  VersionLights lights;
   HitGroups groups;
-  std::vector<SeenMaterials> seen;  // by group: what reflections see; null: the materials as reconstructed
+  std::vector<SeenMaterials> seen;  // by group: materials seen in reflections; null: as reconstructed
   size_t kept = 0;                  // hits whose terms were taken over
 
-  Shading shading() const;  // with albedo that shows its own color in every light
+  Shading shading() const;  // includes unlit paint
 };
 
 class SceneLight {
  public:
-  // transports: of the scene's poses; see scene_transports(). They can serve several lights.
+  // transports: scene_transports(); they can be shared by several lights.
   SceneLight(const Device&, const Scene&, const Transports& transports);
-  // lights: light_on_pose() of each. seen: where materials of vertices are kept; may be null, else it must
-  // outlive this.
-  SceneLight(const Device&, const Scene&, PoseLights lights, SeenMaterialsCache* seen);
+  // lights: light_on_version() of each shape version. seen: cache of vertex materials; may be null, else it
+  // must outlive this.
+  SceneLight(const Device&, const Scene&, VersionLights lights, SeenMaterialsCache* seen);
 
   Shading shade(std::span<const Hit> hits, const Appearance&) const;
   // The radiance of every hit as a linear function of its albedo.
   std::vector<ShadingTerms<float>> terms(std::span<const Hit> hits, const Appearance&) const;
-  // before: of the same hits, in any light and with any layers of the same shape; may be null. Terms of hits
-  // that are lit as they were are taken over; the result has the same bits.
+  // before: light of the same hits under any light and any layers of the same shape; may be null. Terms that
+  // are unchanged are taken over; the result is the same bit for bit.
   LitHits light_hits(std::span<const Hit> hits, Appearance, const LitHits* before) const;
 
  private:
   HitGroups groups_of(std::span<const Hit> hits, std::span<const int> layers) const;
   void light_group(uint32_t group, std::span<const uint32_t> which, std::span<const Hit> hits,
                    LitHits& out) const;
-  SeenMaterials materials_as_of(int layer, int pose) const;
+  SeenMaterials materials_as_of(int layer, int version) const;
 
   const Device& device_;
   Scene scene_;
   int everywhere_ = -1;  // the last layer that has no region
-  PoseLights lights_;
+  VersionLights lights_;
   SeenMaterialsCache* seen_ = nullptr;
-  std::vector<std::vector<uint32_t>> triangles_;  // [pose][present triangle]: its id in that pose
+  std::vector<std::vector<uint32_t>> triangles_;  // [version][present triangle]: its id in that version
 };
 
-// One for each pose; depends on the scene's shape only. A second for pose 0, less for what changed after it.
+// One for each shape version; depends on the shape only. About a second for version 0, less for later ones,
+// which recompute changed vertices.
 Transports scene_transports(const Scene&);
-std::shared_ptr<const Transport> transport_of_pose(const Scene&, size_t k);
-const std::shared_ptr<const Surface>& surface_of_pose(const Scene&, size_t k);
+std::shared_ptr<const Transport> transport_of_version(const Scene&, size_t k);
+const std::shared_ptr<const Surface>& surface_of_version(const Scene&, size_t k);
 
 }  // namespace cei3d

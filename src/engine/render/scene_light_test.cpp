@@ -99,8 +99,8 @@ TEST(SceneLight, EditedPointsMirrorEditedColors) {
   ASSERT_GT(hits.size(), 300u);
   const auto transports = scene_transports(before);
   const Appearance gray = appearance_at(device, after, hits);
-  const double tint =
-      mean_tint(SceneLight(device, before, transports).shade(hits, gray));  // orange is mirrored
+  // Orange is mirrored.
+  const double tint = mean_tint(SceneLight(device, before, transports).shade(hits, gray));
   EXPECT_GT(tint, 0.05);
   // What is left is the light that arrives where a second reflection ends: it bounced off the unedited
   // colors.

@@ -12,7 +12,7 @@ namespace {
 
 // Rays of a reflection lobe: in proportion to its roughness, more for metals, whose reflections are stronger.
 // A dielectric that reflects less than kFaint towards the viewer gets the fewest.
-constexpr float kMetalRays = 80, kDielectricRays = 28;  // times the roughness
+constexpr float kMetalRays = 80, kDielectricRays = 28;  // number of rays per unit of roughness
 constexpr int kMaxMetalRays = 24, kMaxDielectricRays = 10, kMinRays = 4;
 constexpr float kFaint = 0.02f;
 constexpr float kMinCosine = 0.02f;  // of a surface seen in a reflection
@@ -49,7 +49,7 @@ Vec3f turned(Vec3f z, Vec3f d) {
 
 }  // namespace
 
-// Directions of the lobes asked for last: neighboring hits mostly have the same.
+// Cache of lobe directions: neighboring hits mostly have the same lobe.
 class SelfReflection::Lobes {
  public:
   const std::vector<Vec3f>& of(const Material& m, float nv) {
@@ -82,7 +82,7 @@ struct SelfReflection::Rays {
   }
 };
 
-// Points of the surface that rays have met, seen from where the rays began.
+// Hits of lobe rays on the surface, seen from the origins of the rays.
 struct SelfReflection::Met {
   std::vector<Hit> hits;
   std::vector<Material> materials;
@@ -98,11 +98,9 @@ SelfReflection::SelfReflection(const Device& device, const Surface& surface,
 
 Material SelfReflection::material_at(const Surface::RayHit& r) const {
   const auto& t = surface_.mesh().triangles[r.triangle];
-  const Material &a = seen_.material[t[0]], &b = seen_.material[t[1]], &c = seen_.material[t[2]];
-  if (a == b && b == c) return a;
-  const float w = 1 - r.b1 - r.b2;
-  const auto mean = [&](float Material::*x) { return a.*x * w + b.*x * r.b1 + c.*x * r.b2; };
-  return {mean(&Material::roughness), mean(&Material::specular), mean(&Material::metalness)};
+  const Material& first = seen_.material[t[0]];
+  if (first == seen_.material[t[1]] && first == seen_.material[t[2]]) return first;  // without rounding
+  return material_at_corners(seen_.material, t, r.b1, r.b2);
 }
 
 SelfReflection::Met SelfReflection::met_by(const Rays& rays, const TurnedHits& turned) const {
@@ -128,7 +126,7 @@ Vec3f SelfReflection::diffuse_radiance(const Surface::RayHit& r, size_t bin) con
 }
 
 // Radiance along the axes of the reflection lobes of some of the points met: of the environment, or of the
-// surface met there as if diffuse.
+// surface there, shaded as diffuse.
 std::vector<Vec3f> SelfReflection::mirrored(const Met& met, const std::vector<size_t>& which,
                                             const TurnedHits& turned) const {
   const size_t n = which.size(), stride = size_t(padded_to_panels(int(n)));
@@ -151,8 +149,8 @@ std::vector<Vec3f> SelfReflection::mirrored(const Met& met, const std::vector<si
   return out;
 }
 
-// What the points met reflect. Dielectrics reflect so little that, inside another reflection, the mean over
-// all directions stands for it.
+// Radiance reflected by the points met. For dielectrics, which reflect little, the mean over all directions
+// is used.
 std::vector<Vec3f> SelfReflection::reflected_at(const Met& met, const TurnedHits& turned) const {
   std::vector<Vec3f> out(met.hits.size());
   std::vector<size_t> metals;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an object shows of itself in its reflections: rays of the reflection lobe that meet the surface again
-// see it shaded with its own material there; reflections seen in reflections end after one more.
+// Self reflection: rays of a hit's reflection lobe that meet the surface again get its radiance there, shaded
+// with its own material. At most two reflections in a row.
 #pragma once
 
 #include <memory>
@@ -22,18 +22,18 @@ class SelfReflection {
     LobePlanes lobes;
     const DirectionMap& sky;  // sky_map() of the lobes
   };
-  // All must outlive the object. vertices: by bin of the light's turns. seen: what reflections see the
-  // surface made of.
+  // All arguments must outlive the object. vertices: by bin of the turning light. seen: materials of the
+  // surface as seen in reflections.
   SelfReflection(const Device&, const Surface&, std::span<const VertexLight> vertices, Light light,
                  const VertexMaterials& seen);
 
   // What a reflection lobe meets of the surface.
   struct Seen {
-    float hidden = 0;           // fraction of the lobe that does not see the environment
-    Vec3f hidden_sky{0, 0, 0};  // mean radiance of the environment behind that, times the fraction
-    Vec3f radiance{0, 0, 0};    // mean radiance of the surface there, times the fraction
+    float hidden = 0;           // fraction of the reflection lobe that the surface blocks
+    Vec3f hidden_sky{0, 0, 0};  // mean radiance over the whole lobe of the environment behind the surface
+    Vec3f radiance{0, 0, 0};    // mean radiance over the whole lobe of the surface that blocks it
   };
-  // #hits. Each depends on its own hit and material alone.
+  // #hits. Each result depends only on its hit and material.
   std::vector<Seen> seen_by(const HitBatch&) const;
 
  private:

@@ -23,7 +23,7 @@ Frame empty_frame(int width, int height) {
   return f;
 }
 
-// What the samples of a pixel and of its eight neighbors count for in it.
+// Weights of the samples of a pixel and its eight neighbors in the pixel.
 class PixelFilter {
  public:
   explicit PixelFilter(const GBuffer& g) : g_(g) {
@@ -53,7 +53,7 @@ class PixelFilter {
     float sum = 0;
   };
 
-  // Of the samples of the nine pixels, row by row; each pixel's share of the picture is the same.
+  // Of the samples of the nine pixels, row by row; each pixel's share of the image is the same.
   static std::vector<Grid> weights(int samples) {
     std::vector<Grid> out(9);
     for (int q = 0; q < 9; ++q)
@@ -76,7 +76,7 @@ void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverag
   image.data[4 * pixel + 3] = coverage;
 }
 
-// Evaluates the residual where the memory lacks it.
+// Evaluates the correction network where the memory has no value.
 void fill_residuals(const Device& device, const Scene& scene, const Appearance& look,
                     std::span<const Hit> hits, HitMemory& memory) {
   if (memory.residual != scene.residual || memory.residuals.size() != hits.size()) {
@@ -98,7 +98,7 @@ void fill_residuals(const Device& device, const Scene& scene, const Appearance& 
   }
 }
 
-// The residual of what is as it was photographed; else nothing. #hits
+// Output of the correction network times Appearance::original: #hits.
 std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const Appearance& look,
                              std::span<const Hit> hits, HitMemory& memory) {
   std::vector<Vec3f> out(hits.size(), Vec3f{0, 0, 0});

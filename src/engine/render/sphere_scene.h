@@ -31,7 +31,7 @@ inline Mesh sphere_mesh(int rows, int columns) {
   return m;
 }
 
-// Its field is exactly the sphere; base color is noise, the light has a broad and a narrow lobe.
+// Its field is exactly the sphere; the albedo is noise, the light has a broad and a narrow lobe.
 inline Scene sphere_scene() {
   Scene s;
   FieldConfig sdf;
@@ -53,7 +53,7 @@ inline Scene sphere_scene() {
   return s;
 }
 
-// ... with a handler point at each of its vertices.
+// The same with a handler point at each vertex.
 inline Scene sphere_with_handlers() {
   Scene s = sphere_scene();
   auto points = std::make_shared<HandlerPoints>();
@@ -65,16 +65,14 @@ inline Scene sphere_with_handlers() {
   return s;
 }
 
-// Upright, of size x size pixels that the sphere fills for the greater part.
+// Upright, of size x size pixels most of which the sphere fills.
 inline Camera camera_towards_origin(Vec3d center, int size) {
-  const Vec3d z = -center / length(center), x = cross(z, Vec3d{0, 0, 1}) / length(cross(z, Vec3d{0, 0, 1}));
-  const Vec3d y = cross(z, x);
   Camera c;
   c.width = c.height = size;
   c.fx = c.fy = 150.0 / 96 * size;
   c.cx = c.cy = size / 2.0;
   c.center = center;
-  c.world_from_cam = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+  c.world_from_cam = upright_rotation(-center, {0, 0, 1});
   return c;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rays meet the mesh first and are then moved onto the zero set of the field, so a frame costs a few field
-// evaluations a sample and silhouettes are those of the mesh.
+// evaluations per sample and silhouettes are those of the mesh.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -14,13 +14,13 @@ namespace cei3d {
 void refine_hits(const Device& device, const Field& sdf, std::span<const Vec3f> directions,
                  std::span<Hit> hits, std::span<float> edges) {
   std::vector<Vec3f> points(hits.size()), normals(hits.size());
-  constexpr float kMost = 0.01f;  // a mesh cell or so
+  constexpr float kMaxStep = 0.01f;  // about a mesh cell
   for (int round = 0; round < 2; ++round) {
     for (size_t i = 0; i < hits.size(); ++i) points[i] = hits[i].position;
     const std::vector<float> d = first_output(device, sdf, points);
     for (size_t i = 0; i < hits.size(); ++i) {
       const float cosine = std::max(0.2f, -dot(hits[i].normal, directions[i]));
-      hits[i].position += directions[i] * std::clamp(d[i] / cosine, -kMost, kMost);
+      hits[i].position += directions[i] * std::clamp(d[i] / cosine, -kMaxStep, kMaxStep);
     }
   }
   for (size_t i = 0; i < hits.size(); ++i) points[i] = hits[i].position;
@@ -58,17 +58,17 @@ void refine_along_rays(const Device& device, const Field& sdf, std::vector<Hit>&
   refine_hits(device, sdf, directions, hits);
 }
 
-// A hit on changed matter, taken back to pose 0 together with its ray, and forth again: the field knows pose
-// 0 only.
+// Maps a hit on changed surface and its ray to shape version 0, the only one that the field represents, and
+// back.
 struct RestHit {
   uint32_t index;
   std::array<uint32_t, 3> corners;
   Mat3f gradient;
-  Vec3f point;  // of the mesh in pose 0
+  Vec3f point;  // of the mesh in version 0
 };
 
-RestHit to_rest(const Poses& poses, uint32_t index, Hit& hit, Vec3f& direction) {
-  const Pose &now = *poses.back(), &rest = *poses.front();
+RestHit to_rest(const ShapeVersions& versions, uint32_t index, Hit& hit, Vec3f& direction) {
+  const ShapeVersion &now = *versions.back(), &rest = *versions.front();
   RestHit r{index, now.surface->mesh().triangles[hit.triangle], {}, {}};
   r.gradient = gradient_at(now, r.corners, hit);
   r.point = mesh_point(rest, r.corners, hit);
@@ -78,14 +78,14 @@ RestHit to_rest(const Poses& poses, uint32_t index, Hit& hit, Vec3f& direction) 
   return r;
 }
 
-void from_rest(const Poses& poses, const RestHit& r, const Hit& refined, Hit& hit) {
-  hit.position = mesh_point(*poses.back(), r.corners, hit) + r.gradient * (refined.position - r.point);
+void from_rest(const ShapeVersions& versions, const RestHit& r, const Hit& refined, Hit& hit) {
+  hit.position = mesh_point(*versions.back(), r.corners, hit) + r.gradient * (refined.position - r.point);
   hit.normal = normalize(inverse_transpose(r.gradient) * refined.normal);
 }
 
-// New matter is where its mesh is; what moved is refined where it was; all else as if nothing had happened.
-void refine_posed(const Device& device, const Scene& scene, std::vector<Hit>& hits) {
-  const Pose& now = *scene.poses.back();
+// Added surface is its mesh; moved surface is refined in shape version 0; the rest is refined in place.
+void refine_changed(const Device& device, const Scene& scene, std::vector<Hit>& hits) {
+  const ShapeVersion& now = *scene.shape_versions.back();
   std::vector<RestHit> moved;
   std::vector<uint32_t> of;
   std::vector<Hit> field_hits;
@@ -96,13 +96,14 @@ void refine_posed(const Device& device, const Scene& scene, std::vector<Hit>& hi
     field_hits.push_back(hits[i]);
     directions.push_back(-hits[i].to_camera);
     if (now.shaped_in(hits[i].triangle) > 0)
-      moved.push_back(to_rest(scene.poses, uint32_t(of.size() - 1), field_hits.back(), directions.back()));
+      moved.push_back(
+          to_rest(scene.shape_versions, uint32_t(of.size() - 1), field_hits.back(), directions.back()));
   }
   refine_hits(device, *scene.sdf, directions, field_hits);
   auto back = moved.begin();
   for (uint32_t k = 0; k < of.size(); ++k) {
     if (back != moved.end() && back->index == k)
-      from_rest(scene.poses, *back++, field_hits[k], hits[of[k]]);
+      from_rest(scene.shape_versions, *back++, field_hits[k], hits[of[k]]);
     else
       hits[of[k]] = field_hits[k];
   }
@@ -119,15 +120,15 @@ std::vector<Hit> trace_rays(const Device& device, const Field& sdf, const Surfac
 
 std::vector<Hit> trace_rays(const Device& device, const Scene& scene, std::span<const Ray> rays,
                             std::vector<uint32_t>& ray_of_hit) {
-  if (scene.poses.empty()) return trace_rays(device, *scene.sdf, *scene.surface, rays, ray_of_hit);
+  if (scene.shape_versions.empty()) return trace_rays(device, *scene.sdf, *scene.surface, rays, ray_of_hit);
   std::vector<Hit> hits = mesh_hits(*scene.surface, rays, ray_of_hit);
-  refine_posed(device, scene, hits);
+  refine_changed(device, scene, hits);
   return hits;
 }
 
 namespace {
 
-// The hits of some pixels' rays, pixel after pixel.
+// Hits of the rays of some pixels, ordered by pixel.
 struct PixelHits {
   std::vector<Hit> hits;
   std::vector<uint16_t> sub_pixels;  // #hits
@@ -177,7 +178,7 @@ std::vector<uint32_t> on_silhouette(const PixelHits& view, int width, int height
   return out;
 }
 
-// Pixel after pixel, those of `pixels` (ascending) as `finer` has them.
+// Merges by pixel: those of `pixels` (ascending) are taken from `finer`.
 PixelHits replaced(const PixelHits& view, std::span<const uint32_t> pixels, const PixelHits& finer) {
   PixelHits out;
   out.hits.reserve(view.hits.size() + finer.hits.size());

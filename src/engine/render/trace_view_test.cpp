@@ -47,7 +47,7 @@ TEST(TraceView, SilhouettesAreSmooth) {
       ++rim;
     }
   ASSERT_GT(rim, 100);
-  // Four samples a pixel all over would leave .05.
+  // Four samples per pixel all over would leave .05.
   EXPECT_LT(std::sqrt(squared / rim), 0.015);
 }
 

@@ -11,13 +11,11 @@ namespace cei3d {
 namespace {
 
 constexpr float kSolidAngle = 4 * kPi / kSkyDirections;
-constexpr int kGrain = 1024;     // vertices a chunk
-constexpr uint32_t kNone = ~0u;  // a blocker that the longer ray misses
+constexpr int kGrain = 1024;     // vertices per chunk
+constexpr uint32_t kNone = ~0u;  // blocked, but the ray from above the surface hits nothing
 
-uint32_t nearest_corner(const Mesh& mesh, const Surface::RayHit& h) {
-  const auto& t = mesh.triangles[h.triangle];
-  const float b0 = 1 - h.b1 - h.b2;
-  return b0 >= h.b1 && b0 >= h.b2 ? t[0] : h.b1 >= h.b2 ? t[1] : t[2];
+uint32_t nearest_vertex(const Mesh& mesh, const Surface::RayHit& h) {
+  return nearest_corner(mesh.triangles[h.triangle], h.b1, h.b2);
 }
 
 }  // namespace
@@ -31,7 +29,7 @@ std::vector<Vec3f> Transport::per_vertex(F value) const {
   return out;
 }
 
-// Calls visit(direction, its cosine) for those above the vertex's horizon that are not free.
+// Calls visit(direction, cosine to the normal) for blocked directions above the vertex's horizon.
 template <class F>
 void Transport::for_blocked(uint32_t vertex, F visit) const {
   if (!covers(vertex)) return;
@@ -68,7 +66,7 @@ Transport::Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t
     hits.resize(origins.size());
     surface_->intersect(origins, directions, 0, hits);
     for (size_t i = 0; i < hits.size(); ++i)
-      blockers_[start_[begin] + i] = hits[i].t < 0 ? kNone : nearest_corner(mesh, hits[i]);
+      blockers_[start_[begin] + i] = hits[i].t < 0 ? kNone : nearest_vertex(mesh, hits[i]);
   }
 }
 
@@ -95,27 +93,27 @@ std::vector<Vec3f> Transport::sky(const SkyRadiance& radiance) const {
   });
 }
 
-// for_directions(v, visit) calls visit(direction) for those that count for vertex v.
+// for_directions(v, visit) calls visit(direction) for the directions to sum at vertex v.
 template <class F>
 std::vector<std::vector<Vec3f>> Transport::sums_over_skies(std::span<const SkyRadiance> radiance,
                                                            F for_directions) const {
-  constexpr size_t kMost = 16;  // at a time
+  constexpr size_t kMaxLights = 16;  // at a time
   const Mesh& mesh = surface_->mesh();
   const auto& sky = sky_directions();
   std::vector<std::vector<Vec3f>> out(radiance.size(), std::vector<Vec3f>(mesh.positions.size()));
-  for (size_t first = 0; first < radiance.size(); first += kMost) {
-    const size_t count = std::min(kMost, radiance.size() - first);
-    std::vector<std::array<Vec3f, kMost>> by_direction(size_t{kSkyDirections});
+  for (size_t first = 0; first < radiance.size(); first += kMaxLights) {
+    const size_t count = std::min(kMaxLights, radiance.size() - first);
+    std::vector<std::array<Vec3f, kMaxLights>> by_direction(size_t{kSkyDirections});
     for (size_t k = 0; k < by_direction.size(); ++k)
       for (size_t s = 0; s < count; ++s) by_direction[k][s] = radiance[first + s][k];
     parallel_ranges(int(mesh.positions.size()), kGrain, [&](int begin, int end) {
       for (int v = begin; v < end; ++v) {
         if (!covers(size_t(v))) continue;
-        std::array<Vec3f, kMost> sum{};
+        std::array<Vec3f, kMaxLights> sum{};
         for_directions(v, [&](int k) {
           const float c = dot(mesh.normals[v], sky[k]) * kSolidAngle;
           if (c <= 0) return;
-          for (size_t s = 0; s < kMost; ++s) sum[s] += by_direction[size_t(k)][s] * c;
+          for (size_t s = 0; s < kMaxLights; ++s) sum[s] += by_direction[size_t(k)][s] * c;
         });
         for (size_t s = 0; s < count; ++s) out[first + s][size_t(v)] = sum[s];
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How distant light reaches the points of a surface: directly where the sky is free, and by one diffuse
-// bounce from what blocks it. Depends on geometry only, so one table serves every light.
+// Transport of distant light to the vertices of a surface: directly where the sky is visible, and by one
+// diffuse bounce from the surface that blocks it. Depends on geometry only, so one table serves every light.
 #pragma once
 
 #include <memory>
@@ -16,19 +16,18 @@ using SkyRadiance = std::vector<Vec3f>;
 
 class Transport {
  public:
-  // Casts a ray along every blocked direction above a vertex's horizon. which: #V, 1 for the vertices that
-  // are asked for; the others get zeros. Empty: all.
+  // Casts a ray along every blocked direction above a vertex's horizon. which: #V, 1 for the vertices to
+  // compute; the results of the others are 0. Empty: all.
   explicit Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t> which = {});
 
-  // Irradiance of every vertex from the sky it sees. #V
+  // Irradiance of every vertex from the sky that is visible from it: #V.
   std::vector<Vec3f> sky(const SkyRadiance&) const;
-  // The same if nothing were in the way: what `sky` is compared with.
+  // Irradiance of every vertex without occlusion: #V.
   std::vector<Vec3f> open_sky(const SkyRadiance&) const;
-  // Both of several skies at once, which is several times as fast. [sky][#V]
+  // The same for several skies at once, several times as fast: [sky][#V].
   std::vector<std::vector<Vec3f>> skies(std::span<const SkyRadiance>) const;
   std::vector<std::vector<Vec3f>> open_skies(std::span<const SkyRadiance>) const;
-  // Irradiance of every vertex from the rest of the surface, given the radiance that each vertex sends out.
-  // #V
+  // Irradiance of every vertex from the rest of the surface: #V. radiance: #V, leaving each vertex.
   std::vector<Vec3f> bounce(std::span<const Vec3f> radiance) const;
 
   const Surface& surface() const { return *surface_; }

@@ -15,9 +15,9 @@ Vec3f fraction(Vec3f part, Vec3f whole) {
   return f;
 }
 
-// Lights the vertices that the transport covers, by two diffuse bounces. A metal, which has no diffuse term,
-// scatters about as much of the light on average: its albedo is its reflectance.
-// visible, open: irradiance of the vertices from the sky that they see, and if nothing were in the way.
+// Computes the light of the vertices that the transport covers, with two diffuse bounces. Metals, which have
+// no diffuse term, count as diffuse with their reflectance as albedo. visible, open: irradiance of the
+// vertices from the sky with and without occlusion.
 void relight(const Transport& transport, const std::vector<Vec3f>& visible, const std::vector<Vec3f>& open,
              VertexLight& v) {
   const size_t n = visible.size();

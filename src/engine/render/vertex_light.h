@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light that reaches the vertices of a surface, and what the surface looks like there in reflections of
-// itself.
+// Light at the vertices of a surface, and the materials that bounces and reflections see there.
 #pragma once
 
 #include <span>
@@ -13,7 +12,7 @@
 
 namespace cei3d {
 
-// What the surface is made of at its vertices, as far as reflections and bounces see it.
+// Materials of the vertices as seen in reflections and bounces.
 struct VertexMaterials {
   std::vector<Vec3f> albedo;       // #V linear
   std::vector<Material> material;  // #V
@@ -22,10 +21,9 @@ struct VertexMaterials {
 
 struct VertexLight {
   VertexMaterials made_of;
-  std::vector<Vec3f>
-      visibility;  // #V fraction of the environment's unoccluded irradiance that arrives, per channel
-  std::vector<Vec3f> bounce;      // #V irradiance from the surface itself
-  std::vector<Vec3f> irradiance;  // #V of both together
+  std::vector<Vec3f> visibility;  // #V, share of the unoccluded sky irradiance that arrives, per channel
+  std::vector<Vec3f> bounce;      // #V, irradiance from the surface itself
+  std::vector<Vec3f> irradiance;  // #V, total
 };
 
 // Mean radiance of a light around each of sky_directions().
@@ -33,12 +31,13 @@ SkyRadiance sky_radiance(const SgMixture& light);
 
 VertexLight vertex_light(const Transport&, const SgMixture&, VertexMaterials);
 
-// Of each bin of the light's turns; null: of the light as it is. Only the first knows the materials.
+// vertex_light() for each bin of a turning light; turns null: for the light itself, one element. Only the
+// first element has `made_of`.
 std::vector<VertexLight> turned_vertex_lights(const Transport&, const SgMixture&, const VertexMaterials&,
                                               const LightTurns*);
 
-// After a change of geometry. transport: of the changed surface, for its changed vertices. Only those are lit
-// anew: the others keep their light, so that what did not change looks as before.
+// Update after a change of geometry. transport: of the changed surface, for its changed vertices. Only these
+// are recomputed; the others keep their light, so that unchanged surface renders as before.
 VertexLight vertex_light_after(VertexLight before, const Transport&, const SgMixture&, VertexMaterials);
 
 }  // namespace cei3d

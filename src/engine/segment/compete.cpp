@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/math/quantile.h"
+
 namespace cei3d {
 namespace {
 
@@ -91,13 +93,13 @@ class Competition {
     }
   }
 
-  // Merges that cost more wait for a later round.
+  // Maximum cost of merges in this round.
   float cost_limit() const {
     std::vector<float> costs(best_.size());
     for (size_t i = 0; i < costs.size(); ++i) costs[i] = best_[i].first;
     const size_t rank = costs.size() > kFew ? costs.size() / 4 : 0;
-    std::nth_element(costs.begin(), costs.begin() + rank, costs.end());
-    return costs[rank] < kNever ? costs[rank] : *std::min_element(costs.begin(), costs.end());
+    const float limit = value_of_rank(costs, rank);
+    return limit < kNever ? limit : *std::min_element(costs.begin(), costs.end());
   }
 
   // For each region, the one it becomes part of in this round. Two regions that are each other's cheapest

@@ -77,9 +77,9 @@ std::vector<Seed> click_seeds(const HandlerPoints& points, std::span<const Surfa
   return seeds;
 }
 
-std::vector<float> grow(const HandlerPoints& points, std::span<const Vec3f> base_colors,
+std::vector<float> grow(const HandlerPoints& points, std::span<const Vec3f> albedo,
                         std::span<const Seed> seeds) {
-  const PointGraph graph = point_graph(points, base_colors);
+  const PointGraph graph = point_graph(points, albedo);
   const std::vector<uint8_t> side = compete(graph, seeds);
   return random_walk(graph, seeds, std::vector<float>(side.begin(), side.end()));
 }

@@ -7,19 +7,18 @@
 
 #include "engine/segment/compete.h"
 #include "model/geometry/shape/handlers.h"
-#include "model/geometry/shape/pose.h"
+#include "model/geometry/shape/shape_version.h"
 
 namespace cei3d {
 
 // Seeds at clicked points of the surface: the handler points within two spacings on the same side, or the
-// nearest one. A point that clicks of both kinds reach gets no seed. Returns #N. Usage error: a positive and
-// a negative click have the same nearest point.
+// nearest one. A point within reach of clicks of both kinds gets no seed. Returns #N. Usage error: a positive
+// and a negative click have the same nearest point.
 std::vector<Seed> click_seeds(const HandlerPoints&, std::span<const SurfacePoint> positive,
                               std::span<const SurfacePoint> negative);
 
-// Score of each handler point, [0, 1], to be interpolated by ScoredPoints. base_colors: #N linear albedo.
+// Score of each handler point, [0, 1], to be interpolated by ScoredPoints. albedo: #N linear albedo.
 // Time: about n log n in the points; 200 000 take some seconds on one core.
-std::vector<float> grow(const HandlerPoints&, std::span<const Vec3f> base_colors,
-                        std::span<const Seed> seeds);
+std::vector<float> grow(const HandlerPoints&, std::span<const Vec3f> albedo, std::span<const Seed> seeds);
 
 }  // namespace cei3d

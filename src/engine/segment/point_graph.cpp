@@ -17,7 +17,7 @@ float concavity(Vec3f p, Vec3f normal_p, Vec3f q, Vec3f normal_q) {
 
 }  // namespace
 
-PointGraph point_graph(const HandlerPoints& points, std::span<const Vec3f> base_colors) {
+PointGraph point_graph(const HandlerPoints& points, std::span<const Vec3f> albedo) {
   const int n = int(points.positions.size());
   PointGraph graph;
   graph.colors.resize(n);
@@ -26,7 +26,7 @@ PointGraph point_graph(const HandlerPoints& points, std::span<const Vec3f> base_
   const PointIndex index(points.positions, reach);
   parallel_ranges(n, 1024, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      graph.colors[i] = oklab_from_linear(base_colors[i]);
+      graph.colors[i] = oklab_from_linear(albedo[i]);
       graph.colors[i].x *= kLightness;
     }
   });

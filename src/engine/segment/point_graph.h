@@ -34,7 +34,7 @@ inline constexpr float kLightness = 0.4f;
 // concave creases. [the minima rule: Hoffman and Richards 1984]
 inline constexpr float kCreaseStep = 0.03f;
 
-// Points within two spacings on the same side of the surface are neighbors. base_colors: #N, linear albedo.
-PointGraph point_graph(const HandlerPoints&, std::span<const Vec3f> base_colors);
+// Points within two spacings on the same side of the surface are neighbors. albedo: #N, linear albedo.
+PointGraph point_graph(const HandlerPoints&, std::span<const Vec3f> albedo);
 
 }  // namespace cei3d

@@ -20,7 +20,7 @@ float nearest(Vec2f p, std::span<const Vec2f> others) {
   return best;
 }
 
-// Every n-th element, at most `most`. The order of handler points is random in space.
+// Every n-th element, at most `most` elements. The order of handler points is random in space.
 std::vector<Vec2f> thinned(std::span<const Vec2f> pixels, size_t most) {
   const size_t step = std::max<size_t>((pixels.size() + most - 1) / most, 1);
   std::vector<Vec2f> kept;

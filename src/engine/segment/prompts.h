@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Chooses prompts for a segmentation network in a view, from what is believed of the points that the view
-// shows. [paper Algorithm 1, which leaves the number and choice of prompts open]
+// Chooses prompts for a segmentation network in a view, from the belief about the points that the view shows.
+// [paper Algorithm 1, which leaves the number and choice of prompts open]
 #pragma once
 
 #include <span>

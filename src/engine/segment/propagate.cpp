@@ -17,11 +17,11 @@ constexpr float kPromptFacing = 0.4f;    // minimum cosine of points that become
 constexpr float kBelieved = 0.7f;        // score from which a point counts as inside; 1 - kBelieved: outside
 constexpr float kPrior = 0.1f;           // weight of the prior 1/2 relative to one frontal vote
 constexpr float kFirstWeight = 2;        // weight of the clicked view, which the user has seen
-constexpr float kMinAgreement = 0.6f;    // minimum intersection over union of a mask with what is known
+constexpr float kMinAgreement = 0.6f;    // minimum intersection over union of a mask with the believed points
 constexpr float kGoodAgreement = 0.92f;  // agreement from which a mask needs no correction
 constexpr int kCorrections = 4;          // maximum number of extra prompts, added one at a time
 constexpr size_t kPrompts = 5;           // prompts of each kind, besides those of the user
-constexpr size_t kSamples = 500;         // points of the part that views are chosen by
+constexpr size_t kSamples = 500;         // number of points of the part used to choose views
 constexpr float kEnough = 0.5f;          // votes, in frontal votes, that halve the need for more
 constexpr float kSurroundings = 0.5f;    // distance around the part, in its extents, where votes are wanted
 constexpr float kMinGain = 0.02f;        // minimum mean gain per point for which a view is segmented
@@ -46,8 +46,8 @@ class Votes {
   std::vector<float> sum_, weight_;
 };
 
-// Intersection over union of the mask and the believed points, over points of which something is known, and
-// the pixels where they differ.
+// Intersection over union of the mask and the believed points, over points with a belief, and the pixels
+// where they differ.
 struct Comparison {
   float agreement = 0;
   std::vector<Vec2f> missing, surplus, right_in, right_out;
@@ -186,7 +186,7 @@ Prompts Propagation::prompts_for(int view, const std::vector<SeenPoint>& seen) c
   return prompts;
 }
 
-// Adds a prompt where the mask differs most from what is known, as a user would, and segments again.
+// Adds a prompt where the mask differs most from the believed points, as a user would, and segments again.
 void Propagation::next_view(int view) {
   const std::vector<SeenPoint> seen = seen_by(view, handlers_.positions, handlers_.normals, kMinFacing);
   Prompts prompts = prompts_for(view, seen);
@@ -242,8 +242,8 @@ bool Propagation::used(int view) const {
 }
 
 // The view with the largest product of new information and known share of the part. Without the second factor
-// the first step goes to a view that hardly shows anything known and whose mask then contradicts the little
-// that is.
+// the first step would go to a view that shows hardly any believed point, and its mask would contradict those
+// few.
 int Propagation::choose_view() const {
   std::vector<float> need;
   std::vector<uint8_t> in;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Propagates a part from clicks in one view: the mask there is carried to the handler points, which give
-// prompts for the next view, and so on around the part. [paper Algorithm 1] What the algorithm leaves open:
-// hidden points are ignored, the views vote, and a mask that contradicts what is known has no vote.
+// prompts for the next view, and so on around the part. [paper Algorithm 1] Where the algorithm is silent:
+// hidden points are ignored, the views vote, and a mask that contradicts the earlier votes is not counted.
 #pragma once
 
 #include <span>
@@ -20,12 +20,12 @@ struct PropagateRequest {
   std::vector<Camera> cameras;  // of the views that the segmenter knows, unit frame
   int first = 0;                // index of the clicked view
   Prompts clicks;               // in the clicked view, at least one positive
-  int max_views = 10;           // maximum number of views to segment, which is most of the cost
+  int max_views = 10;           // maximum number of views to segment
 };
 
 struct PropagateReport {
   std::vector<int> views;    // views that voted, in order; the clicked one first
-  std::vector<int> refused;  // views whose masks contradicted what was known
+  std::vector<int> refused;  // views whose masks contradicted the earlier votes
 };
 
 struct PropagateResult {

@@ -19,13 +19,12 @@ constexpr int kSize = 96;
 using Truth = std::function<bool(Vec3f)>;  // whether a point of the surface is on the part
 
 Camera camera_at(Vec3d center) {
-  const Vec3d z = -center / length(center), x = normalize(cross(z, Vec3d{0.1, 0.2, 1})), y = cross(z, x);
   Camera c;
   c.width = c.height = kSize;
   c.fx = c.fy = 1.5 * kSize;
   c.cx = c.cy = kSize / 2.0;
   c.center = center;
-  c.world_from_cam = {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+  c.world_from_cam = upright_rotation(-center, {0.1, 0.2, 1});
   return c;
 }
 

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/quantile.h"
 #include "model/geometry/mesh/sparse.h"
 
 namespace cei3d {
 namespace {
 
-// A step of a third of the typical one about halves the weight: walkers take the smoothest paths, which noise
-// leaves open and borders do not. Results hardly change between half and twice that.
+// A step of a third of the typical one about halves the weight: walkers take the smoothest paths, which exist
+// across noise but not across borders. Results hardly change between half and twice that.
 constexpr float kSharpness = 8;
 constexpr float kMinWeight = 1e-6f;    // minimum weight of an edge
 constexpr double kPrior = 1e-5;        // weight of the prior at a point
@@ -21,8 +22,7 @@ float typical_step(const PointGraph& graph) {
   if (graph.edges.empty()) return kMinTypical;
   std::vector<float> steps(graph.edges.size());
   for (size_t i = 0; i < steps.size(); ++i) steps[i] = graph.edges[i].step();
-  std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
-  return max(steps[steps.size() / 2], kMinTypical);
+  return max(median(std::move(steps)), kMinTypical);
 }
 
 }  // namespace

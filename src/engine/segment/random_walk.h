@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exact border of a part: the probability that a random walker from a point meets a positive seed before
-// a negative one, where steps across differences of color are unlikely. [Grady 2006]
+// The border of a part: the score of a point is the probability that a random walker reaches a positive seed
+// before a negative one; steps across color differences are unlikely. [Grady 2006]
 #pragma once
 
 #include <span>
@@ -11,8 +11,8 @@
 
 namespace cei3d {
 
-// prior: #N, [0, 1], initial belief; it decides where the seeds hardly reach. Returns #N scores in [0, 1];
-// they cross one half in the middle of a blurred border, finer than the spacing of points.
+// prior: #N, [0, 1], initial belief; it decides far from the seeds. Returns #N scores in [0, 1]; they cross
+// one half in the middle of a blurred border, finer than the spacing of points.
 std::vector<float> random_walk(const PointGraph&, std::span<const Seed> seeds, std::span<const float> prior);
 
 }  // namespace cei3d

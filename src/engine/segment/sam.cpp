@@ -33,7 +33,7 @@ OnnxTensor encoder_input(const Image& rgb) {
   return t;
 }
 
-OnnxTensors decoder_input(const SamPicture& picture, std::span<const Vec2f> positive,
+OnnxTensors decoder_input(const SamImage& picture, std::span<const Vec2f> positive,
                           std::span<const Vec2f> negative) {
   OnnxTensor coords, labels;
   const auto add = [&](Vec2f p, float label) {
@@ -53,8 +53,9 @@ OnnxTensors decoder_input(const SamPicture& picture, std::span<const Vec2f> posi
           {"point_coords", coords},
           {"point_labels", labels},
           {"mask_input", {{1, 1, kLowRes, kLowRes}, std::vector<float>(size_t(kLowRes) * kLowRes, 0.0f)}},
+          // Its full-size masks are not used: small.
           {"has_mask_input", {{1}, {0}}},
-          {"orig_im_size", {{2}, {64, 64}}}};  // its full-size masks are not used: small
+          {"orig_im_size", {{2}, {64, 64}}}};
 }
 
 // For several prompts mask 0 is the answer. For a single click there are three masks (part, whole,
@@ -88,7 +89,7 @@ void blur(std::vector<float>& plane) {
 }
 
 // Bilinear between the centers of the low-resolution pixels.
-Image to_picture(const std::vector<float>& plane, const SamPicture& p) {
+Image to_picture(const std::vector<float>& plane, const SamImage& p) {
   Image out(p.width, p.height, 1, kOutside);
   constexpr float kStep = float(kFrame) / kLowRes;
   const auto last = float(kLowRes - 1);
@@ -128,14 +129,14 @@ Sam::Sam(const std::filesystem::path& folder, int threads)
          (folder / "encoder.onnx").string());
 }
 
-SamPicture Sam::encode(const Image& rgba) const {
+SamImage Sam::encode(const Image& rgba) const {
   const SamFrame frame = sam_frame(rgba);
   const std::string& output = encoder_.outputs().front();
   OnnxTensors out = encoder_.run({{encoder_.inputs().front(), encoder_input(frame.rgb)}}, {output});
   return {std::move(out.at(output)), rgba.width, rgba.height, frame.x0, frame.y0, frame.scale};
 }
 
-Image Sam::mask(const SamPicture& picture, std::span<const Vec2f> positive,
+Image Sam::mask(const SamImage& picture, std::span<const Vec2f> positive,
                 std::span<const Vec2f> negative) const {
   const OnnxTensors out =
       decoder_.run(decoder_input(picture, positive, negative), {"low_res_masks", "iou_predictions"});

@@ -18,16 +18,16 @@
 namespace cei3d {
 
 // Folder into which `./run sam` puts networks and runtime: `sam` beside the program's folder (build/sam),
-// inside it, or in share/cei3d beside it. The first of these if none exists.
+// inside it, or in share/cei3d beside it. Returns the first that exists, else the first.
 std::filesystem::path installed_sam();
 
 // An image as the decoder needs it. The frame of 1024 pixels shows only the object, enlarged, so that small
 // parts get as much resolution as possible.
-struct SamPicture {
+struct SamImage {
   OnnxTensor embedding;
   int width = 0, height = 0;  // of the image
   int x0 = 0, y0 = 0;         // where the frame begins in it
-  float scale = 1;            // frame pixels per picture pixel
+  float scale = 1;            // frame pixels per image pixel
 };
 
 class Sam {
@@ -37,11 +37,11 @@ class Sam {
   explicit Sam(const std::filesystem::path& folder, int threads = 0);
 
   // rgba: linear, straight alpha; the object is where alpha > 0.5.
-  SamPicture encode(const Image& rgba) const;
+  SamImage encode(const Image& rgba) const;
 
   // positive, negative: continuous pixel positions in the image. Returns log-odds, 1 channel of the image's
   // size; strongly negative outside the frame.
-  Image mask(const SamPicture&, std::span<const Vec2f> positive, std::span<const Vec2f> negative) const;
+  Image mask(const SamImage&, std::span<const Vec2f> positive, std::span<const Vec2f> negative) const;
 
  private:
   std::shared_ptr<const OnnxRuntime> runtime_;

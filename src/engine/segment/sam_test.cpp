@@ -51,7 +51,7 @@ TEST(Sam, FindsADisc) {
   if (!std::filesystem::exists(kFolder / "encoder.onnx") || !OnnxRuntime::available(kFolder))
     GTEST_SKIP() << "no segmentation network here; ./run sam installs it";
   const Sam sam(kFolder);
-  const SamPicture picture = sam.encode(disc(110, 70, 30));
+  const SamImage picture = sam.encode(disc(110, 70, 30));
   const Vec2f in[2] = {{110, 70}, {122, 78}}, out[1] = {{60, 120}};
   const Image mask = sam.mask(picture, in, out);
   ASSERT_EQ(mask.width, 200);

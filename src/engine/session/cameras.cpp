@@ -8,30 +8,23 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/math/quantile.h"
 #include "engine/project/dataset.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kPiD = 3.14159265358979323846;
-
-double median(std::vector<double> v) {
-  std::nth_element(v.begin(), v.begin() + std::ptrdiff_t(v.size() / 2), v.end());
-  return v[v.size() / 2];
-}
-
-// Any unit vector at a right angle.
+// Some unit vector perpendicular to `up`.
 Vec3d across(Vec3d up) {
   const Vec3d other = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
   return normalize(cross(up, other));
 }
 
-// Looks from `center` at `target` with `up` up; intrinsics as they are in `camera`.
+// `camera` moved to `center` and turned towards `target`.
 Camera look_at(Camera camera, Vec3d center, Vec3d target, Vec3d up) {
-  const Vec3d z = normalize(target - center), x = normalize(cross(z, up)), y = cross(z, x);
   camera.center = center;
-  camera.world_from_cam = transpose(Mat3d{{x, y, z}});
+  camera.world_from_cam = upright_rotation(target - center, up);
   return camera;
 }
 
@@ -51,7 +44,7 @@ std::vector<NamedCamera> read_camera_file(const fs::path& path) {
     for (const Json& j : file.array("cameras")) {
       JsonReader camera(j, "A camera in " + path.string());
       cameras.push_back({camera.require<std::string>("name"), "", camera_from_json(camera)});
-      camera.has("file");  // the picture that was rendered
+      camera.has("file");  // the image that was rendered
       camera.finish();
     }
     file.finish();
@@ -111,7 +104,7 @@ Camera resized(Camera c, int width, int height) {
   const double sx = double(width) / c.width;
   c.cx = c.cx * sx;
   c.cy = (c.cy - c.height / 2.0) * sx +
-         height / 2.0;  // square pixels stay square: the center of the picture stays
+         height / 2.0;  // square pixels stay square: the center of the image stays
   c.fx *= sx;
   c.fy *= sx;
   c.skew *= sx;
@@ -133,7 +126,7 @@ std::vector<NamedCamera> turntable(const Capture& capture, const Normalization& 
   const Vec3d x = across(up), y = cross(up, x);
   std::vector<NamedCamera> cameras;
   for (int i = 0; i < frames; ++i) {
-    const double a = 2 * kPiD * i / frames;
+    const double a = 2 * M_PI * i / frames;
     const Vec3d direction = (x * std::cos(a) + y * std::sin(a)) * radius + up * height;
     Camera c = look_at(capture.views.front().camera, n.center + direction * distance, n.center, up);
     c.cx = c.width / 2.0;

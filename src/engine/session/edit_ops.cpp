@@ -15,11 +15,10 @@ const EditOp& edit_op(const std::string& name) {
 Json present_params(const EditOp& op, const EditRecord& record) {
   if (record.op_version > op.version)
     fail(
-        "Edit {} was made by version {} of '{}', and this program has version {}: it cannot be made anew "
-        "here; update "
-        "cei3d.",
+        "Edit {} was made by version {} of '{}', and this program has version {}: it cannot be remade; "
+        "update cei3d.",
         record.id, record.op_version, op.name, op.version);
-  if (record.op_version < 1) fail("Edit {} has the impossible version {}.", record.id, record.op_version);
+  if (record.op_version < 1) fail("Edit {} has the invalid version {}.", record.id, record.op_version);
   return record.op_version < op.version && op.migrate ? op.migrate(record.params, record.op_version)
                                                       : record.params;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The edits as functions of what is stored of them: their parameters and input files. So each can be made
-// anew when what lies below it has changed, and on another reconstruction of the same capture.
+// Each kind of edit as a function of its stored parameters and input files, so that an edit can be remade
+// when the scene below it has changed, and on another reconstruction of the same capture.
 #pragma once
 
 #include <string>
@@ -22,15 +22,14 @@ using EditInputs = std::vector<std::pair<std::string, std::string>>;  // file na
 struct EditContext {
   const Device& device;
   const Capture& capture;
-  const Scene& scene;  // what lies below the edit
+  const Scene& scene;  // the scene below the edit
   RenderCache& frames;
   Progress& progress;
 };
 
 struct EditJob {
   std::string id;  // of the new layer
-  Json params;     // of the operation's present version, as they are stored: lengths and positions in the
-                   // capture's frame
+  Json params;  // as stored, in the operation's present version; lengths and positions in the capture frame
   EditInputs inputs;
 
   const std::string& input(const std::string& name) const;  // error when there is none
@@ -39,21 +38,22 @@ struct EditJob {
 
 struct EditOutcome {
   EditLayer layer;
-  Json report;  // what came of it; "seconds": by stage
+  Json report;  // of the result; "seconds": by stage
 };
 
 struct EditOp {
   const char* name;
   int version;  // of the operation: raised when its parameters or its results change
-  EditOutcome (*make)(const EditContext&,
-                      const EditJob&);     // does not change the scene; unknown parameters are errors
-  Aspects (*depends)(const Json& params);  // of the scene below, beside the base
-  Json (*migrate)(Json params,
-                  int version) = nullptr;  // parameters of an older version; null: they are the same
+  // Makes the layer; does not change the scene. Error: an unknown parameter.
+  EditOutcome (*make)(const EditContext&, const EditJob&);
+  // Aspects of the scene below that the result depends on, besides the base.
+  Aspects (*depends)(const Json& params);
+  // Converts parameters of an older version; null: they are the same.
+  Json (*migrate)(Json params, int version) = nullptr;
 };
 // Error: an operation that this program does not know.
 const EditOp& edit_op(const std::string& name);
-// The parameters of a stored edit as the operation's present version has them. Error: a newer version made
+// The parameters of a stored edit, converted to the operation's present version. Error: a newer version made
 // the edit.
 Json present_params(const EditOp&, const EditRecord&);
 

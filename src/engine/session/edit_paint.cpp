@@ -31,12 +31,12 @@ Image decode_scribble(const std::string& bytes, const std::string& name) {
 void require_size(const Image& scribble, const View& view, const std::string& name) {
   const Camera& c = view.camera;
   if (scribble.width != c.width || scribble.height != c.height)
-    fail("{} is {}x{} pixels, view {} is {}x{}; paint on a picture of the view's own size.", name,
-         scribble.width, scribble.height, view.name, c.width, c.height);
+    fail("{} is {}x{} pixels, view {} is {}x{}; paint on an image of the view's size.", name, scribble.width,
+         scribble.height, view.name, c.width, c.height);
 }
 
 void require_paint(const Image& scribble, const std::string& name) {
-  const float least = least_alpha(scribble);
+  const float least = min_alpha(scribble);
   for (size_t i = 3; i < scribble.data.size(); i += 4)
     if (scribble.data[i] >= least) return;
   fail("Nothing in {} is opaque (alpha at least one half): there is nothing to paint.", name);
@@ -51,7 +51,7 @@ Scribble scribble_of(const EditContext& context, const EditJob& job, const Json&
   stroke.finish();
   require_size(s.image, view, name);
   require_paint(s.image, name);
-  s.camera = context.scene.normalization.unit_from_input(view.camera);
+  s.camera = context.scene.normalization.unit_from_capture(view.camera);
   return s;
 }
 

@@ -25,7 +25,7 @@ void check_effects(const MaterialEffects& e) {
   if (e.blend && e.empty()) fail_usage("--blend needs something to blend: --material, --color or a value.");
   if (e.roughness && e.roughness_scale) fail_usage("Give --roughness or --roughness-scale, not both.");
   if (e.roughness_scale && !(*e.roughness_scale >= 0 && std::isfinite(*e.roughness_scale)))
-    fail_usage("--roughness-scale {} is not a number from 0 up.", *e.roughness_scale);
+    fail_usage("--roughness-scale {} is not a number of at least 0.", *e.roughness_scale);
   if (e.replace && e.color.empty()) fail_usage("--replace goes with --color.");
   if (!e.color.empty()) color_from_text(e.color);
 }
@@ -45,7 +45,7 @@ Vec3f color_from_text(const std::string& text) {
       text.size() == 7 && text[0] == '#' &&
       std::all_of(text.begin() + 1, text.end(), [](unsigned char c) { return std::isxdigit(c); });
   if (!plain)
-    fail_usage("'{}' is not a color; write '#RRGGBB', two hexadecimal digits a channel, in quotes.", text);
+    fail_usage("'{}' is not a color; write '#RRGGBB', two hexadecimal digits per channel, in quotes.", text);
   Vec3f color;
   for (int c = 0; c < 3; ++c)
     color[c] = linear_from_srgb(float(std::stoi(text.substr(1 + 2 * size_t(c), 2), nullptr, 16)) / 255);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters that several edits have in common, between commands and what is stored.
+// Parameters that several edits have in common: from commands to stored JSON and back.
 #pragma once
 
 #include "core/base/json_reader.h"
@@ -15,14 +15,14 @@ Vec3f color_from_text(const std::string& text);
 // Keys "material" (name of a preset), "roughness", "roughness_scale", "specular", "metalness", "color"
 // ('#rrggbb'), "replace" and "blend" of the parameters of an edit.
 struct Effects {
-  MaterialChange change;       // its blend is also that of the color
+  MaterialChange change;       // its blend applies to the color, too
   std::optional<Vec3f> color;  // linear
-  bool replace = false;        // of the color: it replaces what is there instead of scaling it
+  bool replace = false;        // the color replaces the texture instead of scaling it
 };
-// A preset's values come first, the others replace them. Error: a preset that this program does not know.
+// The other keys override the preset's values. Error: an unknown preset.
 Effects effects_from_params(JsonReader& params);
-// Writes the keys that the command has. Usage errors: no such preset, values out of range, no color,
-// --replace without a color, --blend without anything else, two ways to say the roughness.
+// Writes the keys that the command sets. Usage errors: no such preset, values out of range, no color,
+// --replace without a color, --blend alone, both roughness and roughness scale.
 void put_effects(const MaterialEffects&, Json& params);
 
 }  // namespace cei3d

@@ -51,8 +51,8 @@ std::optional<PartCombination> combination_from(JsonReader& params) {
   return combination;
 }
 
-// The network looks at the training views, the clicked one first; their cameras only: it is shown the object
-// as it is.
+// Cameras for the network: the clicked view first, then the training views. It sees renders of the present
+// object, not photographs.
 std::vector<float> scores_by_network(const EditContext& context, const std::string& view, const Scene& scene,
                                      const PartRequest& r, Progress& progress) {
   SamPartRequest request;
@@ -61,7 +61,7 @@ std::vector<float> scores_by_network(const EditContext& context, const std::stri
   request.views.cameras = {r.camera};
   for (const View& v : context.capture.views)
     if (v.split == Split::train && v.name != view)
-      request.views.cameras.push_back(scene.normalization.unit_from_input(v.camera));
+      request.views.cameras.push_back(scene.normalization.unit_from_capture(v.camera));
   return sam_part(context.device, scene, request, progress).scores;
 }
 
@@ -73,7 +73,7 @@ PartRequest request_of(const EditContext& context, const EditJob& job) {
   r.id = job.id;
   r.name = params.require<std::string>("name");
   r.view = view.name;
-  r.camera = context.scene.normalization.unit_from_input(view.camera);
+  r.camera = context.scene.normalization.unit_from_capture(view.camera);
   r.clicks = {pixels_from(params, "positive"), pixels_from(params, "negative")};
   if (const auto mask = params.optional<std::string>("mask"))
     r.mask = decode_mask(job.input("mask.png"), *mask);
@@ -103,7 +103,7 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
             {{"clicks", r.seed_seconds}, {"select", r.select_seconds}, {"effects", r.color_seconds}}}}};
 }
 
-// Color and material decide where a part ends.
+// The border of a part depends on color and material.
 Aspects depends(const Json& params) {
   JsonReader reader(params, "The parameters of a part");
   return {.shape = true, .look = true, .parts = combination_from(reader).has_value()};

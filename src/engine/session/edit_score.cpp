@@ -37,11 +37,11 @@ bool same_pixel(const Image& a, const Image& b, size_t i) {
 
 }  // namespace
 
-fs::path picture_like(const fs::path& folder, const View& view) {
+fs::path image_like(const fs::path& folder, const View& view) {
   return folder / (fs::path(view.name).filename().string() + ".png");
 }
 
-EditedArea edited_area(const Scene& scene, const EditLayer& layer, const GBuffer& g, const EditPictures& p) {
+EditedArea edited_area(const Scene& scene, const EditLayer& layer, const GBuffer& g, const EditImages& p) {
   const std::vector<uint8_t> inside = inside_layer(scene, layer, g.hits);
   EditedArea area;
   for (size_t i = 0; i + 1 < g.pixel_start.size(); ++i) {
@@ -55,9 +55,9 @@ EditedArea edited_area(const Scene& scene, const EditLayer& layer, const GBuffer
   return area;
 }
 
-void EditScorer::add(const View& view, const EditPictures& p, const EditedArea& own) {
-  const fs::path mask_file = picture_like(masks_, view);
-  const bool has_truth = !truth_.empty() && fs::exists(picture_like(truth_, view)) && fs::exists(mask_file);
+void EditScorer::add(const View& view, const EditImages& p, const EditedArea& own) {
+  const fs::path mask_file = image_like(masks_, view);
+  const bool has_truth = !truth_.empty() && fs::exists(image_like(truth_, view)) && fs::exists(mask_file);
   const Area mask = has_truth ? read_area(mask_file, view.camera) : own.any;
   if (has_truth) add_truth(view, p, mask, own.most);
   if (has_truth || truth_.empty()) add_rest(p, dilated(mask, p.after.width, p.after.height, kGrow));
@@ -65,8 +65,8 @@ void EditScorer::add(const View& view, const EditPictures& p, const EditedArea& 
   perceptual_.add(after_, over_background(p.after, 1));
 }
 
-void EditScorer::add_truth(const View& view, const EditPictures& p, const Area& mask, const Area& own) {
-  const Image truth = over_background(read_of_view(picture_like(truth_, view), view.camera), 1);
+void EditScorer::add_truth(const View& view, const EditImages& p, const Area& mask, const Area& own) {
+  const Image truth = over_background(read_of_view(image_like(truth_, view), view.camera), 1);
   const Image after = over_background(p.after, 1);
   const Area grown = dilated(mask, p.after.width, p.after.height, kGrow);
   for (size_t i = 0; i < mask.size(); ++i) {
@@ -81,7 +81,7 @@ void EditScorer::add_truth(const View& view, const EditPictures& p, const Area& 
   ++fidelity_.views;
 }
 
-void EditScorer::add_rest(const EditPictures& p, const Area& grown) {
+void EditScorer::add_rest(const EditImages& p, const Area& grown) {
   Area rest(grown.size());
   for (size_t i = 0; i < rest.size(); ++i) rest[i] = p.photo.data[4 * i + 3] > 0.5f && !grown[i];
   const Image photo = over_background(p.photo, 1), after = over_background(p.after, 1);
@@ -99,7 +99,7 @@ EditScore EditScorer::result() const {
   EditScore score;
   if (!truth_.empty()) {
     if (fidelity_.views == 0)
-      fail("{} and {} hold no pictures named like the views (r_004.png for test/r_004).", truth_.string(),
+      fail("{} and {} hold no images named like the views (r_004.png for test/r_004).", truth_.string(),
            masks_.string());
     score.truth = fidelity_;
     score.truth->iou = double(in_both_) / double(std::max<size_t>(in_either_, 1));

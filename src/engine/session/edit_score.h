@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well one edit did, gathered view by view: against pictures of how it should look, and on the rest of
-// the object.
+// Scores of one edit, accumulated view by view: against true images of the edit, and on the rest of the
+// object.
 #pragma once
 
 #include "core/image/area.h"
@@ -10,35 +10,37 @@
 
 namespace cei3d {
 
-// A picture that a folder may hold for a view: FOLDER/<last part of its name>.png.
-std::filesystem::path picture_like(const std::filesystem::path& folder, const View& view);
+// An image that a folder may hold for a view: FOLDER/<last part of its name>.png.
+std::filesystem::path image_like(const std::filesystem::path& folder, const View& view);
 
-// Pictures of one view: RGBA, sRGB, straight alpha.
-struct EditPictures {
+// Images of one view: RGBA, sRGB, straight alpha.
+struct EditImages {
   Image before, after;  // rendered without and with the edit
   Image photo;
 };
 
 struct EditedArea {
-  Area any, most;  // pixels of whose samples one, at least half meet what the layer changed
+  Area any;   // pixels with at least one sample on surface that the layer changed
+  Area most;  // pixels with at least half of their samples on it
 };
-// All pixels for a layer that is everywhere. g: the scene with the layer in it, traced.
-EditedArea edited_area(const Scene&, const EditLayer&, const GBuffer& g, const EditPictures&);
+// All pixels if the layer is not local. g: trace_view() of the scene with the layer.
+EditedArea edited_area(const Scene&, const EditLayer&, const GBuffer& g, const EditImages&);
 
 class EditScorer {
  public:
-  // truth, masks: folders; empty: there is no truth, and the edit is where its own region is.
+  // truth, masks: folders of true images and masks of the edit; empty: no truth, and the region of the edit
+  // is used as mask.
   EditScorer(std::filesystem::path truth, std::filesystem::path masks, const Perceptual& perceptual)
       : truth_(std::move(truth)), masks_(std::move(masks)), perceptual_(perceptual) {}
 
-  // own: edited_area(). Errors: pictures of another size than the view.
-  void add(const View&, const EditPictures&, const EditedArea& own);
-  // Error: truth was asked for, and no view has any.
+  // own: edited_area(). Errors: images of another size than the view.
+  void add(const View&, const EditImages&, const EditedArea& own);
+  // Error: a truth folder was given, and no view has an image in it.
   EditScore result() const;
 
  private:
-  void add_truth(const View&, const EditPictures&, const Area& mask, const Area& own);
-  void add_rest(const EditPictures&, const Area& grown);
+  void add_truth(const View&, const EditImages&, const Area& mask, const Area& own);
+  void add_rest(const EditImages&, const Area& grown);
 
   std::filesystem::path truth_, masks_;
   const Perceptual& perceptual_;

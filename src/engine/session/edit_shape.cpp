@@ -18,8 +18,8 @@ EditOutcome make_deform(const EditContext& context, const EditJob& job) {
   JsonReader params = job.reader();
   DeformRequest request;
   request.id = job.id;
-  request.from = to_float(n.unit_from_input(point_from(params, "from")));
-  request.to = to_float(n.unit_from_input(point_from(params, "to")));
+  request.from = to_float(n.unit_from_capture(point_from(params, "from")));
+  request.to = to_float(n.unit_from_capture(point_from(params, "to")));
   if (const auto radius = params.optional<double>("radius")) request.radius = float(*radius * n.scale);
   request.part = params.optional<std::string>("part", "");
   params.finish();
@@ -50,7 +50,7 @@ EditOutcome make_remove(const EditContext& context, const EditJob& job) {
 Aspects deform_depends(const Json& params) { return {.shape = true, .parts = params.contains("part")}; }
 Aspects remove_depends(const Json&) {
   return {.shape = true, .look = true, .parts = true};
-}  // new matter is colored
+}  // the color of added surface depends on it
 
 }  // namespace
 

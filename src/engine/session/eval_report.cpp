@@ -38,7 +38,7 @@ std::string edit_markdown(const EditScore& e) {
         e.rest->lpips ? " LPIPS |" : "", e.rest->lpips ? "---|" : "", e.rest->views,
         decibels_text(e.rest->psnr), e.rest->ssim,
         e.rest->lpips ? fmt::format(" {:.4f} |", *e.rest->lpips) : "", e.rest->pixels);
-  if (e.fid) text += fmt::format("\nFID between the pictures before and after the edit: {:.1f}\n", *e.fid);
+  if (e.fid) text += fmt::format("\nFID between the renders before and after the edit: {:.1f}\n", *e.fid);
   return text;
 }
 
@@ -137,9 +137,8 @@ std::string EvalReport::markdown() const {
         "the same "
         "size only.\n",
         views.size());
-  text += residual
-              ? "\nWith the residual, what light and material cannot explain; --no-residual leaves it out.\n"
-              : "\nLight and material alone.\n";
+  text += residual ? "\nWith the correction network; --no-residual leaves it out.\n"
+                   : "\nLight and material alone.\n";
   if (edit) text += edit_markdown(*edit);
   return text;
 }

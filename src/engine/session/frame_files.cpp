@@ -11,7 +11,7 @@
 namespace cei3d {
 namespace {
 
-// Straight alpha, and nothing where nothing was hit.
+// Straight alpha; 0 where nothing was hit.
 Image color_picture(const Image& linear) {
   Image out = srgb_from_linear(linear);
   for (size_t i = 0; i < out.data.size(); i += 4)
@@ -19,7 +19,7 @@ Image color_picture(const Image& linear) {
   return out;
 }
 
-// No normal is the zero vector, which decodes as such: mid gray.
+// Where nothing was hit the value is mid gray, which decodes to the zero vector.
 Image normal_picture(const Image& normals) {
   Image out(normals.width, normals.height, 3);
   for (size_t i = 0; i < out.data.size(); i += 3) {
@@ -35,7 +35,7 @@ Image scaled(Image image, float factor) {
 
 }  // namespace
 
-Image channel_picture(const Frame& f, Channel channel, double depth_scale) {
+Image channel_image(const Frame& f, Channel channel, double depth_scale) {
   switch (channel) {
     case Channel::rgb:
       return color_picture(f.rgb);

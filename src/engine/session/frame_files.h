@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames as picture files: what each channel means is said in `render -h`.
+// Frames as image files; `render -h` describes the channels.
 #pragma once
 
 #include "engine/render/render.h"
@@ -8,13 +8,13 @@
 namespace cei3d {
 
 // Values as they go into the file, [0, 1]. depth_scale: file value (of 65535) per capture unit.
-Image channel_picture(const Frame&, Channel, double depth_scale);
+Image channel_image(const Frame&, Channel, double depth_scale);
 int channel_bits(Channel);  // 8 or 16
 
-// As the file will hold it: RGBA, sRGB, rounded to 8 bits.
+// The image as an 8-bit file stores it: RGBA, sRGB, rounded.
 Image rounded_srgb(const Image& linear_rgba);
 
-// RGBA pictures of one height, sRGB, on white from left to right.
+// RGBA images of one height, sRGB, on white from left to right.
 Image side_by_side(const std::vector<Image>& pictures);
 
 }  // namespace cei3d

@@ -15,7 +15,7 @@
 namespace cei3d {
 namespace {
 
-// Blender's lookup and the scenes' are one: center +X, row 0 +Z. "yup" and "mitsuba" are one as well.
+// "blender" equals "zup": center +X, row 0 +Z. "mitsuba" equals "yup".
 EnvUp row_zero(EnvConvention convention, Vec3f up) {
   switch (convention) {
     case EnvConvention::zup:
@@ -32,8 +32,8 @@ EnvUp row_zero(EnvConvention convention, Vec3f up) {
 
 void require_lat_long(const Image& map, const std::filesystem::path& path) {
   if (map.width != 2 * map.height)
-    fail("{} is {}x{} pixels; a latitude-longitude picture is twice as wide as high.", path.string(),
-         map.width, map.height);
+    fail("{} is {}x{} pixels; a latitude-longitude image is twice as wide as high.", path.string(), map.width,
+         map.height);
   if (map.channels < 3) fail("{} has no colors; save the environment as RGB.", path.string());
   double sum = 0;
   for (const float v : map.data) {
@@ -59,7 +59,7 @@ SgMixture read_lobes(const std::filesystem::path& path) {
   return light_from_array(array.floats());
 }
 
-constexpr int kFit = 1;  // of fit_lobes as it is now: raise it when the same picture gives other lobes
+constexpr int kFit = 1;  // version of fit_lobes(): raise it when the same image gives other lobes
 
 std::filesystem::path cache_file(const LightCache& cache, const LightChoice& choice, Vec3f up) {
   const std::string picture = content_hash(read_file(choice.env));
@@ -68,7 +68,7 @@ std::filesystem::path cache_file(const LightCache& cache, const LightChoice& cho
   return cache.folder / ("light-" + key + ".npy");
 }
 
-// What is cached and does not read is computed again.
+// A cached file that cannot be read is recomputed.
 std::optional<SgMixture> cached_light(const std::filesystem::path& file) {
   std::error_code error;
   if (!std::filesystem::exists(file, error)) return std::nullopt;
@@ -90,7 +90,7 @@ SgMixture environment_light(const Device& device, const LightChoice& choice, Vec
   if (const auto light = cached_light(file)) return *light;
   const SgMixture light = light_of_picture(device, choice, axis);
   if (cache.writable) write_npy(file, to_array(light), int64_t(light.lobes.size()), 7);
-  return light_from_array(to_array(light));  // the very bits that the cache will give
+  return light_from_array(to_array(light));  // rounded as the cache stores it
 }
 
 void check_turn(const LightChoice& choice) {

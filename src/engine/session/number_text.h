@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decibels in reports. Identical pictures have infinitely many, which JSON does not know: they say so.
+// Decibels in reports. The PSNR of identical images is infinite, which JSON cannot express: it becomes a
+// word.
 #pragma once
 
 #include <fmt/format.h>

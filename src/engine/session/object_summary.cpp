@@ -16,7 +16,7 @@ ObjectSummary summary_of(const Device& device, const Scene& scene) {
   out.metal_share = out.mean.metalness;
   out.varies = bool(scene.material.varying());
   if (!out.varies || !scene.surface) return out;
-  const auto& surface = scene.poses.empty() ? scene.surface : scene.poses.front()->surface;
+  const auto& surface = scene.shape_versions.empty() ? scene.surface : scene.shape_versions.front()->surface;
   const std::vector<Material> materials = scene.material.at(device, surface->mesh().positions);
   if (materials.empty()) return out;
   std::vector<float> roughness;

@@ -7,7 +7,7 @@
 
 namespace cei3d {
 
-// Of the object as reconstructed. A scene without surface has the mean material only.
+// Summary of the object as reconstructed. Without a surface it has only the mean material.
 ObjectSummary summary_of(const Device&, const Scene&);
 
 }  // namespace cei3d

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// LPIPS and FID where the user names networks for them, else nothing.
+// LPIPS and FID, if the user names networks for them.
 #pragma once
 
 #include <memory>
@@ -18,8 +18,8 @@ class Perceptual {
 
   // a, b: RGB of one size, display-encoded.
   std::optional<double> distance(const Image& a, const Image& b) const;
-  void add(FeatureSet&, const Image& rgb) const;  // its features, if there is a network for them
-  // Nothing without a network. Error: fewer than two pictures.
+  void add(FeatureSet&, const Image& rgb) const;  // adds its features, if there is a network
+  // None without a network. Error: fewer than two images.
   std::optional<double> frechet(const FeatureSet& a, const FeatureSet& b) const;
 
  private:

@@ -106,7 +106,7 @@ std::string ObjectSummary::light_text() const {
                              : light_motion == LightMotion::camera ? "light that moves with the camera"
                                                                    : "light that turns, as on a turntable";
   if (!light_error) return motion + ", its strength assumed";
-  return fmt::format("{}, its strength (and base color) known to {:.0f} %", motion,
+  return fmt::format("{}, its strength, and with it the albedo, known to {:.0f} %", motion,
                      100 * max(light_error->x, max(light_error->y, light_error->z)));
 }
 
@@ -114,9 +114,8 @@ std::string ObjectSummary::warning() const {
   constexpr double kMuchLess = 3;  // dB
   if (!explained || explained->with_residual - explained->physical < kMuchLess) return {};
   return fmt::format(
-      "Light and material explain the photographs to {:.1f} dB, the correction network brings the pictures "
-      "to "
-      "{:.1f} dB: edits and other light will look less true than the object as photographed.",
+      "Light and material explain the photographs to {:.1f} dB, with the correction network {:.1f} dB: edits "
+      "and other light will look less realistic than the object as photographed.",
       explained->physical, explained->with_residual);
 }
 

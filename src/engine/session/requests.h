@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a Session is asked for and what it answers: plain data. Each answer can say itself as JSON.
+// Requests to a Session and its reports: plain data. Each report has a JSON form.
 #pragma once
 
 #include <filesystem>
@@ -38,13 +38,13 @@ struct CheckReport {
 };
 
 struct ReconstructRequest {
-  std::filesystem::path capture;  // may be empty with `resume`: the one the project remembers
+  std::filesystem::path capture;  // with `resume` may be empty: that of the project
   std::filesystem::path project;
-  std::string format;          // of the capture; empty: told by the files
-  ReconstructOptions options;  // with `resume`: those the project began with count instead
+  std::string format;          // of the capture; empty: detected from the files
+  ReconstructOptions options;  // not read with `resume`: those of the project are used
   bool resume = false, replace = false;
 };
-// What the object is made of and how far that explains its photographs.
+// Material and light of the object, and how well they explain the photographs.
 struct ObjectSummary {
   Material mean;
   bool varies = false;                         // the material, over the surface
@@ -53,9 +53,10 @@ struct ObjectSummary {
   std::optional<Explained> explained;          // none: not measured
   LightMotion light_motion = LightMotion::world;
   std::optional<Vec3f> light_error;  // relative, of the strength of its channels; none: not known
-  // "3 dB less than ..." if light and material explain much less than is shown; else empty.
+  // A sentence if light and material alone explain the photographs much worse than with the correction
+  // network; else empty.
   std::string warning() const;
-  std::string text() const;  // of material and light, half a line
+  std::string text() const;  // material and light in one line
   std::string material_text() const, light_text() const;
   Json json() const;
 };
@@ -71,11 +72,11 @@ struct ReconstructReport {
 struct ProjectInfo {
   std::filesystem::path folder, capture_root;
   std::string capture_format;
-  bool finished = false;        // there is an object, not only training states
+  bool finished = false;        // the reconstruction is complete
   size_t views[3] = {0, 0, 0};  // train, val, test
   Normalization normalization;
   Json options;  // of the reconstruction
-  // The rest stands when `finished`:
+  // The members below are filled only if `finished`.
   ObjectSummary object;
   size_t vertices = 0, triangles = 0, handler_points = 0, lobes = 0;
   float handler_spacing = 0;  // capture units
@@ -91,21 +92,21 @@ struct LogEntry {
   Json json() const;
 };
 
-// Another material or color.
+// Changes of material and color, as the user writes them.
 struct MaterialEffects {
-  std::string preset;  // name of a material, "gold"; its values count where there are none below
+  std::string preset;  // name of a material, "gold"; the members below override its values
   std::optional<double> roughness, specular, metalness;  // [0, 1]
-  std::optional<double> roughness_scale;                 // times the present roughness, cut off at 1
-  std::string color;     // "#RRGGBB", sRGB; empty: the preset's or the present
-  bool replace = false;  // the color replaces the texture instead of scaling it; a preset's always does
-  std::optional<double> blend;  // [0, 1], share of all this, the rest being what is there; none: 1
+  std::optional<double> roughness_scale;  // factor on the present roughness; the result is clamped to 1
+  std::string color;                      // "#RRGGBB", sRGB; empty: the preset's or the present
+  bool replace = false;  // the color replaces the texture instead of scaling it; that of a preset always does
+  std::optional<double> blend;  // [0, 1], share of the new values; the rest is the present value; none: 1
   bool empty() const {
     return preset.empty() && !roughness && !specular && !metalness && !roughness_scale && color.empty();
   }
 };
 // For help: "gold, silver, ...".
 std::string material_preset_names();
-// Empty when there is a preset of that name; else a sentence that names those that are near.
+// Empty if there is a preset of that name; else an error message with similar names.
 std::string unknown_preset(const std::string& name);
 
 struct PaintStroke {
@@ -113,17 +114,18 @@ struct PaintStroke {
   std::filesystem::path scribble;  // RGBA PNG of the view's size
 };
 enum class PaintTarget {
-  albedo,      // the base color
-  appearance,  // what the view is to show in the present light: the base color that does it
-  radiance     // what every view is to show in every light; light and material mean nothing there
+  albedo,      // the albedo
+  appearance,  // the color in the painted view under the present light; the albedo follows from it
+  radiance     // the color in every view under every light: shown without shading
 };
 struct PaintCommand {
-  std::vector<PaintStroke> strokes;  // where two overlap, the later one counts
+  std::vector<PaintStroke> strokes;  // later strokes cover earlier ones
   uint64_t seed = 1;
-  PaintTarget target = PaintTarget::albedo;  // what the colors of the scribble mean
+  PaintTarget target = PaintTarget::albedo;  // meaning of the colors of the scribble
   Routing routing = Routing::both;
-  bool erase = false;  // the base's own colors and material again where there is paint
-  // Of what is painted. Its color can only be a preset's, which replaces those of the scribbles.
+  bool erase = false;  // restore the base's albedo and material where the scribble paints
+  // Material of the painted surface. The only color allowed is that of a preset; it replaces those of the
+  // scribbles.
   MaterialEffects material{};
 };
 struct MaterialCommand {
@@ -131,12 +133,11 @@ struct MaterialCommand {
   MaterialEffects effects;
 };
 
-// A point of the surface and where it goes, capture frame.
+// Drag of a surface point, capture frame.
 struct PointDrag {
   Vec3d from, to;
 };
-// The same in a picture: the point seen at `pixel` moves by `drag` pixels in the plane parallel to the
-// picture.
+// Drag of the surface point seen at `pixel` by `drag` pixels, in the plane through it parallel to the image.
 struct PixelDrag {
   std::string view;
   Vec2<double> pixel, drag;  // (column, row), pixel centers at +0.5
@@ -146,15 +147,15 @@ struct DeformCommand {
   std::optional<double> radius;  // along the surface, capture units
   std::string part;              // empty: the whole object
 };
-// A part by clicks, a mask or a clicked material in one view, with or without effects on it.
+// A part by clicks, a mask or a clicked material in one view, and optional changes of its material and color.
 struct PartCommand {
   std::string view;
   std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centers at +0.5
   std::filesystem::path mask;                    // PNG in place of clicks; empty: none
-  std::optional<Vec2<double>> like{};            // in place of clicks: what has the material of this pixel
-  bool like_color = false;                       // and its base color
+  std::optional<Vec2<double>> like{};            // instead of clicks: surface with the material at this pixel
+  bool like_color = false;                       // compare the albedo, too
   std::string segmenter = "grow";                // or "sam"
-  bool in_view = false;                          // only what this view shows of the part
+  bool in_view = false;                          // only the surface that this view shows
   std::string name;                      // empty: that of the part combined with, else "part1", "part2", ...
   std::string add, subtract, intersect;  // name of a part to combine with; at most one
   MaterialEffects effects;
@@ -162,7 +163,7 @@ struct PartCommand {
 struct RemoveCommand {
   std::string part;
 };
-// What came of an edit.
+// Result of an edit.
 struct EditSummary {
   std::string id;
   Json report;  // by kind of edit; "seconds": of its stages
@@ -173,8 +174,8 @@ struct EditSummary {
 
 // One view without an edit and with it.
 struct ChangeRequest {
-  std::string id;    // of the edit
-  std::string view;  // empty: the one that the edit was made in, else the first that was held out
+  std::string id;                 // of the edit
+  std::string view;               // empty: the view that the edit was made in, else the first held-out view
   std::filesystem::path picture;  // PNG, before and after side by side on white; empty: none
   int samples = 2;
 };
@@ -186,12 +187,12 @@ struct ChangeSummary {
 
 struct ReplayReport {
   std::vector<std::pair<std::string, std::string>> edits;  // id in the project replayed, id in the other one
-  std::vector<std::string> notes;                          // sentences: what may differ
+  std::vector<std::string> notes;                          // sentences on what may differ
   Json json() const;
 };
 
 struct PartInfo {
-  std::string name, edit;  // the edit that says where it is
+  std::string name, edit;  // id of the edit that defines it
   size_t points = 0;       // vertices of the present surface
   double share = 0;        // of all of them
   Json json() const;
@@ -210,10 +211,10 @@ struct Turntable {
 };
 struct ProjectViews {};  // the project's held-out views, or all when it has none
 using CameraChoice = std::variant<ProjectViews, CaptureViews, CameraFile, Turntable>;
-bool shows_photographs(const CameraChoice&);        // the views of a capture
-bool is_camera_file(const std::filesystem::path&);  // JSON with a list "cameras"
+bool shows_photographs(const CameraChoice&);        // whether they are views of a capture
+bool is_camera_file(const std::filesystem::path&);  // whether it is JSON with a list "cameras"
 
-// By their names on the command line; nothing: there is no such.
+// Names as on the command line; none: unknown name.
 std::optional<PaintTarget> paint_target_from_name(const std::string&);
 std::optional<Routing> routing_from_name(const std::string&);
 const char* paint_target_name(PaintTarget);
@@ -227,8 +228,8 @@ enum class EnvConvention { by_up_axis, zup, yup, mitsuba, blender };
 std::optional<EnvConvention> env_convention_from_name(const std::string&);  // "zup", ...
 
 struct LightChoice {
-  std::filesystem::path
-      env;  // latitude-longitude picture, or .npy of lobes as exported; empty: the object's own light
+  // Latitude-longitude image, or .npy of lobes as exported; empty: the object's own light.
+  std::filesystem::path env;
   double rotate_degrees = 0;  // counter-clockwise about the up axis, seen from above
   EnvConvention convention = EnvConvention::by_up_axis;
   double scale = 1;  // times the radiance
@@ -241,25 +242,25 @@ struct RenderRequest {
   std::vector<Channel> channels{Channel::rgb};
   int width = 0, height = 0;  // 0: the cameras' own
   LightChoice light;
-  int samples = 2;       // a pixel and axis
-  bool residual = true;  // with what light and material cannot explain; never under another light
+  int samples = 2;       // per pixel and axis
+  bool residual = true;  // with the correction network, which is never used under another light
 };
 struct RenderReport {
   size_t views = 0;
   double seconds = 0, trace_seconds = 0, shade_seconds = 0;
-  std::vector<std::filesystem::path> folders;  // one a channel
+  std::vector<std::filesystem::path> folders;  // one per channel
   Json json() const;
 };
 
-// A part's mask in each view: OUT/<view>.png, gray, how much of a pixel shows the part.
+// The mask of a part in each view: OUT/<view>.png, gray, share of the pixel that shows the part.
 struct PartMasksRequest {
   std::filesystem::path out;
   CameraChoice cameras;
   std::string part;
-  int samples = 2;  // a pixel and axis
+  int samples = 2;  // per pixel and axis
 };
 struct PartMasksReport {
-  size_t views = 0, shown = 0;  // shown: views with some of the part
+  size_t views = 0, shown = 0;  // shown: views that show the part
   double seconds = 0;
   Json json() const;
 };
@@ -274,7 +275,7 @@ struct ExportReport {
   Json json() const;
 };
 
-// Networks that the user supplies, see docs/evaluation.md; empty: none, and its figures are left out.
+// Networks that the user supplies, see docs/evaluation.md; empty: none, and its score is left out.
 struct NetworkFiles {
   std::filesystem::path lpips, fid;
 };
@@ -283,26 +284,26 @@ struct EvalRequest {
   std::filesystem::path capture;  // empty: the project's own
   std::optional<Split> split;     // none: test when there is one, else all
   int samples = 2;
-  bool residual = true;  // with what light and material cannot explain
+  bool residual = true;  // with the correction network
   NetworkFiles networks;
   std::string edit;                    // also score this edit, an id of the log; empty: none
-  std::filesystem::path truth, masks;  // with it: folders of pictures named like the views; both or none
+  std::filesystem::path truth, masks;  // with it: folders of images named like the views; both or none
   // Folder of PNGs to write: photograph, render and, with an edit, edited render, side by side. Empty: none.
   std::filesystem::path pictures;
 };
 struct ViewScore {
   std::string view;
   double psnr = 0, ssim = 0;
-  std::optional<double> psnr_masked;  // nothing without object pixels
+  std::optional<double> psnr_masked;  // none without object pixels
   std::optional<double> lpips;
 };
-// An edit against pictures of how it should look, where the masks say.
+// An edit against true images, inside the true masks.
 struct EditFidelity {
   double psnr_inside = 0;
-  double iou = 0;  // of the pixels that the edit has for the greater part and those of the masks
+  double iou = 0;  // intersection over union of EditedArea::most and the masks
   size_t pixels_inside = 0, changed_outside = 0, pixels_outside = 0, views = 0;
 };
-// Pixels of the object that are not the edit's: edited renders against photographs. Means over views.
+// Pixels of the object outside the edit: edited renders against photographs. Means over views.
 struct RestScore {
   double psnr = 0, ssim = 0;
   std::optional<double> lpips;
@@ -310,19 +311,19 @@ struct RestScore {
 };
 struct EditScore {
   std::optional<EditFidelity> truth;
-  std::optional<RestScore> rest;  // nothing when the edit is everywhere
-  std::optional<double> fid;      // between the pictures without and with the edit, as the paper has it
+  std::optional<RestScore> rest;  // none if the edit covers the whole object
+  std::optional<double> fid;      // between the renders without and with the edit, as in the paper
 };
 struct EvalReport {
   std::vector<ViewScore> views;
   double psnr = 0, ssim = 0, psnr_masked = 0;  // means over views
   double psnr_worst = 0;
   std::string worst_view;
-  bool residual = false;  // what light and material cannot explain was in the pictures
+  bool residual = false;  // whether the images include the correction network
   struct Alone {
     double psnr = 0, psnr_masked = 0;
   };
-  std::optional<Alone> alone;        // the same without it; none: there was none
+  std::optional<Alone> alone;        // the same without the correction network; none: the object has none
   std::optional<double> lpips, fid;  // fid: between renders and photographs
   std::optional<EditScore> edit;
   Json json() const;

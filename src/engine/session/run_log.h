@@ -8,7 +8,7 @@
 
 namespace cei3d {
 
-// Progress that also keeps the run's log: one JSON object a line.
+// Forwards progress and writes the log of the run: one JSON object per line.
 class RunLog : public Progress {
  public:
   RunLog(Progress& listener, const std::filesystem::path& file)
@@ -17,8 +17,9 @@ class RunLog : public Progress {
  private:
   void on_report(const ProgressReport& r) override { listener_.report(r); }
   void on_log(const std::string& json_line) override {
-    out_ << json_line
-         << std::endl;  // at once: it is read while the run goes on; a full disk must not stop training
+    // Flushed, because it is read while the run goes on. Errors are ignored: a full disk must not stop
+    // training.
+    out_ << json_line << std::endl;
     listener_.log(json_line);
   }
   bool is_cancelled() const override { return listener_.cancelled(); }

@@ -75,7 +75,7 @@ Project& Session::project() const {
 }
 
 void Session::open(const fs::path& folder, Access access) {
-  close();  // lets go of its lock first: it may be the same project
+  close();  // releases the lock first: it may be the same project
   const auto mode = access == Access::write ? Project::Mode::write : Project::Mode::read;
   project_ = std::make_unique<Project>(Project::open(folder, mode));
 }

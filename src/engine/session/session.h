@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// All that a user can ask for, as functions: the command line (and later the server) only parse, call one of
-// these and print what comes back. Lengths and positions are in the capture's frame and units at this edge.
+// The facade of the program: one method per command. The command line parses, calls one of these and prints
+// the result. Lengths and positions are in the capture frame and its units.
 #pragma once
 
 #include <filesystem>
@@ -24,35 +24,35 @@ class Threads;
 struct Scene;
 using EditInputs = std::vector<std::pair<std::string, std::string>>;  // file name, bytes
 
-// For one thread at a time; it works on several of its own. Several sessions, each with its own project, may
-// be used by several threads at the same time.
+// For one thread at a time; it computes on several threads. Several sessions, each with its own project, may
+// be used by different threads at the same time.
 class Session {
  public:
-  // device: core/compute/device.h make_device(). threads: 0 takes every core.
+  // device: a spec of make_device() in core/compute/device.h. threads: 0: one per core.
   explicit Session(const std::string& device = "auto", int threads = 0);
   ~Session();
 
   const Device& device() const { return *device_; }
   const Threads& threads() const { return *threads_; }
-  // What frames of the open project share, for measurements and tests; a new one with every open().
+  // The cache of the open project, for measurements and tests; open() replaces it.
   RenderCache& frames() { return *frames_; }
 
   // Without a project.
   static MachineInfo machine();
   CheckReport check(const CheckRequest&);
 
-  // Makes a project, or goes on with one; it is open for writing afterwards. Interrupted Error: its state is
+  // Makes a project or resumes one, which is open for writing afterwards. Interrupted Error: the state is
   // saved.
   ReconstructReport reconstruct(const ReconstructRequest&, Progress&);
 
-  // Everything below needs an open project; a second call opens another.
+  // All methods below need an open project; a second open() replaces it.
   enum class Access { read, write };
   void open(const std::filesystem::path& project, Access);
-  void close();  // lets go of the project and its lock
+  void close();  // releases the project and its lock
   ProjectInfo info() const;
   std::vector<LogEntry> log() const;
-  Scene scene() const;  // the object as it is: base and the edits that are on
-  // Edits. Each adds a layer at the cursor of the history; when one fails, nothing has changed.
+  Scene scene() const;  // the present object: base and active edits
+  // Edits. Each adds a layer at the cursor of the history; a failed edit changes nothing.
   EditSummary paint(const PaintCommand&, Progress&);
   EditSummary change_material(const MaterialCommand&, Progress&);
   EditSummary change_light(const LightChoice&, Progress&);
@@ -60,15 +60,15 @@ class Session {
   EditSummary remove(const RemoveCommand&, Progress&);
   EditSummary select_part(const PartCommand&, Progress&);
   ChangeSummary show_change(const ChangeRequest&);  // of an edit that is on
-  // Edits that depend on what comes or goes are made anew. Errors: one of them can't be; nothing has changed
-  // then.
+  // Edits that depend on the one that appears or disappears are remade. Error: one of them cannot be remade;
+  // nothing is changed.
   std::string undo(Progress&);  // id of the edit that is undone now
   std::string redo(Progress&);
   bool toggle(const std::string& id, Progress&);  // the new state
-  // Makes the edits of this project, those that are done, on top of another one's; those that are off are
-  // switched off there, too. Error: one can't be made there; those before it stand.
+  // Makes the edits of this project that are done on top of those of another project; edits that are off are
+  // switched off there. Error: an edit cannot be made there; those before it are kept.
   ReplayReport replay(const std::filesystem::path& on, Progress&);
-  std::vector<PartInfo> parts() const;  // by name
+  std::vector<PartInfo> parts() const;  // sorted by name
   PartMasksReport part_masks(const PartMasksRequest&, Progress&) const;
   RenderReport render(const RenderRequest&, Progress&);
   ExportReport export_to(const ExportRequest&, Progress&);

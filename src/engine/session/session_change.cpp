@@ -39,7 +39,7 @@ ChangeSummary Session::show_change(const ChangeRequest& request) {
                                     [&](const EditLayer& l) { return l.id == request.id; });
     if (layer == all.layers.end())
       fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", request.id);
-    const Camera camera = before.normalization.unit_from_input(view.camera);
+    const Camera camera = before.normalization.unit_from_capture(view.camera);
     const ChangeReport r =
         compare_views(*device_, *frames_, before, with_layer(before, *layer), camera, request.samples);
     if (!request.picture.empty())

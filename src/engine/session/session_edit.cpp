@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Edits: commands become parameters and input files, which is all that an edit is made from; see edit_ops.h.
+// Edits: commands become parameters and input files, from which edits are made (edit_ops.h).
 #include <cmath>
 
 #include "core/base/error.h"
@@ -18,7 +18,7 @@
 namespace cei3d {
 namespace {
 
-// What edits are made with.
+// The context of edits.
 struct Tools {
   const Device& device;
   RenderCache& frames;
@@ -44,8 +44,8 @@ EditSummary add_edit_to(Project& project, const Tools& tools, const char* name, 
   return s;
 }
 
-// Makes what a change of the history asks for, before it is made: so the history that stands is always
-// complete.
+// Remakes the edits that a change of the history needs before the change, so that the stored history is
+// always complete.
 void make_anew(Project& project, const Tools& tools, const Stack& next) {
   while (const auto id = project.first_stale(next)) {
     const EditRecord record = project.edit(*id);
@@ -58,30 +58,28 @@ void make_anew(Project& project, const Tools& tools, const Stack& next) {
       project.add_result(next, *id, made.layer, op.version);
     } catch (const Error& e) {
       if (e.code() == ErrorCode::interrupted) throw;
-      fail("Edit {} would have to be made anew, and cannot be: {} Nothing was changed.", *id, e.what());
+      fail("Edit {} would have to be remade, which fails: {} Nothing was changed.", *id, e.what());
     }
   }
 }
 
 std::string version_note(const std::string& id, int version, const EditOp& op) {
-  return fmt::format("Edit {} was made by version {} of '{}' and is made anew by version {}: it may differ.",
-                     id, version, op.name, op.version);
+  return fmt::format("Edit {} was made by version {} of '{}' and is remade by version {}: it may differ.", id,
+                     version, op.name, op.version);
 }
 
-// Usage errors: what does not go together in one edit.
+// Usage errors: options that exclude each other.
 void check_paint(const PaintCommand& c) {
   const MaterialEffects& m = c.material;
-  if (c.erase && c.target != PaintTarget::albedo)
-    fail_usage("--erase paints no color that --target could be about.");
-  if (c.erase && c.routing == Routing::none)
-    fail_usage("--erase needs to know where; use another --routing.");
+  if (c.erase && c.target != PaintTarget::albedo) fail_usage("--erase paints no color; leave out --target.");
+  if (c.erase && c.routing == Routing::none) fail_usage("--erase needs a region; use another --routing.");
   if (!m.color.empty()) fail_usage("Paint has the colors of its scribble; leave out --color.");
   if (m.blend) fail_usage("Paint is blended by the scribble's alpha; leave out --blend.");
   if (m.empty()) return;
-  if (c.erase) fail_usage("--erase restores what was there; it goes with no material.");
-  if (c.routing == Routing::none) fail_usage("A material needs to know where; use another --routing.");
+  if (c.erase) fail_usage("--erase restores the material; leave out the material options.");
+  if (c.routing == Routing::none) fail_usage("A material needs a region; use another --routing.");
   if (c.target == PaintTarget::radiance)
-    fail_usage("With --target radiance light and material mean nothing; leave out the material.");
+    fail_usage("With --target radiance, material has no effect; leave out the material options.");
   if (c.target != PaintTarget::albedo && !m.preset.empty())
     fail_usage("--material {} paints its own color, which is an albedo; leave out --target.", m.preset);
 }

@@ -38,7 +38,7 @@ std::vector<uint8_t> mask_of(const Image& rgba) {
   return mask;
 }
 
-// Both sets of pictures, for the distance between them.
+// Both sets of images, for the distance between them.
 struct Sets {
   FeatureSet rendered, photos;
 };
@@ -51,7 +51,7 @@ ViewScore score_view(const View& view, const Image& rendered, const Image& photo
   return {view.name, psnr(a, b), ssim(a, b), psnr_in_mask(a, b, mask_of(photo)), perceptual.distance(a, b)};
 }
 
-// The share of one view of many.
+// Progress of one view as a share of all.
 void add_mean(const Image& rendered, const Image& photo, size_t views, EvalReport::Alone& mean) {
   const Image a = over_background(rendered, 1), b = over_background(photo, 1);
   mean.psnr += psnr(a, b) / double(views);
@@ -77,7 +77,7 @@ void summarise(EvalReport& r) {
   r.psnr_masked /= double(std::max<size_t>(masked, 1));
 }
 
-// The object as if one of its edits had not been made.
+// The object without one of its edits.
 Scene scene_without(Scene base, const Scene& scene, const std::string& edit) {
   for (const EditLayer& l : scene.layers)
     if (l.id != edit) base = with_layer(std::move(base), l);
@@ -91,7 +91,7 @@ const EditLayer* layer_of(const Scene& scene, const std::string& edit) {
   fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", edit);
 }
 
-Image side_by_side(const EditPictures& p, bool edited) {
+Image side_by_side(const EditImages& p, bool edited) {
   std::vector<Image> pictures{p.photo, p.before};
   if (edited) pictures.push_back(p.after);
   return side_by_side(pictures);
@@ -108,7 +108,7 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
     const EditLayer* edit = layer_of(scene, request.edit);
     const Scene without = edit ? scene_without(base, scene, request.edit) : scene;
     const auto trace = [&](const Scene& s, const View& v) {
-      return frames_->trace(s, s.normalization.unit_from_input(v.camera), request.samples);
+      return frames_->trace(s, s.normalization.unit_from_capture(v.camera), request.samples);
     };
     const auto picture = [&](const Scene& s, const View& v) {
       const Scene lit = in_view(s, v.camera);
@@ -120,7 +120,7 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
     for (size_t i = 0; i < views.size(); ++i) {
       if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Evaluation was interrupted.");
       progress.report({"eval", double(i) / double(views.size()), -1, views[i].name});
-      EditPictures p;
+      EditImages p;
       p.after = picture(scene, views[i]);
       p.before = edit ? picture(without, views[i]) : p.after;
       p.photo = rounded_srgb(load_linear_rgba(views[i]));
@@ -132,8 +132,7 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
       }
       report.views.push_back(score_view(views[i], p.before, p.photo, perceptual, sets));
       if (edit) scorer.add(views[i], p, edited_area(scene, *edit, trace(scene, views[i])->buffer, p));
-      if (!request.pictures.empty())
-        write_png(picture_like(request.pictures, views[i]), side_by_side(p, edit));
+      if (!request.pictures.empty()) write_png(image_like(request.pictures, views[i]), side_by_side(p, edit));
     }
     summarise(report);
     report.residual = bool(scene.residual);

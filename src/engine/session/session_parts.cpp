@@ -46,10 +46,10 @@ void check_place(const PartCommand& c) {
   const bool clicks = !c.positive.empty() || !c.negative.empty();
   if (clicks + !c.mask.empty() + c.like.has_value() != 1)
     fail_usage(
-        "Say where the part is by one of --positive X,Y (and --negative X,Y), --like X,Y and --mask "
+        "Give the part by one of --positive X,Y (and --negative X,Y), --like X,Y and --mask "
         "FILE.png.");
   if (c.segmenter == "sam" && !clicks)
-    fail_usage("The network wants clicks; --mask and --like go without --segmenter.");
+    fail_usage("The network needs clicks; leave out --segmenter with --mask and --like.");
   if (c.like_color && !c.like) fail_usage("--like-color goes with --like.");
 }
 
@@ -115,10 +115,11 @@ PartMasksReport Session::part_masks(const PartMasksRequest& request, Progress& p
     PartMasksReport report;
     for (const NamedCamera& c : cameras) {
       if (progress.cancelled())
-        throw Error(ErrorCode::interrupted, "Writing masks was interrupted; those written so far are whole.");
+        throw Error(ErrorCode::interrupted,
+                    "Writing masks was interrupted; those written so far are complete.");
       progress.report({"masks", double(report.views) / double(cameras.size()), -1, c.name});
       const GBuffer g =
-          trace_view(*device_, scene, scene.normalization.unit_from_input(c.camera), request.samples);
+          trace_view(*device_, scene, scene.normalization.unit_from_capture(c.camera), request.samples);
       const Image mask = part_mask(scene, part, g);
       write_png(request.out / (c.file + ".png"), mask);
       ++report.views;

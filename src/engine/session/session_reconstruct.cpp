@@ -52,22 +52,22 @@ ReconstructOptions options_from_json(const Json& j) {
   o.seed = reader.require<uint64_t>("seed");
   o.downscale = reader.require<int>("downscale");
   o.test_every = reader.require<int>("test_every");
-  o.views = reader.optional("views", 0);                                        // older projects have none
-  o.light = light_motion_named(reader.optional("light", std::string("auto")));  // nor that
+  o.views = reader.optional("views", 0);                                        // missing in older projects
+  o.light = light_motion_named(reader.optional("light", std::string("auto")));  // missing in older projects
   o.light_color = light_color_from(reader.optional("light_color", std::string())).value_or(LightColorPrior());
   reader.has("format");
   reader.finish();
   return o;
 }
 
-// Checked as `check` does, so that nothing is written for a capture that cannot work.
+// The same checks as in `check`, so that nothing is written for an unusable capture.
 Project create_project(const ReconstructRequest& request, const CheckReport& checked) {
   require_usable(checked.report);
   return Project::create(request.project, {*checked.report.normalization, options_json(request)},
                          checked.capture, request.replace);
 }
 
-// The capture must be as it was when the reconstruction was begun.
+// Error: the capture has changed since the reconstruction began.
 void require_same_capture(const Project& project, const fs::path& given) {
   Capture now = project.capture();
   if (!given.empty()) {
@@ -76,7 +76,7 @@ void require_same_capture(const Project& project, const fs::path& given) {
   }
   if (capture_fingerprint(now) != project.fingerprint())
     fail(
-        "The capture {} is not as it was when {} was begun: its views, cameras or pictures differ. Restore "
+        "The capture {} has changed since {} was begun: its views, cameras or images differ. Restore "
         "it, or start anew with --force.",
         now.root.string(), project.folder().string());
 }

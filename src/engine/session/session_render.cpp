@@ -63,7 +63,7 @@ Json run_json(const Project& project, const RenderRequest& request, const std::v
 
 void require_running(const Progress& progress) {
   if (progress.cancelled())
-    throw Error(ErrorCode::interrupted, "Rendering was interrupted; the pictures written so far are whole.");
+    throw Error(ErrorCode::interrupted, "Rendering was interrupted; the images written so far are complete.");
 }
 
 }  // namespace
@@ -86,14 +86,13 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
       progress.report({"render", double(i) / double(cameras.size()), -1, cameras[i].name});
       watch.lap();
       const auto view =
-          frames_->trace(scene, scene.normalization.unit_from_input(cameras[i].camera), request.samples);
+          frames_->trace(scene, scene.normalization.unit_from_capture(cameras[i].camera), request.samples);
       report.trace_seconds += watch.lap();
       const Scene lit = turns ? in_view(scene, cameras[i].camera) : scene;
       const Frame frame = frames_->shade(lit, frames_->light(lit), *view);
       report.shade_seconds += watch.lap();
       for (const Channel c : request.channels)
-        write_png(picture_path(request.out, c, cameras[i]), channel_picture(frame, c, depth),
-                  channel_bits(c));
+        write_png(picture_path(request.out, c, cameras[i]), channel_image(frame, c, depth), channel_bits(c));
     }
     write_file_atomic(request.out / "render.json",
                       run_json(project(), request, cameras, depth, bool(scene.residual)).dump(1) + "\n");

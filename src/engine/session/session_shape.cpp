@@ -9,11 +9,10 @@
 namespace cei3d {
 namespace {
 
-// The point that the view shows at the pixel, and where the drag takes it in the plane parallel to the
-// picture.
+// The surface point at the pixel, and its target after the drag in the plane parallel to the image.
 PointDrag drag_of(const Device& device, const Scene& scene, const Capture& capture, const PixelDrag& d) {
   const View& view = find_view(capture, d.view);
-  const Camera camera = scene.normalization.unit_from_input(view.camera);
+  const Camera camera = scene.normalization.unit_from_capture(view.camera);
   if (!(d.pixel.x >= 0 && d.pixel.y >= 0 && d.pixel.x <= camera.width && d.pixel.y <= camera.height))
     fail_usage("Pixel {:.6g},{:.6g} is not in view {}, which is {}x{}.", d.pixel.x, d.pixel.y, view.name,
                camera.width, camera.height);
@@ -27,7 +26,7 @@ PointDrag drag_of(const Device& device, const Scene& scene, const Capture& captu
   const Vec3d forward = to_double(camera.forward());
   const Vec3d towards = to_double(camera.ray(d.pixel.x + d.drag.x, d.pixel.y + d.drag.y).direction);
   const Vec3d to = camera.center + towards * (dot(from - camera.center, forward) / dot(towards, forward));
-  return {scene.normalization.input_from_unit(from), scene.normalization.input_from_unit(to)};
+  return {scene.normalization.capture_from_unit(from), scene.normalization.capture_from_unit(to)};
 }
 
 Json list_of(Vec3d v) { return Json::array({v.x, v.y, v.z}); }

@@ -22,7 +22,7 @@ class Body {
   virtual bool passes_within(const Ray& ray, float radius) const = 0;
 };
 
-// So near to the surface a ray has met it, unit-sphere units.
+// Distance to the surface at which a ray counts as a hit, unit frame.
 inline constexpr float kTouch = 1e-4f;
 
 // Distance along the ray to the first point nearer to the surface than radius + kTouch; negative: there is

@@ -52,7 +52,7 @@ float pattern_at(Vec3f p) {
   return specks > 0.75f ? 1.0f : clamp(0.5f + 0.25f * wave, 0.0f, 1.0f);
 }
 
-Vec3f base_color_at(const Finish& f, Vec3f p) {
+Vec3f albedo_at(const Finish& f, Vec3f p) {
   if (!f.second_color) return f.color;
   const float s = pattern_at(p);
   return f.color * (1 - s) + *f.second_color * s;

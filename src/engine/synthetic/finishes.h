@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the regions of a synthetic body are made of.
+// Materials and colors of the regions of a synthetic body.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace cei3d {
 
-// A material and a base color: one color, or two that a pattern in space mixes.
+// A material and an albedo: one color, or two that a pattern in space mixes.
 struct Finish {
   Material material;
   Vec3f color{0.5f, 0.5f, 0.5f};        // linear, [0, 1]
@@ -19,14 +19,14 @@ struct Finish {
 };
 
 // At a point of the surface, linear.
-Vec3f base_color_at(const Finish&, Vec3f p);
+Vec3f albedo_at(const Finish&, Vec3f p);
 
-// Where `p` lies between the two colors, [0, 1]: soft waves with a sharp-edged speck here and there.
+// Mixing weight of the second color at `p`, [0, 1]: soft waves with a few sharp-edged specks.
 float pattern_at(Vec3f p);
 
 std::vector<std::string> finish_set_names();
-// One finish for each region, by the set's name: "plastic" is one material all over, "enamel" is several.
-// Usage error: no such set; the names are listed.
+// One finish for each region, by the set's name: "plastic" has one material, "enamel" several. Usage error:
+// no such set; the names are listed.
 std::vector<Finish> finish_set(const std::string& name, const std::vector<std::string>& regions);
 
 // Usage error: a value out of range; `region` names it in the message.

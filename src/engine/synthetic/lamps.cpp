@@ -18,7 +18,7 @@ struct NamedLight {
   SgMixture light;
 };
 
-// Radiance such that white plaster facing the light is about as bright as a picture can show.
+// Radiance such that white plaster facing the light is about as bright as an image can show.
 std::vector<NamedLight> lights() {
   const auto towards = [](float x, float y, float z) { return normalize(Vec3f{x, y, z}); };
   return {{"daylight",
@@ -76,7 +76,7 @@ LightSampler::LightSampler(const SgMixture& light) {
     lobes_.push_back({l, power, 1 / sg_integral(l.lambda)});
     total += power;
   }
-  if (!(total > 0)) fail("A light without any radiance shows nothing.");
+  if (!(total > 0)) fail("The light has no radiance.");
   for (Lobe& l : lobes_) l.share /= total;
 }
 
@@ -94,7 +94,8 @@ Vec3f LightSampler::sample(float pick, Vec2<float> u) const {
   size_t k = 0;
   for (; k + 1 < lobes_.size() && pick >= lobes_[k].share; ++k) pick -= lobes_[k].share;
   const SgLobe& sg = lobes_[k].sg;
-  // The inverse of the share of the lobe within an angle; 1 - cosine, exact for sharp lobes, too.
+  // Inverse of the cumulative distribution of the lobe, as 1 - cosine, which is accurate for sharp lobes,
+  // too.
   const float fall =
       sg.lambda < 1e-3f ? 2 * u.x : -std::log1p(-u.x * (1 - std::exp(-2 * sg.lambda))) / sg.lambda;
   const float sine = std::sqrt(max(fall * (2 - fall), 0.0f)), turn = 2 * kPi * u.y;

@@ -4,21 +4,21 @@
 namespace cei3d {
 namespace {
 
-constexpr float kLift = 1e-3f;  // rays leave the surface from this far above it, unit-sphere units
+constexpr float kLift = 1e-3f;  // rays leave the surface from this far above it, unit frame
 
 Ray leaving(const BodyPoint& p, Vec3f direction) { return {p.position + p.normal * kLift, direction}; }
 
-// Share of a way of sampling in the estimate that two ways make together. [Veach 1997, balance heuristic]
+// Weight of one of two sampling strategies in a combined estimate. [Veach 1997, balance heuristic]
 float share(float density, float other) { return density / (density + other); }
 
 }  // namespace
 
 BodyPoint body_point(const SyntheticScene& scene, Vec3f position) {
   const Finish& f = scene.finishes[scene.shape.region_at(position)];
-  return {position, scene.shape.body->normal(position), f.material, base_color_at(f, position)};
+  return {position, scene.shape.body->normal(position), f.material, albedo_at(f, position)};
 }
 
-// Light from a direction that the light chose.
+// Estimate by a direction sampled from the light.
 Vec3f PathTracer::direct(const BodyPoint& p, const Scattering& s, float pick, Vec2<float> u) const {
   const Vec3f l = light_.sample(pick, u);
   if (dot(l, p.normal) <= 0 || scene_.shape.body->passes_within(leaving(p, l), 0)) return {0, 0, 0};
@@ -29,7 +29,7 @@ Vec3f PathTracer::direct(const BodyPoint& p, const Scattering& s, float pick, Ve
 Vec3f PathTracer::radiance(BodyPoint p, Vec3f to_viewer, SampleSequence& samples) const {
   Vec3f sum{0, 0, 0}, weight{1, 1, 1};
   for (int bounce = 0;; ++bounce) {
-    const Scattering s(p.normal, to_viewer, p.material, p.base_color, scene_.diffuse);
+    const Scattering s(p.normal, to_viewer, p.material, p.albedo, scene_.diffuse);
     const Vec2<float> picks = samples.pair(), to_lamp = samples.pair(), onward = samples.pair();
     sum += weight * direct(p, s, picks.x, to_lamp);
     const Vec3f l = s.sample(picks.y, onward);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a point of a synthetic scene sends to the camera, by path tracing: the rendering integral with shadows
-// and light that is reflected from one place of the surface to another, unbiased up to the number of bounces.
-// It shares nothing with the program's shading but the reflectance itself, and so is a check of it.
+// Path tracer for synthetic scenes: the rendering integral with shadows and interreflections, unbiased up to
+// the number of bounces. It shares only the reflectance formulas with the program's shading, and is therefore
+// a check of it.
 #pragma once
 
 #include <vector>
@@ -19,13 +19,13 @@ struct SyntheticScene {
   std::vector<Finish> finishes;  // of shape.regions
   SgMixture light;
   Diffuse diffuse = Diffuse::burley;
-  int bounces = 3;  // how often light may go from one place of the surface to another
+  int bounces = 3;  // maximum number of interreflections
 };
 
 struct BodyPoint {
   Vec3f position, normal;
   Material material;
-  Vec3f base_color;  // linear
+  Vec3f albedo;  // linear
 };
 BodyPoint body_point(const SyntheticScene&, Vec3f position);
 
@@ -33,7 +33,7 @@ class PathTracer {
  public:
   explicit PathTracer(const SyntheticScene& scene) : scene_(scene), light_(scene.light) {}
 
-  // One path's estimate of the linear radiance that the point sends to the viewer.
+  // Estimate, by one path, of the linear radiance from the point to the viewer.
   Vec3f radiance(BodyPoint point, Vec3f to_viewer, SampleSequence& samples) const;
 
  private:

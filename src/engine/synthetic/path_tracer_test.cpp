@@ -140,7 +140,7 @@ TEST(Picture, TellsWhereTheBallIs) {
       if (facing < 0.4f) continue;  // within a pixel the ball bends away
       EXPECT_LT(length(view.normal.rgb(x, y) - p / radius), 0.03f);
       EXPECT_NEAR(*view.depth.at(x, y), t * dot(ray.direction, camera.forward()), 0.01f);
-      for (int c = 0; c < 3; ++c) EXPECT_NEAR(view.base_color.at(x, y)[c], scene.finishes[0].color[c], 1e-5);
+      for (int c = 0; c < 3; ++c) EXPECT_NEAR(view.albedo.at(x, y)[c], scene.finishes[0].color[c], 1e-5);
       EXPECT_NEAR(*view.roughness.at(x, y), 0.5f, 1e-6);
       EXPECT_EQ(*view.metalness.at(x, y), 0);
     }

@@ -8,16 +8,16 @@
 namespace cei3d {
 namespace {
 
-// What the samples of one pixel meet, summed.
+// Sums over the samples of one pixel.
 struct PixelSum {
   int hits = 0;
-  Vec3f color{0, 0, 0}, base_color{0, 0, 0}, normal{0, 0, 0};
+  Vec3f color{0, 0, 0}, albedo{0, 0, 0}, normal{0, 0, 0};
   float depth = 0, roughness = 0, metalness = 0;
 
   void add(const BodyPoint& p, Vec3f radiance, float z) {
     ++hits;
     color += radiance;
-    base_color += p.base_color;
+    albedo += p.albedo;
     normal += p.normal;
     depth += z;
     roughness += p.material.roughness;
@@ -34,7 +34,7 @@ void put(TrueView& out, int x, int y, const PixelSum& sum, int samples) {
   if (sum.hits == 0) return;
   const float n = float(sum.hits), alpha = n / float(samples);
   put_rgba(out.color, x, y, sum.color / n, alpha);
-  put_rgba(out.base_color, x, y, sum.base_color / n, alpha);
+  put_rgba(out.albedo, x, y, sum.albedo / n, alpha);
   const Vec3f normal = normalize(sum.normal);
   for (int c = 0; c < 3; ++c) out.normal.at(x, y)[c] = normal[c];
   *out.depth.at(x, y) = sum.depth / n;
@@ -50,7 +50,7 @@ class ViewPainter {
         sampling_(sampling),
         tracer_(scene),
         forward_(camera.forward()),
-        // Half of a pixel's diagonal where the body is farthest, and a little.
+        // Half of a pixel's diagonal at the farthest point of the body, with a margin.
         half_pixel_(float(0.75 * (length(camera.center) + 1) / std::min(camera.fx, camera.fy))) {}
 
   PixelSum pixel(int x, int y) const {
@@ -85,7 +85,7 @@ class ViewPainter {
 TrueView draw(const SyntheticScene& scene, const Camera& camera, const Sampling& sampling) {
   const int w = camera.width, h = camera.height;
   TrueView out{.color = Image(w, h, 4),
-               .base_color = Image(w, h, 4),
+               .albedo = Image(w, h, 4),
                .normal = Image(w, h, 3),
                .depth = Image(w, h, 1),
                .roughness = Image(w, h, 1),

@@ -10,15 +10,15 @@
 namespace cei3d {
 
 struct TrueView {
-  Image color;       // RGBA, linear radiance, straight alpha: the share of the pixel that is covered
-  Image base_color;  // RGBA, linear
-  Image normal;      // 3 channels, unit; zero where there is nothing
-  Image depth;       // 1 channel, along the camera's axis; zero where there is nothing
+  Image color;   // RGBA, linear radiance, straight alpha: the share of the pixel that is covered
+  Image albedo;  // RGBA, linear
+  Image normal;  // 3 channels, unit; zero where there is nothing
+  Image depth;   // 1 channel, along the camera's axis; zero where there is nothing
   Image roughness, metalness;  // 1 channel
 };
 
 struct Sampling {
-  int samples = 32;  // a pixel; powers of two are spread best
+  int samples = 32;  // per pixel; powers of two are stratified best
   uint64_t seed = 1;
   uint64_t view = 0;  // views of different numbers have independent noise
 };

@@ -8,7 +8,7 @@
 
 namespace cei3d {
 
-Scattering::Scattering(Vec3f normal, Vec3f to_viewer, const Material& m, Vec3f base_color, Diffuse model)
+Scattering::Scattering(Vec3f normal, Vec3f to_viewer, const Material& m, Vec3f albedo, Diffuse model)
     : normal_(normal),
       view_(to_viewer),
       tangents_(tangents_of(normal)),
@@ -17,8 +17,8 @@ Scattering::Scattering(Vec3f normal, Vec3f to_viewer, const Material& m, Vec3f b
       alpha_(m.roughness * m.roughness),
       model_(model) {
   const float dielectric = (1 - m.metalness) * kDielectricF0 * m.specular;
-  f0_ = base_color * m.metalness + Vec3f{dielectric, dielectric, dielectric};
-  diffuse_ = base_color * (1 - m.metalness);
+  f0_ = albedo * m.metalness + Vec3f{dielectric, dielectric, dielectric};
+  diffuse_ = albedo * (1 - m.metalness);
   const float mirror = schlick(luminance(f0_), nv_), base = luminance(diffuse_);
   mirror_share_ = base > 0 ? clamp(mirror / (mirror + base), 0.2f, 0.8f) : 1.0f;
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How light is reflected at one point of a synthetic surface, exactly: GGX microfacets and a diffuse base, to
-// evaluate and to sample. The same reflectance as the program's shading approximates, without its tables and
-// lobes.
+// Reflectance at a point of a synthetic surface, evaluated and sampled exactly: GGX microfacets and a diffuse
+// base. It is what the program's shading approximates by tables and lobes.
 #pragma once
 
 #include "core/math/vec.h"
@@ -18,7 +17,7 @@ enum class Diffuse {
 class Scattering {
  public:
   // to_viewer: unit, above the surface.
-  Scattering(Vec3f normal, Vec3f to_viewer, const Material&, Vec3f base_color, Diffuse);
+  Scattering(Vec3f normal, Vec3f to_viewer, const Material&, Vec3f albedo, Diffuse);
 
   // Reflectance density, 1/sr, times the cosine of the light; zero below the horizon.
   Vec3f reflected(Vec3f to_light) const;

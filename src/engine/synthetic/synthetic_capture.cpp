@@ -23,7 +23,7 @@ constexpr uint64_t kTestSeed = 1000000, kRelitSeed = 2000000;  // added to a vie
 
 void require_free(const fs::path& folder) {
   if (fs::exists(folder) && !(fs::is_directory(folder) && fs::is_empty(folder)))
-    fail_usage("{} exists already; name a folder that does not, or delete it.", folder.string());
+    fail_usage("{} exists already; name another folder, or delete it.", folder.string());
 }
 
 std::vector<std::string> other_lights(const std::string& light) {
@@ -71,7 +71,7 @@ class CaptureWriter {
 
   TrueView view(const Camera& camera, const SgMixture& light, uint64_t number) {
     if (progress_.cancelled())
-      throw Error(ErrorCode::interrupted, "Interrupted; the pictures written so far are whole.");
+      throw Error(ErrorCode::interrupted, "Interrupted; the images written so far are complete.");
     const double done = double(drawn_) / double(views_);
     progress_.report({"drawing", done, drawn_ == 0 ? -1 : seconds() * (1 - done) / done,
                       fmt::format("view {} of {}", drawn_ + 1, views_)});

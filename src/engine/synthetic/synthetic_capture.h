@@ -13,7 +13,7 @@
 
 namespace cei3d {
 
-// The finish of one region in place of the set's.
+// The finish of one region, instead of that of the set.
 struct RegionFinish {
   std::string region;
   Finish finish;
@@ -32,7 +32,7 @@ struct SynthRequest {
   int width = 200, height = 200;
   int views = 100, test_views = 20;
   int samples = 32;  // a pixel
-  float noise = 0;   // standard deviation, of the training pictures' sRGB values
+  float noise = 0;   // standard deviation, of the training images' sRGB values
   uint64_t seed = 1;
 };
 
@@ -44,7 +44,7 @@ struct SynthReport {
 };
 
 // Folders and names as docs/synth.md says. Usage errors: unknown names, values out of range, a folder that
-// holds something. Interrupted Error: the pictures written so far are whole.
+// holds something. Interrupted Error: the images written so far are whole.
 SynthReport make_capture(const SynthRequest&, Progress&);
 
 // The scene that the request describes, under its training light as a camera at azimuth 0 sees it.

@@ -24,8 +24,8 @@ Json material_json(const SyntheticScene& scene, bool lambert) {
   }
   return {{"model",
            fmt::format("GGX microfacets (alpha = roughness^2, Smith masking, Schlick's Fresnel term, F0 = "
-                       "(1 - metalness) 0.08 specular + metalness base color) over a {} diffuse base (1 - "
-                       "metalness) base color / pi",
+                       "(1 - metalness) 0.08 specular + metalness albedo) over a {} diffuse base (1 - "
+                       "metalness) albedo / pi",
                        lambert ? "Lambertian" : "Burley")},
           {"regions", regions}};
 }
@@ -73,7 +73,7 @@ Json capture_meta(const SynthRequest& r, const SyntheticScene& scene,
       {"material", material_json(scene, r.diffuse == Diffuse::lambert)},
       {"lighting", lighting_json(r, scene, relight)},
       {"gt",
-       {{"albedo", "gt/albedo: sRGB of the base color, straight alpha"},
+       {{"albedo", "gt/albedo: sRGB, straight alpha"},
         {"normal", "gt/normal: 16-bit (n + 1) / 2, world; 0 is background"},
         {"depth", fmt::format("gt/depth: 16-bit, depth along the camera axis = value / {}", kDepthScale)},
         {"roughness", "gt/roughness, gt/metalness: gray = 255 x value, straight alpha"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A teapot-like body: a squat body of revolution, a domed lid with a knob, a curved spout on the side of +x
-// and a ring for a handle on the other. Rim, handle and spout see the body and are seen in it.
+// and a ring for a handle on the other. Rim, handle and spout are reflected in the body, and it in them.
 #pragma once
 
 #include "core/math/vec.h"
@@ -39,7 +39,7 @@ struct TeapotDistance {
     return (length(from_a - e * h) - (T(ra) + h * T(rb - ra))) * T(1 / std::sqrt(1 + slope * slope));
   }
 
-  // The parts; what regions are told by.
+  // The parts, which define the regions.
   template <class T>
   static T belly(Vec3<T> p) {
     const T flat = max(from_axis(p) - T(0.22f), T(0.0f)), z = p.z + T(0.08f);

@@ -44,7 +44,7 @@ void write_color(const std::filesystem::path& path, const Image& linear_rgba) {
 
 void write_truth(const std::filesystem::path& folder, const std::string& stem, const TrueView& view) {
   const auto file = [&](const char* kind) { return folder / "gt" / kind / (stem + ".png"); };
-  write_color(file("albedo"), view.base_color);
+  write_color(file("albedo"), view.albedo);
   write_png(file("normal"), encoded_normals(view.normal), 16);
   write_png(file("depth"), encoded_depth(view.depth), 16);
   write_png(file("roughness"), gray_with_alpha(view.roughness, view.color));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// True views as picture files.
+// True views as image files.
 #pragma once
 
 #include <filesystem>

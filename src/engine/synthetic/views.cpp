@@ -31,8 +31,7 @@ Camera look_at(Vec3d eye, Vec3d target, const Lens& lens, Vec3d up) {
   c.width = lens.width, c.height = lens.height;
   c.fx = c.fy = lens.focal;
   c.cx = 0.5 * lens.width, c.cy = 0.5 * lens.height;
-  const Vec3d z = normalize(target - eye), x = normalize(cross(z, up)), y = cross(z, x);
-  c.world_from_cam = transpose(Mat3d{{x, y, z}});
+  c.world_from_cam = upright_rotation(target - eye, up);
   c.center = eye;
   return c;
 }

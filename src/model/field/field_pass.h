@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Forward and backward pass of one chunk of points through a field, for trainers. Others call Field::eval.
+// Forward and backward pass of one chunk of points through a field, for trainers; other code calls
+// Field::eval().
 #pragma once
 
 #include "model/field/field.h"

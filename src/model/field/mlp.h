@@ -30,7 +30,8 @@ struct MlpLayer {
 std::vector<MlpLayer> mlp_layers(const MlpConfig&);
 
 // Adds "layer0/weight" [out][in], "layer0/bias" [out], ... to params. Weights are uniform with variance 2 /
-// (3 in), a third of He's initialization, which keeps softplus and ELU networks calm; biases are zero.
+// (3 in), a third of He's initialization, which avoids large outputs of untrained softplus and ELU networks;
+// biases are zero.
 void add_mlp_params(const MlpConfig&, ParamSet& params, uint64_t seed);
 
 // Weights in the layouts that the passes need, made once per step.

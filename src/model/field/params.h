@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named parameters of a model, the only owner of weights: saving, hashing and optimizing need no code per
-// network.
+// Named parameters of a model, the only owner of weights, so that saving, hashing and optimizing need no code
+// per network.
 #pragma once
 
 #include <cstddef>

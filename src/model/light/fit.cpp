@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/compute/kernels/adam.h"
 #include "core/compute/kernels/light.h"
+#include "core/math/fibonacci.h"
 #include "core/math/sg.h"
 
 namespace cei3d {
@@ -40,7 +41,7 @@ Image blurred(const Image& map, float sharpness, EnvUp up) {
   return out;
 }
 
-// The lobe that becomes `seen` when blurred by a lobe of the given sharpness, energy kept.
+// The lobe that becomes `seen` when blurred by a lobe of the given sharpness; same energy.
 SgLobe unblurred(SgLobe seen, float sharpness) {
   const float lambda = min(seen.lambda * sharpness / (sharpness - seen.lambda), kSharpestLobe);
   return {seen.axis, lambda, seen.mu * (sg_integral(seen.lambda) / sg_integral(lambda))};
@@ -69,10 +70,8 @@ class LobeFit {
       }
       weights_[i] = env_solid_angle(y, map.width, map.height);
     }
-    const double golden = M_PI * (3 - std::sqrt(5.0));
     for (int k = 0; k < lobes; ++k) {
-      const double z = 1 - (2 * k + 1.0) / lobes, r = std::sqrt(1 - z * z), a = golden * k;
-      const Vec3f axis{float(r * std::cos(a)), float(r * std::sin(a)), float(z)};
+      const Vec3f axis = fibonacci_direction(k, lobes);
       const Vec3f c = env_radiance(map, axis, up);
       for (int j = 0; j < 3; ++j) {
         row(raw_, j)[k] = axis[j];
@@ -148,7 +147,7 @@ class LobeFit {
 
 SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOptions& options, EnvUp up,
                     const Progress& progress) {
-  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a color picture");
+  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a color image");
   for (const float x : lat_long.data)
     if (!std::isfinite(x)) fail("light map: a value is not finite");
   Image map = env_resample(lat_long, std::min(options.height, lat_long.height));

@@ -15,8 +15,8 @@ struct LobeFitOptions {
   int steps = 800;  // steps of Adam
   int height = 32;  // the image is averaged down to this number of rows first
   // Sharpness of the reflection lobe through which the light will be seen; 0: a mirror. The fit then compares
-  // both lights blurred by that lobe, so that invisible detail (spikes of a deconvolved light) takes no
-  // lobes.
+  // both lights blurred by that lobe, so that no lobes are spent on invisible detail (spikes of a deconvolved
+  // light).
   float seen_through = 0;
 };
 

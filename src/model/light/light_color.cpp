@@ -11,12 +11,12 @@
 namespace cei3d {
 namespace {
 
-// Of the logarithms of red over green and blue over green. Between a clear sky and a lamp at dusk the
-// photographs of a camera that is balanced for neither differ by about that.
+// Standard deviation of the logarithms of red over green and blue over green. Photographs under a clear sky
+// and under a lamp at dusk, without white balance, differ by about that.
 constexpr double kNearWhite = 0.2;
-constexpr double kKnown = 1e-3;  // of a color that was given
-constexpr double kSplit = 0.7;   // of the light as it is, where nothing else is known
-// No model of reflection is better than that: it counts as an error of every channel's own.
+constexpr double kKnown = 1e-3;  // standard deviation for a given color
+constexpr double kSplit = 0.7;  // standard deviation of the logarithm of the strength, without other evidence
+// Error of the reflection model, independent per channel, relative.
 constexpr double kModelError = 0.04;
 
 // From the logarithms of the channels to those of red over green and blue over green.
@@ -55,9 +55,8 @@ std::optional<Vec3f> relative_error(const LightCovariance& c) {
   return to_float(Vec3d{std::sqrt(variance.x), std::sqrt(variance.y), std::sqrt(variance.z)});
 }
 
-// The least of (s - e)' C^-1 (s - e) + |s|^2 / split^2 + |q + B s|^2 / width^2 over the logarithms s of the
-// factor: e is what the evidence says, B s are ratios of channels, q those of the light over what is
-// believed.
+// Minimizes (s - e)' C^-1 (s - e) + |s|^2 / split^2 + |q + B s|^2 / width^2 over the logarithms s of the
+// factor: e is the estimate, B s are log ratios of channels, q those of the light over the prior color.
 LightBelief weigh_light_color(const LightScale& evidence, Vec3f mean, const LightColorPrior& prior) {
   const Mat3d measured = inverse(with_diagonal(evidence.covariance, kModelError * kModelError));
   Mat3d precision = with_diagonal(measured, 1 / (kSplit * kSplit));

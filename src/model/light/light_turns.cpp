@@ -12,10 +12,6 @@ namespace {
 constexpr std::array<const char*, 3> kNames = {"world", "camera", "turntable"};
 constexpr float kFineEnough = 0.06f;  // radians between a rotation and its bin
 
-Mat3f to_float(const Mat3d& m) {
-  return {{cei3d::to_float(m.row[0]), cei3d::to_float(m.row[1]), cei3d::to_float(m.row[2])}};
-}
-
 float angle_between(const Mat3f& a, const Mat3f& b) {
   float trace = 0;
   for (int i = 0; i < 3; ++i) trace += dot(a.row[i], b.row[i]);

@@ -27,7 +27,7 @@ Vec3f radiance(const SgMixture& light, Vec3f direction);
 SgMixture rotated(SgMixture light, const Mat3f& rotation);  // every axis becomes rotation * axis
 SgMixture scaled(SgMixture light, Vec3f factor);
 
-// [M][7] rows of axis, lambda, mu, as in light files. Reading normalizes the axis and takes the absolute
+// Rows [M][7] of axis, lambda, mu, as in light files. Reading normalizes the axis and takes the absolute
 // values of lambda and mu. Errors: no rows, rows of another length, values that are not finite, a zero axis.
 std::vector<float> to_array(const SgMixture& light);
 SgMixture light_from_array(std::span<const float> rows);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an edit puts in place of a material or a base color.
+// What an edit puts in place of a material or an albedo.
 #pragma once
 
 #include <optional>
@@ -9,15 +9,16 @@
 
 namespace cei3d {
 
-// `wanted` for a share of [0, 1], the rest being `below`. A share of 1 and two equal values give their bits.
+// `wanted` for a share of [0, 1], the rest being `below`. Exact (bit for bit) for a share of 1, and for two
+// equal values.
 inline float blended(float below, float wanted, float share) {
   return share < 1 ? below + (wanted - below) * share : wanted;
 }
 
 struct MaterialChange {
-  std::optional<float> roughness{}, specular{}, metalness{};  // none: what lies below stays
+  std::optional<float> roughness{}, specular{}, metalness{};  // none: the value below stays
   std::optional<float> roughness_scale{};  // times the roughness below, cut off at 1; instead of `roughness`
-  float blend = 1;                         // share of the above, the rest being what lies below
+  float blend = 1;                         // share of the new value; the rest is the value below
 
   bool empty() const { return !roughness && !specular && !metalness && !roughness_scale; }
   bool operator==(const MaterialChange&) const = default;
@@ -37,13 +38,13 @@ struct MaterialValues {
   bool roughness = false, specular = false, metalness = false;
 };
 
-// Whether the change has an effect on a value that is not in `covered`.
+// Whether the change affects a value that is not in `covered`.
 inline bool shows(const MaterialChange& c, const MaterialValues& covered) {
   return ((c.roughness || c.roughness_scale) && !covered.roughness) || (c.specular && !covered.specular) ||
          (c.metalness && !covered.metalness);
 }
 
-// Adds the values that the change replaces: nothing of what lies below it shows in them.
+// Adds the values that the change replaces completely.
 inline void cover(MaterialValues& covered, const MaterialChange& c) {
   if (c.blend < 1) return;
   covered.roughness |= c.roughness.has_value();
@@ -51,16 +52,16 @@ inline void cover(MaterialValues& covered, const MaterialChange& c) {
   covered.metalness |= c.metalness.has_value();
 }
 
-// Another base color, with or without the texture that lies below it. All linear.
+// Another albedo, with or without the texture below it. All colors linear.
 struct Tint {
   Vec3f color;
-  bool keep_texture = true;  // what lies below, scaled per channel so that its mean becomes `color`
-  Vec3f mean{1, 1, 1};       // of what lies below, over the region, when the edit was made
-  float blend = 1;           // share of the above, the rest being what lies below
+  bool keep_texture = true;  // scale the albedo below per channel so that its mean becomes `color`
+  Vec3f mean{1, 1, 1};       // of the albedo below, over the region, when the edit was made
+  float blend = 1;           // share of the new value; the rest is the value below
 };
 
 inline Vec3f tinted(const Tint& t, Vec3f below) {
-  constexpr float kDark = 1e-3f;  // of a channel that has nothing to scale
+  constexpr float kDark = 1e-3f;  // floor of the mean, for channels that are black
   Vec3f out;
   for (int c = 0; c < 3; ++c) {
     const float wanted =

@@ -8,8 +8,8 @@ namespace {
 
 constexpr float kUsual = 0.5f;  // specular strength of a refractive index of 1.5: F0 = 0.04
 
-// Colors of metals are published reflectances. Everything else, the roughness of all of them above all, is
-// typical: real surfaces of the name vary widely.
+// Colors of metals are published reflectances. All other values, including every roughness, are typical: real
+// surfaces of the name vary widely.
 constexpr MaterialPreset kPresets[] = {
     {"gold", {1.000f, 0.766f, 0.336f}, {0.20f, kUsual, 1}},       // [Lagarde 2011]
     {"silver", {0.972f, 0.960f, 0.915f}, {0.15f, kUsual, 1}},     // [Lagarde 2011]

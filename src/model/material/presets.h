@@ -17,7 +17,7 @@ struct MaterialPreset {
 };
 
 std::span<const MaterialPreset> material_presets();
-// Null: there is none of that name. "aluminum" is "aluminium".
+// Null: no preset has that name. "aluminum" is a synonym of "aluminium".
 const MaterialPreset* find_material_preset(std::string_view name);
 
 }  // namespace cei3d

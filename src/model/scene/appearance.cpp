@@ -8,40 +8,40 @@
 namespace cei3d {
 namespace {
 
-constexpr int kGrain = 4096;  // hits a chunk
+constexpr int kGrain = 4096;  // hits per chunk
 
-// A step towards a hit's base color.
+// One contribution to a hit's albedo.
 struct Op {
   enum class Kind { branch, base, matter, tint } kind;
   int layer;
   uint32_t hit;
-  float weight;    // of the color, the rest being what lies below; 1: nothing of that shows
-  Vec3f position;  // of the hit in the pose of the field that has the color
-  Vec3f color;     // of branch, base or new matter
+  float weight;    // of the color; the rest is the albedo below
+  Vec3f position;  // of the hit in the shape version of the field that has the color
+  Vec3f color;     // from the branch, the base or the added surface
 };
 
-// What the layers say about a hit.
+// The layers that affect a hit.
 struct Route {
-  int layer = -1;                                 // topmost that is not everywhere
+  int layer = -1;                                 // topmost local layer; -1: none
   uint32_t material_begin = 0, material_end = 0;  // of the chunk's materials, the last one first
-  bool base = true;                               // the first step works on the base's color
+  bool base = true;                               // the lowest contribution is on top of the base's albedo
 
   bool same_material() const { return material_begin == material_end; }
 };
 
 struct Chunk {
-  std::vector<Op> ops;         // a hit's last step stands first
-  std::vector<int> materials;  // layers that change a hit's material; the last one first
+  std::vector<Op> ops;         // contributions of each hit, topmost first
+  std::vector<int> materials;  // layers that change the material of each hit, topmost first
 };
 
-// One hit on its way through the layers, from the topmost down and no further than anything can still change.
+// Walks through the layers of one hit, from the topmost down until nothing below can have an effect.
 class Walk {
  public:
   Walk(const Scene& scene, const Hit& hit, uint32_t index, Chunk& chunk)
       : scene_(scene), hit_(hit), index_(index), chunk_(chunk) {
-    if (scene.poses.empty()) return;
-    born_ = scene.poses.back()->born_in(hit.triangle);
-    shaped_ = scene.poses.back()->shaped_in(hit.triangle);
+    if (scene.shape_versions.empty()) return;
+    born_ = scene.shape_versions.back()->born_in(hit.triangle);
+    shaped_ = scene.shape_versions.back()->shaped_in(hit.triangle);
   }
 
   Route route() {
@@ -53,20 +53,20 @@ class Walk {
 
  private:
   void visit(int l, const EditLayer& layer) {
-    const int pose = max(layer.pose, 0);
-    if (layer.reshape) visit_change(l, pose + 1);
+    const int version = max(layer.shape_version, 0);
+    if (layer.reshape) visit_change(l, version + 1);
     const bool colors = r_.base && (layer.albedo || layer.erase || layer.tint);
     const bool marks = r_.layer < 0 && !layer.everywhere;
     const bool changes = shows(layer.material, covered_) || layer.erase_material;
     if (!colors && !changes && !marks) return;
-    const bool old = born_ <= pose;  // what was made later is in no region that is older ...
+    const bool old = born_ <= version;  // surface added later is in no earlier region
     if (!old && !layer.everywhere) return;
-    const SurfacePoint p = old ? in_pose(scene_.poses, hit_, pose) : SurfacePoint{};
+    const SurfacePoint p = old ? in_version(scene_.shape_versions, hit_, version) : SurfacePoint{};
     const float weight = layer.everywhere ? 1 : layer.weight(p.position, p.normal);
     if (weight <= 0) return;
     if (marks) r_.layer = l;
     if (changes && weight > kMaterialWeight) visit_material(l, layer);
-    if (colors && old) visit_colors(l, layer, p, weight);  // ... but is of what the whole object is made of
+    if (colors && old) visit_colors(l, layer, p, weight);  // but gets material changes of the whole object
   }
 
   void visit_material(int l, const EditLayer& layer) {
@@ -79,18 +79,18 @@ class Walk {
     if (layer.tint) add(Op::Kind::tint, l, weight, {}, {});
     if (layer.albedo) add(Op::Kind::branch, l, weight, p.position, {});
     if (layer.erase && born_ == 0)
-      add(Op::Kind::base, l, weight, in_pose(scene_.poses, hit_, 0).position, {});
+      add(Op::Kind::base, l, weight, in_version(scene_.shape_versions, hit_, 0).position, {});
     if (layer.erase && born_ > 0) add(Op::Kind::matter, l, weight, {}, matter_color());
   }
 
-  // The layer changed the shape into that of this pose.
-  void visit_change(int l, int pose) {
-    if (r_.layer < 0 && shaped_ == pose) r_.layer = l;
-    if (r_.base && born_ == pose) add(Op::Kind::matter, l, 1, {}, matter_color());
+  // For a layer that made this shape version.
+  void visit_change(int l, int version) {
+    if (r_.layer < 0 && shaped_ == version) r_.layer = l;
+    if (r_.base && born_ == version) add(Op::Kind::matter, l, 1, {}, matter_color());
   }
 
   Vec3f matter_color() const {
-    const Pose& now = *scene_.poses.back();
+    const ShapeVersion& now = *scene_.shape_versions.back();
     const auto& t = now.surface->mesh().triangles[hit_.triangle];
     return now.colors[t[0]] * (1 - hit_.b1 - hit_.b2) + now.colors[t[1]] * hit_.b1 +
            now.colors[t[2]] * hit_.b2;
@@ -125,7 +125,7 @@ struct Routes {
   }
 };
 
-// The fields' colors, each field evaluated at its own hits only.
+// Fills in the colors of the fields; each field is evaluated only at hits that need it.
 void eval_fields(const Device& device, const Scene& scene, Routes& routes) {
   std::vector<std::vector<Op*>> ops(scene.layers.size() + 1);  // by branch; the base last
   for (Chunk& chunk : routes.chunks)
@@ -142,13 +142,13 @@ void eval_fields(const Device& device, const Scene& scene, Routes& routes) {
   }
 }
 
-std::vector<Vec3f> base_colors(const Device& device, const Scene& scene, std::span<const Hit> hits,
+std::vector<Vec3f> base_albedo(const Device& device, const Scene& scene, std::span<const Hit> hits,
                                const Routes& routes) {
   std::vector<Vec3f> albedo(hits.size()), x;
   std::vector<uint32_t> of;
   for (size_t i = 0; i < hits.size(); ++i) {
     if (!routes.at[i].base) continue;
-    x.push_back(in_pose(scene.poses, hits[i], 0).position);
+    x.push_back(in_version(scene.shape_versions, hits[i], 0).position);
     of.push_back(uint32_t(i));
   }
   const std::vector<Vec3f> color = scene.albedo->eval3(device, x);
@@ -156,11 +156,11 @@ std::vector<Vec3f> base_colors(const Device& device, const Scene& scene, std::sp
   return albedo;
 }
 
-// Into albedo and unlit.
+// Combines the contributions into albedo and unlit.
 void put_colors(const Device& device, const Scene& scene, std::span<const Hit> hits, Routes& routes,
                 Appearance& out) {
   eval_fields(device, scene, routes);
-  out.albedo = base_colors(device, scene, hits, routes);
+  out.albedo = base_albedo(device, scene, hits, routes);
   const auto& layers = scene.layers;
   if (std::any_of(layers.begin(), layers.end(), [](const EditLayer& l) { return l.unlit; }))
     out.unlit.assign(hits.size(), 0.0f);
@@ -183,19 +183,20 @@ std::vector<float> original_shares(const Scene& scene, std::span<const Hit> hits
       s = s * (1 - op->weight) + (op->kind == Op::Kind::base ? op->weight : 0);
     }
   for (size_t i = 0; i < hits.size(); ++i) {
-    const bool moved = !scene.poses.empty() && scene.poses.back()->shaped_in(hits[i].triangle) > 0;
+    const bool moved =
+        !scene.shape_versions.empty() && scene.shape_versions.back()->shaped_in(hits[i].triangle) > 0;
     if (moved || !routes.at[i].same_material()) share[i] = 0;
   }
   return share;
 }
 
-// The materials below all layers. Surface that an edit added is not in the field's domain: it gets the mean.
+// Base materials. Surface that an edit added is outside the field's domain and gets the mean.
 std::vector<Material> base_materials(const Device& device, const Scene& scene, std::span<const Hit> hits) {
   std::vector<Vec3f> points(hits.size(), Vec3f{0, 0, 0});
   std::vector<uint8_t> added(hits.size(), 0);
   for (size_t i = 0; i < hits.size(); ++i) {
-    added[i] = !scene.poses.empty() && scene.poses.back()->born_in(hits[i].triangle) > 0;
-    if (!added[i]) points[i] = in_pose(scene.poses, hits[i], 0).position;
+    added[i] = !scene.shape_versions.empty() && scene.shape_versions.back()->born_in(hits[i].triangle) > 0;
+    if (!added[i]) points[i] = in_version(scene.shape_versions, hits[i], 0).position;
   }
   std::vector<Material> materials = scene.material.at(device, points);
   for (size_t i = 0; i < hits.size(); ++i)
@@ -203,7 +204,7 @@ std::vector<Material> base_materials(const Device& device, const Scene& scene, s
   return materials;
 }
 
-// The layers' changes on top of `below`, one after the other.
+// Applies the material changes of the layers to `below`, lowest first.
 Material edited_material(const Scene& scene, const Route& r, const Chunk& chunk, Material below) {
   for (uint32_t k = r.material_end; k-- > r.material_begin;)
     below = changed(below, scene.layers[size_t(chunk.materials[k])].material);

@@ -17,7 +17,7 @@ struct Aspects {
 };
 
 Aspects changed_by(const EditLayer&);
-bool meet(Aspects, Aspects);  // whether they have one in common
+bool meet(Aspects, Aspects);  // whether the two have an aspect in common
 
 // A list of names: ["shape", "parts"]. Error: an unknown one.
 Json to_json(Aspects);

@@ -90,7 +90,7 @@ void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
   else
     layer.region.save(tensors, head["region"]);
   if (!layer.also.empty()) head["also"] = save_further(layer.also, tensors);
-  if (layer.pose != kLatestPose) head["pose"] = layer.pose;
+  if (layer.shape_version != kLatestVersion) head["pose"] = layer.shape_version;
   if (!layer.part.empty()) head["part"] = layer.part;
   save_field(layer.albedo, "albedo", tensors, head);
   if (layer.unlit) head["unlit"] = true;
@@ -110,7 +110,7 @@ EditLayer load_layer(const Tensors& tensors, const Json& head) {
     layer.everywhere = reader.optional("everywhere", false);
     if (!layer.everywhere) layer.region = Region::load(tensors, reader.member("region"));
     if (reader.has("also")) layer.also = load_further(tensors, reader.array("also"));
-    layer.pose = reader.optional("pose", kLatestPose);
+    layer.shape_version = reader.optional("pose", kLatestVersion);
     layer.part = reader.optional<std::string>("part", "");
     reader.has("albedo");
     layer.albedo = load_field("albedo", tensors, head);

@@ -17,31 +17,31 @@
 
 namespace cei3d {
 
-inline constexpr int kLatestPose = -1;
+inline constexpr int kLatestVersion = -1;
 inline constexpr float kMaterialWeight = 0.5f;
 
 struct EditLayer {
   std::string id;            // "0001-paint"
-  std::string content;       // hash of what is stored of it: equal hashes, equal layers; empty: not stored
+  std::string content;       // hash of its stored form: equal hashes, equal layers; empty: not stored
   bool everywhere = false;   // the whole object; else `region`
   Region region;             // contains nothing by default
   std::vector<Region> also;  // further regions of the same edit, from scribbles in other views
   // Shape version that region and branch refer to: the number of changes of shape before the edit.
-  // kLatestPose: set by with_layer().
-  int pose = kLatestPose;
+  // kLatestVersion: the present one, filled in by with_layer(). Stored as "pose".
+  int shape_version = kLatestVersion;
   std::string part;                     // name of the part that the region defines; empty: none
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: albedo of the layers below
-  bool unlit = false;                   // the color is shown as it is, without light
-  bool erase = false;                   // restores the base's albedo, whatever lies below
-  bool erase_material = false;          // restores the base's material, whatever lies below
-  std::optional<Tint> tint;             // recolors the result of the above
+  bool unlit = false;                   // the color is shown without light
+  bool erase = false;                   // restores the base's albedo
+  bool erase_material = false;          // restores the base's material
+  std::optional<Tint> tint;             // recolors the albedo that results from the members above
   MaterialChange material;
   std::optional<SgMixture> light;          // replaces the object's light, everywhere
   std::shared_ptr<const Reshape> reshape;  // null: no change of shape
 
   bool contains(Vec3f position, Vec3f normal) const { return weight(position, normal) > 0; }
-  // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. The material is all or
-  // nothing: it changes where the weight is above kMaterialWeight.
+  // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. The material changes
+  // where the weight is above kMaterialWeight.
   float weight(Vec3f position, Vec3f normal) const;
 };
 

@@ -15,7 +15,7 @@ namespace cei3d {
 // network. The specular strength is the same everywhere.
 class MaterialField {
  public:
-  static constexpr int kOutputs = 2;  // of the network, each in [0, 1]; see material_of()
+  static constexpr int kOutputs = 2;  // roughness and metalness, each in [0, 1]; see material_of()
 
   MaterialField() = default;
   MaterialField(const Material& everywhere)  // NOLINT: one material is a field, too
@@ -26,7 +26,7 @@ class MaterialField {
 
   // points: of the reconstructed shape, unit frame. #points
   std::vector<Material> at(const Device&, std::span<const Vec3f> points) const;
-  // For reports, and for surface that edits have added.
+  // Mean over the reconstructed surface: for reports, and for surface that edits have added.
   const Material& mean() const { return mean_; }
   // Null: the material is the same everywhere.
   const std::shared_ptr<const Field>& varying() const { return varying_; }
@@ -38,12 +38,12 @@ class MaterialField {
   std::shared_ptr<const Field> varying_;
 };
 
-// The material that the outputs of a network stand for. Near 0 and 1 the metalness is cut off, so that most
-// of a surface is exactly a dielectric or exactly a metal.
+// The material that the outputs of a network stand for. A metalness near 0 or 1 is clamped to it, so that
+// most of a surface is exactly a dielectric or exactly a metal.
 Material material_of(const float* outputs, float specular);
-// dL/d(outputs) from dL/d(material); 0 where the metalness is cut off.
+// dL/d(outputs) from dL/d(material); 0 where the metalness is clamped.
 void material_of_grad(const float* outputs, const Material& d_material, float* d_outputs);
-// Outputs that stand for a material.
+// Network outputs [kOutputs] that stand for a material; inverse of material_of().
 void outputs_for(const Material&, float* outputs);
 
 }  // namespace cei3d

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Similarity transform between the capture frame ("input") and the unit frame, in which fields live.
+// Similarity transform between the capture frame  and the unit frame, in which fields live.
 #pragma once
 
 #include "core/math/camera.h"
@@ -10,10 +10,10 @@ struct Normalization {
   Vec3d center{0, 0, 0};  // input units
   double scale = 1;       // unit-frame lengths per input length
 
-  Vec3d unit_from_input(Vec3d p) const { return (p - center) * scale; }
-  Vec3d input_from_unit(Vec3d p) const { return p / scale + center; }
-  Camera unit_from_input(Camera c) const {
-    c.center = unit_from_input(c.center);
+  Vec3d unit_from_capture(Vec3d p) const { return (p - center) * scale; }
+  Vec3d capture_from_unit(Vec3d p) const { return p / scale + center; }
+  Camera unit_from_capture(Camera c) const {
+    c.center = unit_from_capture(c.center);
     return c;
   }
 };

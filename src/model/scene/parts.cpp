@@ -27,11 +27,12 @@ const EditLayer& part_layer(const Scene& scene, const std::string& part) {
 
 std::vector<uint8_t> inside_layer(const Scene& scene, const EditLayer& layer, std::span<const Hit> hits) {
   std::vector<uint8_t> inside(hits.size(), 0);
-  const int pose = max(layer.pose, 0);
+  const int version = max(layer.shape_version, 0);
   parallel_ranges(int(hits.size()), 1024, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      if (!scene.poses.empty() && scene.poses.back()->born_in(hits[i].triangle) > pose) continue;
-      const SurfacePoint p = in_pose(scene.poses, hits[i], pose);
+      if (!scene.shape_versions.empty() && scene.shape_versions.back()->born_in(hits[i].triangle) > version)
+        continue;
+      const SurfacePoint p = in_version(scene.shape_versions, hits[i], version);
       inside[i] = layer.contains(p.position, p.normal);
     }
   });

@@ -9,13 +9,13 @@
 
 namespace cei3d {
 
-// The last layer that defines the part of that name. Its region refers to the layer's shape version. Usage
-// error: there is none (the message lists the names).
+// The last layer that defines the part of that name; its region refers to the layer's shape version. Usage
+// error: no such part (the message lists the names).
 const EditLayer& part_layer(const Scene&, const std::string& part);
 
 std::vector<std::string> part_names(const Scene&);  // sorted
 
-// #hits, 1 where a hit of the present surface is in the layer's region; surface that was added later is not.
+// #hits, 1 where a hit of the present surface is in the layer's region; surface that was added later gets 0.
 std::vector<uint8_t> inside_layer(const Scene&, const EditLayer&, std::span<const Hit> hits);
 
 }  // namespace cei3d

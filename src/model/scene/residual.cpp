@@ -34,13 +34,13 @@ Residual make_residual(std::shared_ptr<const Field> features, uint64_t seed, int
 
 ResidualPass::ResidualPass(const FieldConfig& features, const MlpConfig& network)
     : features_(features),
-      values_(features, kMost, 1),
-      network_(network, kMost, 1),
-      points_(size_t(kMost) * 3),
-      directions_(size_t(kMost) * 3),
-      jets_(size_t(kMost) * 4 * features.outputs),
+      values_(features, kMaxHits, 1),
+      network_(network, kMaxHits, 1),
+      points_(size_t(kMaxHits) * 3),
+      directions_(size_t(kMaxHits) * 3),
+      jets_(size_t(kMaxHits) * 4 * features.outputs),
       d_jets_(jets_.size()),
-      d_input_(size_t(kMost) * network.inputs) {}
+      d_input_(size_t(kMaxHits) * network.inputs) {}
 
 int ResidualPass::forward(const Device& device, const Field& features, const MlpWeights& feature_weights,
                           const MlpWeights& weights, std::span<const Hit> hits) {
@@ -70,8 +70,8 @@ Vec3f ResidualPass::output(int hit) const {
   return {at(0), at(1), at(2)};
 }
 
-void ResidualPass::set_slope(int hit, Vec3f slope) {
-  for (int c = 0; c < 3; ++c) network_.d_output()[panel_at(hit, 1, 0, 3, c)] = slope[c];
+void ResidualPass::set_output_grad(int hit, Vec3f d_output) {
+  for (int c = 0; c < 3; ++c) network_.d_output()[panel_at(hit, 1, 0, 3, c)] = d_output[c];
 }
 
 void ResidualPass::backward(const Device& device, const MlpWeights& weights, int samples, float* gradient) {
@@ -86,7 +86,7 @@ void ResidualPass::backward_features(const Device& device, const MlpWeights& fea
       {directions_.data(), jets_.data(), d_input_.data(), d_jets_.data(), rows - 1}, samples);
   float* d_value = values_.d_output();
   for (int i = 0; i < samples; ++i)
-    for (int o = 0; o < rows; ++o)  // the distance itself is no feature
+    for (int o = 0; o < rows; ++o)  // output 0, the distance, is not a feature
       d_value[panel_at(i, 1, 0, rows, o)] = o == 0 ? 0.0f : d_jets_[panel_at(i, 4, 0, rows, o)];
   g.reset(features_, feature_weights.gradient_size(), samples, 1);
   std::copy(points_.begin(), points_.begin() + std::ptrdiff_t(samples) * 3, g.points.begin());
@@ -102,8 +102,8 @@ std::vector<Vec3f> residual_at(const Device& device, const Residual& residual, s
       weights(residual.network, residual.params);
   parallel_ranges(int(hits.size()), kGrain, [&](int begin, int end) {
     ResidualPass pass(features.config(), residual.network);
-    for (int first = begin; first < end; first += ResidualPass::kMost) {
-      const int n = std::min(ResidualPass::kMost, end - first);
+    for (int first = begin; first < end; first += ResidualPass::kMaxHits) {
+      const int n = std::min(ResidualPass::kMaxHits, end - first);
       std::vector<Hit> turned;
       for (const Hit& h : hits.subspan(size_t(first), size_t(n)))
         turned.push_back(with_rotated_directions(h, residual.room_from_object));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The correction network: what light and material cannot explain of the photographs. A small network over
-// features of the point, the normal and the view direction; its output is added to the shaded radiance, on
-// surface as it was photographed only. It is not used in the regions of edits or under another light, and the
-// albedo does not depend on it. docs/method.md#correction-network
+// The correction network ("residual" in code and files): the part of the photographs that light and material
+// do not explain. A small network over features of the point, the normal and the view direction, whose output
+// is added to the shaded radiance where the surface is as photographed: not in the regions of edits, nor
+// under another light. The albedo does not depend on it. docs/method.md#correction-network
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@
 namespace cei3d {
 
 struct Residual {
-  // Its outputs 1.. are features of a point: those of the SDF, or of a copy that was trained further.
+  // Outputs 1.. are features of a point: the SDF, or a copy of it that was trained further.
   std::shared_ptr<const Field> features;
   MlpConfig network;  // 3 outputs: linear radiance
   ParamSet params;
@@ -34,7 +34,7 @@ Residual make_residual(std::shared_ptr<const Field> features, uint64_t seed, int
 // Work memory of one chunk of hits.
 class ResidualPass {
  public:
-  static constexpr int kMost = 512;  // hits
+  static constexpr int kMaxHits = 512;  // hits
   ResidualPass(const FieldConfig& features, const MlpConfig& network);
 
   // Returns the number of samples: hits rounded up to a panel. hits: in shape version 0, their directions in
@@ -42,10 +42,10 @@ class ResidualPass {
   int forward(const Device&, const Field& features, const MlpWeights& feature_weights,
               const MlpWeights& weights, std::span<const Hit> hits);
   Vec3f output(int hit) const;
-  void set_slope(int hit, Vec3f slope);  // dL/d(output); of padding, zero
+  void set_output_grad(int hit, Vec3f d_output);  // dL/d(output); zero for padding
   // gradient: [MlpWeights::gradient_size()], added to.
   void backward(const Device&, const MlpWeights& weights, int samples, float* gradient);
-  // After backward(): the features' own gradient, written.
+  // Gradient of the features; call after backward(). Written, not added to.
   void backward_features(const Device&, const MlpWeights& feature_weights, int samples, ChunkGradients&);
 
  private:
@@ -55,7 +55,7 @@ class ResidualPass {
   AlignedVector<float> points_, directions_, jets_, d_jets_, d_input_;
 };
 
-// Linear radiance, #hits.
+// Linear radiance to add: #hits.
 std::vector<Vec3f> residual_at(const Device&, const Residual&, std::span<const Hit> hits);
 
 }  // namespace cei3d

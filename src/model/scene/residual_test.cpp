@@ -71,7 +71,7 @@ TEST(Residual, GradientOfItsFeaturesEqualsFiniteDifferences) {
       feature_weights(mlp_config(features->config()), features->params());
   ResidualPass pass(features->config(), residual.network);
   const int n = pass.forward(device, *features, feature_weights, weights, hits);
-  for (int i = 0; i < n; ++i) pass.set_slope(i, i < int(hits.size()) ? weight_of(i) : Vec3f{0, 0, 0});
+  for (int i = 0; i < n; ++i) pass.set_output_grad(i, i < int(hits.size()) ? weight_of(i) : Vec3f{0, 0, 0});
   std::vector<float> network(weights.gradient_size());
   pass.backward(device, weights, n, network.data());
   std::vector<ChunkGradients> g(1);

@@ -79,7 +79,7 @@ std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const std:
                                               const Json& head) {
   // Objects of project version 2 have two layers over the SDF's own features.
   const int layers = head.at("residual").is_object() ? head.at("residual").at("layers").get<int>() : 2;
-  if (layers < 1 || layers > kMaxResidualLayers) fail("the residual's network has {} layers", layers);
+  if (layers < 1 || layers > kMaxResidualLayers) fail("the correction network has {} layers", layers);
   const std::shared_ptr<const Field> own = load_field("residual_features", tensors, head);
   auto residual = std::make_shared<Residual>(make_residual(own ? own : sdf, 0, layers));
   residual->params.load(tensors, "residual");
@@ -97,7 +97,7 @@ void save_light_frame(const LightFrame& frame, Json& head) {
 LightFrame load_light_frame(JsonReader& head) {
   JsonReader reader = head.object("light_frame");
   const auto motion = light_motion_named(reader.require<std::string>("motion"));
-  if (!motion) fail("the light moves in a way that this program does not know; update it");
+  if (!motion) fail("the motion of the light is unknown; update cei3d");
   LightFrame frame{*motion, to_float(vector_from(reader, "axis")), {}};
   const std::array<double, 9> rows = reader.numbers<9>("reference");  // row by row
   for (size_t i = 0; i < 3; ++i)
@@ -118,8 +118,8 @@ std::shared_ptr<const Field> load_materials(const Tensors& tensors, const Json& 
 Scene reshaped(Scene scene, const Reshape& change) {
   const std::shared_ptr<const Surface> before = scene.surface;
   if (!before) fail("The object has no surface that could be changed; reconstruct it again.");
-  scene.poses = with_pose(std::move(scene.poses), before, change);
-  scene.surface = scene.poses.back()->surface;
+  scene.shape_versions = with_version(std::move(scene.shape_versions), before, change);
+  scene.surface = scene.shape_versions.back()->surface;
   if (scene.handlers)
     scene.handlers = std::make_shared<const HandlerPoints>(
         carried(*scene.handlers, before->mesh(), scene.surface->mesh(), change));
@@ -129,9 +129,10 @@ Scene reshaped(Scene scene, const Reshape& change) {
 }  // namespace
 
 Scene with_layer(Scene scene, EditLayer layer) {
-  const int latest = scene.poses.empty() ? 0 : int(scene.poses.size()) - 1;
-  if (layer.pose == kLatestPose) layer.pose = latest;
-  if (layer.pose < 0 || layer.pose > latest || (layer.reshape && layer.pose != latest))
+  const int latest = scene.shape_versions.empty() ? 0 : int(scene.shape_versions.size()) - 1;
+  if (layer.shape_version == kLatestVersion) layer.shape_version = latest;
+  if (layer.shape_version < 0 || layer.shape_version > latest ||
+      (layer.reshape && layer.shape_version != latest))
     fail("edit {} was made for another shape of the object; undo it, or make it again", layer.id);
   if (layer.light) {
     scene.light = *layer.light;

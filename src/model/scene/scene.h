@@ -12,7 +12,7 @@
 #include "core/base/tensors.h"
 #include "model/field/field.h"
 #include "model/geometry/shape/handlers.h"
-#include "model/geometry/shape/pose.h"
+#include "model/geometry/shape/shape_version.h"
 #include "model/geometry/shape/surface.h"
 #include "model/light/light_turns.h"
 #include "model/light/sg_mixture.h"
@@ -24,8 +24,8 @@
 
 namespace cei3d {
 
-// How well pictures are matched at the object that the residual had not been trained on, in dB of
-// display-encoded colors: by light and material alone, and with the residual.
+// PSNR (dB, display-encoded, on the object) on views that the correction network was not trained on: by light
+// and material alone, and with the correction network.
 struct Explained {
   double physical = 0, with_residual = 0;
 };
@@ -37,28 +37,29 @@ struct Scene {
   std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear
   // Mesh of the zero level set with its visibility table; replaced by changes of shape.
   std::shared_ptr<const Surface> surface;
-  SgMixture light;                   // that of the last edit that has one, when the layers have been put on
-  std::optional<Vec3f> light_error;  // of its strength as reconstructed, relative; none: not known
-  LightFrame light_frame;  // of the light as reconstructed; one that an edit has put there stands still
+  SgMixture light;  // present light: of the last layer that has one, else as reconstructed
+  // Relative standard error of the reconstructed light, per channel; none: unknown.
+  std::optional<Vec3f> light_error;
+  LightFrame light_frame;  // of the reconstructed light; the light of an edit is fixed to the object
   MaterialField material;
-  // What they cannot explain; null: nothing, or not any more, since the light was changed.
+  // Correction network; null: none, or the light was changed.
   std::shared_ptr<const Residual> residual;
   std::optional<Explained> explained;             // of the reconstruction; none: not measured
   std::shared_ptr<const HandlerPoints> handlers;  // on the present shape
-  Poses poses;  // shape versions, the last one with `surface`; empty while the shape is the reconstructed one
+  ShapeVersions shape_versions;  // the last one has `surface`; empty while the shape is the reconstructed one
   std::vector<EditLayer> layers;  // in order; later layers cover earlier ones
 };
 
 // The scene with one more edit on top. Error: a change of shape that does not fit the surface.
 Scene with_layer(Scene scene, EditLayer layer);
 
-// The light of the scene as the object had it in the picture of a camera (of any frame that is not rotated
-// against the capture's).
+// The light as it was relative to the object in the photograph of a camera (in the capture frame, or any
+// frame that is not rotated against it).
 SgMixture light_in_view(const Scene&, const Camera&);
-Scene in_view(Scene, const Camera&);  // under that light
+Scene in_view(Scene, const Camera&);  // the scene under light_in_view()
 
-// Writes a scene as named tensors and a small JSON head (sizes, material, transform). Layers are not part of
-// it: the project's stack keeps them. Errors of loading: missing tensor, wrong shape.
+// Writes a scene as named tensors and a small JSON head (sizes, material, transform). Layers are not
+// included; the project stores them. Errors of loading: missing tensor, wrong shape.
 void save_scene(const Scene&, Tensors& tensors, Json& head);
 Scene load_scene(const Tensors& tensors, const Json& head);
 

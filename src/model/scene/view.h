@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture: cameras, files and splits, in the capture frame ("input").
+// A capture: cameras, files and splits, in the capture frame .
 #pragma once
 
 #include <filesystem>
@@ -17,7 +17,7 @@ enum class Split { train, val, test };
 struct View {
   std::string name;  // "train/r_055": split folder and stem, unique in the capture
   Split split = Split::train;
-  Camera camera;                     // input frame; pixel centers at +0.5
+  Camera camera;                     // capture frame; pixel centers at +0.5
   std::filesystem::path image_path;  // empty: a camera without a photograph
   std::filesystem::path mask_path;   // empty: the mask is the alpha of the image
 };
@@ -32,12 +32,12 @@ struct Capture {
   std::filesystem::path root;
   std::string format;                 // one of capture_format_names()
   std::vector<View> views;            // train first, then val, test; each in the order of the capture
-  std::optional<ObjectBall> region;   // input frame
-  Vec3d up{0, 0, 1};                  // world axis that points up, input frame
-  std::vector<std::string> warnings;  // one sentence for each thing that the loader had to guess
+  std::optional<ObjectBall> region;   // capture frame
+  Vec3d up{0, 0, 1};                  // world axis that points up, capture frame
+  std::vector<std::string> warnings;  // one sentence per assumption that the loader made
 };
 
-// Loads the image of a view. An interface, because files are the business of engine/capture (CaptureImages).
+// Loads the image of a view. An interface, because reading files is up to engine/capture (CaptureImages).
 // Called from several threads.
 class ImageSource {
  public:

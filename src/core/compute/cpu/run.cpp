@@ -33,8 +33,8 @@ using Number = float;
 using Number = Lanes<CEI3D_WIDTH>;
 #endif
 
-// Runs `work` with numbers below 1e-38 counting as zero: each costs a hundred cycles otherwise, and what is
-// left of a lobe far from its axis is full of them. No destructor: its unwinding would be shared code.
+// Runs `work` with numbers below 1e-38 counting as zero: denormals cost a hundred cycles each, and lobes far
+// from their axis produce many. No destructor: its unwinding would be shared code.
 template <class Work>
 void flushing_denormals(const Work& work) {
 #ifdef __SSE__
@@ -70,7 +70,7 @@ void linear_weight_grad(const LinearWeightGradArgs& a) {
   flushing_denormals([&] { weight_grad_run<Number, CEI3D_WIDTH>(a); });
 }
 
-// Independent multiply-adds in registers: what no kernel on this instruction set can exceed. Returns FLOPs
+// Independent multiply-adds in registers: the upper bound for kernels on this instruction set. Returns FLOPs
 // done.
 double fma_peak() {
   constexpr int kChains = 12, kRounds = 1 << 20;
@@ -116,7 +116,7 @@ double gather_peak(const float* pairs, uint32_t mask) {
   return double(kPlaces) * CEI3D_WIDTH;
 }
 
-// The same places, read, added to and written. Returns pairs done.
+// Adds to pairs of floats at the same places. Returns pairs done.
 double scatter_peak(float* pairs, uint32_t mask) {
   RandomPlaces places(mask);
   for (int i = 0; i < kPlaces; ++i) scatter_add2(pairs, places.next(), Number(1e-6f), Number(-1e-6f));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The one list of kernels, by name: a kernel's place in it is its place in every launch table. Adding one
-// touches no backend and no file that launches none: this header is included by the headers of kernels alone,
-// and core/compute/device.h knows neither.
+// touches no backend and no file that launches none: only headers of kernels include this header;
+// core/compute/device.h does not.
 #pragma once
 
 namespace cei3d {

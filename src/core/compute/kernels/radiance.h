@@ -60,8 +60,8 @@ struct RadianceInput {
     const Vec3<T> n = rotated(a.rotations, i, normalize(load_sdf_gradient<T>(a.jets, i, 1 + a.features)));
     const Vec3<T> x = load_point<T>(a.points, i);
     const Vec3<T> d = rotated(a.rotations, i, load_point<T>(a.directions, i));
-    const T nv = -dot(n, d);
-    const Vec3<T> r = n * (T(2.0f) * nv) + d;
+    const Vec3<T> v = -d, r = mirrored(n, v);
+    const T nv = dot(n, v);
     for (int k = 0; k < 3; ++k) put(n[k]);
     for (int k = 0; k < 3; ++k) put(x[k]);
     for (int k = 0; k < 3; ++k) put(d[k]);
@@ -103,7 +103,7 @@ struct RadianceInputGrad {
     const T inverse = T(1.0f) / sqrt(dot(g, g) + T(1e-20f));
     const Vec3<T> n = g * inverse, v = -d;
     const T nv = dot(n, v);
-    const Vec3<T> r = n * (T(2.0f) * nv) - v;
+    const Vec3<T> r = mirrored(n, v);
     const int at_r = a.features + 10;
     Vec3<T> d_r = get3(at_r);
     for (int o = 0; o < kRadianceOctaves; ++o)

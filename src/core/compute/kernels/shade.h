@@ -119,7 +119,7 @@ struct SgLobesGrad {
     T d_lambda = zero;
     for (int h = a.begin; h < a.end; ++h) {
       const Vec3<T> n = point<T>(a.normals, a.stride, h), e = point<T>(a.d_irradiance, a.stride, h);
-      const SgSlopes<T> diffuse = sg_irradiance_slopes(lambda, dot(n, axis));
+      const SgCosineGrad<T> diffuse = sg_irradiance_grad(lambda, dot(n, axis));
       const T d_diffuse = dot(e, mu);
       const Vec3<T> g = point<T>(a.d_reflected, a.stride, h), gap = point<T>(a.axes, a.stride, h) - axis;
       const SgReflectedGrad<T> specular = sg_reflected_grad(lambda, lobe<T>(a, h), dot(gap, gap));

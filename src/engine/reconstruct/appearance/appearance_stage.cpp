@@ -25,13 +25,13 @@ LinearSplitOptions split_options(const AppearanceOptions& o, bool turning) {
   s.fixed_roughness = o.roughness;
   s.light_color = o.light_color;
   if (o.effort == Effort::brief) {
-    s.most_hits = 200000;
+    s.max_hits = 200000;
     s.search_hits = 120000;
     s.refinements = 2;
     s.light_height = 32;
   }
-  if (o.effort == Effort::brief && turning) {  // every solution takes twice as long
-    s.material_hits = s.most_hits;
+  if (o.effort == Effort::brief && turning) {  // each solve takes twice as long
+    s.material_hits = s.max_hits;
     s.scan_step = 1.7f;
     s.refinements = 1;
   }
@@ -40,23 +40,15 @@ LinearSplitOptions split_options(const AppearanceOptions& o, bool turning) {
 
 constexpr float kAllMetal = 0.97f;  // mean metalness
 
-// Metals gain half a decibel: their pictures are nothing but light. Dielectrics hardly anything.
+// Steps of the joint descent. Metals gain 0.5 dB by more steps, because their images show only the light;
+// dielectrics hardly gain.
 int joint_steps_for(const Material& mean, bool brief) {
   if (mean.metalness > kAllMetal) return brief ? 120 : 400;
   return mean.metalness > 0.05f ? (brief ? 60 : 200) : (brief ? 30 : 100);
 }
 
-// Mean of the values that a triangle has at its corners.
-Material material_between(const std::vector<Material>& of, const Mesh& mesh, const Hit& h) {
-  const auto& t = mesh.triangles[h.triangle];
-  const Material &a = of[t[0]], &b = of[t[1]], &c = of[t[2]];
-  const float w = 1 - h.b1 - h.b2;
-  const auto mean = [&](float Material::*x) { return a.*x * w + b.*x * h.b1 + c.*x * h.b2; };
-  return {mean(&Material::roughness), mean(&Material::specular), mean(&Material::metalness)};
-}
-
-// Descent on the fields of albedo and material under a light, and then on all three. bouncing: base colors of
-// the mesh's vertices to begin with.
+// Descent on the fields of albedo and material under a fixed light, then on all three. bouncing: initial
+// albedo of the vertices for bounces, #V.
 class Descent {
  public:
   Descent(const Device& device, const AppearanceInput& input, std::shared_ptr<const Transport> transport,
@@ -74,8 +66,8 @@ class Descent {
     relight(bouncing);
   }
 
-  // The albedo alone, `rate` times the full rates, falling to a tenth: every sample's radiance is linear in
-  // its base color, dark + a gain.
+  // Descent on the albedo alone, from `rate` times the full rates down to a tenth. The radiance of a sample
+  // is linear in its albedo.
   void fit_albedo(int steps, float rate) {
     const SurfaceSamples& samples = input_.samples;
     const std::vector<Material> materials = result_.material.at(device_, positions_of(samples.hits));
@@ -94,7 +86,8 @@ class Descent {
     }
   }
 
-  // Albedo, materials and light together; openness and bounce follow every kRefresh steps.
+  // Descent on albedo, materials and light together; visibility and bounce are recomputed every kRefresh
+  // steps.
   void fit_jointly(int steps, bool keep_power) {
     LightDescent light(result_.light, keep_power);
     for (int step = 0; step < steps; ++step) {
@@ -111,7 +104,8 @@ class Descent {
   Field take_albedo() { return std::move(albedo_); }
 
  private:
-  static constexpr int kRefresh = 25, kTurningRefresh = 100;  // the latter takes many times as long
+  // With a turning light a refresh takes many times as long.
+  static constexpr int kRefresh = 25, kTurningRefresh = 100;
 
   void learn_materials(const Field& field) {
     materials_ = std::make_shared<Field>(field);
@@ -119,11 +113,11 @@ class Descent {
     material_trainer_ = std::make_unique<FieldTrainer>(*materials_, FieldTrainer::Options{});
   }
 
-  void relight(const std::vector<Vec3f>& base_color) {
+  void relight(const std::vector<Vec3f>& albedo) {
     lighting_ = std::make_unique<Lighting>(
         device_, input_.surface, result_.light,
         turned_vertex_lights(*transport_, result_.light,
-                             {base_color, result_.material.at(device_, input_.surface->mesh().positions)},
+                             {albedo, result_.material.at(device_, input_.surface->mesh().positions)},
                              input_.samples.turned.turns));
   }
 
@@ -140,8 +134,7 @@ class Descent {
     ++epoch_;
   }
 
-  // Calls use(pixel of the batch, its mean base color, dL/d(that) to set) for the field's outputs [begin,
-  // end).
+  // For the field outputs [begin, end): calls use(pixel of the batch, its mean albedo, dL/d(albedo) to set).
   template <class Use>
   static void for_each_pixel(int begin, int end, const float* out, float* d_out, const Use& use) {
     for (int first = begin; first < end; first += kPixelPoints) {
@@ -175,7 +168,7 @@ class Descent {
       });
     };
     albedo_trainer_.step(device_, points_, loss, 0.1f * rate);
-    const ShadingSlopes slopes = lighting_->grad(batch, light, albedo, d_radiance);
+    const ShadingGrads slopes = lighting_->grad(batch, light, albedo, d_radiance);
     descent.step(device_, batch, slopes.d_sky_irradiance, slopes.d_sky_reflection, rate);
     result_.light = descent.light();
     if (materials_) descend_materials(positions, slopes.d_material, 0.1f * rate);
@@ -199,7 +192,7 @@ class Descent {
   Progress& progress_;
   Field albedo_;
   FieldTrainer albedo_trainer_;
-  std::shared_ptr<Field> materials_;  // null: one material, which stays
+  std::shared_ptr<Field> materials_;  // null: one material, held constant
   std::unique_ptr<FieldTrainer> material_trainer_;
   std::unique_ptr<Lighting> lighting_;
   int epoch_ = 0;
@@ -207,7 +200,7 @@ class Descent {
   std::vector<Vec3f> points_;  // kPixelPoints of each pixel
 };
 
-// A field of the materials that the split found at the vertices, learned where the samples are.
+// Fits a field to the materials of the vertices, at the samples.
 MaterialField fit_materials(const Device& device, const AppearanceInput& input,
                             const AppearanceOptions& options, const LinearSplit& split, Progress& progress) {
   if (split.materials.empty()) return split.material;
@@ -261,7 +254,7 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   Descent descent(device, input, transport, options, Field(options.albedo, options.seed + 100),
                   result.split.albedo, result, progress);
   descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800, 1);
-  // Nothing but a dielectric's reflections tells the strength of the light.
+  // The strength of the light is determined only by reflections of dielectrics.
   const bool all_metal = mean.metalness > kAllMetal;
   descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps : joint_steps_for(mean, brief),
                       !all_metal);

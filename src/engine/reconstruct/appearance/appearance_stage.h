@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The appearance stage (PPD): light and material of a standing surface, started by the linear split.
-// [paper sec. 4.2; docs/method.md#appearance-stage]
+// The appearance stage (PPD): light, albedo and material of a finished surface, started by the linear
+// separation. [paper sec. 4.2; docs/method.md#appearance-stage]
 #pragma once
 
 #include <memory>
@@ -22,30 +22,31 @@ enum class Effort { brief, full };  // brief: fewer samples and steps, half the 
 
 struct AppearanceOptions {
   Effort effort = Effort::full;
-  int albedo_steps = -1;     // of the field under the split's light; -1: as `effort` says
-  int joint_steps = -1;      // of field and light together; -1: as `effort` says
-  int lobe_steps = 800;      // of the fit of lobes to the split's light
-  int material_steps = 400;  // of the fit of a field to the split's materials
-  float roughness = 0;       // > 0: known, not searched
+  int albedo_steps = -1;     // of the albedo field under the separated light; -1: by `effort`
+  int joint_steps = -1;      // of albedo, material and light together; -1: by `effort`
+  int lobe_steps = 800;      // of the fit of lobes to the separated light
+  int material_steps = 400;  // of the fit of a field to the separated materials
+  float roughness = 0;       // > 0: known; 0: searched
   LightColorPrior light_color;
   uint64_t seed = 1;
   FieldConfig albedo;          // 3 outputs, sigmoid
   FieldConfig materials;       // MaterialField::kOutputs outputs, sigmoid
-  int batch = 4096;            // pixels a step, of kPixelPoints each
-  float network_rate = 2e-3f;  // Adam's, of the field's layers
+  int batch = 4096;            // pixels per step, kPixelPoints points each
+  float network_rate = 2e-3f;  // Adam rate of the field's layers
 };
 
 struct AppearanceResult {
   SgMixture light;
   MaterialField material;
   std::shared_ptr<const Field> albedo;
-  LinearSplit split;  // what it started from, for the record
+  LinearSplit split;  // the linear separation, for reports
 };
 
 AppearanceResult fit_appearance(const Device&, const AppearanceInput&, const AppearanceOptions&, Progress&);
 
-// The albedo again, gently, on other samples: of a large capture, one random subset leaves a few samples to a
-// texel, whose noise the field learns. result: of the same surface. About 30 seconds on two cores.
+// Refines the albedo at low rates on another random subset of the samples: in one subset of a large capture a
+// texel has few samples, and the field learns their noise. result: of the same surface. About 30 s on two
+// cores.
 void refine_albedo(const Device&, const AppearanceInput&, const AppearanceOptions&, AppearanceResult& result,
                    Progress&, int steps = 600);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loss of the appearance stage: Huber's, of display-encoded colors.
+// The loss of the appearance stage: Huber loss of display-encoded colors.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace cei3d {
 
-// dL/d(radiance); radiance and photo are linear. The slope of the display curve is bounded where it is
-// steepest. clipped: the photograph shows no more than that the radiance is at least `photo`.
+// dL/d(radiance) of one channel; radiance and photo are linear. The slope of the display curve is bounded
+// near black. clipped: `photo` is only a lower bound of the true radiance.
 inline float display_loss_grad(float radiance, float photo, bool clipped = false) {
   constexpr float kWidth = 0.05f, kDarkest = 0.004f;
   if (clipped && radiance >= photo) return 0;
@@ -20,7 +20,7 @@ inline float display_loss_grad(float radiance, float photo, bool clipped = false
   return huber(error, kWidth).gradient * srgb_slope(std::max(radiance, kDarkest));
 }
 
-// The same for a surface sample of that albedo, times weight.
+// Gradients of the loss of a surface sample, times `weight`.
 struct SampleGrad {
   Vec3f d_radiance, d_albedo;
 };

@@ -16,8 +16,7 @@ constexpr int kLightHeight = 24;  // a rough answer will do
 
 LightFrame light_frame(LightMotion motion, std::span<const Camera> cameras, Vec3f axis) {
   if (motion == LightMotion::world || cameras.empty()) return {};
-  const Mat3d& first = cameras.front().world_from_cam;
-  return {motion, axis, Mat3f{{to_float(first.row[0]), to_float(first.row[1]), to_float(first.row[2])}}};
+  return {motion, axis, to_float(cameras.front().world_from_cam)};
 }
 
 std::shared_ptr<const LightTurns> turns_of(const LightFrame& frame, std::span<const Camera> cameras) {
@@ -30,7 +29,7 @@ std::shared_ptr<const LightTurns> turns_of(const LightFrame& frame, std::span<co
 LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16_t> views,
                             std::span<const Camera> cameras, Vec3f axis, uint64_t seed, Progress& progress) {
   LinearSplitOptions options;
-  options.most_hits = options.search_hits;
+  options.max_hits = options.search_hits;
   options.light_height = kLightHeight;
   options.seed = seed;
   const Transport transport(input.surface);

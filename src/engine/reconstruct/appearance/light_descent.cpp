@@ -11,9 +11,9 @@
 namespace cei3d {
 namespace {
 
-constexpr int kGrain = 512;                           // hits a chunk
+constexpr int kGrain = 512;                           // hits per chunk
 constexpr float kLogRate = 1e-2f, kAxisRate = 2e-3f;  // of Adam, on logarithms and on unit vectors
-constexpr float kDarkest = 1e-5f;                     // peak radiance that stands for black
+constexpr float kDarkest = 1e-5f;                     // minimum peak radiance; logarithms of 0 do not exist
 
 // [3][stride]
 std::vector<float> planes_of(std::span<const Vec3f> v, int stride) {
@@ -22,7 +22,7 @@ std::vector<float> planes_of(std::span<const Vec3f> v, int stride) {
   return p;
 }
 
-// What the lobes' gradient needs of the hits and of one part of their reflection, as planes.
+// Inputs of the lobes' gradient for the hits and one part of their reflection, as planes.
 struct HitPlanes {
   int stride;
   std::vector<float> normals, axes, reflection_lobes, d_irradiance, d_reflected;
@@ -149,7 +149,7 @@ void LightDescent::set_gradient(const std::vector<float>& lobes, const std::vect
     const float lambda = at.lambda<float>(k), mean = d_power.x + d_power.y + d_power.z;
     store_planes(d_axes.data(), padded_, k, d_axis - axis * dot(d_axis, axis));
     d_logs[size_t(k)] =
-        lambda * (d_at.lambda<float>(k) - mean * sg_integral_slope(lambda) / sg_integral(lambda));
+        lambda * (d_at.lambda<float>(k) - mean * sg_integral_grad(lambda) / sg_integral(lambda));
     store_planes(d_logs.data() + padded_, padded_, k, d_power);
     d_common += d_power;
   }

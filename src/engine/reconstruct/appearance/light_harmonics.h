@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light in real spherical harmonics up to the third band: what matte surfaces see of it.
+// Light in real spherical harmonics up to the third band: the part that diffuse surfaces reflect.
 #pragma once
 
 #include <array>
@@ -17,18 +17,18 @@ inline Vec3f dot(const Harmonics& a, const HarmonicLight& b) {
   return sum;
 }
 
-// Between the cells of a lat-long light (EnvUp::z) and harmonics.
+// Projection of a lat-long light (EnvUp::z) of `height` rows onto harmonics.
 class LightHarmonics {
  public:
   explicit LightHarmonics(int height);
-  HarmonicLight of(const std::vector<Vec3f>& light) const;                   // #cells
-  void add_transposed(const HarmonicLight&, std::vector<Vec3f>& sum) const;  // the adjoint of `of`
+  HarmonicLight of(const std::vector<Vec3f>& light) const;                   // light: #cells
+  void add_transposed(const HarmonicLight&, std::vector<Vec3f>& sum) const;  // adjoint of of(), added to sum
 
  private:
   std::vector<Harmonics> cells_;  // times their solid angles
 };
 
-// The matrix that turns harmonics: harmonics(rotation * d) = matrix * harmonics(d). Row by row.
+// Rows of the matrix that rotates harmonics: harmonics(rotation * d) = matrix * harmonics(d).
 using HarmonicMatrix = std::array<Harmonics, kHarmonics>;
 HarmonicMatrix turned_harmonics(const Mat3f& rotation);
 Harmonics operator*(const HarmonicMatrix&, const Harmonics&);

@@ -97,7 +97,7 @@ void ScaleEquations::add(const std::vector<ReflectionSample>& samples, const Sam
 }
 
 LightScale light_scale(const std::vector<ScaleEquations>& places) {
-  constexpr double kUnknown = 4;  // variance where there is nothing to see
+  constexpr double kUnknown = 4;  // variance of the logarithms without evidence
   LightScale out{{1, 1, 1}, diagonal({kUnknown, kUnknown, kUnknown})};
   ScaleEquations all;
   for (const ScaleEquations& p : places) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How strong a light is, by what dielectrics reflect of it: generalized least squares.
+// The strength of a light from the reflections of dielectrics, by generalized least squares.
 // (docs/method.md#the-color-of-the-light)
 #pragma once
 
@@ -11,29 +11,30 @@
 
 namespace cei3d {
 
-// A sample of a dielectric vertex: color = D diffuse + t reflected, channel by channel, D the vertex' own.
+// A sample of a dielectric vertex. Per channel color = D * diffuse + t * reflected, with the diffuse radiance
+// D of the vertex and the factor t on the light.
 struct ReflectionSample {
   Vec3f weight;  // SplitRow::weight
   Vec3f diffuse, reflected, color;
 };
 
-// How far samples are from that. Besides errors of each channel the diffuse light varies as a whole, in the
-// color of the surface: pixels that show a neighbor, another exposure, a light that moved. What varies in
-// that color is no reflection.
+// Noise of the samples. Besides errors of each channel, the diffuse term varies as a whole, in the color of
+// the surface: pixels that show a neighbor, other exposures, a lamp that moved. Variation in that color must
+// not count as reflection.
 struct SampleNoise {
   double color = 1;    // variance of a channel, display units
   double diffuse = 0;  // variance of the strength of the diffuse light, relative
 };
 
-// D of a vertex for t = 1, at least 0.
+// Least-squares D >= 0 of a vertex for t = 1.
 Vec3f diffuse_of(const std::vector<ReflectionSample>& of_vertex);
 
-// Sums over vertices that give the noise.
+// Accumulates the noise estimate over vertices.
 class NoiseSums {
  public:
   void add(const std::vector<ReflectionSample>& of_vertex);
   SampleNoise noise() const;
-  // Mean square of what the reflections vary within the vertices, per channel, display units.
+  // Mean square of the variation of the reflections within vertices, per channel, display units.
   Vec3d reflected() const { return reflected_ / double(std::max<size_t>(samples_, 1)); }
 
  private:
@@ -42,14 +43,15 @@ class NoiseSums {
   size_t samples_ = 0;
 };
 
-// The normal equations of t for the vertices of a place, their D eliminated.
+// Normal equations of t for the vertices of one part of the surface, with their D eliminated.
 struct ScaleEquations {
   Mat3d matrix{};
   Vec3d right{0, 0, 0};
   void add(const std::vector<ReflectionSample>& of_vertex, const SampleNoise&);
 };
 
-// t, and the covariance of its logarithms: how far the places disagree. 1 and unknown where they say nothing.
+// The estimate of t, and the covariance of its logarithms from the disagreement of the parts. t = 1 with a
+// large covariance where there is no evidence.
 LightScale light_scale(const std::vector<ScaleEquations>& places);
 
 }  // namespace cei3d

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/math/color.h"
+#include "core/math/quantile.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
 #include "engine/reconstruct/appearance/split_solver.h"
 #include "model/light/envmap.h"
@@ -20,21 +21,22 @@ namespace {
 
 constexpr float kSmoothest = 0.12f, kRoughest = 0.95f;
 constexpr double kFar = 1.25;  // a residual this much above the best ends the scan
-// A metal explains everything by reflections; of a matte object of many colors it explains as much as a
-// dielectric does (dtu24). Of a metal (teapot) it leaves a fifth.
+// Maximum ratio of the residuals of a metal and a dielectric for an object to be a metal. On a matte object
+// of many colors the ratio is 1 (dtu24), on a metal 0.2 (teapot).
 constexpr double kMetalBy = 0.5;
-// Several materials always explain a little more than one. They have to explain so much more, and more than
-// the noise of photographs, 37 dB.
+// Several materials always fit a little better than one. They are chosen only if the residual falls below
+// this factor, and by more than the noise of photographs, 37 dB.
 constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
-// Of the variance that a model leaves over that which reflections explain: how wrong their strength may be
-// everywhere alike, as errors of regressors are.
+// Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
+// as for errors of regressors.
 constexpr double kSharedError = 0.1;
-constexpr double kPlainlyOne = 0.85;  // a first guess at several that leaves more is not improved
-constexpr float kFirstRoughness =
-    0.3f;  // at most, of the one material that the search for several begins with
+// The search for several materials stops if its first round leaves a larger share of the residual of one.
+constexpr double kPlainlyOne = 0.85;
+// Maximum roughness of the one material with which the search for several materials begins.
+constexpr float kFirstRoughness = 0.3f;
 
 // The largest roughness whose non-negative light fits within the tolerance of the best: a smaller one with a
-// blurred light fits about as well as the truth, a larger one asks for negative light. A coarse scan, then
+// blurred light fits about as well as the truth, a larger one needs negative light. A coarse scan, then
 // bisection.
 template <class F>
 float search_roughness(F residual_at, const LinearSplitOptions& o) {
@@ -61,8 +63,8 @@ float search_roughness(F residual_at, const LinearSplitOptions& o) {
   return last_good()->first;
 }
 
-// Light and a metal's color share a factor per channel that reflections leave open: the light is taken to be
-// gray on average.
+// Reflections of metals determine light and color only up to a factor per channel: the mean of the light is
+// assumed to be gray.
 void make_light_gray(SplitSolution& s, int height) {
   Vec3f mean{0, 0, 0};
   for (int i = 0; i < height; ++i)
@@ -77,15 +79,15 @@ void make_light_gray(SplitSolution& s, int height) {
   // No reflectance above one: the brightest hundredth decides the common scale.
   std::vector<float> peak;
   for (const Vec3f& a : s.materials.color) peak.push_back(std::max({a.x, a.y, a.z}));
-  std::nth_element(peak.begin(), peak.begin() + peak.size() * 99 / 100, peak.end());
-  const float k = max(1.0f, peak[peak.size() * 99 / 100]);
+  const size_t rank = peak.size() * 99 / 100;
+  const float k = max(1.0f, value_of_rank(std::move(peak), rank));
   for (Vec3f& l : s.x.light) l = l * k;
   for (Vec3f& a : s.materials.color) a = a / k;
 }
 
-// Base colors, those of dielectrics unclamped: what they send out diffusely over what reaches them.
-std::vector<Vec3f> base_colors(const Transport& transport, const SplitSolution& s, int height,
-                               const LightTurns* turns) {
+// Albedo of the vertices: pi D over irradiance, not clamped, for dielectrics.
+std::vector<Vec3f> vertex_albedo(const Transport& transport, const SplitSolution& s, int height,
+                                 const LightTurns* turns) {
   const std::vector<Vec3f> irradiance = split_irradiance(transport, s.x, s.materials, height, turns);
   std::vector<Vec3f> color = s.materials.color;
   for (uint32_t v = 0; v < color.size(); ++v)
@@ -94,41 +96,36 @@ std::vector<Vec3f> base_colors(const Transport& transport, const SplitSolution& 
   return color;
 }
 
-float percentile(std::vector<float> values, double share) {
-  const auto at = values.begin() + std::ptrdiff_t(share * double(values.size() - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
+// share: [0, 1].
+float quantile(std::vector<float> values, double share) {
+  const auto rank = size_t(share * double(values.size() - 1));
+  return value_of_rank(std::move(values), rank);
 }
 
-// The vertex nearest to each sample: what is seen much counts much, and pits and the inside next to nothing.
+// The vertex nearest to each sample: weights vertices by how often they are seen.
 std::vector<uint32_t> seen_vertices(const Mesh& mesh, const SurfaceSamples& samples) {
   std::vector<uint32_t> seen;
-  for (const Hit& h : samples.hits) {
-    const auto& t = mesh.triangles[h.triangle];
-    const float b0 = 1 - h.b1 - h.b2;
-    seen.push_back(b0 >= h.b1 && b0 >= h.b2 ? t[0] : h.b1 >= h.b2 ? t[1] : t[2]);
-  }
+  for (const Hit& h : samples.hits) seen.push_back(nearest_corner(mesh.triangles[h.triangle], h.b1, h.b2));
   return seen;
 }
 
-// Reflections show the product of light and specular reflectance; the split takes specular 0.5 for granted.
-// On surfaces that reflect less the light comes out too dark, and more diffuse light leaves them than
-// arrives. No base color is above one: that bounds the light from below, and the specular reflectance from
-// above.
+// Reflections determine the product of light and specular reflectance; the separation assumes specular 0.5.
+// On surfaces that reflect less, the light comes out too dark and albedo above 1. The bound albedo <= 1
+// raises the light and lowers the specular reflectance.
 void brighten_light(const Transport& transport, const std::vector<uint32_t>& seen, SplitSolution& s,
                     int height, const LightTurns* turns) {
-  constexpr double kShare = 0.98;  // of the samples is believed
+  constexpr double kShare = 0.98;  // quantile of the albedo that must be at most 1
   constexpr int kRounds = 3;       // the bounce does not scale with the light
   float all = 1;
   for (int round = 0; round < kRounds; ++round) {
-    const std::vector<Vec3f> color = base_colors(transport, s, height, turns);
-    float gain = 1;  // of all channels: the light's color is not told by this
+    const std::vector<Vec3f> color = vertex_albedo(transport, s, height, turns);
+    float gain = 1;  // common to all channels: the albedo does not determine the color of the light
     for (int c = 0; c < 3; ++c) {
       std::vector<float> channel;
       for (const uint32_t v : seen)
         if (!s.materials.is_metal(v)) channel.push_back(color[v][c]);
       if (channel.empty()) return;
-      gain = max(gain, percentile(std::move(channel), kShare));
+      gain = max(gain, quantile(std::move(channel), kShare));
     }
     for (Vec3f& l : s.x.light) l = l * gain;
     for (Vec3f& a : s.materials.color) a = a / gain;
@@ -145,7 +142,7 @@ std::vector<Vec3f> clamped(std::vector<Vec3f> v, float high) {
 
 LinearSplitOptions search_options(const LinearSplitOptions& options, int hits) {
   LinearSplitOptions o = options;
-  o.most_hits = hits;
+  o.max_hits = hits;
   o.light_height = options.search_height;
   return o;
 }
@@ -171,7 +168,7 @@ OneMaterial search_one_material(SplitSolver search, const LinearSplitOptions& op
   return {is_metal, roughness};
 }
 
-// Nothing where the object is plainly of one material. guess: the last solution.
+// None where one material is sufficient. guess: the last solution.
 std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMaterial& found,
                                                SplitGuess& guess) {
   const auto one = [&](float roughness) {
@@ -197,12 +194,13 @@ bool has_metals(const SplitSolution& s) {
   return std::any_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
 }
 
-// What is believed of the light's color, weighed against what the samples say. Returns what is left unknown.
+// Combines the prior of the light's color with the estimate from the samples and scales the light. Returns
+// the remaining covariance.
 LightCovariance believe_light(SplitSolver& solver, const LinearSplitOptions& options, SplitSolution& s,
                               Progress& progress) {
   if (all_metal(s)) return {};
   LightScale evidence = solver.light_scale(s);
-  // The strength that all channels share has been weighed against the colors of the metals.
+  // The common strength was already combined with the colors of the metals.
   if (has_metals(s))
     evidence.factor = evidence.factor / std::cbrt(evidence.factor.x * evidence.factor.y * evidence.factor.z);
   for (int c = 0; c < 3; ++c)
@@ -264,7 +262,7 @@ Material mean_of(const std::vector<Material>& materials) {
 float smoothest_of(const std::vector<Material>& materials) {
   std::vector<float> roughness;
   for (const Material& m : materials) roughness.push_back(m.roughness);
-  return percentile(std::move(roughness), 0.01);
+  return quantile(std::move(roughness), 0.01);
 }
 
 }  // namespace
@@ -296,7 +294,8 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
   result.light = light_image(s.x.light, options.light_height);
   result.diffuse = std::move(s.x.diffuse);
   result.albedo = clamped(
-      base_colors(transport, {{result.diffuse, s.x.light}, s.materials, 0}, options.light_height, turns), 1);
+      vertex_albedo(transport, {{result.diffuse, s.x.light}, s.materials, 0}, options.light_height, turns),
+      1);
   return result;
 }
 

@@ -71,10 +71,9 @@ using Materials = std::function<Material(Vec3f position)>;
 using Colors = std::function<Vec3f(Vec3f position)>;
 
 Camera looking_at_the_origin(Vec3f eye) {
-  const Vec3d z = to_double(normalize(-eye)), x = normalize(cross(z, Vec3d{0, 0, 1})), y = cross(z, x);
   Camera camera;
   camera.center = to_double(eye);
-  camera.world_from_cam = transpose(Mat3d{{x, y, z}});
+  camera.world_from_cam = upright_rotation(to_double(-eye), {0, 0, 1});
   return camera;
 }
 
@@ -305,7 +304,7 @@ TEST(LinearSplit, IsTheSameEveryTimeAndSaysWhenThereIsTooLittle) {
   const Drawn d = draw({0.3f, 0.5f, 0});
   LinearSplitOptions o = small();
   o.fixed_roughness = 0.3f;
-  o.most_hits = 8000;
+  o.max_hits = 8000;
   Progress quiet;
   const LinearSplit a = linear_split(*d.transport, d.samples(), o, quiet),
                     b = linear_split(*d.transport, d.samples(), o, quiet);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Radiance of a lat-long light blurred by the reflection lobe of a roughness.
+// A lat-long light blurred by the reflection lobe of a roughness.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace cei3d {
 
-// A linear map P = K L on the light's own grid of `height` rows and 2 height columns (EnvUp::z). It does not
-// change when the light turns about the poles, so that in the Fourier transform of the rows each frequency
-// has a matrix of its own, [height][height].
+// A linear map P = K L on the light's own grid of `height` rows and 2 height columns (EnvUp::z). K commutes
+// with rotations about the poles, so after a Fourier transform of the rows it is one matrix [height][height]
+// per frequency.
 class LobeBlur {
  public:
   LobeBlur(float roughness, int height);
 
   void apply(const std::vector<Vec3f>& light, std::vector<Vec3f>& blurred) const;
   void apply_transposed(const std::vector<Vec3f>& blurred, std::vector<Vec3f>& light) const;
-  // By the matrix whose entries are the squares of K's.
+  // Applies the transpose of the matrix whose entries are the squares of those of K.
   void apply_squared_transposed(const std::vector<Vec3f>& blurred, std::vector<Vec3f>& light) const;
 
  private:
@@ -27,7 +27,7 @@ class LobeBlur {
 
   int height_, width_, frequencies_;
   std::vector<float> cosines_, sines_;   // [frequency][column]
-  std::vector<float> spectrum_;          // [row out][row in][frequency]; real, for the lobe is symmetric
+  std::vector<float> spectrum_;          // [row out][row in][frequency]; real, because the lobe is symmetric
   std::vector<float> squared_spectrum_;  // of the squared entries
 };
 

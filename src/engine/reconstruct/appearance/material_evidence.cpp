@@ -11,17 +11,16 @@ namespace cei3d {
 namespace {
 
 constexpr int kLevels = BlurLadder::kLevels;
-constexpr int kGrain = 1024;  // vertices a chunk
+constexpr int kGrain = 1024;  // vertices per chunk
 constexpr float kSpecular = 0.5f;
-constexpr float kMinMetal = 0.02f,
-                kMaxMetal = 4;  // reflectance of a metal, the light's scale being uncertain
+// Bounds of the reflectance of a metal while the scale of the light is uncertain.
+constexpr float kMinMetal = 0.02f, kMaxMetal = 4;
 
 uint32_t nearest_vertex(const SplitRow& r) {
-  const auto& b = r.barycentric;
-  return b[0] >= b[1] && b[0] >= b[2] ? r.vertices[0] : b[1] >= b[2] ? r.vertices[1] : r.vertices[2];
+  return nearest_corner(r.vertices, r.barycentric[1], r.barycentric[2]);
 }
 
-// Least squares of one coefficient a channel: y = k s.
+// Least squares of one coefficient per channel: y = k s.
 struct OneCoefficient {
   Vec3f ss{0, 0, 0}, sy{0, 0, 0}, yy{0, 0, 0};
   void add(Vec3f weight, Vec3f s, Vec3f y) {
@@ -40,7 +39,7 @@ struct OneCoefficient {
   }
 };
 
-// Minimum of errors over the levels, by a parabola through the least and its neighbors.
+// Minimum of the errors over the levels, by a parabola through the smallest and its neighbors.
 void minimum(const float* e, float& roughness, float& error) {
   const int best = int(std::min_element(e, e + kLevels) - e);
   float at = float(best);
@@ -89,7 +88,7 @@ int LitSamples::for_samples(uint32_t vertex, float roughness, const F& visit) co
   return count;
 }
 
-// Of the dielectric and the metal of that level. Returns the number of samples.
+// Adds the errors of the dielectric and the metal of that level. Returns the number of samples.
 int LitSamples::add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float* errors) const {
   const Vec3f black{0, 0, 0}, white{1, 1, 1}, f0 = f0_of(black, kSpecular, 0.0f);
   OneCoefficient dielectric, metal;
@@ -119,7 +118,7 @@ MaterialEvidence LitSamples::evidence(const std::vector<Vec3f>& max_diffuse) con
 
 namespace {
 
-// The unit sphere in cubes, each a place of the surface that has its own errors.
+// Divides the unit sphere into cubes, whose errors are independent.
 constexpr int kPlacesAcross = 5, kPlaces = kPlacesAcross * kPlacesAcross * kPlacesAcross;
 
 size_t place_of(Vec3f p) {
@@ -189,7 +188,7 @@ std::vector<Vec3f> mean_colors(size_t vertices, const std::vector<SplitRow>& row
 
 namespace {
 
-// The neighbors of every vertex, and how much what they say counts for it.
+// The neighbors of every vertex and their weights in the diffusion.
 struct Neighbors {
   std::vector<uint32_t> start, vertex;  // #V + 1; neighbors
   std::vector<float> weight;

@@ -8,11 +8,11 @@ namespace cei3d {
 
 std::array<Vec3f, kPixelPoints> pixel_points(const Hit& hit, float footprint) {
   const float spread = std::sqrt(1 / 6.0f) * footprint;  // standard deviation of the tent along an axis
-  constexpr float kLeastCosine = 0.25f;                  // beyond, the plane is no picture of the surface
+  constexpr float kMinCosine = 0.25f;  // below it, the tangent plane is a poor approximation of the surface
   const Vec3f view = hit.to_camera;
   const Vec3f right = normalize(cross(std::abs(view.z) < 0.9f ? Vec3f{0, 0, 1} : Vec3f{1, 0, 0}, view));
   const Vec3f up = cross(view, right);
-  const float cosine = std::max(kLeastCosine, dot(hit.normal, view));
+  const float cosine = std::max(kMinCosine, dot(hit.normal, view));
   std::array<Vec3f, kPixelPoints> points;
   for (int k = 0; k < kPixelPoints; ++k) {
     const Vec3f across = (right * (k & 1 ? 1.0f : -1.0f) + up * (k & 2 ? 1.0f : -1.0f)) * spread;

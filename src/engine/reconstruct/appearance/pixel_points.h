@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points that stand for a pixel where it meets the surface. A pixel is a mean: a texture that has to match it
-// at its center alone learns the picture blurred once more by every pixel's filter.
+// Points on the surface that represent a pixel. A pixel is a mean over its filter: a texture that is fitted
+// at pixel centers alone comes out blurred by the filter.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@ namespace cei3d {
 
 inline constexpr int kPixelPoints = 4;
 
-// On the tangent plane of a hit in the pixel's middle, with the spread of the pixel's filter, a tent of
-// radius one pixel (engine/render/render.h). footprint: distance between neighboring pixels across the line
-// of sight.
+// Four points on the tangent plane of the hit at the pixel's center, with the spread of the pixel filter, a
+// tent of radius one pixel (engine/render/render.h). footprint: distance between neighboring pixels
+// perpendicular to the line of sight, unit frame.
 std::array<Vec3f, kPixelPoints> pixel_points(const Hit& hit, float footprint);
 
 }  // namespace cei3d

@@ -20,15 +20,15 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kChunks = 16, kBatch = kChunks * ResidualPass::kMost;  // pixels a step
-constexpr int kApart = 8;                                            // every so many views one to judge by,
-constexpr size_t kJudged = 100000;                                   // at most so many of its pixels
-constexpr double kLeastGain = 0.03;                                  // of the squared error there
-constexpr double kJudging = 0.2;                                     // of the steps come before that,
-constexpr double kWarmUp = 0.05;  // and so many at rising rates: large first ones leave no unit alive
+constexpr int kChunks = 16, kBatch = kChunks * ResidualPass::kMaxHits;  // pixels per step
+constexpr int kValidationStride = 8;  // one in so many views is held back for validation
+constexpr size_t kMaxValidationPixels = 100000;
+constexpr double kMinGain = 0.03;            // relative decrease of the squared error on the views held back
+constexpr double kValidationFraction = 0.2;  // share of the steps before the validation
+constexpr double kWarmUp = 0.05;  // share of the steps at rising rates: large first steps kill units
 
-// Mean base color of each pixel: at its center alone the texture is sharper than the picture, and the
-// residual would learn to blur it.
+// Mean albedo of each pixel: at pixel centers the texture is sharper than the image, and the network would
+// learn to blur it.
 std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::span<const Hit> hits,
                                 std::span<const float> footprints) {
   std::vector<Vec3f> points, out(hits.size(), Vec3f{0, 0, 0});
@@ -39,7 +39,7 @@ std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::
   return out;
 }
 
-// What the physical model sends out.
+// Radiance by light and material.
 std::vector<Vec3f> physical(const Device& device, const Scene& scene, const SurfaceSamples& samples,
                             const Progress& progress) {
   constexpr size_t kSlab = 1 << 17;  // hits at a time: shading takes more memory than they do
@@ -86,18 +86,18 @@ class Trainer {
       optimizer_.add(features_->params(), "layer", {options.feature_rate});
     }
     for (uint32_t i = 0; i < views.size(); ++i)
-      (views[i] % kApart == kApart - 1 ? apart_ : taught_).push_back(i);
+      (views[i] % kValidationStride == kValidationStride - 1 ? validation_ : training_).push_back(i);
   }
-  bool can_judge() const { return !apart_.empty() && !taught_.empty(); }
-  void teach_all() { taught_.insert(taught_.end(), apart_.begin(), apart_.end()); }
+  bool can_judge() const { return !validation_.empty() && !training_.empty(); }
+  void teach_all() { training_.insert(training_.end(), validation_.begin(), validation_.end()); }
 
-  // How well views that the residual has not seen are matched.
+  // PSNR of the views held back.
   Explained explained() const {
     std::vector<uint32_t> judged;
     std::vector<Hit> hits;
-    for (size_t i = 0; i < apart_.size(); i += 1 + apart_.size() / kJudged) {
-      judged.push_back(apart_[i]);
-      hits.push_back(hit(apart_[i]));
+    for (size_t i = 0; i < validation_.size(); i += 1 + validation_.size() / kMaxValidationPixels) {
+      judged.push_back(validation_[i]);
+      hits.push_back(hit(validation_[i]));
     }
     const std::vector<Vec3f> values = residual_at(device_, residual_, hits);
     double with = 0, without = 1e-12;
@@ -135,20 +135,21 @@ class Trainer {
 
  private:
   std::vector<uint32_t> choose(int chunk) const {
-    std::vector<uint32_t> out(ResidualPass::kMost);
+    std::vector<uint32_t> out(ResidualPass::kMaxHits);
     for (size_t i = 0; i < out.size(); ++i)
-      out[i] = Rng(seed_, uint64_t(steps_), uint64_t(chunk) * out.size() + i).below(uint32_t(taught_.size()));
-    for (uint32_t& i : out) i = taught_[i];
+      out[i] =
+          Rng(seed_, uint64_t(steps_), uint64_t(chunk) * out.size() + i).below(uint32_t(training_.size()));
+    for (uint32_t& i : out) i = training_[i];
     return out;
   }
 
-  // Returns the pass's samples.
+  // Returns the number of samples of the pass.
   int learn(ResidualPass& pass, const MlpWeights& feature_weights, const MlpWeights& weights,
             const std::vector<uint32_t>& chosen, float* gradient) {
     std::vector<Hit> hits;
     for (const uint32_t s : chosen) hits.push_back(hit(s));
     const int n = pass.forward(device_, *features_, feature_weights, weights, hits);
-    for (int i = 0; i < n; ++i) pass.set_slope(i, slope(chosen[i], pass.output(i)));
+    for (int i = 0; i < n; ++i) pass.set_output_grad(i, slope(chosen[i], pass.output(i)));
     pass.backward(device_, weights, n, gradient);
     return n;
   }
@@ -169,7 +170,7 @@ class Trainer {
     return sum;
   }
 
-  // Of the loss by the residual.
+  // dL/d(output of the network).
   Vec3f slope(uint32_t sample, Vec3f residual) const {
     Vec3f out;
     for (int c = 0; c < 3; ++c)
@@ -181,7 +182,7 @@ class Trainer {
 
   const Device& device_;
   const SurfaceSamples& samples_;
-  std::vector<uint32_t> taught_, apart_;  // samples
+  std::vector<uint32_t> training_, validation_;  // samples
   uint64_t seed_;
   double warm_up_;  // steps
   std::vector<Vec3f> sent_;
@@ -193,7 +194,7 @@ class Trainer {
   int steps_ = 0;
 };
 
-// The rates falling from all to a hundredth. seconds: at most; 0: no limit.
+// Trains at rates that decay to a hundredth. seconds: time limit; 0: none.
 void train(Trainer& trainer, int steps, double seconds, const Clock& clock, Progress& progress) {
   const double start = clock();
   for (int step = 0; step < steps; ++step) {
@@ -217,8 +218,8 @@ ResidualFit fit_residual(const Device& device, const Scene& scene, const Surface
   if (!trainer.can_judge()) return {};
   const double shading = options.clock() - start;
   const double seconds = options.seconds > 0 ? std::max(options.seconds - shading, 0.5 * options.seconds) : 0;
-  const int judging = std::max(1, int(kJudging * options.steps));
-  train(trainer, judging, kJudging * seconds, options.clock, progress);
+  const int judging = std::max(1, int(kValidationFraction * options.steps));
+  train(trainer, judging, kValidationFraction * seconds, options.clock, progress);
   const Explained explained = trainer.explained();
   const double gain = 1 - std::pow(10, 0.1 * (explained.physical - explained.with_residual));
   progress.log(Json{
@@ -228,9 +229,9 @@ ResidualFit fit_residual(const Device& device, const Scene& scene, const Surface
       {"with_residual", explained.with_residual},
       {"gain_on_views_kept_apart",
        gain}}.dump());
-  if (gain < kLeastGain) return {{}, explained};
+  if (gain < kMinGain) return {{}, explained};
   trainer.teach_all();
-  train(trainer, options.steps - judging, (1 - kJudging) * seconds, options.clock, progress);
+  train(trainer, options.steps - judging, (1 - kValidationFraction) * seconds, options.clock, progress);
   return {trainer.take(), explained};
 }
 

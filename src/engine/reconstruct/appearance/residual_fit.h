@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trains the residual (model/scene/residual.h) on what the physical model leaves of the training pictures.
+// Trains the correction network (model/scene/residual.h) on the difference between training images and
+// shading.
 #pragma once
 
 #include <optional>
@@ -13,24 +14,27 @@
 namespace cei3d {
 
 struct ResidualOptions {
-  // For the shading of all samples and the training, which gets half at least; 0: no limit, the steps count.
+  // Time limit of shading all samples and training, which gets at least half of it; 0: no limit, `steps`
+  // decides.
   double seconds = 0;
   Clock clock = steady_seconds;
   int steps = 1500;
-  // Adam's; they fall to a hundredth. Of the network, and of the features' tables and layers. Fields without
-  // tables keep the features they have: they would take hours.
-  float rate = 2.5e-3f, table_rate = 1e-2f, feature_rate = 3e-3f;
+  // Adam rates, which decay to a hundredth. Features of fields without hash tables are not trained: that
+  // would take hours.
+  float rate = 2.5e-3f;        // of the network
+  float table_rate = 1e-2f;    // of the hash tables of the features
+  float feature_rate = 3e-3f;  // of the layers of the features
   uint64_t seed = 1;
 };
 
-// scene: the object without residual. samples: as for the appearance stage; views: #samples. For the first
-// fifth every eighth view is kept apart, to judge by: there is no residual where its pixels do not gain
-// (spot: what light and material leave there is noise), and nothing where there is no such view. Error:
-// interrupted.
+// Result of the fit. During the first fifth of the training every eighth view is held back: if its pixels do
+// not gain, there is no network (spot: only noise is left to explain).
 struct ResidualFit {
   std::optional<Residual> residual;
-  std::optional<Explained> explained;  // of the views kept apart, after that fifth
+  std::optional<Explained> explained;  // on the views held back, after that fifth; none: no such view
 };
+// scene: without a correction network. samples: as for the appearance stage. views: #samples, index of the
+// camera. Error: interrupted.
 ResidualFit fit_residual(const Device&, const Scene& scene, const SurfaceSamples& samples,
                          std::span<const uint16_t> views, const ResidualOptions&, Progress&);
 

@@ -28,8 +28,7 @@ DirectLight direct_light(const Transport& transport, const Image& light, const L
   return out;
 }
 
-// Of every vertex from the surface, which sends out what it shows, metals as if their reflections were
-// diffuse.
+// Irradiance of every vertex from the surface. Metals count as diffuse emitters of their mean reflection.
 std::vector<Vec3f> bounce_of(const Transport& transport, const SplitUnknowns& x,
                              const SplitMaterials& materials, const std::vector<Vec3f>& direct) {
   std::vector<Vec3f> sent = x.diffuse;
@@ -52,7 +51,7 @@ SkyRadiance sky_radiance(const Image& light, const Mat3f& room_from_object) {
   for (const Vec3f& d : sky_directions()) sky.push_back(room_from_object * d);
   SkyRadiance sum(sky.size(), Vec3f{0, 0, 0});
   std::vector<float> total(sky.size(), 0);
-  // A pixel feeds the directions around it by a narrow lobe about as wide as their spacing.
+  // A cell contributes to the directions around it by a lobe about as wide as their spacing.
   for (int y = 0; y < light.height; ++y)
     for (int x = 0; x < light.width; ++x) {
       const Vec3f d = env_direction(float(x) + 0.5f, float(y) + 0.5f, light.width, light.height);
@@ -114,15 +113,15 @@ Harmonics TurningIrradiance::at(const SplitRow& row) const {
   return sum;
 }
 
-DiffuseSlopes TurningIrradiance::turn(const SplitUnknowns& x, const SplitMaterials& materials,
-                                      std::vector<SplitRow>& rows) const {
+DiffuseLightGrad TurningIrradiance::turn(const SplitUnknowns& x, const SplitMaterials& materials,
+                                         std::vector<SplitRow>& rows) const {
   const Vec3f dark{1e-6f, 1e-6f, 1e-6f};
   DirectLight light = direct_light(transport_, light_image(x.light, height_), &turns_);
   const std::vector<Vec3f> bounce = bounce_of(transport_, x, materials, light.mean);
   for (size_t v = 0; v < bounce.size(); ++v) light.mean[v] += bounce[v] + dark;
   for (std::vector<Vec3f>& bin : light.by_bin)
     for (size_t v = 0; v < bin.size(); ++v) bin[v] = (bin[v] + bounce[v] + dark) / light.mean[v];
-  DiffuseSlopes slopes{std::vector<DiffuseSlopes::OfRow>(rows.size()), harmonics_.of(x.light)};
+  DiffuseLightGrad slopes{std::vector<DiffuseLightGrad::OfRow>(rows.size()), harmonics_.of(x.light)};
   parallel_ranges(int(rows.size()), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       SplitRow& row = rows[size_t(i)];
@@ -135,7 +134,7 @@ DiffuseSlopes TurningIrradiance::turn(const SplitUnknowns& x, const SplitMateria
       row.diffuse_light = between(bin, row.vertices, row.barycentric) + more;
       for (int c = 0; c < 3; ++c) row.diffuse_light[c] = max(row.diffuse_light[c], 0.0f);
       if (row.blocked) row.far_diffuse_light = between(bin, row.far_vertices, row.far_barycentric);
-      DiffuseSlopes::OfRow& slope = slopes.rows[size_t(i)];
+      DiffuseLightGrad::OfRow& slope = slopes.rows[size_t(i)];
       const float share = luminance(row.diffuse_light);
       for (size_t j = 0; j < kHarmonics; ++j) slope.by_light[j] = in_view[j] - share * mean[j];
       slope.gain = between(x.diffuse, row.vertices, row.barycentric) / mean_light;

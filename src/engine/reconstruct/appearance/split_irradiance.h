@@ -1,28 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// The light that the solution of a split sends to the vertices, directly and by one bounce.
+// Irradiance of the vertices under the solution of a linear separation, direct and by one bounce.
 #pragma once
 
 #include "engine/reconstruct/appearance/split_system.h"
 
 namespace cei3d {
 
+// The cells of a lat-long light as an image of `height` rows, linear RGB.
 Image light_image(const std::vector<Vec3f>& light, int height);
 
-// Mean of a lat-long light (EnvUp::z) around each of sky_directions(), which a rotation takes to its frame.
+// Mean radiance of a lat-long light (EnvUp::z) around each of sky_directions(), which `room_from_object`
+// rotates to its frame.
 SkyRadiance sky_radiance(const Image& light, const Mat3f& room_from_object = Mat3f::identity());
 
-// Irradiance of every vertex, from the light and from the surface. light: of `height` rows. turns: null: the
-// light stands still; else the mean over the bins.
+// Irradiance of every vertex, from the light (of `height` rows) and by one bounce: #V. Under a turning light,
+// the mean over the bins; turns null: the light is fixed to the object.
 std::vector<Vec3f> split_irradiance(const Transport&, const SplitUnknowns&, const SplitMaterials&, int height,
                                     const LightTurns* turns);
 
-// What matte surfaces see of a light that turns.
+// The irradiance of samples under a turning light.
 class TurningIrradiance {
  public:
   TurningIrradiance(const Transport&, const LightTurns&, int light_height);
-  // Sets the diffuse light of the rows: the irradiance in their view over the mean that split_irradiance()
-  // gives. Returns how it follows the light.
-  DiffuseSlopes turn(const SplitUnknowns&, const SplitMaterials&, std::vector<SplitRow>& rows) const;
+  // Sets the diffuse light of the rows: irradiance in their view over the mean of split_irradiance(). Returns
+  // its derivative by the light.
+  DiffuseLightGrad turn(const SplitUnknowns&, const SplitMaterials&, std::vector<SplitRow>& rows) const;
 
  private:
   Harmonics at(const SplitRow&) const;

@@ -7,6 +7,7 @@
 #include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/math/quantile.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
 
 namespace cei3d {
@@ -15,12 +16,12 @@ namespace {
 constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
 
 constexpr int kRounds = 3;  // of materials and light
-// Rounds of a turning light and of how matte surfaces follow it: without a guess, and with one.
+// Rounds of linearization for a turning light: without a guess, and with one.
 constexpr int kFirstTurns = 3, kTurns = 2;
 constexpr int kDiffusion = 20;     // steps, of evidence over the surface
-constexpr float kMetalBy = 0.85f;  // a metal has to explain a place so much better than a dielectric
-// The brightest diffuse base color that a vertex may have, in multiples of white: while the scale of the
-// light is uncertain, and then.
+constexpr float kMetalBy = 0.85f;  // maximum ratio of the errors of a metal and a dielectric for a metal
+// Upper bounds of the diffuse albedo of a vertex, in multiples of white: while the scale of the light is
+// uncertain, and afterwards.
 constexpr float kFirstWhite = 3, kLastWhite = 1.3f;
 
 }  // namespace
@@ -75,7 +76,7 @@ SplitSolution SplitSolver::solved(SplitSolution s, int rounds, int steps) {
 }
 
 void SplitSolver::turn_diffuse_light(const SplitSolution& s) {
-  if (turning_) system_.set_diffuse_slopes(turning_->turn(s.x, s.materials, rows_));
+  if (turning_) system_.set_diffuse_light_grad(turning_->turn(s.x, s.materials, rows_));
 }
 
 SplitSolution SplitSolver::with_fitted_metals(SplitSolution s, int rounds, int steps) {
@@ -106,7 +107,7 @@ SplitSolution SplitSolver::dielectric(float roughness) {
 
 SplitSolution SplitSolver::metal(float roughness) {
   SplitSolution s{uniform(), one_material(mesh_.positions.size(), {roughness, kSpecular, 1})};
-  system_.set_diffuse_slopes({});  // metals have no diffuse light
+  system_.set_diffuse_light_grad({});  // metals have no diffuse light
   for (int round = 0; round < 3; ++round) s = with_fitted_metals(std::move(s), 3, 8);
   return finish(std::move(s), true, roughness);
 }
@@ -121,7 +122,7 @@ LitSamples SplitSolver::lit_samples(const SplitUnknowns& x) {
   return LitSamples(mesh_.positions.size(), rows_, system_.targets(x), system_.blurs(), x.light);
 }
 
-// A vertex far from all samples keeps what it has.
+// A vertex far from all samples keeps its material.
 void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, SplitMaterials& materials) {
   const std::vector<Vec3f> white = white_radiance({x, materials, 0}, max_albedo);
   MaterialEvidence evidence = lit_samples(x).evidence(white);
@@ -143,8 +144,7 @@ void scale(SplitSolution& s, Vec3f factor) {
 
 }  // namespace
 
-// What dielectrics send out changes by as much as the best fit of each vertex alone does: that fit is noisy,
-// its change is not.
+// D of dielectrics changes by the change of the best fit per vertex: that fit is noisy, its change is not.
 void SplitSolver::scale_light(SplitSolution& s, Vec3f factor) {
   system_.set_materials(s.materials);
   const std::vector<Vec3f> before = lit_samples(s.x).fit_diffuse(s.materials, s.x.diffuse);
@@ -156,12 +156,12 @@ void SplitSolver::scale_light(SplitSolution& s, Vec3f factor) {
 
 namespace {
 
-// The brightest channel of the object's colored metals where they are clean: patina and dirt only darken. 0
-// where they are few. Metals that are nearly gray tell nothing, they reflect between .5 and .97.
+// The brightest channel of colored metals, as a high quantile over vertices, because patina and dirt only
+// darken; 0 if there are few. Gray metals are not used: their reflectance is anywhere between .5 and .97.
 float colored_metal_peak(const SplitMaterials& materials) {
   constexpr float kColored = 1.25f;  // ratio of the brightest and the darkest channel
   constexpr double kFew = 0.02;      // of the vertices
-  constexpr double kClean = 0.7;     // the percentile; estimates of vertices scatter
+  constexpr double kClean = 0.7;     // the quantile; estimates of vertices scatter
   std::vector<float> peaks;
   for (uint32_t v = 0; v < materials.of.size(); ++v) {
     if (!materials.is_metal(v)) continue;
@@ -170,16 +170,16 @@ float colored_metal_peak(const SplitMaterials& materials) {
     if (peak > kColored * min(c.x, min(c.y, c.z))) peaks.push_back(peak);
   }
   if (double(peaks.size()) < kFew * double(materials.of.size())) return 0;
-  const auto at = peaks.begin() + std::ptrdiff_t(kClean * double(peaks.size()));
-  std::nth_element(peaks.begin(), at, peaks.end());
-  return *at;
+  const auto rank = size_t(kClean * double(peaks.size()));
+  return value_of_rank(std::move(peaks), rank);
 }
 
 }  // namespace
 
-// Reflections of metals leave the scale of the light open. The dielectrics' tell it per channel, the metals'
-// color in common: metals that have a color are gold, copper and their alloys, whose brightest channel
-// reflects .89 to 1 (docs/method.md#materials). The two are weighed by how well each is known.
+// Reflections of metals do not determine the scale of the light. Those of dielectrics determine it per
+// channel; the colors of metals determine a common factor: colored metals are gold, copper and their alloys,
+// whose brightest channel reflects .89 to 1 (docs/method.md#materials). The two are combined by inverse
+// variance.
 void SplitSolver::fix_scale(SplitSolution& s) {
   constexpr float kPeak = 0.94f;
   constexpr float kPeakError = 0.2f, kDielectricError = 0.1f;  // of the logarithms

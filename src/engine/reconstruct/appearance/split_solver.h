@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Solutions of the linear split for one size of the problem: for one material, and for a material at every
-// vertex.
+// Solver of the linear separation for given samples and light resolution: with one material, or with a
+// material per vertex.
 #pragma once
 
 #include "core/base/progress.h"
@@ -15,7 +15,7 @@ struct SplitSolution {
   double residual = 0;
 };
 
-// A solution for a problem of any size.
+// A solution to start from, of any light resolution.
 struct SplitGuess {
   std::vector<Vec3f> diffuse;  // #V
   Image light;                 // empty: no guess
@@ -23,8 +23,8 @@ struct SplitGuess {
 
 class SplitSolver {
  public:
-  // Conjugate gradients are slow to find the strength of the light where dielectrics reflect it: solutions
-  // with dielectrics start from the last one, the first from `guess`; without a guess from uniform light.
+  // Conjugate gradients converge slowly in the strength of the light for dielectrics. Therefore solutions
+  // with dielectrics start from the last one, the first from `guess`, and without a guess from uniform light.
   SplitSolver(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&,
               SplitGuess guess = {});
 
@@ -34,21 +34,21 @@ class SplitSolver {
   const SplitGuess& last() const { return guess_; }
   SplitSolution dielectric(float roughness);
   SplitSolution metal(float roughness);
-  // Finds the materials of the vertices: by turns the materials that explain the samples best under the
-  // light, and the light for these materials. start: the light to begin with. max_residual: gives up, with
-  // the residual as it is, when the first turn leaves more.
+  // Materials per vertex: alternates between the best materials under the light and the light for these
+  // materials. start: initial light. max_residual: stops after the first round if it leaves a larger
+  // residual.
   SplitSolution several(SplitSolution start, double max_residual);
-  // The light for these materials.
+  // Light and D for given materials.
   SplitSolution with_materials(const SplitMaterials&);
-  // What the samples say of its strength.
+  // Estimate of a factor on the light from the samples.
   LightScale light_scale(const SplitSolution&);
-  // Times the light, metals darker by as much, dielectrics as the samples then want them.
+  // Multiplies the light by `factor`, divides the color of metals by it, and refits the dielectrics.
   void scale_light(SplitSolution&, Vec3f factor);
 
   std::vector<LinearSplit::Trial> trials;  // of one material
 
  private:
-  SplitUnknowns uniform() const;  // light; each vertex the mean color of its samples
+  SplitUnknowns uniform() const;  // uniform light; D of each vertex: the mean color of its samples
   SplitUnknowns guessed() const;
   SplitSolution guess(SplitMaterials);
   void turn_diffuse_light(const SplitSolution&);

@@ -2,114 +2,14 @@
 #include "engine/reconstruct/appearance/split_system.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/parallel.h"
 #include "core/math/brdf.h"
-#include "core/math/color.h"
-#include "core/math/rng.h"
 
 namespace cei3d {
 namespace {
 
 constexpr int kChunks = 16;  // of rows; fixed, so that sums are the same on any machine
-constexpr float kSmoothest = 0.1f, kRoughest = 0.95f;  // of the ladder
-constexpr float kGrazing = 0.1f;  // samples seen flatter than this are left out: silhouettes and bad normals
-constexpr float kDarkest = 0.003f;  // radiance below which the display curve's slope is not followed further
-
-void set_far_hit(const Mesh& mesh, const Surface::RayHit& h, SplitRow& row) {
-  const auto& t = mesh.triangles[h.triangle];
-  row.blocked = true;
-  row.far_vertices = {t[0], t[1], t[2]};
-  row.far_barycentric = {1 - h.b1 - h.b2, h.b1, h.b2};
-}
-
-std::vector<uint32_t> choose_samples(const SurfaceSamples& s, const LinearSplitOptions& o) {
-  std::vector<uint32_t> kept;
-  const double share = double(o.most_hits) / std::max<double>(1, double(s.hits.size()));
-  for (uint32_t i = 0; i < s.hits.size(); ++i)
-    if (dot(s.hits[i].normal, s.hits[i].to_camera) > kGrazing && Rng(o.seed, 0, i).uniform() < share)
-      kept.push_back(i);
-  return kept;
-}
-
-}  // namespace
-
-std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSamples& samples,
-                                      const LinearSplitOptions& options) {
-  const Mesh& mesh = surface.mesh();
-  const std::vector<uint32_t> kept = choose_samples(samples, options);
-  const size_t n = kept.size();
-  std::vector<SplitRow> rows(n);
-  std::vector<Vec3f> origins(n), directions(n);
-  for (size_t k = 0; k < n; ++k) {
-    const Hit& h = samples.hits[kept[k]];
-    SplitRow& row = rows[k];
-    const auto& t = mesh.triangles[h.triangle];
-    row = {};
-    row.vertices = {t[0], t[1], t[2]};
-    row.barycentric = {1 - h.b1 - h.b2, h.b1, h.b2};
-    row.normal = samples.turned.in_room(kept[k], h.normal);
-    row.to_camera = samples.turned.in_room(kept[k], h.to_camera);
-    row.view = samples.turned.turns ? samples.turned.views[kept[k]] : 0;
-    row.nv = dot(h.normal, h.to_camera);
-    row.color = samples.colors[kept[k]];
-    for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_slope(max(row.color[c], kDarkest)));
-    row.clipped = samples.clipped.empty() ? 0 : samples.clipped[kept[k]];
-    origins[k] = ray_origin(h);
-    directions[k] = mirror_direction(h);
-  }
-  std::vector<Surface::RayHit> hits(n);
-  surface.intersect(origins, directions, 0, hits);
-  for (size_t k = 0; k < n; ++k)
-    if (hits[k].t >= 0) set_far_hit(mesh, hits[k], rows[k]);
-  return rows;
-}
-
-float BlurLadder::roughness(int level) {
-  return kSmoothest * std::pow(kRoughest / kSmoothest, float(level) / (kLevels - 1));
-}
-
-BlurLadder::Place BlurLadder::place(float roughness) {
-  const float at =
-      clamp(std::log(roughness / kSmoothest) / std::log(kRoughest / kSmoothest), 0.0f, 1.0f) * (kLevels - 1);
-  const int level = std::min(int(at), kLevels - 2);
-  return {level, at - float(level)};
-}
-
-const LobeBlur& BlurLadder::level(int i) {
-  auto& blur = blurs_[size_t(i)];
-  if (!blur) blur = std::make_unique<LobeBlur>(roughness(i), height_);
-  return *blur;
-}
-
-ReflectedSky reflected_sky(const SplitRow& row, ReflectionPart part, float roughness, int light_height) {
-  const ReflectionAxis<float> lobe =
-      reflection_axis(reflection_axis_table(part), row.normal, row.to_camera, roughness);
-  return {BlurLadder::place(lobe.roughness), env_taps(lobe.axis, 2 * light_height, light_height)};
-}
-
-Vec3f radiance_at(const Blurred& blurred, const ReflectedSky& at) {
-  const auto &below = blurred[size_t(at.lobe.level)], &above = blurred[size_t(at.lobe.level) + 1];
-  Vec3f sum{0, 0, 0};
-  for (int k = 0; k < 4; ++k) {
-    const int pixel = at.taps.pixel[k];
-    sum += (below[pixel] * (1 - at.lobe.above) + above[pixel] * at.lobe.above) * at.taps.weight[k];
-  }
-  return sum;
-}
-
-namespace {
-
-// The adjoint of radiance_at().
-void scatter(const ReflectedSky& at, Vec3f radiance, Blurred& sum) {
-  auto &below = sum[size_t(at.lobe.level)], &above = sum[size_t(at.lobe.level) + 1];
-  for (int k = 0; k < 4; ++k) {
-    const Vec3f part = radiance * at.taps.weight[k];
-    below[at.taps.pixel[k]] += part * (1 - at.lobe.above);
-    above[at.taps.pixel[k]] += part * at.lobe.above;
-  }
-}
 
 }  // namespace
 
@@ -217,58 +117,66 @@ std::vector<Vec3f> SplitSystem::targets(const SplitUnknowns& x) const {
   return out;
 }
 
+// Sums of one chunk of rows.
+struct SplitSystem::RowSums {
+  std::vector<Vec3f> diffuse;  // #V
+  Blurred sky;
+  HarmonicLight harmonics{};
+};
+
+// Adds the contribution of a row to A^T y.
+void SplitSystem::add_row(size_t i, Vec3f y, RowSums& sum) const {
+  const SplitRow& row = rows_[i];
+  const Optics& o = optics_[i];
+  const Vec3f here = y * row.diffuse_light * o.diffuse_view;
+  for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += here * row.barycentric[k];
+  if (!slopes_.rows.empty()) {
+    const Vec3f by_light = y * slopes_.rows[i].gain * o.diffuse_view;
+    for (size_t j = 0; j < kHarmonics; ++j) sum.harmonics[j] += by_light * slopes_.rows[i].by_light[j];
+  }
+  if (row.blocked) {
+    const Vec3f g = y * o.gain() * row.far_diffuse_light;
+    for (int k = 0; k < 3; ++k) sum.diffuse[row.far_vertices[k]] += g * row.far_barycentric[k];
+    return;
+  }
+  scatter_radiance(o.base, y * o.base_gain, sum.sky);
+  scatter_radiance(o.fresnel, y * o.split_sum.bias, sum.sky);
+}
+
+// The light that the blurs and harmonics of all chunks stand for.
+void SplitSystem::gather_light(const std::vector<RowSums>& parts, std::vector<Vec3f>& out) const {
+  out.assign(cells(), {0, 0, 0});
+  for (int level = 0; level < BlurLadder::kLevels; ++level) {
+    if (!in_use_[size_t(level)]) continue;
+    std::vector<Vec3f> sum(cells(), Vec3f{0, 0, 0}), light;
+    for (const RowSums& part : parts)
+      for (size_t i = 0; i < cells(); ++i) sum[i] += part.sky[size_t(level)][i];
+    blurs_.level(level).apply_transposed(sum, light);
+    for (size_t i = 0; i < cells(); ++i) out[i] += light[i];
+  }
+  for (const RowSums& part : parts)
+    if (!slopes_.rows.empty()) harmonics_.add_transposed(part.harmonics, out);
+}
+
 template <class F>
 void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
-  const size_t cells = size_t(2) * options_.light_height * options_.light_height;
-  struct Part {
-    std::vector<Vec3f> diffuse;
-    Blurred sky;
-    HarmonicLight harmonics{};
-  };
-  std::vector<Part> parts(kChunks);
+  std::vector<RowSums> parts(kChunks);
   parallel_for(kChunks, [&](int chunk) {
-    Part& sum = parts[chunk];
+    RowSums& sum = parts[chunk];
     sum.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
     for (size_t i = 0; i < BlurLadder::kLevels; ++i)
-      if (in_use_[i]) sum.sky[i].assign(cells, {0, 0, 0});
+      if (in_use_[i]) sum.sky[i].assign(cells(), {0, 0, 0});
     const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
-    for (size_t i = begin; i < end; ++i) {
-      const SplitRow& row = rows_[i];
-      const Optics& o = optics_[i];
-      if (!o.used) continue;
-      const Vec3f y = row_value(i) * weights_[i];
-      const Vec3f here = y * row.diffuse_light * o.diffuse_view;
-      for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += here * row.barycentric[k];
-      if (!slopes_.rows.empty()) {
-        const Vec3f by_light = y * slopes_.rows[i].gain * o.diffuse_view;
-        for (size_t j = 0; j < kHarmonics; ++j) sum.harmonics[j] += by_light * slopes_.rows[i].by_light[j];
-      }
-      if (row.blocked) {
-        const Vec3f g = y * o.gain() * row.far_diffuse_light;
-        for (int k = 0; k < 3; ++k) sum.diffuse[row.far_vertices[k]] += g * row.far_barycentric[k];
-        continue;
-      }
-      scatter(o.base, y * o.base_gain, sum.sky);
-      scatter(o.fresnel, y * o.split_sum.bias, sum.sky);
-    }
+    for (size_t i = begin; i < end; ++i)
+      if (optics_[i].used) add_row(i, row_value(i) * weights_[i], sum);
   });
   out.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
-  out.light.assign(cells, {0, 0, 0});
   parallel_ranges(int(out.diffuse.size()), 4096, [&](int begin, int end) {
-    for (const Part& part : parts)
+    for (const RowSums& part : parts)
       for (int v = begin; v < end; ++v)
         if (!materials_.is_metal(uint32_t(v))) out.diffuse[v] += part.diffuse[v];
   });
-  for (int level = 0; level < BlurLadder::kLevels; ++level) {
-    if (!in_use_[size_t(level)]) continue;
-    std::vector<Vec3f> sum(cells, Vec3f{0, 0, 0}), light;
-    for (const Part& part : parts)
-      for (size_t i = 0; i < cells; ++i) sum[i] += part.sky[size_t(level)][i];
-    blurs_.level(level).apply_transposed(sum, light);
-    for (size_t i = 0; i < cells; ++i) out.light[i] += light[i];
-  }
-  for (const Part& part : parts)
-    if (!slopes_.rows.empty()) harmonics_.add_transposed(part.harmonics, out.light);
+  gather_light(parts, out.light);
 }
 
 void SplitSystem::smooth(const SplitUnknowns& x, SplitUnknowns& out) const {
@@ -298,10 +206,10 @@ void SplitSystem::normal(const SplitUnknowns& x, SplitUnknowns& out) const {
 }
 
 void SplitSystem::right_side(SplitUnknowns& out) const {
-  // Less what the slopes add to a light of zero.
+  // Minus the constant term of the linearization.
   const auto constant = [&](size_t row) {
     if (slopes_.rows.empty()) return Vec3f{0, 0, 0};
-    const DiffuseSlopes::OfRow& s = slopes_.rows[row];
+    const DiffuseLightGrad::OfRow& s = slopes_.rows[row];
     return s.gain * dot(s.by_light, slopes_.light) * (-optics_[row].diffuse_view);
   };
   accumulate([&](size_t row) { return rows_[row].color - constant(row); }, out);
@@ -329,12 +237,11 @@ double SplitSystem::residual(const SplitUnknowns& x) const {
 }
 
 SplitUnknowns SplitSystem::diagonal() const {
-  const size_t cells = size_t(2) * options_.light_height * options_.light_height;
   SplitUnknowns d;
   d.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
-  d.light.assign(cells, {0, 0, 0});
+  d.light.assign(cells(), {0, 0, 0});
   Blurred mass;
-  for (auto& m : mass) m.assign(cells, {0, 0, 0});
+  for (auto& m : mass) m.assign(cells(), {0, 0, 0});
   for (size_t i = 0; i < rows_.size(); ++i) {
     const SplitRow& row = rows_[i];
     const Optics& o = optics_[i];
@@ -354,7 +261,7 @@ SplitUnknowns SplitSystem::diagonal() const {
     if (!in_use_[size_t(level)]) continue;
     std::vector<Vec3f> light;
     blurs_.level(level).apply_squared_transposed(mass[size_t(level)], light);
-    for (size_t i = 0; i < cells; ++i) d.light[i] += light[i];
+    for (size_t i = 0; i < cells(); ++i) d.light[i] += light[i];
   }
   return d;
 }
@@ -385,7 +292,7 @@ void for_both(SplitUnknowns& a, const SplitUnknowns& b, F f) {
   for (size_t i = 0; i < a.light.size(); ++i) f(a.light[i], b.light[i]);
 }
 
-// Channels that stand at zero and would still sink: they stay out of a round.
+// Unknowns at zero with a gradient that would make them negative are frozen for a round.
 struct Frozen {
   std::vector<std::array<uint8_t, 3>> light, diffuse;
 
@@ -466,7 +373,7 @@ void SplitSystem::solve(SplitUnknowns& x, int rounds, int steps) {
 
 std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) {
   const Blurred sky = sky_of(x.light).blurred;
-  // Ratios of sums: in least squares errors of the light would make all colors darker.
+  // Ratios of sums: in least squares, errors of the light would bias all colors to dark.
   const size_t n = mesh_.positions.size();
   std::vector<Vec3f> above(n, Vec3f{0, 0, 0}), below(n, Vec3f{0, 0, 0});
   for (size_t i = 0; i < rows_.size(); ++i) {
@@ -480,7 +387,7 @@ std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) {
       below[row.vertices[k]] += weights_[i] * slope * row.barycentric[k];
     }
   }
-  // Unseen vertices, and to a small part all, take the mean color.
+  // Regularization: a small weight towards the mean color, which unseen vertices take.
   Vec3f a{0, 0, 0}, b{0, 0, 0};
   for (size_t v = 0; v < n; ++v) a += above[v], b += below[v];
   const Vec3f mean = a / (b + Vec3f{1e-20f, 1e-20f, 1e-20f}),

@@ -30,7 +30,7 @@ class Polish {
                                         appearance.material.at(device, input.surface->mesh().positions)},
                                        input.samples.turned.turns)) {}
 
-  // share: of the polishing that is done, [0, 1).
+  // share: progress of polishing, [0, 1).
   GeometryStats step(int step, double share) {
     choose_batch(step);
     refine_hits(device_, stage_.sdf(), directions_, hits_, edges_);
@@ -64,7 +64,7 @@ class Polish {
     }
   }
 
-  // One step of the albedo, so that what it had learned of wrong normals does not hold them. Sets colors_ and
+  // One step of the albedo, which has compensated wrong normals and would keep them. Sets colors_ and
   // d_radiance_.
   void fit_albedo(const std::vector<Vec3f>& positions, const std::vector<ShadingTerms<float>>& terms) {
     colors_.resize(hits_.size());
@@ -93,7 +93,7 @@ class Polish {
   std::vector<Material> materials_;  // of the hits
   std::vector<uint32_t> batch_;
   std::vector<Hit> hits_;
-  std::vector<Vec3f> colors_, d_radiance_;  // base color of the hits, dL/d(what they send out)
+  std::vector<Vec3f> colors_, d_radiance_;  // albedo of the hits, dL/d(radiance)
   std::vector<Vec3f> directions_;
   std::vector<float> edges_;  // of the hits' normals (sdf_normals)
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface after the light is known: reflections tell normals better than the radiance network does, which
-// can blame its colors. The field is moved by what the shading model says about its normals, while the
-// geometry stage's own loss holds the silhouettes. See docs/method.md#polishing.
+// Polishing: after light and material are known, the shading loss improves the normals of the field, which
+// the radiance network of the geometry stage can compensate by its colors. The loss of the geometry stage
+// keeps the silhouettes. See docs/method.md#polishing.
 #pragma once
 
 #include "core/base/clock.h"
@@ -13,19 +13,18 @@ namespace cei3d {
 
 struct PolishOptions {
   int steps = 400;
-  double seconds = 0;  // > 0: at most so long
+  double seconds = 0;  // > 0: time limit
   Clock clock = steady_seconds;
-  int batch = 8192;  // hits a step
-  float weight = 1;  // of the shading loss against the geometry stage's
-  double from =
-      0.66;  // where in the geometry stage's schedule, whose rates it takes, it begins; it ends with it
+  int batch = 8192;  // hits per step
+  float weight = 1;  // of the shading loss against the loss of the geometry stage
+  // Position in the schedule of the geometry stage at which polishing begins; it ends at 1.
+  double from = 0.66;
   uint64_t seed = 1;
-  int64_t first_step =
-      int64_t(1) << 24;  // number of the first of the geometry stage's steps: its random rays
+  int64_t first_step = int64_t(1) << 24;  // index of the first step, which keys the random rays
 };
 
-// input: the surface as the stage left it, and its hits. appearance: of that surface; light and material
-// stay, its albedo follows in a copy that is thrown away.
+// input: the surface of the stage, and its hits. appearance: of that surface; light and material are fixed,
+// the albedo is trained along in a copy that is discarded.
 void polish_surface(const Device&, GeometryStage&, const AppearanceInput& input,
                     const AppearanceResult& appearance, const PolishOptions&, Progress&);
 

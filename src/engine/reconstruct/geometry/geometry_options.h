@@ -13,7 +13,7 @@ struct SamplingOptions {
   float step_min = 0.006f;     // shortest distance between candidates
   float step_max = 0.02f;      // longest distance between candidates
   float step_width = 2.5f;     // distance between candidates, in standard deviations
-  float keep_weight = 0.003f;  // least weight of a candidate that becomes a sample; a sample is rendered
+  float keep_weight = 0.003f;  // minimum weight of a candidate that becomes a sample, which is rendered
 };
 
 // Weights and widths of the losses. inv_s: see GeometrySchedule.

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/base/cancel.h"
+#include "core/math/quantile.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/geometry/occupancy.h"
 
@@ -100,9 +101,8 @@ float silhouette_level(const Device& device, const Field& sdf, const PixelStore&
       values.push_back(l.value);
   }
   // A ray meets the level set of every value above its lowest one.
-  const auto at = values.begin() + std::ptrdiff_t(coverage * double(kRays - 1));
-  std::nth_element(values.begin(), at, values.end());
-  return std::clamp(*at, -max_level, max_level);
+  const float level = value_of_rank(std::move(values), size_t(coverage * double(kRays - 1)));
+  return std::clamp(level, -max_level, max_level);
 }
 
 }  // namespace cei3d

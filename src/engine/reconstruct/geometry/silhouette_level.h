@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The level of the trained field that is the surface. Parts thinner than the soft shell of volume rendering
-// are rendered half transparent, and the zero level may miss them; the masks tell how much the object covers.
+// are rendered half transparent, and the zero level may miss them; the masks give the true coverage.
 #pragma once
 
 #include "core/base/progress.h"
@@ -10,7 +10,7 @@
 
 namespace cei3d {
 
-// The level, unit-sphere units, at which the share of rays through silhouette pixels that meet the surface
+// The level, unit frame, at which the share of rays through silhouette pixels that meet the surface
 // equals the mean alpha of those pixels. Positive: the object grows. Silhouette pixels are those with an
 // alpha between 0 and 1, or, where masks are black and white, those on both sides of their borders. Zero when
 // there are too few; always within +-max_level.

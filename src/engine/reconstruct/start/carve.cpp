@@ -22,7 +22,7 @@ using Cell = std::array<float, 4>;  // density, display-encoded color
 
 struct Slope {
   uint32_t cell;
-  float light;  // that was left when the ray got there
+  float light;  // transmittance at which the ray reached the cell
   Cell d;       // of the loss
 };
 
@@ -82,7 +82,7 @@ class Fog {
     return id_[(size_t(z) * n + y) * n + x];
   }
 
-  // One pixel's ray: its loss is |color - picture|^2 / 2 over white, and the same of the opacity.
+  // One pixel's ray: its loss is |color - image|^2 / 2 over white, and the same of the opacity.
   void trace(Rng rng, std::vector<Slope>& out) const {
     const Pixel& p = pixels_.pixels()[rng.below(uint32_t(pixels_.pixels().size()))];
     const float u = rng.uniform(), v = rng.uniform();
@@ -104,7 +104,7 @@ class Fog {
     const Target target = target_of(p);
     const Vec3f error = color + Vec3f{light, light, light} - target.srgb;
     const float error_opacity = options_.opacity_weight * (1 - light - target.alpha);
-    Vec3f behind{light, light, light};  // what the rest of the ray adds to the color
+    Vec3f behind{light, light, light};  // color from the rest of the ray
     for (size_t k = out.size(); k-- > first;) {
       Slope& s = out[k];
       const Cell& c = cells_[s.cell];
@@ -140,7 +140,7 @@ class Fog {
   std::vector<uint32_t> id_;     // of the hull's cells among those inside, or kNone
   std::vector<uint32_t> place_;  // and back
   std::vector<Cell> cells_, slope_, mean_, square_;
-  std::vector<float> lit_;  // the most light that reached the cell once the fog had settled
+  std::vector<float> lit_;  // maximum light that reached the cell in the last steps
   std::vector<std::vector<Slope>> chunks_;
 };
 

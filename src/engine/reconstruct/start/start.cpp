@@ -18,20 +18,19 @@ constexpr std::array<std::pair<Start, const char*>, 3> kStarts{
     {{Start::hull, "hull_psnr"}, {Start::carved, "carved_psnr"}, {Start::stereo, "stereo_psnr"}}};
 
 // Fraction of the schedule during which colors do not depend on the view after a start carved by colors:
-// mirror images would hollow the shape out further unless they have to be explained by the surface. Not after
-// stereo, whose shape is near enough the surface for highlights to be told from it; colors that cannot depend
-// on the view would dent it.
+// otherwise mirror images would hollow the shape out further. Not after stereo, whose shape is close enough
+// to the surface: there highlights would dent it if colors could not depend on the view.
 constexpr float kMatteUntil = 0.25f;
-// dB by which another start has to beat the visual hull, which nothing deceives: where the hull is wrong they
-// differ by 1.5 dB and more.
+// dB by which another start must be better than the visual hull, which is robust: where the hull is wrong the
+// difference is at least 1.5 dB.
 constexpr double kMinGain = 0.3;
-// Views that must have a place in their frame before the object may start there. With fewer a blob can hang
-// anywhere along their rays and look right to them, before the real surface to all others.
+// Minimum number of views that must have a cell in their frame for the start shape to fill it. With fewer
+// views, floating blobs in front of the surface remain.
 constexpr int kMinViews = 3;
 
 // Cells that the object may fill. Masks are grown by half a cell, as the cameras see it at the object's
-// center, or rods thinner than a cell would be lost: training removes what is too much, but adds nothing
-// where nothing is.
+// center, or rods thinner than a cell would be lost: training removes excess volume, but does not add volume
+// in empty space.
 VisualHull hull_of(const PixelStore& pixels, int cells) {
   std::vector<Area> areas;
   areas.reserve(pixels.cameras().size());

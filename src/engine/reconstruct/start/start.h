@@ -16,7 +16,8 @@ enum class Start {
 };
 
 struct ShapeOptions {
-  int cells = 128, stereo_cells = 192;  // an axis; of the shapes by masks and colors, and of that by depths
+  int cells = 128;         // per axis, of the shapes by masks and colors
+  int stereo_cells = 192;  // per axis, of the shape by depths
   CarveOptions carving;
   StereoOptions stereo;
 };
@@ -25,19 +26,18 @@ struct ShapeOptions {
 StartShape start_shape(const PixelStore&, Start, uint64_t seed, const ShapeOptions& options = {},
                        const Progress& progress = Progress());
 
-// A short training that a start shape is judged by.
+// A short training that rates a start shape.
 struct TrialOptions {
   ShapeOptions shapes;
   GeometryOptions geometry;
   int steps = 400;
-  int rays = 32768;  // random training pixels that the result is compared with
+  int rays = 32768;  // number of random training pixels of the comparison
   LightFrame light;
 };
 
-// Trains briefly from each start and returns the one with the highest PSNR: no rule tells beforehand. Carving
-// opens what the visual hull cannot (the inside of a shovel) but is deceived by mirror images (a metal body
-// is hollowed out where the reflections seem to be); stereo finds courtyards of brick but needs texture.
-// Error: interrupted.
+// Trains briefly from each start shape and returns the one with the highest PSNR. Carving opens concavities
+// of the visual hull (the inside of a shovel) but fails on mirror images (it hollows out a metal body where
+// the reflections seem to be); stereo finds hollows in textured surface only. Error: interrupted.
 StartShape choose_start(const Device&, const PixelStore&, const TrialOptions&, uint64_t seed, Progress&);
 
 }  // namespace cei3d

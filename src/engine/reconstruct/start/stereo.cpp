@@ -12,10 +12,11 @@ namespace cei3d {
 
 namespace {
 
-// Between the two views of a pair, radians: less tells little, more looks different.
+// Between the two views of a pair, radians: with less there is little parallax, with more the images differ
+// too much.
 constexpr double kBestAngle = 0.2;
-constexpr double kLeastAngle = 0.05, kMostAngle = 0.7;
-constexpr int kMostPlanes = 256;
+constexpr double kMinAngle = 0.05, kMaxAngle = 0.7;
+constexpr int kMaxPlanes = 256;
 
 int shrink_for(const PixelStore& pixels, size_t most) {
   int factor = 1;
@@ -23,7 +24,7 @@ int shrink_for(const PixelStore& pixels, size_t most) {
   return factor;
 }
 
-// The part of the picture that has the object; most frames are mostly empty.
+// The part of the image that shows the object; most images are mostly background.
 Gray cropped(const Gray& g) {
   int x0 = g.camera.width, y0 = g.camera.height, x1 = 0, y1 = 0;
   for (int y = 0; y < g.camera.height; ++y)
@@ -72,13 +73,13 @@ std::vector<Gray> gray_pictures(const PixelStore& pixels, int factor) {
   return out;
 }
 
-// The views whose angle to this one, seen from the origin, is nearest to the best.
+// The views whose angle to this one, seen from the origin, is nearest to the optimum.
 std::vector<int> neighbors_of(int view, const std::vector<Gray>& pictures, int most) {
   const Vec3d here = normalize(pictures[view].camera.center);
   std::vector<std::pair<double, int>> ranked;
   for (int v = 0; v < int(pictures.size()); ++v) {
     const double angle = std::acos(std::clamp(dot(here, normalize(pictures[v].camera.center)), -1.0, 1.0));
-    if (v != view && angle > kLeastAngle && angle < kMostAngle)
+    if (v != view && angle > kMinAngle && angle < kMaxAngle)
       ranked.push_back({std::abs(std::log(angle / kBestAngle)), v});
   }
   std::sort(ranked.begin(), ranked.end());
@@ -107,7 +108,7 @@ Planes planes_for(const Camera& camera, const std::vector<Vec3d>& corners, doubl
   }
   p.near = std::max(p.near, 0.05 * p.far);
   const double parallax = camera.fx * baseline * (1 / p.near - 1 / p.far);
-  p.count = std::clamp(int(parallax) + 2, 8, kMostPlanes);
+  p.count = std::clamp(int(parallax) + 2, 8, kMaxPlanes);
   return p;
 }
 
@@ -148,8 +149,8 @@ struct Estimate {
   Planes planes{1, 2, 2};
 };
 
-// Every plane's score is the mean of the two pictures that agree best with it: the others may not see the
-// place.
+// Every plane's score is the mean of the two images that agree best with it: the point may be hidden in the
+// others.
 Estimate sweep(int view, const std::vector<Gray>& pictures, const std::vector<Vec3d>& corners,
                const StereoOptions& options) {
   const Gray& a = pictures[view];
@@ -181,7 +182,7 @@ Estimate sweep(int view, const std::vector<Gray>& pictures, const std::vector<Ve
     peaks.add(k, score);
   }
   for (size_t i = 0; i < n; ++i)
-    if (peaks.score(i) >= options.least_score) out.depth[i] = float(out.planes.depth(peaks.position(i)));
+    if (peaks.score(i) >= options.min_score) out.depth[i] = float(out.planes.depth(peaks.position(i)));
   return out;
 }
 
@@ -250,7 +251,7 @@ std::vector<DepthMap> stereo_depths(const PixelStore& pixels, const VisualHull& 
 
 VisualHull carve_by_depths(const VisualHull& hull, std::span<const DepthMap> maps) {
   constexpr float kTruncation = 3;  // cells
-  constexpr float kLeastViews = 3;
+  constexpr float kMinViews = 3;
   const Vec3d cell = to_double(hull.hi - hull.lo) / double(hull.n);
   const float most = kTruncation * float(cell.x);
   VisualHull out = hull;
@@ -269,7 +270,7 @@ VisualHull carve_by_depths(const VisualHull& hull, std::span<const DepthMap> map
           sum += std::min(before, most);
           ++views;
         }
-        if (views >= kLeastViews && sum > 0) inside = 0;
+        if (views >= kMinViews && sum > 0) inside = 0;
       }
   });
   return out;

@@ -8,9 +8,9 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kSums = 6;             // of a window: 1, a, b, aa, bb, ab
-constexpr float kNoise = 1e-4f;      // variance of a window without texture; gray values are 0 to 1
-constexpr float kLeastKnown = 0.6f;  // of a window
+constexpr int kSums = 6;           // of a window: 1, a, b, aa, bb, ab
+constexpr float kNoise = 1e-4f;    // variance of a window without texture; gray values are 0 to 1
+constexpr float kMinKnown = 0.6f;  // of a window
 
 }  // namespace
 
@@ -95,7 +95,7 @@ void WindowMatcher::sample(const Gray& b, const Warp& w, double depth, int y, st
 
 void WindowMatcher::correlate(float* score, int y) {
   const float* inside = &a_.inside[a_.at(0, y)];
-  const float least = kLeastKnown * float(rows_.size() * rows_.size());
+  const float least = kMinKnown * float(rows_.size() * rows_.size());
   for (int k = 0; k < kSums; ++k) {
     float* sum = &sums_[k * width_];
     std::fill(sum, sum + width_, 0.0f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well windows of one picture agree with another's, seen through a plane: normalized correlation.
+// Normalized correlation of windows of two images that are related by a plane.
 #pragma once
 
 #include <vector>
@@ -8,16 +8,16 @@
 
 namespace cei3d {
 
-// A gray picture of the object, shrunk.
+// A downscaled gray image of the object.
 struct Gray {
   Camera camera;
-  std::vector<float> value;   // [y][x], about zero
-  std::vector<float> inside;  // 1: all its pixels are on the object; else 0
+  std::vector<float> value;   // [y][x], offset so that its mean is about zero
+  std::vector<float> inside;  // [y][x], 1: all source pixels are on the object; else 0
   size_t at(int x, int y) const { return size_t(y) * camera.width + x; }
 };
 
-// Where the points of the plane at z = 1 before `a` lie in `b`'s picture, homogeneous: z (column + x dx + y
-// dy) + offset.
+// Homography from pixel (x, y) of camera a to camera b over the plane at depth z of a, in homogeneous
+// coordinates: z (column + x dx + y dy) + offset.
 struct Warp {
   Vec3d column, dx, dy, offset;
 };
@@ -30,7 +30,7 @@ class WindowMatcher {
   WindowMatcher(const Gray& a, int window);
 
   // The plane z = depth before `a`; warp: warp_between(a, b). score: [y][x] correlation, -1 where too little
-  // of the window is on the object in both pictures.
+  // of the window is on the object in both images.
   void match(const Gray& b, const Warp& warp, double depth, std::vector<float>& score);
 
  private:
@@ -40,10 +40,10 @@ class WindowMatcher {
 
   const Gray& a_;
   int window_, width_;
-  std::vector<std::vector<float>>
-      rows_;                    // products of the last rows, `window_` columns of zeros on both sides
-  std::vector<float> columns_;  // their sums
-  std::vector<float> sums_;     // of windows
+  // Products of the last rows of pixels, each row padded by `window_` zeros on both sides.
+  std::vector<std::vector<float>> rows_;
+  std::vector<float> columns_;  // sums of rows_ by column
+  std::vector<float> sums_;     // sums over windows
   std::vector<float> warped_, known_;
 };
 

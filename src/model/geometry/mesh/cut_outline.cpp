@@ -127,7 +127,8 @@ std::vector<uint8_t> clean_labels(const Mesh& mesh, std::span<const uint8_t> in_
   };
   const double size = size_of(in_part);
   std::vector<uint8_t> labels = smooth(neighbors, in_part);
-  if (size_of(labels) < 0.8 * size) labels.assign(in_part.begin(), in_part.end());  // thin: smoothing eats it
+  if (size_of(labels) < 0.8 * size)
+    labels.assign(in_part.begin(), in_part.end());  // thin part: smoothing would remove it
   flip_islands(neighbors, area, 0, kIslandShare * size, labels);
   flip_islands(neighbors, area, 1, kIslandShare * size, labels);
   return labels;

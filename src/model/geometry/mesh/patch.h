@@ -21,10 +21,10 @@ struct Patch {
 // flips. Corners 0 .. loop.size() - 1 are the loop's. [Liepa 2003]
 Patch fill_loop(std::span<const Vec3f> loop, const IsJoined& joined);
 
-// Moves the free vertices to where a stiff film would have them: it continues the tangents of the fixed
-// vertices over about `bending_length` and spans them like a soap film beyond. (Continuing the tangents all
-// the way would restore most of a part that was cut above its foot.) Needs two rings of fixed vertices around
-// the free ones. Vertices without triangles must not be free.
+// Moves the free vertices to the minimum of a bending and membrane energy: the surface continues the tangents
+// of the fixed vertices over about `bending_length` and is of minimal area beyond. (Continuing the tangents
+// all the way would restore most of a part that was cut above its foot.) Needs two rings of fixed vertices
+// around the free ones. Vertices without triangles must not be free.
 void fair(std::vector<Vec3f>& positions, std::span<const std::array<uint32_t, 3>> triangles,
           std::span<const uint8_t> free, float bending_length);
 

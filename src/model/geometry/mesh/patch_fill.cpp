@@ -8,8 +8,8 @@
 namespace cei3d {
 namespace {
 
-constexpr float kDensity =
-    std::numbers::sqrt2_v<float>;  // Liepa's alpha: triangles about as large as those around
+// Liepa's alpha: triangles about as large as those around.
+constexpr float kDensity = std::numbers::sqrt2_v<float>;
 
 // Triangles that can be split at their centroid and have their inner edges flipped.
 class Refinement {
@@ -78,8 +78,8 @@ class Refinement {
       patch_.triangles.push_back(more);
       enter(uint32_t(patch_.triangles.size() - 1));
     }
-    // Splits all at once; otherwise the centroids of two slivers along one edge would come too close to each
-    // other.
+    // Splits all triangles at once; otherwise the centroids of two slivers along one edge would come too
+    // close to each other.
     improve(a, b);
     improve(b, c);
     improve(c, a);

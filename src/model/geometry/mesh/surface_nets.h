@@ -17,9 +17,8 @@ namespace cei3d {
 // Signed distances of points, negative inside.
 using DistancesAt = std::function<std::vector<float>(std::span<const Vec3f>)>;
 
-// The mesh alone, without normals: vertices are as near to the surface as straight lines between the corners
-// of a cell take them. What lies outside the unit sphere is cut off. resolution: cells along [-1, 1]; a
-// multiple of 4.
+// Mesh without normals. Vertices are placed by linear interpolation along the edges of a cell. Surface
+// outside the unit sphere is cut off. resolution: cells along [-1, 1]; a multiple of 4.
 Mesh surface_net(const DistancesAt& distances, int resolution, const Progress& progress = Progress());
 
 struct MeshingOptions {

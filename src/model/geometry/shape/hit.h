@@ -18,13 +18,13 @@ struct Hit {
   float b1, b2;       // barycentric coordinates: p = (1 - b1 - b2) v0 + b1 v1 + b2 v2
 };
 
-// Rays from a point of the surface start this far above it, unit-sphere units: less, and they would meet the
+// Rays from a point of the surface start this far above it (unit frame), so that they do not meet the
 // triangle that they leave.
 inline constexpr float kRayLift = 2e-3f;
 
 inline Vec3f ray_origin(const Hit& h) { return h.position + h.normal * kRayLift; }
 
-// Where the light comes from that the camera sees mirrored at the hit. Unit.
+// Unit direction from which a mirror at the hit would reflect light to the camera.
 inline Vec3f mirror_direction(const Hit& h) { return mirrored_direction(h.normal, h.to_camera); }
 
 // Its directions rotated, its position as it is.

@@ -34,8 +34,8 @@ inline constexpr GridIndex kCellNeighbors[27] = {
 class PointIndex {
  public:
   PointIndex() = default;
-  PointIndex(std::span<const Vec3f> points,
-             float cell);  // cell: the largest radius that queries will use, > 0
+  // cell: the largest radius that queries will use, > 0.
+  PointIndex(std::span<const Vec3f> points, float cell);
 
   // Calls visit(i), once each, for points with |p_i - x| < radius (radius <= cell), in ascending i within a
   // cell, until it returns true. Returns whether it did.
@@ -49,7 +49,7 @@ class PointIndex {
       for (uint32_t k = bucket_start_[b]; k < bucket_start_[b + 1]; ++k) {
         const Vec3f to_point = points_[k] - x;
         if (dot(to_point, to_point) >= radius * radius) continue;
-        if (!(GridIndex::of(points_[k], cell_) == c)) continue;  // of another cell in the same bucket
+        if (!(GridIndex::of(points_[k], cell_) == c)) continue;  // other cell, same bucket
         if (visit(size_t(ids_[k]))) return true;
       }
     }

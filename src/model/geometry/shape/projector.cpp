@@ -96,14 +96,14 @@ bool Projector::covers(Vec3f position, Vec3f normal) const {
   if (!(dot(normal, to_camera) > min_facing * length(to_camera))) return false;
   const Vec3d p = camera.project(to_double(position));
   if (!(p.z > 0) || !in_picture(camera, p.x, p.y)) return false;
-  return alpha_at(p.x, p.y) >= least_alpha && sees(p.x, p.y, p.z);
+  return alpha_at(p.x, p.y) >= min_alpha && sees(p.x, p.y, p.z);
 }
 
 void save_projector(const Projector& p, Tensors& tensors, Json& head, const std::string& prefix) {
   head["camera"] = camera_json(p.camera);
   head["tolerance"] = p.tolerance;
   head["min_facing"] = p.min_facing;
-  if (p.soft()) head["least_alpha"] = p.least_alpha;
+  if (p.soft()) head["least_alpha"] = p.min_alpha;
   tensors[prefix + "alpha"] = {{p.alpha.height, p.alpha.width}, p.alpha.data, {}};
   tensors[prefix + "depth"] = {{p.depth.height, p.depth.width}, p.depth.data, {}};
 }
@@ -113,7 +113,7 @@ Projector load_projector(const Tensors& tensors, const Json& head, const std::st
   p.camera = camera_from(head.at("camera"));
   p.tolerance = head.at("tolerance");
   p.min_facing = head.at("min_facing");
-  p.least_alpha = head.value("least_alpha", 0.5f);
+  p.min_alpha = head.value("least_alpha", 0.5f);
   p.alpha = image_of(tensors, prefix + "alpha");
   p.depth = image_of(tensors, prefix + "depth");
   return p;

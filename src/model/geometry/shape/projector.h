@@ -13,16 +13,16 @@
 namespace cei3d {
 
 struct Projector {
-  Camera camera;             // unit frame; its image may be a crop of the painted view
-  Image alpha;               // 1 channel, [0, 1], over the whole image
-  float least_alpha = 0.5f;  // the mask is where alpha >= least_alpha
-  Image depth;  // 1 channel, z-depth of the surface over the whole image, may be finer; 0: nothing was hit
-  // Distance behind the stored depth up to which a point counts as seen, unit frame.
+  Camera camera;           // unit frame; its image may be a crop of the painted view
+  Image alpha;             // 1 channel, [0, 1], over the whole image
+  float min_alpha = 0.5f;  // the mask is where alpha >= min_alpha
+  Image depth;             // 1 channel, z-depth over the whole image, may be finer; 0: no surface
+  // Maximum distance behind the stored depth of a point that counts as seen, unit frame.
   float tolerance = 0.012f;
   float min_facing = 0.1f;  // minimum cosine between the normal and the direction to the camera
 
   bool empty() const { return alpha.empty(); }
-  bool soft() const { return least_alpha < 0.5f; }  // alpha is a weight, not only a mask
+  bool soft() const { return min_alpha < 0.5f; }  // alpha is a weight, not only a mask
   // Alpha at the pixel position (u, v): bilinear between texel centers, 0 outside the image.
   float alpha_at(double u, double v) const;
   // Whether the camera sees the point, the point faces it and lies in the mask.

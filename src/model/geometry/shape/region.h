@@ -2,11 +2,10 @@
 // A region of the surface: the points within reach of an edited handler point, on the same side of the
 // surface [paper sec. 4.2]. The reach follows the local spacing: docs/method.md#regions-and-routing.
 //
-// Points alone give an outline as soft as their reach. A region that comes from a painted view therefore also
-// holds the painted mask with the camera and the depths of that view: a point belongs to it only if that
-// camera sees it inside the mask. The points say which surface is meant, the mask where the edit ends: the
-// border is as sharp as the scribble (alpha 0.5, interpolated between pixels), and hidden surfaces are not
-// touched.
+// Points alone give an outline as soft as their reach. A region from a painted view therefore also holds the
+// painted mask with the camera and the depths of that view: a point belongs to it only if that camera sees it
+// inside the mask. The points select the surface, the mask is the border: as sharp as the scribble (alpha
+// 0.5, interpolated between pixels), and hidden surfaces are not changed.
 //
 // A part of the object is a third kind: scored points (model/geometry/shape/scored_points.h).
 #pragma once
@@ -29,7 +28,7 @@ class Region {
     std::vector<Vec3f> normals;    // #N, unit
     std::vector<float> reach;      // #N, unit frame
   };
-  // projector empty: by the points alone. No points: by the mask alone.
+  // projector empty: the points alone decide. No points: the mask alone decides.
   explicit Region(Points points, Projector projector = {});
   explicit Region(ScoredPoints part);
 

@@ -3,15 +3,15 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
 #include "core/math/rng.h"
+#include "model/geometry/shape/test_regions.h"
 
 namespace cei3d {
 namespace {
 
 constexpr int kSize = 64;
 
-// Looks at the unit-sphere frame's origin from z = -3 along +z.
+// Looks at the origin of the unit frame from z = -3 along +z.
 Camera front_camera() {
   Camera c;
   c.width = c.height = kSize;
@@ -98,10 +98,10 @@ TEST(Region, OfPaintLeavesHiddenAndAvertedSurfacesAlone) {
   const Vec3f front{0, 0, -kRadius};
   EXPECT_TRUE(region.contains(front, {0, 0, -1}));
   EXPECT_FALSE(region.contains(-front, {0, 0, 1}));  // far side
-  EXPECT_FALSE(
-      region.contains(front + Vec3f{0, 0, 0.05f}, {0, 0, -1}));  // a sheet just behind what the view shows
-  EXPECT_FALSE(region.contains(front, {0, 0, 1}));               // the back of the painted sheet
-  EXPECT_FALSE(region.contains(front, {1, 0, -0.05f}));          // seen at a grazing angle
+  // A sheet just behind what the view shows.
+  EXPECT_FALSE(region.contains(front + Vec3f{0, 0, 0.05f}, {0, 0, -1}));
+  EXPECT_FALSE(region.contains(front, {0, 0, 1}));       // the back of the painted sheet
+  EXPECT_FALSE(region.contains(front, {1, 0, -0.05f}));  // seen at a grazing angle
 }
 
 TEST(Region, WithoutPointsIsWhatTheProjectorCovers) {
@@ -154,19 +154,7 @@ TEST(Region, ComesBackFromTensorsAsItWas) {
   }
 }
 
-TEST(Region, DamagedDataAreRefusedWithASentence) {
-  Tensors tensors;
-  Json head;
-  painted_disc(true).save(tensors, head);
-  for (const auto& [name, t] : tensors) {
-    Tensors damaged = tensors;
-    damaged.erase(name);
-    EXPECT_THROW(Region::load(damaged, head), Error) << name;
-    damaged = tensors;
-    damaged[name].f32.pop_back();
-    EXPECT_THROW(Region::load(damaged, head), Error) << name;
-  }
-}
+TEST(Region, DamagedDataAreRefusedWithASentence) { expect_damage_is_refused(painted_disc(true)); }
 
 TEST(Region, ByDefaultContainsNothing) { EXPECT_FALSE(Region().contains({0, 0, 0}, {0, 0, 1})); }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A change of shape as a change of the mesh: vertices that moved, triangles that were removed, new vertices
-// and triangles. Vertex ids mean the same before and after, so whatever is known of a point of the mesh (a
-// triangle and barycentric coordinates) is known of it in every shape version, without inverting the
-// deformation.
+// and triangles. Vertex ids mean the same before and after, so a point of the mesh (a triangle and
+// barycentric coordinates) can be followed through all shape versions without inverting the deformation.
 #pragma once
 
 #include <array>

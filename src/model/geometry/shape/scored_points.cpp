@@ -10,8 +10,8 @@ namespace {
 constexpr float kReach = 2.5f;  // spacings
 constexpr float kInside = 0.5f;
 
-// Indices of the points that can affect where the score is at least one half: those within two reaches of a
-// point that scores that much.
+// Indices of the points that can affect scores of at least one half: those within two reaches of a point with
+// such a score.
 std::vector<uint8_t> near_part(const ScoredPoints::Data& d) {
   const float radius = 2 * kReach * d.spacing;
   const PointIndex index(d.positions, radius);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Handler points with a score, the degree to which they belong to a part. Scores are interpolated between
-// points and the part ends at one half: finer than the points' spacing, and smooth.
+// Handler points with a score in [0, 1], the degree to which they belong to a part. Scores are interpolated
+// between points, and the border of the part is the level one half: smooth, and finer than the spacing of the
+// points.
 #pragma once
 
 #include <vector>
@@ -21,7 +22,7 @@ class ScoredPoints {
     float spacing = 0;             // between neighboring points, unit frame
   };
 
-  ScoredPoints() = default;  // nothing scores
+  ScoredPoints() = default;  // every score is 0
   // Keeps only the points that can affect where score() >= 1/2.
   explicit ScoredPoints(const Data&);
 
@@ -29,7 +30,8 @@ class ScoredPoints {
   const Data& data() const { return data_; }
 
   // Weighted mean score of the points within 2.5 spacings on the same side of the surface; 0 where there is
-  // none. Exact where it is at least 1/2; elsewhere points may have been dropped, but it stays below 1/2.
+  // none. Exact where it is at least 1/2; elsewhere only known to be below 1/2, because points far from the
+  // part are dropped.
   float score(Vec3f position, Vec3f normal) const;
 
   // Writes tensors "region/scored/...", sizes to the head. Errors of load(): missing tensors or keys, sizes

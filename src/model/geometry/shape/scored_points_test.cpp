@@ -5,10 +5,9 @@
 
 #include <cmath>
 
-#include "core/base/error.h"
 #include "core/math/rng.h"
 #include "model/geometry/shape/handlers.h"
-#include "model/geometry/shape/region.h"
+#include "model/geometry/shape/test_regions.h"
 
 namespace cei3d {
 namespace {
@@ -88,14 +87,7 @@ TEST(ScoredPoints, ComeBackFromTensorsAsTheyWere) {
     const Vec3f n = random_direction(10, i), p = n * kRadius;
     EXPECT_EQ(again.scored().score(p, n), region.scored().score(p, n));
   }
-  for (const auto& [name, t] : tensors) {
-    Tensors damaged = tensors;
-    damaged.erase(name);
-    EXPECT_THROW(Region::load(damaged, head), Error) << name;
-    damaged = tensors;
-    damaged[name].f32.pop_back();
-    EXPECT_THROW(Region::load(damaged, head), Error) << name;
-  }
+  expect_damage_is_refused(region);
 }
 
 }  // namespace

@@ -10,16 +10,16 @@
 
 namespace cei3d {
 
-// Steps of the central differences that normals are computed by, unit frame. Wide ones smooth a trilinear
-// grid, whose own gradient jumps at every cell face; narrow ones do not round off edges
-// (docs/method.md#surface). Equal without a grid.
+// Steps of the central differences that normals are computed by, unit frame. Wide differences smooth a
+// trilinear grid, whose gradient jumps at every cell face; narrow ones do not round off edges
+// (docs/method.md#surface). Both are equal for fields without a grid.
 struct NormalSteps {
   float wide, narrow;
 };
 NormalSteps normal_steps(const FieldConfig&);
 
-// Unit normals of the field at points x: by wide differences, but by narrow ones where the two disagree,
-// which only happens at edges. x, out: #N. edges: empty, or #N: weight of the narrow differences, [0, 1].
+// Unit normals of the field at points x: by wide differences, or by narrow ones where the two disagree, which
+// happens only at edges. x, out: #N. edges: empty, or #N: weight of the narrow differences, [0, 1].
 void sdf_normals(const Device&, const Field& sdf, std::span<const Vec3f> x, std::span<Vec3f> out,
                  std::span<float> edges = {});
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/math/fibonacci.h"
 #include "core/math/octahedron.h"
 
 namespace cei3d {
@@ -15,11 +16,9 @@ constexpr int kCells = 64;
 
 std::vector<Vec3f> fibonacci_sphere(int n) {
   std::vector<Vec3f> d(n);
+  // With pi in single precision: the visibility tables of stored projects are of these directions.
   const double golden = kPi * (3 - std::sqrt(5.0));
-  for (int i = 0; i < n; ++i) {
-    const double z = 1 - (2 * i + 1.0) / n, r = std::sqrt(1 - z * z), a = golden * i;
-    d[i] = {float(r * std::cos(a)), float(r * std::sin(a)), float(z)};
-  }
+  for (int i = 0; i < n; ++i) d[i] = fibonacci_direction(i, n, golden);
   return d;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only file that knows Embree (version 3 or 4).
+// The only file that uses Embree (version 3 or 4).
 #include "model/geometry/shape/surface.h"
 
 #if __has_include(<embree4/rtcore.h>)
@@ -22,8 +22,8 @@ namespace {
 
 constexpr int kRowBytes = kSkyDirections / 8;
 
-// Normals of a mesh that brought none: face normals weighted by their angle at the vertex. [Thuermer and
-// Wuethrich 1998]
+// Normals for a mesh without any: face normals weighted by their angle at the vertex. [Thuermer and Wuethrich
+// 1998]
 std::vector<Vec3f> angle_weighted_normals(const Mesh& mesh) {
   std::vector<Vec3f> sum(mesh.positions.size(), Vec3f{0, 0, 0});
   for (const auto& t : mesh.triangles)
@@ -58,7 +58,7 @@ RTCRay make_ray(Vec3f o, Vec3f d, float t_min) {
   return r;
 }
 
-// A handle of Embree's, released with its owner.
+// Owns an Embree handle.
 struct Release {
   void operator()(RTCDevice d) const { rtcReleaseDevice(d); }
   void operator()(RTCScene s) const { rtcReleaseScene(s); }
@@ -135,12 +135,12 @@ struct Surface::Bvh {
     return {h.ray.tfar, h.hit.primID, h.hit.u, h.hit.v};  // p = (1 - u - v) v0 + u v1 + v v2
   }
 
-  // Writes the rows of the vertices that look; looks empty: all do.
-  void cast_visibility(const Mesh& mesh, std::span<const uint8_t> looks, std::vector<uint8_t>& bits) const {
+  // Writes the visibility of the vertices with recast[v] = 1; recast empty: of all.
+  void cast_visibility(const Mesh& mesh, std::span<const uint8_t> recast, std::vector<uint8_t>& bits) const {
     const std::vector<Vec3f>& sky = sky_directions();
     parallel_ranges(int(mesh.positions.size()), 64, [&](int begin, int end) {
       for (int v = begin; v < end; ++v) {
-        if (!looks.empty() && !looks[v]) continue;
+        if (!recast.empty() && !recast[v]) continue;
         const Vec3f n = mesh.normals[v], o = mesh.positions[v] + n * kRayLift;
         uint8_t* row = &bits[size_t(v) * kRowBytes];
         std::fill(row, row + kRowBytes, uint8_t(0));
@@ -169,14 +169,14 @@ Surface::Surface(Mesh mesh, std::vector<uint8_t> visibility)
   bvh_ = std::make_unique<Bvh>(mesh_, nullptr);
 }
 
-Surface::Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> looks)
+Surface::Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> recast)
     : mesh_(std::move(mesh)), visibility_(before.visibility_) {
   check_mesh(mesh_);
-  if (looks.size() != mesh_.positions.size() || mesh_.normals.empty())
-    fail("surface: a change needs normals and {} marks, not {}", mesh_.positions.size(), looks.size());
+  if (recast.size() != mesh_.positions.size() || mesh_.normals.empty())
+    fail("surface: a change needs normals and {} marks, not {}", mesh_.positions.size(), recast.size());
   bvh_ = std::make_unique<Bvh>(mesh_, before.bvh_.get());
   visibility_.resize(mesh_.positions.size() * kRowBytes);
-  bvh_->cast_visibility(mesh_, looks, visibility_);
+  bvh_->cast_visibility(mesh_, recast, visibility_);
 }
 
 Surface::~Surface() = default;

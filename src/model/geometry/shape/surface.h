@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The surface as rays and light see it: a mesh of the zero level set, an index for rays, and for every vertex
-// which directions of the sky are free.
+// The surface for rays and light: a mesh of the zero level set, a ray index (BVH), and a visibility table:
+// for every vertex, which sky directions are not occluded.
 #pragma once
 
 #include <memory>
@@ -17,21 +17,20 @@ class Surface {
  public:
   explicit Surface(Mesh mesh);                          // casts the visibility rays (seconds)
   Surface(Mesh mesh, std::vector<uint8_t> visibility);  // from a stored table
-  // A changed one. looks: #V, 1 where the vertex looks at the sky again, 0 where it keeps what it saw before.
-  Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> looks);
+  // A surface after an edit. recast: #V, 1: recompute the visibility of the vertex; 0: take it from `before`.
+  Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> recast);
   ~Surface();
   Surface(const Surface&) = delete;
   Surface& operator=(const Surface&) = delete;
 
   const Mesh& mesh() const { return mesh_; }
-  const std::vector<uint8_t>& visibility() const {
-    return visibility_;
-  }  // #V x kSkyDirections / 8, bit = free
+  // #V x kSkyDirections / 8 bytes; bit 1: not occluded.
+  const std::vector<uint8_t>& visibility() const { return visibility_; }
   bool sees(uint32_t vertex, int direction) const {
     return visibility_[size_t(vertex) * (kSkyDirections / 8) + direction / 8] >> (direction % 8) & 1;
   }
-  // Nothing is in the way from this triangle along a direction (unit), as far as the table knows: its three
-  // corners see the sky in all of sky_around().
+  // Whether the triangle is unoccluded in a unit direction according to the table: its three corners see the
+  // sky in all directions of sky_around().
   bool open(uint32_t triangle, Vec3f direction) const;
 
   struct RayHit {

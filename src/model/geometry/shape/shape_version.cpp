@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/geometry/shape/pose.h"
+#include "model/geometry/shape/shape_version.h"
 
 #include <algorithm>
 
@@ -16,7 +16,7 @@ std::vector<uint8_t> changed_vertices(const Mesh& before, const Reshape& change)
   return mask;
 }
 
-std::vector<Mat3f> next_gradients(const Pose& before, size_t vertices, const Reshape& change) {
+std::vector<Mat3f> next_gradients(const ShapeVersion& before, size_t vertices, const Reshape& change) {
   std::vector<Mat3f> f = before.gradients;
   f.resize(vertices, Mat3f::identity());
   for (size_t i = 0; i < change.moved.size(); ++i) {
@@ -26,7 +26,7 @@ std::vector<Mat3f> next_gradients(const Pose& before, size_t vertices, const Res
   return f;
 }
 
-std::vector<Vec3f> next_colors(const Pose& before, size_t vertices, const Reshape& change) {
+std::vector<Vec3f> next_colors(const ShapeVersion& before, size_t vertices, const Reshape& change) {
   std::vector<Vec3f> colors = before.colors;
   colors.resize(vertices, {0, 0, 0});
   for (size_t i = 0; i < change.rim.size(); ++i) colors[change.rim[i]] = change.rim_colors[i];
@@ -36,19 +36,19 @@ std::vector<Vec3f> next_colors(const Pose& before, size_t vertices, const Reshap
 }
 
 // Sets the ids of triangles and the versions they were made and shaped in.
-void follow_triangles(const Pose& before, int index, const Reshape& change, std::span<const uint8_t> moved,
-                      Pose& pose) {
-  const auto& triangles = pose.surface->mesh().triangles;
-  pose.before = kept_triangles(before.surface->mesh(), change);
-  for (size_t t = 0; t < pose.before.size(); ++t) {
+void follow_triangles(const ShapeVersion& before, int index, const Reshape& change,
+                      std::span<const uint8_t> moved, ShapeVersion& version) {
+  const auto& triangles = version.surface->mesh().triangles;
+  version.before = kept_triangles(before.surface->mesh(), change);
+  for (size_t t = 0; t < version.before.size(); ++t) {
     const Corners& c = triangles[t];
-    pose.born.push_back(before.born_in(pose.before[t]));
-    pose.shaped.push_back(moved[c[0]] || moved[c[1]] || moved[c[2]] ? index
-                                                                    : before.shaped_in(pose.before[t]));
+    version.born.push_back(before.born_in(version.before[t]));
+    version.shaped.push_back(moved[c[0]] || moved[c[1]] || moved[c[2]] ? index
+                                                                       : before.shaped_in(version.before[t]));
   }
-  pose.born.resize(triangles.size(), index);
-  pose.shaped.resize(triangles.size(), index);
-  pose.before.resize(triangles.size(), 0);
+  version.born.resize(triangles.size(), index);
+  version.shaped.resize(triangles.size(), index);
+  version.before.resize(triangles.size(), 0);
 }
 
 template <class T>
@@ -58,42 +58,44 @@ T blend(const std::vector<T>& v, const Corners& c, const Hit& hit) {
 
 }  // namespace
 
-Poses with_pose(Poses poses, std::shared_ptr<const Surface> surface, const Reshape& change) {
-  if (poses.empty()) poses.push_back(std::make_shared<const Pose>(Pose{surface, {}, {}, {}, {}, {}}));
-  const Pose& before = *poses.back();
+ShapeVersions with_version(ShapeVersions versions, std::shared_ptr<const Surface> surface,
+                           const Reshape& change) {
+  if (versions.empty())
+    versions.push_back(std::make_shared<const ShapeVersion>(ShapeVersion{surface, {}, {}, {}, {}, {}}));
+  const ShapeVersion& before = *versions.back();
   Mesh mesh = apply(surface->mesh(), change);
   const size_t vertices = mesh.positions.size();
   const std::vector<uint8_t> changed = changed_vertices(surface->mesh(), change);
-  auto pose = std::make_shared<Pose>();
-  pose->surface = std::make_shared<const Surface>(std::move(mesh), *surface, changed);
-  pose->gradients = next_gradients(before, vertices, change);
-  pose->colors = next_colors(before, vertices, change);
-  follow_triangles(before, int(poses.size()), change, changed, *pose);
-  poses.push_back(std::move(pose));
-  return poses;
+  auto version = std::make_shared<ShapeVersion>();
+  version->surface = std::make_shared<const Surface>(std::move(mesh), *surface, changed);
+  version->gradients = next_gradients(before, vertices, change);
+  version->colors = next_colors(before, vertices, change);
+  follow_triangles(before, int(versions.size()), change, changed, *version);
+  versions.push_back(std::move(version));
+  return versions;
 }
 
-Mat3f gradient_at(const Pose& pose, const Corners& corners, const Hit& hit) {
-  if (pose.gradients.empty()) return Mat3f::identity();
+Mat3f gradient_at(const ShapeVersion& version, const Corners& corners, const Hit& hit) {
+  if (version.gradients.empty()) return Mat3f::identity();
   Mat3f m{};
   const float weight[3] = {1 - hit.b1 - hit.b2, hit.b1, hit.b2};
   for (int c = 0; c < 3; ++c)
-    for (int i = 0; i < 3; ++i) m.row[i] += pose.gradients[corners[c]].row[i] * weight[c];
+    for (int i = 0; i < 3; ++i) m.row[i] += version.gradients[corners[c]].row[i] * weight[c];
   // Determinant below which the surface is folded or crushed; offsets from the mesh are then kept as they
   // were.
   constexpr float kFlat = 0.05f;
   return determinant(m) > kFlat ? m : Mat3f::identity();
 }
 
-Vec3f mesh_point(const Pose& pose, const Corners& corners, const Hit& hit) {
-  return blend(pose.surface->mesh().positions, corners, hit);
+Vec3f mesh_point(const ShapeVersion& version, const Corners& corners, const Hit& hit) {
+  return blend(version.surface->mesh().positions, corners, hit);
 }
 
 // Offsets from the mesh are carried by the gradients, x_k = m_k + F_k F^-1 (x - m), normals by the inverse
 // transposes.
-SurfacePoint in_pose(const Poses& poses, const Hit& hit, int k) {
-  if (poses.empty() || poses.back()->shaped_in(hit.triangle) <= k) return {hit.position, hit.normal};
-  const Pose &now = *poses.back(), &then = *poses[k];
+SurfacePoint in_version(const ShapeVersions& versions, const Hit& hit, int k) {
+  if (versions.empty() || versions.back()->shaped_in(hit.triangle) <= k) return {hit.position, hit.normal};
+  const ShapeVersion &now = *versions.back(), &then = *versions[k];
   const Corners& corners = now.surface->mesh().triangles[hit.triangle];
   const Mat3f f = gradient_at(now, corners, hit), g = gradient_at(then, corners, hit);
   const Vec3f offset = inverse(f) * (hit.position - mesh_point(now, corners, hit));

@@ -55,7 +55,7 @@ double difference(const Image& a, const Image& b) {
   return std::sqrt(sum / n);
 }
 
-TEST(PosedScene, AChangeOfNothingIsBitIdentical) {
+TEST(ChangedScene, AChangeOfNothingIsBitIdentical) {
   const Scene before = sphere_scene(), after = with_layer(before, layer_of({}));
   const Camera camera = camera_towards_origin({1, -3, 0.3}, kSize);
   const Frame a = picture(before, camera), b = picture(after, camera);
@@ -64,7 +64,7 @@ TEST(PosedScene, AChangeOfNothingIsBitIdentical) {
   EXPECT_EQ(std::count(b.edited.begin(), b.edited.end(), 1), 0);
 }
 
-TEST(PosedScene, TurningTheObjectIsTurningCameraAndLight) {
+TEST(ChangedScene, TurningTheObjectIsTurningCameraAndLight) {
   const Scene before = sphere_scene();
   const Mat3f turn = about_z(1.1f);
   const Scene turned =
@@ -91,7 +91,7 @@ EditLayer spot(Vec3f where, Vec3f color) {
   return layer;
 }
 
-TEST(PosedScene, PaintSticksToItsMatterWheneverTheShapeChanges) {
+TEST(ChangedScene, PaintSticksToItsMatterWheneverTheShapeChanges) {
   const Scene plain = sphere_scene();
   const auto top = [](Vec3f p) { return p.z > 0.2f; };
   const Vec3f lift{0.15f, 0, 0.2f}, pole{0, 0, kSphereRadius}, red{0.9f, 0, 0}, blue{0, 0, 0.9f};
@@ -113,14 +113,15 @@ TEST(PosedScene, PaintSticksToItsMatterWheneverTheShapeChanges) {
   EXPECT_GT(red_pixels, 60);
 }
 
-// Whether any sample within one pixel of the center of pixel p meets something that the present pose shaped.
+// Whether any sample within one pixel of the center of pixel p meets something that the present version
+// shaped.
 bool near_change(const Scene& scene, const GBuffer& g, size_t p) {
   const int x = int(p) % g.width, y = int(p) / g.width;
   for (int qy = std::max(0, y - 1); qy <= std::min(g.height - 1, y + 1); ++qy)
     for (int qx = std::max(0, x - 1); qx <= std::min(g.width - 1, x + 1); ++qx) {
       const size_t q = size_t(qy) * g.width + qx;
       for (uint32_t h = g.pixel_start[q]; h < g.pixel_start[q + 1]; ++h)
-        if (scene.poses.back()->shaped_in(g.hits[h].triangle) > 0) return true;
+        if (scene.shape_versions.back()->shaped_in(g.hits[h].triangle) > 0) return true;
     }
   return false;
 }
@@ -138,7 +139,7 @@ bool same_place(const GBuffer& a, const GBuffer& b, size_t p) {
   return true;
 }
 
-TEST(PosedScene, PixelsThatSeeNothingOfTheChangeAreBitIdentical) {
+TEST(ChangedScene, PixelsThatSeeNothingOfTheChangeAreBitIdentical) {
   const Device device = make_device();
   const Scene plain = sphere_scene();
   const auto right = [](Vec3f p) { return p.x > 0.35f; };
@@ -147,14 +148,14 @@ TEST(PosedScene, PixelsThatSeeNothingOfTheChangeAreBitIdentical) {
   const auto left = [](Vec3f p) { return p.x < -0.35f; };
   const Scene twice = with_layer(once, layer_of(moving(once, about_z(-0.2f), {-0.2f, 0, 0}, left)));
   int same = 0, other = 0;
-  for (const auto& [before, after, pose] : {std::tuple(&plain, &once, 1), {&once, &twice, 2}})
+  for (const auto& [before, after, version] : {std::tuple(&plain, &once, 1), {&once, &twice, 2}})
     for (const Vec3d center : {Vec3d{0, -3, 0.3}, Vec3d{-1, 2, 2}}) {
       const Camera camera = camera_towards_origin(center, kSize);
       const GBuffer ga = trace_view(device, *before, camera, 2), gb = trace_view(device, *after, camera, 2);
       const Frame a = shade_view(device, *before, ga), b = shade_view(device, *after, gb);
       for (size_t p = 0; p < size_t(kSize) * kSize; ++p) {
-        const bool touched = (pose == 1 && near_change(*after, gb, p)) || !same_place(ga, gb, p);
-        if (pose == 1) {
+        const bool touched = (version == 1 && near_change(*after, gb, p)) || !same_place(ga, gb, p);
+        if (version == 1) {
           EXPECT_LE(bool(b.edited[p]), near_change(*after, gb, p));
         }
         ++(touched ? other : same);
@@ -191,7 +192,7 @@ Scene with_lid(const Scene& scene, float height) {
   return with_layer(scene, layer_of(std::move(r)));
 }
 
-TEST(PosedScene, NewMatterHasItsOwnColorAndNormalAndCanBePainted) {
+TEST(ChangedScene, NewMatterHasItsOwnColorAndNormalAndCanBePainted) {
   const Scene cut = with_lid(sphere_scene(), 0.4f);
   const Camera camera = camera_towards_origin({0.1, -0.3, 3}, kSize);
   const auto middle = [&](const Image& i) { return i.at(kSize / 2, kSize / 2); };
@@ -207,7 +208,7 @@ TEST(PosedScene, NewMatterHasItsOwnColorAndNormalAndCanBePainted) {
   EXPECT_NEAR(middle(picture(with_layer(cut, red), camera).albedo)[0], 0.9f, 1e-5f);
 }
 
-TEST(PosedScene, WhatWasCutOffNoLongerShadesTheRest) {
+TEST(ChangedScene, WhatWasCutOffNoLongerShadesTheRest) {
   const Scene cut = with_lid(sphere_scene(), 0.4f);
   const auto transports = scene_transports(cut);
   ASSERT_EQ(transports.size(), 2u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "model/geometry/shape/pose.h"
+#include "model/geometry/shape/shape_version.h"
 
 #include <gtest/gtest.h>
 
@@ -83,20 +83,21 @@ void expect_near(Vec3f a, Vec3f b, float tolerance) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], tolerance);
 }
 
-TEST(Poses, AHitIsWhereItsMatterWas) {
+TEST(ShapeVersions, AHitIsWhereItsMatterWas) {
   auto flat = std::make_shared<const Surface>(plate());
   const Bend first = bend(0.7f, 0.1f), second = bend(-1.9f, 0.2f);
-  Poses poses = with_pose({}, flat, bending(flat->mesh(), first));
-  poses = with_pose(poses, poses.back()->surface, bending(poses.back()->surface->mesh(), second));
+  ShapeVersions versions = with_version({}, flat, bending(flat->mesh(), first));
+  versions =
+      with_version(versions, versions.back()->surface, bending(versions.back()->surface->mesh(), second));
   int moved = 0;
   for (uint64_t i = 0; i < 500; ++i) {
-    // A hit of the plate, brought to the last pose by the maps themselves where its whole triangle moved.
+    // A hit of the plate, brought to the last version by the maps themselves where its whole triangle moved.
     const Hit rest = random_hit(flat->mesh(), i);
     const auto& c = flat->mesh().triangles[rest.triangle];
     int right = 0;
     for (const uint32_t v : c) right += flat->mesh().positions[v].x > 0.01f;
     if (right == 0) {
-      const SurfacePoint p = in_pose(poses, rest, 0);
+      const SurfacePoint p = in_version(versions, rest, 0);
       EXPECT_TRUE(p.position.x == rest.position.x && p.position.z == rest.position.z &&
                   p.normal.z == rest.normal.z);
     }
@@ -105,34 +106,35 @@ TEST(Poses, AHitIsWhereItsMatterWas) {
     Hit now = rest, between = rest;
     between.position = first(rest.position), between.normal = first.turn * rest.normal;
     now.position = second(between.position), now.normal = second.turn * between.normal;
-    expect_near(in_pose(poses, now, 0).position, rest.position, 1e-5f);
-    expect_near(in_pose(poses, now, 0).normal, rest.normal, 1e-5f);
-    expect_near(in_pose(poses, now, 1).position, between.position, 1e-5f);
-    expect_near(in_pose(poses, now, 1).normal, between.normal, 1e-5f);
-    expect_near(in_pose(poses, now, 2).position, now.position, 0);
+    expect_near(in_version(versions, now, 0).position, rest.position, 1e-5f);
+    expect_near(in_version(versions, now, 0).normal, rest.normal, 1e-5f);
+    expect_near(in_version(versions, now, 1).position, between.position, 1e-5f);
+    expect_near(in_version(versions, now, 1).normal, between.normal, 1e-5f);
+    expect_near(in_version(versions, now, 2).position, now.position, 0);
   }
   EXPECT_GT(moved, 100);
 }
 
-TEST(Poses, NormalsTurnByTheInverseTranspose) {  // a shear: points and normals go different ways
+TEST(ShapeVersions, NormalsTurnByTheInverseTranspose) {  // a shear: points and normals go different ways
   auto flat = std::make_shared<const Surface>(plate());
   const Mat3f shear{{{1, 0, 0}, {0, 1, 0}, {0.5f, 0, 1}}};  // z += x / 2
   Reshape r = bending(flat->mesh(), {shear, {0, 0, 0}});
-  const Poses poses = with_pose({}, flat, r);
+  const ShapeVersions versions = with_version({}, flat, r);
   Hit hit = random_hit(flat->mesh(), 0);
-  for (uint64_t i = 1; in_pose(poses, hit, 0).position.x < 0.2f || poses.back()->shaped_in(hit.triangle) == 0;
-       ++i)
+  for (uint64_t i = 1;
+       in_version(versions, hit, 0).position.x < 0.2f || versions.back()->shaped_in(hit.triangle) == 0; ++i)
     hit = random_hit(flat->mesh(), i);
   hit.position = shear * hit.position;
   hit.normal = normalize(Vec3f{-0.5f, 0, 1});  // of the plane z = x / 2
-  expect_near(in_pose(poses, hit, 0).normal, {0, 0, 1}, 1e-5f);
+  expect_near(in_version(versions, hit, 0).normal, {0, 0, 1}, 1e-5f);
 }
 
-TEST(Poses, TrianglesAreFollowed) {
+TEST(ShapeVersions, TrianglesAreFollowed) {
   auto flat = std::make_shared<const Surface>(plate());
-  Poses poses = with_pose({}, flat, patch(flat->mesh()));
-  poses = with_pose(poses, poses.back()->surface, bending(poses.back()->surface->mesh(), bend(0.3f, 0)));
-  const Pose &one = *poses[1], &two = *poses[2];
+  ShapeVersions versions = with_version({}, flat, patch(flat->mesh()));
+  versions = with_version(versions, versions.back()->surface,
+                          bending(versions.back()->surface->mesh(), bend(0.3f, 0)));
+  const ShapeVersion &one = *versions[1], &two = *versions[2];
   const size_t n = flat->mesh().triangles.size();  // one was removed, one added
   ASSERT_EQ(one.born.size(), n);
   EXPECT_EQ(one.born_in(0), 0);
@@ -149,10 +151,11 @@ TEST(Poses, TrianglesAreFollowed) {
   expect_near(two.colors.back(), {1, 0, 0}, 0);
 }
 
-TEST(Poses, WhatStaysKeepsWhatItSaw) {
+TEST(ShapeVersions, WhatStaysKeepsWhatItSaw) {
   auto flat = std::make_shared<const Surface>(plate());
-  const Poses poses = with_pose({}, flat, bending(flat->mesh(), bend(-1.2f, 0)));  // right half upright
-  const Surface& bent = *poses[1]->surface;
+  // Right half upright.
+  const ShapeVersions versions = with_version({}, flat, bending(flat->mesh(), bend(-1.2f, 0)));
+  const Surface& bent = *versions[1]->surface;
   const Surface anew{Mesh(bent.mesh())};
   size_t kept_differs = 0;
   for (uint32_t v = 0; v < plate().positions.size(); ++v)

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// A lat-long light blurred by the reflection lobes of any roughness, and the lookup of samples in it.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "core/math/reflection_axis.h"
+#include "engine/reconstruct/appearance/lobe_blur.h"
+#include "engine/reconstruct/appearance/split_rows.h"
+#include "model/light/envmap.h"
+
+namespace cei3d {
+
+// Blurs of a light for a ladder of roughnesses, from which those between are interpolated.
+class BlurLadder {
+ public:
+  explicit BlurLadder(int light_height) : height_(light_height) {}
+
+  static constexpr int kLevels = 10;
+  static float roughness(int level);
+  struct Place {
+    int level = 0;    // interpolate between this level and the next
+    float above = 0;  // share of the next level, [0, 1]
+  };
+  static Place place(float roughness);
+
+  const LobeBlur& level(int i);  // made on first use
+  int height() const { return height_; }
+
+ private:
+  int height_;
+  std::array<std::unique_ptr<LobeBlur>, kLevels> blurs_;
+};
+
+// Where a row reads the blurred light for a part of the split sum, given a roughness.
+struct ReflectedSky {
+  BlurLadder::Place lobe;
+  EnvTaps taps;
+};
+ReflectedSky reflected_sky(const SplitRow&, ReflectionPart, float roughness, int light_height);
+
+// Blurs of a light by level; empty: level not in use.
+using Blurred = std::array<std::vector<Vec3f>, BlurLadder::kLevels>;
+Vec3f radiance_at(const Blurred&, const ReflectedSky&);
+// The adjoint of radiance_at(): adds to sum.
+void scatter_radiance(const ReflectedSky&, Vec3f radiance, Blurred& sum);
+
+}  // namespace cei3d

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// The rows of the linear separation: one for each sample, independent of materials.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "engine/reconstruct/appearance/linear_split.h"
+#include "model/geometry/shape/surface.h"
+
+namespace cei3d {
+
+struct SplitRow {
+  std::array<uint32_t, 3> vertices;      // of the triangle of the hit
+  std::array<float, 3> barycentric;      // of the hit
+  Vec3f normal, to_camera;               // unit, in the frame of the light
+  float nv;                              // cosine of normal and to_camera
+  bool blocked;                          // whether the mirror ray meets the surface again, at the "far" point
+  std::array<uint32_t, 3> far_vertices;  // of the triangle of the far point
+  std::array<float, 3> far_barycentric;  // of the far point
+  Vec3f color;                           // linear
+  Vec3f weight;                          // squared slope of the display curve
+  uint8_t clipped;                       // SurfaceSamples::clipped
+  uint16_t view = 0;                     // under a turning light: index of the camera
+  // Irradiance in this view over the mean of all views; 1 under a light that does not turn.
+  Vec3f diffuse_light{1, 1, 1};
+  Vec3f far_diffuse_light{1, 1, 1};  // at the far point
+};
+
+// A row for each sample of the random subset of options.max_hits samples.
+std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&);
+
+// Values of vertices at a point of a triangle. v, b: its vertices and the barycentric coordinates.
+inline Vec3f between(const std::vector<Vec3f>& values, const std::array<uint32_t, 3>& v,
+                     const std::array<float, 3>& b) {
+  return values[v[0]] * b[0] + values[v[1]] * b[1] + values[v[2]] * b[2];
+}
+
+}  // namespace cei3d
