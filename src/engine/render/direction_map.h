@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light by direction as a table, where it changes so slowly that a table is as good as the sum over the
+// Table of light over directions, where it varies so slowly that the table is as accurate as the sum over the
 // lobes.
 #pragma once
 
@@ -24,9 +24,9 @@ class DirectionMap {
   std::vector<Vec3f> nodes_;  // of an octahedron's square, row by row
 };
 
-// Irradiance of the free sky by the normal of what it falls on.
+// Unoccluded irradiance of the environment over the normal of the surface.
 DirectionMap irradiance_map(const Device&, const LobePlanes&);
-// Radiance of the free sky, blurred by the reflection lobe of a roughness of .2.
+// Radiance of the environment, blurred by the reflection lobe of roughness 0.2.
 DirectionMap sky_map(const Device&, const LobePlanes&);
 
 }  // namespace cei3d

@@ -190,9 +190,9 @@ std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
 
 namespace {
 
-// What the object hides is not like the rest of the sky: it is what the hidden rays of the lobe would have
-// seen that is missing. The few rays left beside them may well be brighter than the lobe is on average, to a
-// limit.
+// Fraction of the reflected environment that arrives: the part of it that the surface hides is subtracted from
+// the whole, since it may be darker or brighter than the rest (the ground below a lid). Where nearly the whole
+// lobe is hidden, the difference is noise: the mean radiance of the rest is limited.
 Vec3f mirror_visibility(Vec3f sky_reflection, const SelfReflection::Seen& seen) {
   constexpr float kBrightest = 3;
   const float open = max(1 - seen.hidden, 0.0f);
