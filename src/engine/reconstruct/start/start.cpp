@@ -87,6 +87,8 @@ StartShape choose_start(const Device& device, const PixelStore& pixels, const Tr
   for (size_t i = 0; i < kStarts.size(); ++i) {
     const auto& [start, name] = kStarts[i];
     check_cancelled(progress);
+    // Carving takes the colors of a point for the same in all views.
+    if (start == Start::carved && options.light.motion != LightMotion::world) continue;
     StartShape shape = start_shape(pixels, start, seed, options.shapes, progress);
     const double done = double(i) / kStarts.size();
     const double psnr = trial_psnr(device, pixels, options, shape, seed, done, progress);

@@ -32,12 +32,13 @@ struct TrialOptions {
   GeometryOptions geometry;
   int steps = 400;
   int rays = 32768;  // number of random training pixels of the comparison
-  LightFrame light;
+  LightFrame light;  // in the training views
 };
 
 // Trains briefly from each start shape and returns the one with the highest PSNR. Carving opens concavities
 // of the visual hull (the inside of a shovel) but fails on mirror images (it hollows out a metal body where
-// the reflections seem to be); stereo finds hollows in textured surface only. Error: interrupted.
+// the reflections seem to be) and is left out under a light that turns; stereo finds hollows in textured
+// surface only. Error: interrupted.
 StartShape choose_start(const Device&, const PixelStore&, const TrialOptions&, uint64_t seed, Progress&);
 
 }  // namespace cei3d
