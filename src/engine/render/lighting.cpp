@@ -132,8 +132,7 @@ void Lighting::set_lobes(const SgMixture& light) {
                          l.mu.x,   l.mu.y,   l.mu.z};
     for (int j = 0; j < 7; ++j) lobe_planes_[size_t(j) * padded_ + k] = row[j];
   }
-  irradiance_ = irradiance_map(device_, lobes());
-  sky_ = sky_map(device_, lobes());
+  irradiance_ = IrradianceMap(device_, lobes());
 }
 
 namespace {
@@ -188,23 +187,6 @@ std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
   return radiance;
 }
 
-namespace {
-
-// Fraction of the reflected environment that arrives: the part of it that the surface hides is subtracted from
-// the whole, since it may be darker or brighter than the rest (the ground below a lid). Where nearly the whole
-// lobe is hidden, the difference is noise: the mean radiance of the rest is limited.
-Vec3f mirror_visibility(Vec3f sky_reflection, const SelfReflection::Seen& seen) {
-  constexpr float kBrightest = 3;
-  const float open = max(1 - seen.hidden, 0.0f);
-  Vec3f out;
-  for (int c = 0; c < 3; ++c)
-    out[c] =
-        clamp(1 - seen.hidden_sky[c] / max(sky_reflection[c], 1e-6f), 0.0f, min(1.0f, kBrightest * open));
-  return out;
-}
-
-}  // namespace
-
 IncidentLight<float> Lighting::incident_at(const HitBatch& batch, size_t hit, Vec3f sky_reflection,
                                            const SelfReflection::Seen& seen) const {
   const Mesh& mesh = surface_->mesh();
@@ -216,14 +198,14 @@ IncidentLight<float> Lighting::incident_at(const HitBatch& batch, size_t hit, Ve
           .visibility = at_corners(vertices.visibility, t, h.b1, h.b2),
           .bounce = at_corners(vertices.bounce, t, h.b1, h.b2),
           .sky_reflection = sky_reflection,
-          .mirror_visibility = mirror_visibility(sky_reflection, seen),
+          .mirror_visibility = max(seen.visibility, 0.0f),
           .object_reflection = seen.radiance};
 }
 
 std::vector<IncidentLight<float>> Lighting::incident_light(const HitBatch& batch,
                                                            const VertexMaterials& seen) const {
   std::vector<IncidentLight<float>> out(batch.size());
-  const SelfReflection own(device_, *surface_, vertices_, {lobes(), sky_},
+  const SelfReflection own(device_, *surface_, vertices_, lobes(),
                            seen.empty() ? vertices_.front().made_of : seen);
   parallel_ranges(int(batch.size()), kBlock, [&](int begin, int end) {
     const HitBatch part = batch.part(begin, end);

@@ -12,8 +12,8 @@
 #include "core/compute/device.h"
 #include "core/math/reflection_axis.h"
 #include "core/math/shading.h"
-#include "engine/render/direction_map.h"
 #include "engine/render/hit_batch.h"
+#include "engine/render/irradiance_map.h"
 #include "engine/render/self_reflection.h"
 #include "engine/render/vertex_light.h"
 #include "model/light/sg_mixture.h"
@@ -85,7 +85,7 @@ class Lighting {
   std::shared_ptr<const Surface> surface_;
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
-  DirectionMap irradiance_, sky_;
+  IrradianceMap irradiance_;
   std::vector<VertexLight> vertices_;  // by bin of the light's turns
 };
 

@@ -92,7 +92,7 @@ struct SelfReflection::Met {
 };
 
 SelfReflection::SelfReflection(const Device& device, const Surface& surface,
-                               std::span<const VertexLight> vertices, Light light,
+                               std::span<const VertexLight> vertices, LobePlanes light,
                                const VertexMaterials& seen)
     : device_(device), surface_(surface), vertices_(vertices), light_(light), seen_(seen) {}
 
@@ -139,7 +139,7 @@ std::vector<Vec3f> SelfReflection::mirrored(const Met& met, const std::vector<si
     roughness[k] = lobe.roughness;
     store_planes(axis_planes.data(), int(stride), int(k), turned.in_room(met.owner[which[k]], lobe.axis));
   }
-  device_.launch<SgReflection>({light_.lobes, int(stride), axis_planes.data(), roughness.data(), sky.data()},
+  device_.launch<SgReflection>({light_, int(stride), axis_planes.data(), roughness.data(), sky.data()},
                                int(stride));
   std::vector<Surface::RayHit> next(n);
   surface_.intersect(from, axes, 0, next);
@@ -205,8 +205,7 @@ std::vector<SelfReflection::Seen> SelfReflection::seen_by(const HitBatch& batch)
   for (size_t k = 0; k < met.hits.size(); ++k) {
     Seen& seen = out[met.owner[k]];
     const float share = rays.share[met.ray[k]];
-    seen.hidden += share;
-    seen.hidden_sky += light_.sky.at(turned.in_room(met.owner[k], rays.directions[met.ray[k]])) * share;
+    seen.visibility -= share;
     seen.radiance += radiance[k] * share;
   }
   return out;

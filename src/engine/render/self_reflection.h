@@ -9,7 +9,6 @@
 
 #include "core/compute/device.h"
 #include "core/compute/kernels/lobes.h"
-#include "engine/render/direction_map.h"
 #include "engine/render/hit_batch.h"
 #include "engine/render/vertex_light.h"
 #include "model/geometry/shape/surface.h"
@@ -18,20 +17,15 @@ namespace cei3d {
 
 class SelfReflection {
  public:
-  struct Light {
-    LobePlanes lobes;
-    const DirectionMap& sky;  // sky_map() of the lobes
-  };
   // All arguments must outlive the object. vertices: by bin of the turning light. seen: materials of the
   // surface as seen in reflections.
-  SelfReflection(const Device&, const Surface&, std::span<const VertexLight> vertices, Light light,
+  SelfReflection(const Device&, const Surface&, std::span<const VertexLight> vertices, LobePlanes light,
                  const VertexMaterials& seen);
 
-  // What a reflection lobe meets of the surface.
   struct Seen {
-    float hidden = 0;           // fraction of the reflection lobe that the surface blocks
-    Vec3f hidden_sky{0, 0, 0};  // mean radiance over the whole lobe of the environment behind the surface
-    Vec3f radiance{0, 0, 0};    // mean radiance over the whole lobe of the surface that blocks it
+    float visibility = 1;  // fraction of the reflection lobe that is not blocked by the surface
+    // Mean radiance over the whole lobe of the surface that blocks it; 0 where it is not blocked.
+    Vec3f radiance{0, 0, 0};
   };
   // #hits. Each result depends only on its hit and material.
   std::vector<Seen> seen_by(const HitBatch&) const;
@@ -55,7 +49,7 @@ class SelfReflection {
   const Device& device_;
   const Surface& surface_;
   std::span<const VertexLight> vertices_;
-  Light light_;
+  LobePlanes light_;
   const VertexMaterials& seen_;
 };
 

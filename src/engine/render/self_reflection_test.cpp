@@ -105,7 +105,7 @@ double error_between_balls(const MadeOf& lower, const MadeOf& upper) {
   double error = 0, total = 0;
   int judged = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
-    if (light[i].mirror_visibility.y > 0.7f || dot(hits[i].normal, hits[i].to_camera) < 0.4f) continue;
+    if (light[i].mirror_visibility > 0.7f || dot(hits[i].normal, hits[i].to_camera) < 0.4f) continue;
     const Vec3f truth = traced_reflection(*surface, some_sky(), hits[i], made_of, i);
     error += std::abs(shading.specular[i].y - truth.y);
     total += truth.y;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/render/direction_map.h"
+#include "engine/render/irradiance_map.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 Vec3f some_direction(Rng& rng) { return normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()}); }
 
-TEST(DirectionMap, HoldsTheIrradianceOfAllLobes) {
+TEST(IrradianceMap, IsTheSumOverTheLobes) {
   constexpr int kLobes = 32;
   for (const float sharpness : {0.5f, 20.0f, kSharpestLobe}) {
     std::vector<float> planes(7 * kLobes, 0.0f);
@@ -24,7 +24,7 @@ TEST(DirectionMap, HoldsTheIrradianceOfAllLobes) {
     const float mu = std::max(1.0f, sharpness / (2 * kPi));
     const float row[] = {axis.x, axis.y, axis.z, sharpness, mu, 0.5f * mu, 0};
     for (int j = 0; j < 7; ++j) planes[size_t(j) * kLobes] = row[j];
-    const DirectionMap map = irradiance_map(make_device(), {planes.data(), 1, kLobes});
+    const IrradianceMap map(make_device(), {planes.data(), 1, kLobes});
     double mean = 0, worst = 0;
     constexpr int kNormals = 4000;
     for (int i = 0; i < kNormals; ++i) {
@@ -43,7 +43,7 @@ TEST(DirectionMap, HoldsTheIrradianceOfAllLobes) {
   }
 }
 
-TEST(DirectionMap, IsDarkWithoutLight) { EXPECT_EQ(DirectionMap().at({0, 0, 1}).x, 0); }
+TEST(IrradianceMap, IsDarkWithoutLight) { EXPECT_EQ(IrradianceMap().at({0, 0, 1}).x, 0); }
 
 }  // namespace
 }  // namespace cei3d
