@@ -3,9 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <functional>
 
 #include "core/base/error_of.h"
+#include "engine/render/render.h"
 #include "engine/session/test_edits.h"
 #include "model/material/presets.h"
 #include "model/scene/appearance.h"

@@ -215,7 +215,8 @@ MaterialField fit_materials(const Device& device, const AppearanceInput& input,
     for (size_t i = 0; i < points.size(); ++i) {
       const Hit& h = hits[Rng(options.seed ^ 0x3a7e, uint64_t(step), i).below(uint32_t(hits.size()))];
       points[i] = h.position;
-      outputs_for(material_between(split.materials, input.surface->mesh(), h), &targets[kOutputs * i]);
+      const auto& t = input.surface->mesh().triangles[h.triangle];
+      outputs_for(material_at_corners(split.materials, t, h.b1, h.b2), &targets[kOutputs * i]);
     }
     const auto loss = [&](int begin, int end, const float* out, float* d_out) {
       for (int i = 0; i < (end - begin) * kOutputs; ++i)
