@@ -23,9 +23,10 @@ namespace {
 constexpr int kChunks = 16, kBatch = kChunks * ResidualPass::kMost;  // pixels a step
 constexpr int kApart = 8;                                            // every so many views one to judge by,
 constexpr size_t kJudged = 100000;                                   // at most so many of its pixels
-constexpr double kLeastGain = 0.03;                                  // of the squared error there
-constexpr double kJudging = 0.2;                                     // of the steps come before that,
-constexpr double kWarmUp = 0.05;  // and so many at rising rates: large first ones leave no unit alive
+constexpr size_t kSlab = 1 << 15;    // hits between two checks: with the largest networks 5 s of one core
+constexpr double kLeastGain = 0.03;  // of the squared error there
+constexpr double kJudging = 0.2;     // of the steps come before that,
+constexpr double kWarmUp = 0.05;     // and so many at rising rates: large first ones leave no unit alive
 
 // Mean base color of each pixel: at its center alone the texture is sharper than the picture, and the
 // residual would learn to blur it.
@@ -42,11 +43,10 @@ std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::
 // What the physical model sends out.
 std::vector<Vec3f> physical(const Device& device, const Scene& scene, const SurfaceSamples& samples,
                             const Progress& progress) {
-  constexpr size_t kSlab = 1 << 17;  // hits at a time: shading takes more memory than they do
   const std::vector<Vec3f>& vertices = scene.surface->mesh().positions;
   const Lighting light(
       device, scene.surface, scene.light,
-      turned_vertex_lights(Transport(scene.surface), scene.light,
+      turned_vertex_lights(Transport(scene.surface, {}, progress), scene.light,
                            {scene.albedo->eval3(device, vertices), scene.material.at(device, vertices)},
                            samples.turned.turns));
   std::vector<Vec3f> out;
@@ -92,18 +92,20 @@ class Trainer {
   void teach_all() { taught_.insert(taught_.end(), apart_.begin(), apart_.end()); }
 
   // How well views that the residual has not seen are matched.
-  Explained explained() const {
+  Explained explained(const Progress& progress) const {
     std::vector<uint32_t> judged;
-    std::vector<Hit> hits;
-    for (size_t i = 0; i < apart_.size(); i += 1 + apart_.size() / kJudged) {
-      judged.push_back(apart_[i]);
-      hits.push_back(samples_.hits[apart_[i]]);
-    }
-    const std::vector<Vec3f> values = residual_at(device_, residual_, hits);
+    for (size_t i = 0; i < apart_.size(); i += 1 + apart_.size() / kJudged) judged.push_back(apart_[i]);
     double with = 0, without = 1e-12;
-    for (size_t i = 0; i < judged.size(); ++i) {
-      with += squared_error(judged[i], sent_[judged[i]] + values[i]);
-      without += squared_error(judged[i], sent_[judged[i]]);
+    for (size_t begin = 0; begin < judged.size(); begin += kSlab) {
+      check_cancelled(progress);
+      std::vector<Hit> hits;
+      const std::span some = std::span(judged).subspan(begin, std::min(kSlab, judged.size() - begin));
+      for (const uint32_t s : some) hits.push_back(samples_.hits[s]);
+      const std::vector<Vec3f> values = residual_at(device_, residual_, hits);
+      for (size_t i = 0; i < some.size(); ++i) {
+        with += squared_error(some[i], sent_[some[i]] + values[i]);
+        without += squared_error(some[i], sent_[some[i]]);
+      }
     }
     const auto psnr = [&](double sum) { return -10 * std::log10(sum / (3 * double(judged.size()))); };
     return {psnr(without), psnr(with)};
@@ -211,7 +213,7 @@ ResidualFit fit_residual(const Device& device, const Scene& scene, const Surface
   const double seconds = options.seconds > 0 ? std::max(options.seconds - shading, 0.5 * options.seconds) : 0;
   const int judging = std::max(1, int(kJudging * options.steps));
   train(trainer, judging, kJudging * seconds, options.clock, progress);
-  const Explained explained = trainer.explained();
+  const Explained explained = trainer.explained(progress);
   const double gain = 1 - std::pow(10, 0.1 * (explained.physical - explained.with_residual));
   progress.log(Json{
       {"stage", "residual"},
