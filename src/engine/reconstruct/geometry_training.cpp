@@ -140,9 +140,12 @@ void train_geometry(const RunContext& run, RunState& state, const Stage::Checkpo
 
 void log_radiance_psnr(const RunContext& run, GeometryStage& stage) {
   constexpr size_t kViews = 8;
-  constexpr double kSeconds = 15;
-  const double begin = run.progress.now();
-  const auto is_over = [&] { return run.progress.cancelled() || run.progress.now() - begin > kSeconds; };
+  constexpr double kSeconds = 15,
+                   kReserveShare = 0.25;  // of a plan by time, whose other stages need the rest
+  const double begin = run.progress.now(),
+               seconds =
+                   run.plan.geometry > 0 ? std::min(kSeconds, kReserveShare * run.plan.reserve) : kSeconds;
+  const auto is_over = [&] { return run.progress.cancelled() || run.progress.now() - begin > seconds; };
   std::vector<const View*> held_out;
   for (const View& view : run.capture.views)
     if (view.split != Split::train) held_out.push_back(&view);

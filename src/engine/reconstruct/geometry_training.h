@@ -10,7 +10,8 @@ namespace cei3d {
 void train_geometry(const RunContext&, RunState& state, const Stage::Checkpoint& checkpoint);
 
 // Logs how well the radiance field draws the held-out views, which is what the physical model is compared
-// with. Of up to 8 views, as many as 15 s allow. Stops when progress.cancelled().
+// with. Of up to 8 views, as many as 15 s allow, in a run with a time limit a quarter of its reserve. Stops
+// when progress.cancelled().
 void log_radiance_psnr(const RunContext&, GeometryStage&);
 
 }  // namespace cei3d

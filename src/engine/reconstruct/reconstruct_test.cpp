@@ -225,7 +225,7 @@ TEST(Reconstruct, RefusesUnknownKeysInACheckpoint) {
   const Checkpoints::State good = uninterrupted().checkpoints.after.at("appearance");
   const auto read = [&](const Json& bad) {
     MemoryCheckpoints checkpoints;
-    checkpoints.latest_state = {bad, good.tensors};
+    checkpoints.latest_state = Checkpoints::State{bad, good.tensors};
     ScriptedProgress progress;
     progress.stop_at("finer mesh", 1);  // where it would resume
     small.run(checkpoints, progress);

@@ -134,8 +134,10 @@ Scene full_scene() {
   s.light_frame.motion = LightMotion::turntable;
   s.explained = {20, 21};
   s.handlers = std::make_shared<const HandlerPoints>();
-  s.surface = std::make_shared<const Surface>(
-      Mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}}, {{0, 1, 2}}});
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  s.surface = std::make_shared<const Surface>(std::move(mesh));
   return s;
 }
 
