@@ -98,7 +98,8 @@ class Job {
   EvaluationRow row(const std::string& name, const std::string& what, const Json& settings,
                     const std::function<void(EvaluationRow&, Progress&)>& work) {
     if (progress_.cancelled()) throw Error(ErrorCode::interrupted, kInterrupted);
-    if (const Json kept = rows_.find(name, settings); !kept.is_null()) return evaluation_row_from_json(kept);
+    if (const Json kept = rows_.find(name, settings); !kept.is_null())
+      return evaluation_row_from_json(kept, (r_.out / "rows" / (name + ".json")).string());
     EvaluationRow row;
     row.name = name;
     row.what = what;

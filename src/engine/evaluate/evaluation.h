@@ -46,7 +46,8 @@ struct EvaluationRow {
   EvalReport scores;    // of held-out views, and of the edit if there is one
   Json json() const;
 };
-EvaluationRow evaluation_row_from_json(const Json&);  // throws Json::exception
+// Error: what json() does not write, an unknown key. what: the JSON, in errors.
+EvaluationRow evaluation_row_from_json(const Json&, const std::string& what = "A row");
 
 struct EvaluationReport {
   std::string capture;

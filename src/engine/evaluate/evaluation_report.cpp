@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables of the evaluation report.
 #include "core/base/error.h"
+#include "core/base/json_reader.h"
 #include "engine/evaluate/evaluation.h"
 #include "engine/session/number_text.h"
 #include "engine/session/version.h"
@@ -151,13 +152,20 @@ Json EvaluationRow::json() const {
   return j;
 }
 
-EvaluationRow evaluation_row_from_json(const Json& j) {
-  EvaluationRow r{
-      j.at("name").get<std::string>(), j.at("what").get<std::string>(), j.value("skipped", ""), 0, {}, {}};
-  if (!r.skipped.empty()) return r;
-  r.seconds = j.at("seconds").get<double>();
-  r.details = j.at("details");
-  r.scores = eval_report_from_json(j.at("scores"));
+EvaluationRow evaluation_row_from_json(const Json& j, const std::string& what) {
+  JsonReader reader(j, what);
+  EvaluationRow r{reader.require<std::string>("name"),
+                  reader.require<std::string>("what"),
+                  reader.optional("skipped", std::string()),
+                  0,
+                  {},
+                  {}};
+  if (r.skipped.empty()) {
+    r.seconds = reader.require<double>("seconds");
+    r.details = reader.member("details");
+    r.scores = eval_report_from_json(reader.member("scores"), "'scores' of " + what);
+  }
+  reader.finish();
   return r;
 }
 

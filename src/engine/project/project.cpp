@@ -247,7 +247,8 @@ Scene Project::base() const {
     const Json& head = reader.member("head");
     reader.finish();
     const std::string key = content_hash(object + head.dump());
-    if (key != loaded_key_) loaded_base_ = load_scene(store_.get(object), head);
+    if (key != loaded_key_)
+      loaded_base_ = load_scene(store_.get(object), head, "The object in " + reader.what());
     loaded_key_ = key;
     return loaded_base_;
   });

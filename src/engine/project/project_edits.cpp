@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The edits of a project: records, results, and the scene made of them.
 #include <algorithm>
+#include <optional>
 
 #include "core/base/hash.h"
 #include "core/base/json_reader.h"
@@ -37,6 +38,7 @@ constexpr const char* kAnyKey = "";  // key of the only result of an edit in for
 
 // A stored result of an edit.
 struct Project::StoredResult {
+  std::string file;    // that names it
   std::string key;     // hash of what it depends on
   std::string object;  // its tensors
   Json head;
@@ -54,16 +56,18 @@ struct Project::Resolved {
 
 std::vector<Project::StoredResult> Project::results_of(const std::string& id) const {
   return read_json_file(edit_file(id), [&](const Json& j) {
-    if (j.contains("result"))
-      return std::vector<StoredResult>{
-          {kAnyKey, object_of(j.at("result")), j.at("result").at("head"), {.look = true}}};
+    const std::string file = edit_file(id).string();
     std::vector<StoredResult> results;
-    for (const auto& [key, r] : j.at("results").items()) {
-      JsonReader result(r, "A result in " + edit_file(id).string());
-      results.push_back({key, result.require<std::string>("object"), result.member("head"),
-                         aspects_from_json(result.array("changes"))});
+    const auto add = [&](const std::string& key, const Json& r, std::optional<Aspects> changes) {
+      JsonReader result(r, "A result in " + file);
+      results.push_back({file, key, result.require<std::string>("object"), result.member("head"),
+                         changes ? *changes : aspects_from_json(result.array("changes"))});
       result.finish();
-    }
+    };
+    if (j.contains("result"))
+      add(kAnyKey, j.at("result"), Aspects{.look = true});
+    else
+      for (const auto& [key, r] : j.at("results").items()) add(key, r, std::nullopt);
     return results;
   });
 }
@@ -104,7 +108,7 @@ Project::Resolved Project::resolve(const Stack& stack) const {
 }
 
 EditLayer Project::load_result(const StoredResult& r) const {
-  EditLayer layer = load_layer(store_.get(r.object), r.head);
+  EditLayer layer = load_layer(store_.get(r.object), r.head, "A result in " + r.file);
   layer.content = r.fingerprint();
   return layer;
 }

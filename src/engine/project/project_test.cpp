@@ -9,6 +9,7 @@
 
 #include <csignal>
 #include <fstream>
+#include <functional>
 #include <thread>
 
 #include "core/base/error.h"
@@ -320,6 +321,37 @@ TEST_F(ProjectTest, NewerFormatIsRefusedAndUntouched) {
   EXPECT_EQ(files_below(folder() / "base", "scene.json").size(), 1u);
 }
 
+// An edit had one result, whatever lay below it.
+TEST_F(ProjectTest, EditsOfTheFirstFormatAreRead) {
+  std::string before;
+  {
+    Project p = make_with_base();
+    add_paint(p, 1);
+    before = bytes_of(p.scene());
+  }
+  const auto change = [&](const char* file, const std::function<void(Json&)>& how) {
+    Json j = Json::parse(read_file(folder() / file));
+    how(j);
+    write_file_atomic(folder() / file, j.dump());
+  };
+  change("project.json", [](Json& j) { j["version"] = 1; });
+  change("edits/0001-paint/edit.json", [](Json& j) {
+    j["result"] = j["results"].front();
+    j["result"].erase("changes");
+    j.erase("results");
+    j.erase("depends");
+  });
+  Project p = Project::open(folder(), Project::Mode::write);
+  EXPECT_EQ(bytes_of(p.scene()), before);
+  EXPECT_EQ(p.edit("0001-paint").params["view"], "train/r_000");
+  p.undo();
+  p.redo();
+  EXPECT_EQ(bytes_of(p.scene()), before);
+  change("edits/0001-paint/edit.json", [](Json& j) { j["result"]["surprise"] = 1; });
+  EXPECT_THAT(message_of([&] { Project::open(folder(), Project::Mode::read).scene(); }),
+              HasSubstr("unknown key 'surprise'"));
+}
+
 TEST_F(ProjectTest, DamagedObjectsAreNamed) {
   make_with_base();
   const fs::path object = files_below(folder() / "objects", ".safetensors").at(0);
@@ -380,12 +412,15 @@ TEST_F(ProjectTest, UnknownKeysAreNamed) {
                                                         {"base/scene.json", ""},
                                                         {"base/scene.json", "/head"},
                                                         {"base/scene.json", "/head/material"},
+                                                        {"base/scene.json", "/head/sdf"},
+                                                        {"base/scene.json", "/head/handlers"},
                                                         {"edits/0001-paint/edit.json", ""}}) {
     const std::string good = read_file(folder() / name);
     Json bad = Json::parse(good);
     bad[Json::json_pointer(place)]["surprise"] = 1;
     write_file_atomic(folder() / name, bad.dump());
     EXPECT_THAT(message_of(reading), HasSubstr("unknown key 'surprise'")) << name << place;
+    EXPECT_THAT(message_of(reading), HasSubstr(name)) << place;
     write_file_atomic(folder() / name, good);
   }
   EXPECT_NO_THROW(reading());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/base/cancel.h"
 #include "core/math/color.h"
@@ -35,7 +36,7 @@ class Training {
 
   // One step, and what is due after it.
   void step(double u, const Stage::Checkpoint& checkpoint) {
-    const GeometryStats sum = state_.geometry->step(state_.step, u);
+    const GeometryStats sum = state_.geometry->step(state_.step, u, {}, run_.progress);
     if (!std::isfinite(sum.color))
       fail("training diverged at step {}: the loss is not a number", state_.step);
     if (elapsed() > next_evaluation_) evaluate(u, sum);
@@ -87,12 +88,13 @@ class Training {
   double psnr_ = 0;
 };
 
-// Sum of squared differences from the photograph over white, display-encoded.
-double squared_error(const Image& got, const Image& photograph, int first_row) {
+// Sum of squared differences from the part of the photograph that begins at (column, row), over white,
+// display-encoded.
+double squared_error(const Image& got, const Image& photograph, int column, int row) {
   double sum = 0;
   for (int y = 0; y < got.height; ++y)
     for (int x = 0; x < got.width; ++x) {
-      const float* want = photograph.at(x, first_row + y);
+      const float* want = photograph.at(column + x, row + y);
       for (int c = 0; c < 3; ++c) {
         const float over_white = srgb_from_linear(want[c]) * want[3] + 1 - want[3];
         sum += square(double(got.at(x, y)[c]) - over_white);
@@ -101,25 +103,49 @@ double squared_error(const Image& got, const Image& photograph, int first_row) {
   return sum;
 }
 
+// The squared error of a view by the radiance field; nothing when is_over() before it is drawn.
+template <class F>
+std::optional<double> view_error(GeometryStage& stage, const Camera& whole, const Image& photograph,
+                                 const F& is_over) {
+  constexpr int kTile = 32;  // pixels an axis: with the largest networks a view takes minutes
+  double error = 0;
+  for (int row = 0; row < whole.height; row += kTile)
+    for (int column = 0; column < whole.width; column += kTile) {
+      if (is_over()) return std::nullopt;
+      Camera tile = whole;
+      tile.width = std::min(kTile, whole.width - column);
+      tile.height = std::min(kTile, whole.height - row);
+      tile.cx -= column;
+      tile.cy -= row;
+      error += squared_error(stage.render_radiance(tile, 2), photograph, column, row);
+    }
+  return error;
+}
+
 }  // namespace
 
 void train_geometry(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
   Training training(run, state);
-  for (double u; (u = training.position()) < 1;) {
-    if (run.progress.cancelled()) {
-      training.save(checkpoint);
+  try {
+    for (double u; (u = training.position()) < 1;) {
       check_cancelled(run.progress);
+      training.step(u, checkpoint);
     }
-    training.step(u, checkpoint);
+  } catch (const Error& e) {  // a step that is interrupted has changed nothing: the state is that before it
+    if (e.code() == ErrorCode::interrupted) training.save(checkpoint);
+    throw;
   }
   state.training_seconds = training.elapsed();
 }
 
 void log_radiance_psnr(const RunContext& run, GeometryStage& stage) {
   constexpr size_t kViews = 8;
-  constexpr double kSeconds = 15;
-  constexpr int kRows = 4;  // drawn at a time: with the largest networks a view takes minutes
-  const double begin = run.progress.now();
+  constexpr double kSeconds = 15,
+                   kReserveShare = 0.25;  // of a plan by time, whose other stages need the rest
+  const double begin = run.progress.now(),
+               seconds =
+                   run.plan.geometry > 0 ? std::min(kSeconds, kReserveShare * run.plan.reserve) : kSeconds;
+  const auto is_over = [&] { return run.progress.cancelled() || run.progress.now() - begin > seconds; };
   std::vector<const View*> held_out;
   for (const View& view : run.capture.views)
     if (view.split != Split::train) held_out.push_back(&view);
@@ -128,19 +154,11 @@ void log_radiance_psnr(const RunContext& run, GeometryStage& stage) {
   for (size_t i = 0; i < held_out.size(); ++i) {
     if (i > 0 && i * kViews / held_out.size() == (i - 1) * kViews / held_out.size()) continue;
     const Image photograph = run.images.load(*held_out[i]);
-    Camera band = run.normalization.unit_from_capture(held_out[i]->camera);
-    if (photograph.width != band.width) return;  // downscaled
-    const int height = band.height;
-    double error = 0;
-    int row = 0;
-    for (; row < height; row += kRows) {
-      if (run.progress.cancelled() || run.progress.now() - begin > kSeconds) break;
-      band.height = std::min(kRows, height - row);
-      error += squared_error(stage.render_radiance(band, 2), photograph, row);
-      band.cy -= band.height;
-    }
-    if (row < height) break;
-    sum += -10 * std::log10(error / (3.0 * band.width * height));
+    const Camera whole = run.normalization.unit_from_capture(held_out[i]->camera);
+    if (photograph.width != whole.width) return;  // downscaled
+    const std::optional<double> error = view_error(stage, whole, photograph, is_over);
+    if (!error) break;
+    sum += -10 * std::log10(*error / (3.0 * whole.width * whole.height));
     ++views;
   }
   if (views)

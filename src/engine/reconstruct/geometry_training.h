@@ -10,7 +10,8 @@ namespace cei3d {
 void train_geometry(const RunContext&, RunState& state, const Stage::Checkpoint& checkpoint);
 
 // Logs the PSNR of the radiance field on held-out views, for comparison with shading by light and material.
-// Up to 8 views, as many as 15 s allow. Stops when progress.cancelled().
+// Up to 8 views, as many as 15 s allow, in a run with a time limit a quarter of its reserve. Stops when
+// progress.cancelled().
 void log_radiance_psnr(const RunContext&, GeometryStage&);
 
 }  // namespace cei3d

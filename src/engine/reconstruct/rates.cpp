@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/base/cancel.h"
+#include "core/base/json_reader.h"
 #include "core/math/rng.h"
 #include "core/math/scalar.h"
 #include "engine/reconstruct/appearance/pixel_points.h"
@@ -90,13 +91,16 @@ Json to_json(const Rates& r) {
 }
 
 Rates rates_from_json(const Json& j) {
-  const auto seconds = [&](const char* name) { return j.at(name).get<double>(); };
-  return {.sdf_step = seconds("sdf_step"),
-          .trial_step = seconds("trial_step"),
-          .albedo_step = seconds("albedo_step"),
-          .mesh = seconds("mesh"),
-          .hit_traced = seconds("hit_traced"),
-          .hit_shaded = seconds("hit_shaded")};
+  JsonReader reader(j, "the rates in the checkpoint");
+  const auto seconds = [&](const char* name) { return reader.require<double>(name); };
+  const Rates rates{.sdf_step = seconds("sdf_step"),
+                    .trial_step = seconds("trial_step"),
+                    .albedo_step = seconds("albedo_step"),
+                    .mesh = seconds("mesh"),
+                    .hit_traced = seconds("hit_traced"),
+                    .hit_shaded = seconds("hit_shaded")};
+  reader.finish();
+  return rates;
 }
 
 Rates measure_rates(const Device& device, const Preset& preset, const PixelStore& pixels, const Clock& clock,

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/test_unknown_keys.h"
 #include "engine/reconstruct/test_run.h"
 
 namespace cei3d {
@@ -12,30 +13,55 @@ namespace {
 using How = ScriptedProgress::How;
 
 // A run by steps that has every stage such a run can have.
-class SmallRun {
+class AnyRun {
  public:
-  SmallRun() : preset_(shrunken(preset_by_name("fast"))) {
-    preset_.polish_from_iterations = preset_.trials_from_iterations = 1;
-  }
-  Scene run(Checkpoints& checkpoints, Progress& progress) {
-    ReconstructOptions options;
+  AnyRun(const Capture& capture, const ImageSource& images)
+      : preset(shrunken(preset_by_name("fast"))), capture_(capture), images_(images) {
+    preset.polish_from_iterations = preset.trials_from_iterations = 1;
     options.iterations = 24;
     options.seed = 5;
+  }
+  Scene run(Checkpoints& checkpoints, Progress& progress) {
     VirtualClock time(0.7);  // so that the geometry stage saves in its middle
     return reconstruct({.device = device_,
-                        .capture = capture_.capture(),
-                        .images = capture_,
+                        .capture = capture_,
+                        .images = images_,
                         .normalization = {},
                         .options = options,
-                        .preset = preset_,
+                        .preset = preset,
                         .clock = time.clock()},
                        checkpoints, progress);
   }
 
+  Preset preset;
+  ReconstructOptions options;
+
  private:
   Device device_ = make_device();
-  BoxCapture capture_;
-  Preset preset_;
+  const Capture& capture_;
+  const ImageSource& images_;
+};
+
+template <class C>
+struct Owner {
+  C own;
+};
+
+// Of an object of one material under a light that stands still.
+class SmallRun : Owner<BoxCapture>, public AnyRun {
+ public:
+  SmallRun() : AnyRun(own.capture(), own) {}
+};
+
+// Of one of several materials under a light that turns, which has to be found out.
+class SmallTurningRun : Owner<TurntableCapture>, public AnyRun {
+ public:
+  SmallTurningRun() : AnyRun(own.capture(), own) {
+    preset.appearance.roughness = 0;
+    preset.appearance.materials = preset.appearance.albedo;
+    preset.appearance.materials.outputs = MaterialField::kOutputs;
+    preset.appearance.material_steps = 20;
+  }
 };
 
 void expect_same(const Tensors& a, const Tensors& b, const std::string& where) {
@@ -55,7 +81,7 @@ Checkpoints::State saved(const Scene& scene) {
 
 // What an uninterrupted run leaves.
 struct Reference {
-  explicit Reference(SmallRun& small) : scene(saved(small.run(checkpoints, progress))) {}
+  explicit Reference(AnyRun& small) : scene(saved(small.run(checkpoints, progress))) {}
   MemoryCheckpoints checkpoints;
   ScriptedProgress progress;
   Checkpoints::State scene;
@@ -68,7 +94,7 @@ const Reference& uninterrupted() {
 }
 
 // Runs up to the check, or to the end; the stage's name must be in the message.
-void run_interrupted(SmallRun& small, MemoryCheckpoints& checkpoints, const std::string& stage, int check,
+void run_interrupted(AnyRun& small, MemoryCheckpoints& checkpoints, const std::string& stage, int check,
                      How how) {
   ScriptedProgress progress;
   progress.stop_at(stage, check, how);
@@ -85,7 +111,7 @@ void run_interrupted(SmallRun& small, MemoryCheckpoints& checkpoints, const std:
 }
 
 // Interrupts the stage, resumes it, and compares what is saved after it (or the object, after the last one).
-void expect_same_after(SmallRun& small, const Reference& reference, size_t stage, int check, How how) {
+void expect_same_after(AnyRun& small, const Reference& reference, size_t stage, int check, How how) {
   const std::vector<std::string>& stages = reference.progress.stages;
   const std::string &name = stages[stage], where = name + " at check " + std::to_string(check) +
                                                    (how == How::kill ? ", killed" : "");
@@ -134,6 +160,23 @@ TEST(Reconstruct, InterruptedAgainAndAgainMakesTheSameObject) {
   EXPECT_EQ(scene.head, reference.scene.head);
 }
 
+TEST(Reconstruct, SeveralMaterialsUnderATurningLightAreResumedAnywhere) {
+  SmallTurningRun small;
+  const Reference reference(small);
+  const Json& head = reference.scene.head;
+  ASSERT_TRUE(head.contains("materials")) << "one material";
+  ASSERT_EQ(head.at("light_frame").at("motion"), "turntable");
+  MemoryCheckpoints checkpoints;
+  const std::vector<std::string>& stages = reference.progress.stages;
+  for (size_t s = 1; s + 1 < stages.size(); ++s)
+    run_interrupted(small, checkpoints, stages[s], reference.progress.checks.at(stages[s]) * 3 / 4,
+                    s % 2 ? How::cancel : How::kill);
+  ScriptedProgress rest;
+  const Checkpoints::State scene = saved(small.run(checkpoints, rest));
+  expect_same(scene.tensors, reference.scene.tensors, "the object");
+  EXPECT_EQ(scene.head, head);
+}
+
 // Before there were stages, checkpoints held the geometry stage alone.
 TEST(Reconstruct, ResumesACheckpointOfTheFirstVersion) {
   SmallRun small;
@@ -165,13 +208,29 @@ TEST(Reconstruct, RefusesACheckpointItCannotResume) {
     try {
       small.run(checkpoints, progress);
     } catch (const Error& e) {
+      EXPECT_NE(e.hint().find("--force"), std::string::npos) << e.what();
       return std::string(e.what());
     }
     return std::string("it was resumed");
   };
   EXPECT_NE(sentence(Json::object({{"stage", "sculpting"}})).find("'sculpting'"), std::string::npos);
   EXPECT_NE(sentence(Json::object({{"version", 99}})).find("newer program"), std::string::npos);
-  EXPECT_NE(sentence(Json::object({{"state", Json::object()}})).find("damaged"), std::string::npos);
+  EXPECT_NE(sentence(Json::object({{"state", Json::object()}})).find("lacks the key 'step'"),
+            std::string::npos);
+  EXPECT_NE(sentence(Json::object({{"state", "gone"}})).find("damaged"), std::string::npos);
+}
+
+TEST(Reconstruct, RefusesUnknownKeysInACheckpoint) {
+  SmallRun small;
+  const Checkpoints::State good = uninterrupted().checkpoints.after.at("appearance");
+  const auto read = [&](const Json& bad) {
+    MemoryCheckpoints checkpoints;
+    checkpoints.latest_state = Checkpoints::State{bad, good.tensors};
+    ScriptedProgress progress;
+    progress.stop_at("finer mesh", 1);  // where it would resume
+    small.run(checkpoints, progress);
+  };
+  EXPECT_EQ(objects_with_unknown_keys_read(good.head, "the checkpoint", read), std::vector<std::string>());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include "engine/reconstruct/run_state.h"
 
 #include "core/base/error.h"
+#include "core/base/json_reader.h"
 
 namespace cei3d {
 
@@ -21,24 +22,31 @@ Tensors without_prefix(const std::string& prefix, const Tensors& from) {
   return out;
 }
 
+const std::string kCheckpoint = "the checkpoint";
+
 SavedRun read_version_1(const Checkpoints::State& saved, const MakeGeometry& make_geometry) {
+  JsonReader head(saved.head, kCheckpoint);
   SavedRun run;
   RunState& state = run.state;
   state.geometry = make_geometry();
   state.geometry->load(saved.tensors);
-  state.step = saved.head.at("step").get<int64_t>();
-  state.training_seconds = saved.head.at("elapsed").get<double>();
-  state.start_seconds = saved.head.value("start", 0.0);
+  state.step = head.require<int64_t>("step");
+  state.training_seconds = head.require<double>("elapsed");
+  state.start_seconds = head.optional("start", 0.0);
   run.position = {
-      saved.head.at("stage").get<std::string>(), false, state.start_seconds + state.training_seconds, {}};
+      head.require<std::string>("stage"), false, state.start_seconds + state.training_seconds, {}};
+  head.finish();
   return run;
 }
 
 SavedRun read_version_2(const Checkpoints::State& saved, const MakeGeometry& make_geometry) {
-  const Json& head = saved.head;
-  return {{head.at("stage").get<std::string>(), head.at("finished").get<bool>(),
-           head.at("elapsed").get<double>(), head.at("rates")},
-          load_state(saved.tensors, head.at("state"), make_geometry)};
+  JsonReader head(saved.head, kCheckpoint);
+  head.has("version");
+  const RunPosition position{head.require<std::string>("stage"), head.require<bool>("finished"),
+                             head.require<double>("elapsed"), head.member("rates")};
+  const Json& state = head.member("state");
+  head.finish();
+  return {position, load_state(saved.tensors, state, make_geometry)};
 }
 
 }  // namespace
@@ -63,14 +71,18 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
 }
 
 RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry& make_geometry) {
+  JsonReader reader(head, "the state in the checkpoint");
   RunState state;
-  state.step = head.at("step").get<int64_t>();
-  state.training_seconds = head.at("training_seconds").get<double>();
-  state.start_seconds = head.at("start_seconds").get<double>();
-  state.polish_deadline = head.at("polish_deadline").get<double>();
-  state.look_seconds = head.at("look_seconds").get<double>();
-  state.scene = load_scene(without_prefix(kScene, tensors), head.at("scene"));
-  if (head.at("has_geometry").get<bool>()) {
+  state.step = reader.require<int64_t>("step");
+  state.training_seconds = reader.require<double>("training_seconds");
+  state.start_seconds = reader.require<double>("start_seconds");
+  state.polish_deadline = reader.require<double>("polish_deadline");
+  state.look_seconds = reader.require<double>("look_seconds");
+  const bool has_geometry = reader.require<bool>("has_geometry");
+  const Json& scene = reader.member("scene");
+  reader.finish();
+  state.scene = load_scene(without_prefix(kScene, tensors), scene, "the object in the checkpoint");
+  if (has_geometry) {
     state.geometry = make_geometry();
     state.geometry->load(without_prefix(kGeometry, tensors));
     state.geometry->set_light(state.scene.light_frame);
@@ -88,13 +100,15 @@ Checkpoints::State checkpoint_of(const RunPosition& position, const RunState& st
 }
 
 SavedRun read_checkpoint(const Checkpoints::State& saved, const MakeGeometry& make_geometry) {
+  constexpr const char* kHint = "start anew with --force";
   try {
     const int version = saved.head.value("version", 1);
-    if (version > kVersion)
-      fail("the checkpoint was written by a newer program; resume with that, or start anew with --force");
+    if (version > kVersion) fail("the checkpoint was written by a newer program; resume with that");
     return version == 1 ? read_version_1(saved, make_geometry) : read_version_2(saved, make_geometry);
   } catch (const Json::exception& e) {
-    fail("the checkpoint is damaged ({}); start anew with --force", e.what());
+    throw Error(ErrorCode::failed, fmt::format("the checkpoint is damaged ({})", e.what()), kHint);
+  } catch (const Error& e) {
+    throw Error(e.code(), e.what(), kHint);
   }
 }
 

@@ -15,8 +15,10 @@ size_t first_stage(const std::vector<Stage>& stages, const std::optional<RunPosi
   const auto at =
       std::find_if(stages.begin(), stages.end(), [&](const Stage& s) { return s.name == position->stage; });
   if (at == stages.end())
-    fail("the checkpoint ends in a stage '{}' that this program does not have; start anew with --force",
-         position->stage);
+    throw Error(
+        ErrorCode::failed,
+        fmt::format("the checkpoint ends in a stage '{}' that this program does not have", position->stage),
+        "start anew with --force");
   return size_t(at - stages.begin()) + (position->finished ? 1 : 0);
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/math/rotation.h"
 #include "engine/reconstruct/reconstruct_with.h"
 #include "engine/reconstruct/test_box.h"
 
@@ -36,6 +37,43 @@ class BoxCapture : public ImageSource {
   const Capture& capture() const { return capture_; }
 
  private:
+  std::map<std::string, Image> pictures_;
+  Capture capture_;
+};
+
+// The same box, of matte stone below and of polished metal above, on a turntable under fixed lamps.
+class TurntableCapture : public ImageSource {
+ public:
+  explicit TurntableCapture(int views = 12, int size = 40) {
+    for (int v = 0; v < views; ++v) {
+      View view;
+      view.name = std::to_string(v);
+      view.split = v % 6 == 5 ? Split::test : Split::train;
+      view.camera = box_camera(-0.5 + 1.3 * v / views, 2.4 * v, size);
+      const Vec3f eye = to_float(view.camera.center);
+      const Mat3f room = about_axis({0, 0, 1}, -std::atan2(eye.y, eye.x));
+      pictures_[view.name] = box_picture(view.camera, [&](Vec3f p) {
+        const Vec3f n = pit_box().normal(p), d = normalize(p - eye), r = d - n * (2 * dot(d, n));
+        return p.z > 0 ? Vec3f{1, 0.75f, 0.4f} * lamps(room * r, 6) : stone(p) * lamps(room * n, 1);
+      });
+      capture_.views.push_back(view);
+    }
+  }
+  Image load(const View& view) const override { return pictures_.at(view.name); }
+  const Capture& capture() const { return capture_; }
+
+ private:
+  // sharpness: of the lobes of two lamps.
+  static Vec3f lamps(Vec3f direction, float sharpness) {
+    const auto lamp = [&](Vec3f at) { return std::exp(sharpness * (dot(direction, normalize(at)) - 1)); };
+    return Vec3f{0.1f, 0.1f, 0.1f} + Vec3f{0.6f, 0.6f, 0.5f} * lamp({1, 0.3f, 0.5f}) +
+           Vec3f{0.2f, 0.3f, 0.5f} * lamp({-0.5f, 1, 0.2f});
+  }
+  static Vec3f stone(Vec3f p) {
+    const bool odd = (int(std::floor(p.x * 7)) + int(std::floor(p.y * 7))) & 1;
+    return odd ? Vec3f{0.5f, 0.3f, 0.2f} : Vec3f{0.2f, 0.3f, 0.4f};
+  }
+
   std::map<std::string, Image> pictures_;
   Capture capture_;
 };

@@ -5,6 +5,7 @@
 #include <array>
 #include <numeric>
 
+#include "core/base/cancel.h"
 #include "core/base/parallel.h"
 
 namespace cei3d {
@@ -40,7 +41,8 @@ void Transport::for_blocked(uint32_t vertex, F visit) const {
   }
 }
 
-Transport::Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t> which)
+Transport::Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t> which,
+                     const Progress& progress)
     : surface_(std::move(surface)), which_(std::move(which)) {
   const Mesh& mesh = surface_->mesh();
   const int n = int(mesh.positions.size());
@@ -54,6 +56,7 @@ Transport::Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t
   std::vector<Vec3f> origins, directions;
   std::vector<Surface::RayHit> hits;
   for (int begin = 0; begin < n; begin += 16 * kGrain) {
+    check_cancelled(progress);
     const int end = std::min(n, begin + 16 * kGrain);
     origins.clear();
     directions.clear();

@@ -17,8 +17,9 @@ using SkyRadiance = std::vector<Vec3f>;
 class Transport {
  public:
   // Casts a ray along every blocked direction above a vertex's horizon. which: #V, 1 for the vertices to
-  // compute; the results of the others are 0. Empty: all.
-  explicit Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t> which = {});
+  // compute; the results of the others are 0. Empty: all. Error: interrupted.
+  explicit Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t> which = {},
+                     const Progress& progress = Progress());
 
   // Irradiance of every vertex from the sky that is visible from it: #V.
   std::vector<Vec3f> sky(const SkyRadiance&) const;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `eval` answers, as JSON and as tables.
 #include "core/base/error.h"
+#include "core/base/json_reader.h"
 #include "engine/session/number_text.h"
 #include "engine/session/requests.h"
 
@@ -44,49 +45,61 @@ std::string edit_markdown(const EditScore& e) {
 
 double decibels_from(const Json& j) { return j.is_number() ? j.get<double>() : INFINITY; }
 
-std::optional<double> number_from(const Json& j, const char* key) {
-  return j.contains(key) ? std::optional(j.at(key).get<double>()) : std::nullopt;
-}
+double decibels_from(JsonReader& reader, const char* key) { return decibels_from(reader.member(key)); }
 
-EditScore edit_from(const Json& j) {
+EditScore edit_from(JsonReader reader) {
   EditScore e;
-  if (j.contains("psnr_inside"))
-    e.truth = EditFidelity{decibels_from(j.at("psnr_inside")),   j.at("iou").get<double>(),
-                           j.at("pixels_inside").get<size_t>(),  j.at("changed_outside").get<size_t>(),
-                           j.at("pixels_outside").get<size_t>(), j.at("views").get<size_t>()};
-  if (j.contains("non_edited")) {
-    const Json& r = j.at("non_edited");
-    e.rest = RestScore{decibels_from(r.at("psnr")), r.at("ssim").get<double>(), number_from(r, "lpips"),
-                       r.at("pixels").get<size_t>(), r.at("views").get<size_t>()};
+  if (reader.has("psnr_inside"))
+    e.truth =
+        EditFidelity{decibels_from(reader, "psnr_inside"),     reader.require<double>("iou"),
+                     reader.require<size_t>("pixels_inside"),  reader.require<size_t>("changed_outside"),
+                     reader.require<size_t>("pixels_outside"), reader.require<size_t>("views")};
+  if (reader.has("non_edited")) {
+    JsonReader r = reader.object("non_edited");
+    e.rest = RestScore{decibels_from(r, "psnr"), r.require<double>("ssim"), r.optional<double>("lpips"),
+                       r.require<size_t>("pixels"), r.require<size_t>("views")};
+    r.finish();
   }
-  e.fid = number_from(j, "fid_before_after");
+  e.fid = reader.optional<double>("fid_before_after");
+  reader.finish();
   return e;
 }
 
-ViewScore view_from(const Json& j) {
-  ViewScore v{
-      j.at("view").get<std::string>(), decibels_from(j.at("psnr")), j.at("ssim").get<double>(), {}, {}};
-  if (!j.at("psnr_masked").is_null()) v.psnr_masked = decibels_from(j.at("psnr_masked"));
-  v.lpips = number_from(j, "lpips");
+ViewScore view_from(JsonReader reader) {
+  ViewScore v{reader.require<std::string>("view"),
+              decibels_from(reader, "psnr"),
+              reader.require<double>("ssim"),
+              {},
+              {}};
+  if (const Json& masked = reader.member("psnr_masked"); !masked.is_null())
+    v.psnr_masked = decibels_from(masked);
+  v.lpips = reader.optional<double>("lpips");
+  reader.finish();
   return v;
 }
 
 }  // namespace
 
-EvalReport eval_report_from_json(const Json& j) {
+EvalReport eval_report_from_json(const Json& j, const std::string& what) {
+  JsonReader reader(j, what);
   EvalReport r;
-  r.psnr = decibels_from(j.at("psnr"));
-  r.ssim = j.at("ssim").get<double>();
-  r.psnr_masked = decibels_from(j.at("psnr_masked"));
-  r.psnr_worst = decibels_from(j.at("psnr_worst"));
-  r.worst_view = j.at("worst_view").get<std::string>();
-  r.residual = j.value("residual", false);
-  if (j.contains("alone"))
-    r.alone = {decibels_from(j.at("alone").at("psnr")), decibels_from(j.at("alone").at("psnr_masked"))};
-  r.lpips = number_from(j, "lpips");
-  r.fid = number_from(j, "fid");
-  if (j.contains("edit")) r.edit = edit_from(j.at("edit"));
-  for (const Json& v : j.at("views")) r.views.push_back(view_from(v));
+  r.psnr = decibels_from(reader, "psnr");
+  r.ssim = reader.require<double>("ssim");
+  r.psnr_masked = decibels_from(reader, "psnr_masked");
+  r.psnr_worst = decibels_from(reader, "psnr_worst");
+  r.worst_view = reader.require<std::string>("worst_view");
+  reader.has("background");  // always the same
+  r.residual = reader.optional("residual", false);
+  if (reader.has("alone")) {
+    JsonReader alone = reader.object("alone");
+    r.alone = {decibels_from(alone, "psnr"), decibels_from(alone, "psnr_masked")};
+    alone.finish();
+  }
+  r.lpips = reader.optional<double>("lpips");
+  r.fid = reader.optional<double>("fid");
+  if (reader.has("edit")) r.edit = edit_from(reader.object("edit"));
+  for (const Json& v : reader.array("views")) r.views.push_back(view_from({v, "A view of " + what}));
+  reader.finish();
   return r;
 }
 

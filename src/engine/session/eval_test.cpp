@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/temp_folder.h"
+#include "core/base/test_unknown_keys.h"
 #include "core/infer/onnx.h"
 #include "core/infer/test_networks.h"
 #include "engine/io/image_file.h"
@@ -138,6 +139,8 @@ TEST_F(EvalTest, AReportIsReadAsItWasWrittenAndShowsItsPictures) {
   request.pictures = temp_.path() / "pictures";
   const EvalReport r = session_.evaluate(request, quiet_);
   EXPECT_EQ(eval_report_from_json(Json::parse(r.json().dump())).json(), r.json());
+  const auto read = [](const Json& bad) { eval_report_from_json(bad, "row.json"); };
+  EXPECT_EQ(objects_with_unknown_keys_read(r.json(), "row.json", read), std::vector<std::string>());
   render("after");
   const Image three = read_image(temp_.path() / "pictures/r_1.png");
   ASSERT_EQ(three.width, 3 * kSize);

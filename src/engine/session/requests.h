@@ -329,6 +329,7 @@ struct EvalReport {
   Json json() const;
   std::string markdown() const;
 };
-EvalReport eval_report_from_json(const Json&);  // what json() wrote; throws Json::exception on anything else
+// What json() wrote; what: it is, in errors. Error: anything else, an unknown key.
+EvalReport eval_report_from_json(const Json&, const std::string& what = "The scores");
 
 }  // namespace cei3d

@@ -6,6 +6,7 @@
 
 #include "core/base/aligned.h"
 #include "core/base/error.h"
+#include "core/base/json_reader.h"
 #include "core/base/parallel.h"
 #include "core/compute/kernels/panel.h"
 #include "core/math/rng.h"
@@ -151,18 +152,17 @@ Json to_json(const FieldConfig& config) {
   return j;
 }
 
-FieldConfig field_config_from_json(const Json& j) {
+FieldConfig field_config_from_json(const Json& j, const std::string& what) {
   FieldConfig config;
-  size_t known = 0;
+  JsonReader reader(j, what);
   describe(config, [&](const char* name, auto& v) {
-    if (!j.contains(name)) return;
-    ++known;
-    if constexpr (std::is_same_v<std::decay_t<decltype(v)>, Activation>)
-      v = activation_from(j[name].get<std::string>());
-    else
-      v = j[name].get<std::decay_t<decltype(v)>>();
+    if constexpr (std::is_same_v<std::decay_t<decltype(v)>, Activation>) {
+      if (reader.has(name)) v = activation_from(reader.require<std::string>(name));
+    } else {
+      v = reader.optional(name, v);
+    }
   });
-  if (known != j.size()) fail("field: unknown keys in its configuration: {}", j.dump());
+  reader.finish();
   check_config(config);
   return config;
 }

@@ -41,7 +41,8 @@ struct FieldConfig {
   float sphere_radius = 0;
 };
 Json to_json(const FieldConfig&);
-FieldConfig field_config_from_json(const Json&);  // error on unknown keys
+// Error: unknown keys.
+FieldConfig field_config_from_json(const Json&, const std::string& what = "The configuration of a network");
 
 int encoding_rows(const EncodingConfig&);
 MlpConfig mlp_config(const FieldConfig&);

@@ -59,14 +59,14 @@ Json save_further(const std::vector<Region>& regions, Tensors& tensors) {
   return heads;
 }
 
-std::vector<Region> load_further(const Tensors& tensors, const Json& heads) {
+std::vector<Region> load_further(const Tensors& tensors, const Json& heads, const std::string& what) {
   std::vector<Region> regions;
   for (const Json& head : heads) {
     const std::string prefix = fmt::format("also/{}/", regions.size());
     Tensors own;
     for (const auto& [name, tensor] : tensors)
       if (name.starts_with(prefix)) own[name.substr(prefix.size())] = tensor;
-    regions.push_back(Region::load(own, head));
+    regions.push_back(Region::load(own, head, "A region in 'also' of " + what));
   }
   return regions;
 }
@@ -102,26 +102,27 @@ void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
   if (layer.reshape) save_reshape(*layer.reshape, tensors, head["reshape"]);
 }
 
-EditLayer load_layer(const Tensors& tensors, const Json& head) {
+EditLayer load_layer(const Tensors& tensors, const Json& head, const std::string& what) {
   return checked_load("edit", [&] {
-    JsonReader reader(head, "The description of the edit");
+    JsonReader reader(head, what);
     EditLayer layer;
     layer.id = reader.require<std::string>("id");
     layer.everywhere = reader.optional("everywhere", false);
-    if (!layer.everywhere) layer.region = Region::load(tensors, reader.member("region"));
-    if (reader.has("also")) layer.also = load_further(tensors, reader.array("also"));
+    if (!layer.everywhere)
+      layer.region = Region::load(tensors, reader.member("region"), "'region' of " + what);
+    if (reader.has("also")) layer.also = load_further(tensors, reader.array("also"), what);
     layer.shape_version = reader.optional("pose", kLatestVersion);
     layer.part = reader.optional<std::string>("part", "");
-    reader.has("albedo");
-    layer.albedo = load_field("albedo", tensors, head);
+    layer.albedo = load_field("albedo", tensors, reader);
     layer.unlit = reader.optional("unlit", false);
     layer.erase = reader.optional("erase", false);
     layer.erase_material = reader.optional("erase_material", false);
     if (reader.has("tint")) layer.tint = tint_from(reader.object("tint"));
     if (reader.has("material")) layer.material = change_from(reader.object("material"));
-    if (reader.has("light")) layer.light = load_light(tensors, reader.member("light"));
+    if (reader.has("light")) layer.light = load_light(tensors, reader.object("light"));
     if (reader.has("reshape"))
-      layer.reshape = std::make_shared<const Reshape>(load_reshape(tensors, reader.member("reshape")));
+      layer.reshape = std::make_shared<const Reshape>(
+          load_reshape(tensors, reader.member("reshape"), "'reshape' of " + what));
     reader.finish();
     return layer;
   });

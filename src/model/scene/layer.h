@@ -47,6 +47,7 @@ struct EditLayer {
 
 // Errors of loading: missing tensors or keys, sizes that disagree.
 void save_layer(const EditLayer&, Tensors& tensors, Json& head);
-EditLayer load_layer(const Tensors& tensors, const Json& head);
+EditLayer load_layer(const Tensors& tensors, const Json& head,
+                     const std::string& what = "The description of the edit");
 
 }  // namespace cei3d

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/test_unknown_keys.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {
@@ -79,6 +80,28 @@ TEST(EditLayer, LoadGivesWhatWasSaved) {
       EXPECT_EQ(again.tint->blend, layer.tint->blend);
     }
     EXPECT_EQ(bool(again.reshape), bool(layer.reshape));
+  }
+}
+
+Region seen_region() {
+  Projector projector;
+  projector.camera.width = projector.camera.height = 2;
+  projector.min_alpha = 0.25f;
+  projector.alpha = projector.depth = Image(2, 2, 1);
+  return Region({{{0, 0, 0.5f}}, {{0, 0, 1}}, {0.1f}}, projector);
+}
+
+TEST(EditLayer, RefusesUnknownKeysWhereverTheyAre) {
+  std::vector<EditLayer> layers = one_of_each_kind();
+  layers[0].region = seen_region();
+  layers[2].region = Region(ScoredPoints({{{0, 0, 0.5f}}, {{0, 0, 1}}, {1.0f}, 0.1f}));
+  for (const EditLayer& layer : layers) {
+    Tensors tensors;
+    Json head = Json::object();
+    save_layer(layer, tensors, head);
+    EXPECT_NO_THROW(load_layer(tensors, head));
+    const auto read = [&](const Json& bad) { load_layer(tensors, bad, "edit.json"); };
+    EXPECT_EQ(objects_with_unknown_keys_read(head, "edit.json", read), std::vector<std::string>());
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/test_unknown_keys.h"
 #include "core/math/rng.h"
 #include "model/scene/scene.h"
 
@@ -121,6 +122,42 @@ TEST(Residual, IsStoredWithItsFeaturesOrThoseOfTheDistanceField) {
     EXPECT_EQ(back.residual->features == back.sdf, features == sdf);
     EXPECT_EQ(loss(device, *back.residual, hits), loss(device, *scene.residual, hits));
   }
+}
+
+// A scene that has all there is to be stored.
+Scene full_scene() {
+  Scene s = scene_with(random_features(1), random_residual(random_features(2)));
+  s.albedo = random_features(3);
+  s.material = {Material{}, random_features(4)};
+  s.light = {{{{0, 0, 1}, 3.5f, {1, 2, 3}}}};
+  s.light_error = Vec3f{0.1f, 0.1f, 0.1f};
+  s.light_frame.motion = LightMotion::turntable;
+  s.explained = {20, 21};
+  s.handlers = std::make_shared<const HandlerPoints>();
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh.triangles = {{0, 1, 2}};
+  s.surface = std::make_shared<const Surface>(std::move(mesh));
+  return s;
+}
+
+TEST(Scene, RefusesUnknownKeysWhereverTheyAre) {
+  Tensors tensors;
+  Json head;
+  save_scene(full_scene(), tensors, head);
+  EXPECT_NO_THROW(load_scene(tensors, head));
+  EXPECT_GE(head.size(), 15u);
+  const auto read = [&](const Json& bad) { load_scene(tensors, bad, "scene.json"); };
+  EXPECT_EQ(objects_with_unknown_keys_read(head, "scene.json", read), std::vector<std::string>());
+}
+
+TEST(Scene, OfAnotherTableOfDirectionsIsRefused) {
+  Tensors tensors;
+  Json head;
+  save_scene(full_scene(), tensors, head);
+  head["surface"]["sky_directions"] = 256;
+  EXPECT_NE(message([&] { load_scene(tensors, head); }).find("reconstruct the object again"),
+            std::string::npos);
 }
 
 TEST(Residual, OfProjectVersionTwoIsReadWithTwoLayers) {

@@ -36,14 +36,16 @@ void check_triangles(const Mesh& mesh) {
         fail("a triangle of the stored surface names vertex {} of {}", v, mesh.positions.size());
 }
 
-std::shared_ptr<const Surface> load_surface(const Tensors& tensors, const Json& j) {
-  if (j.at("sky_directions") != kSkyDirections)
+std::shared_ptr<const Surface> load_surface(const Tensors& tensors, JsonReader head) {
+  if (const int directions = head.require<int>("sky_directions"); directions != kSkyDirections)
     fail("the stored surface has {} sky directions, this program uses {}; reconstruct the object again",
-         j.at("sky_directions").dump(), kSkyDirections);
-  const int64_t vertices = rows_from(j.at("vertices")), faces = rows_from(j.at("triangles"));
+         directions, kSkyDirections);
+  const int64_t vertices = rows_from(head.member("vertices")), faces = rows_from(head.member("triangles"));
+  const bool has_normals = head.require<bool>("normals");
+  head.finish();
   Mesh mesh;
   mesh.positions = vectors_from(tensors, "surface/positions", vertices);
-  if (j.at("normals").get<bool>()) mesh.normals = vectors_from(tensors, "surface/normals", vertices);
+  if (has_normals) mesh.normals = vectors_from(tensors, "surface/normals", vertices);
   mesh.triangles = triangles_from(tensors, "surface/triangles", faces);
   check_triangles(mesh);
   std::vector<uint8_t> visibility =
@@ -58,13 +60,14 @@ void save_handlers(const HandlerPoints& points, Tensors& tensors, Json& head) {
   tensors["handlers/footprints"] = {{int64_t(points.footprints.size()), 1}, points.footprints, {}};
 }
 
-std::shared_ptr<const HandlerPoints> load_handlers(const Tensors& tensors, const Json& j) {
-  const int64_t n = rows_from(j.at("points"));
+std::shared_ptr<const HandlerPoints> load_handlers(const Tensors& tensors, JsonReader head) {
+  const int64_t n = rows_from(head.member("points"));
   auto points = std::make_shared<HandlerPoints>();
   points->positions = vectors_from(tensors, "handlers/positions", n);
   points->normals = vectors_from(tensors, "handlers/normals", n);
   points->footprints = floats_from(tensors, "handlers/footprints", n, 1).f32;
-  points->spacing = j.at("spacing").get<float>();
+  points->spacing = head.require<float>("spacing");
+  head.finish();
   return points;
 }
 
@@ -75,12 +78,18 @@ void save_residual(const Residual& residual, const std::shared_ptr<const Field>&
   if (residual.features != sdf) save_field(residual.features, "residual_features", tensors, head);
 }
 
+int layers_from(JsonReader head) {
+  const int layers = head.require<int>("layers");
+  head.finish();
+  return layers;
+}
+
 std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const std::shared_ptr<const Field>& sdf,
-                                              const Json& head) {
+                                              JsonReader& reader) {
   // Objects of project version 2 have two layers over the SDF's own features.
-  const int layers = head.at("residual").is_object() ? head.at("residual").at("layers").get<int>() : 2;
+  const int layers = reader.member("residual").is_object() ? layers_from(reader.object("residual")) : 2;
   if (layers < 1 || layers > kMaxResidualLayers) fail("the correction network has {} layers", layers);
-  const std::shared_ptr<const Field> own = load_field("residual_features", tensors, head);
+  const std::shared_ptr<const Field> own = load_field("residual_features", tensors, reader);
   auto residual = std::make_shared<Residual>(make_residual(own ? own : sdf, 0, layers));
   residual->params.load(tensors, "residual");
   return residual;
@@ -107,7 +116,7 @@ LightFrame load_light_frame(JsonReader& head) {
 }
 
 // Objects of project version 3 and below have one material.
-std::shared_ptr<const Field> load_materials(const Tensors& tensors, const Json& head) {
+std::shared_ptr<const Field> load_materials(const Tensors& tensors, JsonReader& head) {
   std::shared_ptr<const Field> field = load_field("materials", tensors, head);
   if (field && field->config().outputs < MaterialField::kOutputs)
     fail("the network of the materials has {} outputs, {} are needed", field->config().outputs,
@@ -181,9 +190,9 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
                          {"with_residual", scene.explained->with_residual}};
 }
 
-Scene load_scene(const Tensors& tensors, const Json& head) {
+Scene load_scene(const Tensors& tensors, const Json& head, const std::string& what) {
   return checked_load("object", [&] {
-    JsonReader reader(head, "The description of the object");
+    JsonReader reader(head, what);
     Scene scene;
     scene.normalization.center = vector_from(reader, "center");
     scene.normalization.scale = reader.require<double>("scale");
@@ -192,16 +201,15 @@ Scene load_scene(const Tensors& tensors, const Json& head) {
     const Material mean{material.require<float>("roughness"), material.require<float>("specular"),
                         material.require<float>("metalness")};
     material.finish();
-    for (const char* field : {"sdf", "albedo", "materials", "residual_features"}) reader.has(field);
-    scene.material = {mean, load_materials(tensors, head)};
-    scene.sdf = load_field("sdf", tensors, head);
-    scene.albedo = load_field("albedo", tensors, head);
-    if (reader.has("surface")) scene.surface = load_surface(tensors, reader.member("surface"));
-    scene.light = load_light(tensors, reader.member("light"));
+    scene.material = {mean, load_materials(tensors, reader)};
+    scene.sdf = load_field("sdf", tensors, reader);
+    scene.albedo = load_field("albedo", tensors, reader);
+    if (reader.has("surface")) scene.surface = load_surface(tensors, reader.object("surface"));
+    scene.light = load_light(tensors, reader.object("light"));
     if (reader.has("light_error")) scene.light_error = to_float(vector_from(reader, "light_error"));
     if (reader.has("light_frame")) scene.light_frame = load_light_frame(reader);
-    if (reader.has("residual")) scene.residual = load_residual(tensors, scene.sdf, head);
-    if (reader.has("handlers")) scene.handlers = load_handlers(tensors, reader.member("handlers"));
+    if (reader.has("residual")) scene.residual = load_residual(tensors, scene.sdf, reader);
+    if (reader.has("handlers")) scene.handlers = load_handlers(tensors, reader.object("handlers"));
     if (reader.has("explained")) {
       JsonReader explained = reader.object("explained");
       scene.explained = {explained.require<double>("physical"), explained.require<double>("with_residual")};

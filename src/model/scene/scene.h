@@ -59,8 +59,10 @@ SgMixture light_in_view(const Scene&, const Camera&);
 Scene in_view(Scene, const Camera&);  // the scene under light_in_view()
 
 // Writes a scene as named tensors and a small JSON head (sizes, material, transform). Layers are not
-// included; the project stores them. Errors of loading: missing tensor, wrong shape.
+// included; the project stores them. what: the head in errors. Errors of loading: missing tensor, wrong
+// shape, unknown key.
 void save_scene(const Scene&, Tensors& tensors, Json& head);
-Scene load_scene(const Tensors& tensors, const Json& head);
+Scene load_scene(const Tensors& tensors, const Json& head,
+                 const std::string& what = "The description of the object");
 
 }  // namespace cei3d

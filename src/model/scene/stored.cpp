@@ -17,9 +17,10 @@ void save_field(const std::shared_ptr<const Field>& field, const std::string& na
   field->params().save(tensors, name);
 }
 
-std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& tensors, const Json& head) {
-  if (!head.contains(name)) return nullptr;
-  auto field = std::make_shared<Field>(field_config_from_json(head.at(name)), 0);
+std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& tensors, JsonReader& head) {
+  if (!head.has(name.c_str())) return nullptr;
+  const std::string what = fmt::format("'{}' of {}", name, head.what());
+  auto field = std::make_shared<Field>(field_config_from_json(head.member(name.c_str()), what), 0);
   field->params().load(tensors, name);
   return field;
 }
@@ -31,9 +32,10 @@ void save_light(const SgMixture& light, Tensors& tensors, Json& head) {
   tensors["light"] = std::move(t);
 }
 
-SgMixture load_light(const Tensors& tensors, const Json& j) {
+SgMixture load_light(const Tensors& tensors, JsonReader head) {
   SgMixture light;
-  light.lobes.resize(size_t(rows_from(j.at("lobes"))));
+  light.lobes.resize(size_t(rows_from(head.member("lobes"))));
+  head.finish();
   const Tensor& t = floats_from(tensors, "light", int64_t(light.lobes.size()), 7);
   if (!light.lobes.empty()) std::memcpy(light.lobes.data(), t.f32.data(), t.f32.size() * sizeof(float));
   return light;

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/base/error.h"
-#include "core/base/json.h"
+#include "core/base/json_reader.h"
 #include "core/base/tensors.h"
 #include "model/field/field.h"
 #include "model/light/sg_mixture.h"
@@ -16,11 +16,11 @@ namespace cei3d {
 // Writes head[name] and tensors "name/..."; nothing for a null field. load_field() returns null when there is
 // nothing.
 void save_field(const std::shared_ptr<const Field>&, const std::string& name, Tensors& tensors, Json& head);
-std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& tensors, const Json& head);
+std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& tensors, JsonReader& head);
 
 // head["light"] and tensor "light".
 void save_light(const SgMixture&, Tensors& tensors, Json& head);
-SgMixture load_light(const Tensors& tensors, const Json& light_head);
+SgMixture load_light(const Tensors& tensors, JsonReader light_head);
 
 // Runs load(); a missing or wrong JSON key becomes an error that says the description is damaged.
 template <class F>

@@ -234,7 +234,7 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
   const double start = steady_seconds();
   AppearanceResult result;
   progress.report({"light", 0, -1, ""});
-  const auto transport = std::make_shared<const Transport>(input.surface);
+  const auto transport = std::make_shared<const Transport>(input.surface, std::vector<uint8_t>(), progress);
   result.split = linear_split(*transport, input.samples,
                               split_options(options, input.samples.turned.turns != nullptr), progress);
   const Material& mean = result.split.material;
@@ -266,7 +266,8 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
 
 void refine_albedo(const Device& device, const AppearanceInput& input, const AppearanceOptions& options,
                    AppearanceResult& result, Progress& progress, int steps) {
-  Descent descent(device, input, std::make_shared<const Transport>(input.surface), options, *result.albedo,
+  const auto transport = std::make_shared<const Transport>(input.surface, std::vector<uint8_t>(), progress);
+  Descent descent(device, input, transport, options, *result.albedo,
                   result.albedo->eval3(device, input.surface->mesh().positions), result, progress);
   descent.fit_albedo(steps, 0.2f);
   result.albedo = std::make_shared<const Field>(descent.take_albedo());

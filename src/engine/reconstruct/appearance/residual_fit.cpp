@@ -23,7 +23,8 @@ namespace {
 constexpr int kChunks = 16, kBatch = kChunks * ResidualPass::kMaxHits;  // pixels per step
 constexpr int kValidationStride = 8;  // one in so many views is held back for validation
 constexpr size_t kMaxValidationPixels = 100000;
-constexpr double kMinGain = 0.03;            // relative decrease of the squared error on the views held back
+constexpr size_t kSlab = 1 << 15;  // hits between two checks for interruption: 5 s with the largest networks
+constexpr double kMinGain = 0.03;  // relative decrease of the squared error on the views held back
 constexpr double kValidationFraction = 0.2;  // share of the steps before the validation
 constexpr double kWarmUp = 0.05;  // share of the steps at rising rates: large first steps kill units
 
@@ -42,11 +43,10 @@ std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::
 // Radiance by light and material.
 std::vector<Vec3f> physical(const Device& device, const Scene& scene, const SurfaceSamples& samples,
                             const Progress& progress) {
-  constexpr size_t kSlab = 1 << 17;  // hits at a time: shading takes more memory than they do
   const std::vector<Vec3f>& vertices = scene.surface->mesh().positions;
   const Lighting light(
       device, scene.surface, scene.light,
-      turned_vertex_lights(Transport(scene.surface), scene.light,
+      turned_vertex_lights(Transport(scene.surface, {}, progress), scene.light,
                            {scene.albedo->eval3(device, vertices), scene.material.at(device, vertices)},
                            samples.turned.turns));
   std::vector<Vec3f> out;
@@ -92,18 +92,21 @@ class Trainer {
   void teach_all() { training_.insert(training_.end(), validation_.begin(), validation_.end()); }
 
   // PSNR of the views held back.
-  Explained explained() const {
+  Explained explained(const Progress& progress) const {
     std::vector<uint32_t> judged;
-    std::vector<Hit> hits;
-    for (size_t i = 0; i < validation_.size(); i += 1 + validation_.size() / kMaxValidationPixels) {
+    for (size_t i = 0; i < validation_.size(); i += 1 + validation_.size() / kMaxValidationPixels)
       judged.push_back(validation_[i]);
-      hits.push_back(hit(validation_[i]));
-    }
-    const std::vector<Vec3f> values = residual_at(device_, residual_, hits);
     double with = 0, without = 1e-12;
-    for (size_t i = 0; i < judged.size(); ++i) {
-      with += squared_error(judged[i], sent_[judged[i]] + values[i]);
-      without += squared_error(judged[i], sent_[judged[i]]);
+    for (size_t begin = 0; begin < judged.size(); begin += kSlab) {
+      check_cancelled(progress);
+      std::vector<Hit> hits;
+      const std::span some = std::span(judged).subspan(begin, std::min(kSlab, judged.size() - begin));
+      for (const uint32_t s : some) hits.push_back(hit(s));
+      const std::vector<Vec3f> values = residual_at(device_, residual_, hits);
+      for (size_t i = 0; i < some.size(); ++i) {
+        with += squared_error(some[i], sent_[some[i]] + values[i]);
+        without += squared_error(some[i], sent_[some[i]]);
+      }
     }
     const auto psnr = [&](double sum) { return -10 * std::log10(sum / (3 * double(judged.size()))); };
     return {psnr(without), psnr(with)};
@@ -220,7 +223,7 @@ ResidualFit fit_residual(const Device& device, const Scene& scene, const Surface
   const double seconds = options.seconds > 0 ? std::max(options.seconds - shading, 0.5 * options.seconds) : 0;
   const int judging = std::max(1, int(kValidationFraction * options.steps));
   train(trainer, judging, kValidationFraction * seconds, options.clock, progress);
-  const Explained explained = trainer.explained();
+  const Explained explained = trainer.explained(progress);
   const double gain = 1 - std::pow(10, 0.1 * (explained.physical - explained.with_residual));
   progress.log(Json{
       {"stage", "residual"},

@@ -16,16 +16,17 @@ namespace {
 class Polish {
  public:
   Polish(const Device& device, GeometryStage& stage, const AppearanceInput& input,
-         const AppearanceResult& appearance, const PolishOptions& options)
+         const AppearanceResult& appearance, const PolishOptions& options, const Progress& progress)
       : device_(device),
         stage_(stage),
         samples_(input.samples),
         appearance_(appearance),
         options_(options),
+        progress_(progress),
         albedo_(*appearance.albedo),
         trainer_(albedo_, {}),
         lighting_(device, input.surface, appearance.light,
-                  turned_vertex_lights(Transport(input.surface), appearance.light,
+                  turned_vertex_lights(Transport(input.surface, {}, progress), appearance.light,
                                        {albedo_.eval3(device, input.surface->mesh().positions),
                                         appearance.material.at(device, input.surface->mesh().positions)},
                                        input.samples.turned.turns)) {}
@@ -46,7 +47,7 @@ class Polish {
     for (Vec3f& d : d_normals) d = d * options_.weight;
     add_value_slopes(stage_.sdf().config(), positions, d_normals, edges_, points, d_values);
     return stage_.step(options_.first_step + step, options_.from + (1 - options_.from) * share,
-                       {points, d_values});
+                       {points, d_values}, progress_);
   }
 
  private:
@@ -87,6 +88,7 @@ class Polish {
   SurfaceSamples samples_;
   const AppearanceResult& appearance_;
   PolishOptions options_;
+  const Progress& progress_;
   Field albedo_;
   FieldTrainer trainer_;
   Lighting lighting_;
@@ -103,7 +105,7 @@ class Polish {
 void polish_surface(const Device& device, GeometryStage& stage, const AppearanceInput& input,
                     const AppearanceResult& appearance, const PolishOptions& options, Progress& progress) {
   const double start = options.clock();
-  Polish polish(device, stage, input, appearance, options);
+  Polish polish(device, stage, input, appearance, options, progress);
   for (int step = 0; step < options.steps; ++step) {
     check_cancelled(progress);
     const double time = options.seconds > 0 ? (options.clock() - start) / options.seconds : 0;

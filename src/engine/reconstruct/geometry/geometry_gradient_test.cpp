@@ -25,7 +25,7 @@ struct GeometryStageProbe {
   };
   // What the next step renders. Its rays depend on the errors recorded so far: call this before step().
   static std::vector<Chunk> chunks(GeometryStage& stage, double u) {
-    stage.refresh_grid(0, u);
+    stage.refresh_grid(0, u, Progress());
     const GeometryStage::Step step = stage.step_at(0, u);
     std::vector<Chunk> out;
     for (int c = 0; c < stage.options_.rays / kChunkRays; ++c) {

@@ -52,7 +52,7 @@ GeometryStage::Step GeometryStage::step_at(int64_t index, double u) const {
 
 // Cells near the surface decide where rays are sampled, the others only how far rays leap: those are updated
 // less often.
-void GeometryStage::refresh_grid(int64_t step, double u) {
+void GeometryStage::refresh_grid(int64_t step, double u, const Progress& progress) {
   constexpr int kUpdatesPerFull = 40;
   if (step % options_.refresh_every != 0) return;
   const int updates_per_wide = u >= options_.tight_grid_from ? 10 : 3;
@@ -60,7 +60,8 @@ void GeometryStage::refresh_grid(int64_t step, double u) {
   grid_.refresh(device_, sdf_,
                 update % kUpdatesPerFull == 0    ? 1e9f
                 : update % updates_per_wide == 0 ? 0.15f
-                                                 : schedule_at(options_, u).band + grid_.half_diagonal());
+                                                 : schedule_at(options_, u).band + grid_.half_diagonal(),
+                progress);
 }
 
 void GeometryStage::sample_training_rays(const Step& step, int chunk, Work& w) const {
@@ -144,8 +145,9 @@ GeometryStats GeometryStage::accumulate(const Step& step, const ValueSlopes& mor
   return total;
 }
 
-GeometryStats GeometryStage::step(int64_t index, double u, const ValueSlopes& more) {
-  StepTimes::process(times_, StepPart::occupancy, [&] { refresh_grid(index, u); });
+GeometryStats GeometryStage::step(int64_t index, double u, const ValueSlopes& more,
+                                  const Progress& progress) {
+  StepTimes::process(times_, StepPart::occupancy, [&] { refresh_grid(index, u, progress); });
   const GeometryStats stats = accumulate(step_at(index, u), more);
   StepTimes::process(times_, StepPart::adam, [&] { optimizer_.step(device_, rate_at(options_, u)); });
   return stats;

@@ -48,8 +48,9 @@ class GeometryStage {
   void set_light(const LightFrame& frame) { light_ = frame; }
   // Fits the field to a shape: descent then starts from the right object. Error: it is empty.
   void prefit(const StartShape&, const Progress& progress = Progress());
-  // One training step at schedule position u in [0, 1).
-  GeometryStats step(int64_t step, double u, const ValueSlopes& more = {});
+  // One training step at schedule position u in [0, 1). Error: interrupted, before anything has changed.
+  GeometryStats step(int64_t step, double u, const ValueSlopes& more = {},
+                     const Progress& progress = Progress());
   // Loss statistics of random pixels of another store (held-out views), no training.
   GeometryStats evaluate(const PixelStore& held_out, int rays, double u);
   // The whole view by the radiance field, over white, display-encoded RGB. samples: per pixel and axis.
@@ -78,7 +79,7 @@ class GeometryStage {
     GeometryObjective objective;
   };
   Step step_at(int64_t index, double u) const;
-  void refresh_grid(int64_t step, double u);
+  void refresh_grid(int64_t step, double u, const Progress&);
   // Adds the gradients of the loss to the optimizer's and records the errors of pixels.
   GeometryStats accumulate(const Step&, const ValueSlopes& more);
   void sample_training_rays(const Step&, int chunk, Work&) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/trilinear.h"
@@ -52,8 +53,28 @@ Vec3f OccupancyGrid::center_of(size_t place) const {
           at(brick / bricks / bricks, place / 16)};
 }
 
-void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin) {
-  constexpr int kChunk = 1 << 14;
+namespace {
+
+constexpr int kChunk = 1 << 14;
+constexpr size_t kSlab =
+    1 << 15;  // points between two checks: with the largest networks 2 to 4 s of one core
+
+std::vector<float> distances_at(const Device& device, const Field& sdf, std::span<const Vec3f> points,
+                                const Progress& progress) {
+  std::vector<float> out;
+  out.reserve(points.size());
+  for (size_t begin = 0; begin < points.size(); begin += kSlab) {
+    check_cancelled(progress);
+    const std::vector<float> some =
+        first_output(device, sdf, points.subspan(begin, std::min(kSlab, points.size() - begin)));
+    out.insert(out.end(), some.begin(), some.end());
+  }
+  return out;
+}
+
+}  // namespace
+
+void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin, const Progress& progress) {
   const int all = int(value_.size()), chunks = (all + kChunk - 1) / kChunk;
   std::vector<std::vector<uint32_t>> near(chunks);
   parallel_for(chunks, [&](int c) {
@@ -69,7 +90,7 @@ void OccupancyGrid::refresh(const Device& device, const Field& sdf, float margin
   parallel_ranges(int(places.size()), kChunk, [&](int begin, int end) {
     for (int k = begin; k < end; ++k) points[k] = center_of(places[k]);
   });
-  const std::vector<float> out = first_output(device, sdf, points);
+  const std::vector<float> out = distances_at(device, sdf, points, progress);
   parallel_ranges(int(places.size()), kChunk, [&](int begin, int end) {
     for (int k = begin; k < end; ++k) set_distance(places[k], out[k]);
   });

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "core/compute/device.h"
 #include "core/math/camera.h"
 #include "model/field/field.h"
@@ -19,8 +20,9 @@ class OccupancyGrid {
   // resolution: cells per axis, a multiple of 4. All cells begin far from the surface.
   explicit OccupancyGrid(int resolution = 128);
 
-  // Updates the distances at the centers of the cells that were within `margin` of the surface so far.
-  void refresh(const Device&, const Field& sdf, float margin);
+  // Updates the distances at the centers of the cells that were within `margin` of the surface so far. Error:
+  // interrupted, before any cell has changed.
+  void refresh(const Device&, const Field& sdf, float margin, const Progress& progress = Progress());
   void set(std::span<const float> values);  // [z][y][x]; clamped to +-3.9 and rounded to multiples of 1/8192
   std::vector<float> values() const;        // [z][y][x]
 

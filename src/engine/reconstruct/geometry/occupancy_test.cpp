@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/error.h"
 #include "core/math/rng.h"
 
 namespace cei3d {
@@ -97,6 +98,34 @@ TEST(OccupancyGrid, ARefreshPutsTheFieldsDistanceIntoEveryCellWithinTheMargin) {
     if (dot(centers[i], centers[i]) > 1.1f) continue;  // beyond the unit sphere nothing is asked
     ASSERT_NEAR(values[i], truth[i], 1e-4f) << "cell " << i;
   }
+}
+
+class StopsAt : public Progress {
+ public:
+  explicit StopsAt(int check) : check_(check) {}
+  int checks() const { return checks_; }
+
+ private:
+  bool is_cancelled() const override { return ++checks_ >= check_; }
+  int check_;
+  mutable int checks_ = 0;
+};
+
+TEST(OccupancyGrid, AnInterruptedRefreshChangesNothing) {
+  FieldConfig config;
+  config.outputs = 1;
+  config.sphere_radius = 0.5f;
+  const Field sdf(config, 3);
+  const Device device = make_device("cpu");
+  OccupancyGrid grid(64);
+  const std::vector<float> before = grid.values();
+  const StopsAt third(3), never(1000);
+  EXPECT_THROW(grid.refresh(device, sdf, 1e9f, third), Error);
+  EXPECT_EQ(grid.values(), before);
+  grid.refresh(device, sdf, 1e9f, never);
+  EXPECT_NE(grid.values(), before);
+  // The cells of the unit sphere are more than half of all; 40000 take the largest networks 5 s of one core.
+  EXPECT_GE(never.checks(), 64 * 64 * 64 / 2 / 40000 + 1);
 }
 
 TEST(OccupancyGrid, ValuesComeBackInTheirOrder) {

@@ -58,7 +58,7 @@ double trial_psnr(const Device& device, const PixelStore& pixels, const TrialOpt
   for (int step = 0; step < options.steps; ++step) {
     check_cancelled(progress);
     const double u = double(step) / options.steps;
-    stage.step(step, u);
+    stage.step(step, u, {}, progress);
     if (step % 20 == 0) progress.report({"choosing a start", done + u / kStarts.size(), -1, ""});
   }
   return stage.evaluate(pixels, options.rays, 1).psnr();

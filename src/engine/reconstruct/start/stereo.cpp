@@ -152,7 +152,7 @@ struct Estimate {
 // Every plane's score is the mean of the two images that agree best with it: the point may be hidden in the
 // others.
 Estimate sweep(int view, const std::vector<Gray>& pictures, const std::vector<Vec3d>& corners,
-               const StereoOptions& options) {
+               const StereoOptions& options, const Progress& progress) {
   const Gray& a = pictures[view];
   const size_t n = a.value.size();
   Estimate out{std::vector<float>(n, 0.0f), {}};
@@ -168,7 +168,7 @@ Estimate sweep(int view, const std::vector<Gray>& pictures, const std::vector<Ve
   WindowMatcher matcher(a, options.window);
   Peaks peaks(n);
   std::vector<float> score(n), first(n), second(n);
-  for (int k = 0; k < out.planes.count; ++k) {
+  for (int k = 0; k < out.planes.count && !progress.cancelled(); ++k) {
     std::fill(first.begin(), first.end(), -1.0f);
     std::fill(second.begin(), second.end(), -1.0f);
     for (size_t o = 0; o < others.size(); ++o) {
@@ -225,7 +225,7 @@ std::vector<DepthMap> stereo_depths(const PixelStore& pixels, const VisualHull& 
   const std::vector<Vec3d> corners = corners_of(hull);
   std::vector<Estimate> estimates(pictures.size());
   parallel_for(int(pictures.size()), [&](int v) {
-    if (!progress.cancelled()) estimates[v] = sweep(v, pictures, corners, options);
+    if (!progress.cancelled()) estimates[v] = sweep(v, pictures, corners, options, progress);
   });
   check_cancelled(progress);
   std::vector<DepthMap> out(pictures.size());

@@ -57,17 +57,18 @@ Vec3d vector_from(const Json& j) {
   return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
 }
 
-Camera camera_from(const Json& j) {
+Camera camera_from(JsonReader reader) {
   Camera c;
-  c.width = j.at("width");
-  c.height = j.at("height");
-  c.fx = j.at("fx");
-  c.fy = j.at("fy");
-  c.cx = j.at("cx");
-  c.cy = j.at("cy");
-  c.skew = j.at("skew");
-  c.center = vector_from(j.at("center"));
-  for (int i = 0; i < 3; ++i) c.world_from_cam.row[i] = vector_from(j.at("world_from_cam").at(i));
+  c.width = reader.require<int>("width");
+  c.height = reader.require<int>("height");
+  c.fx = reader.require<double>("fx");
+  c.fy = reader.require<double>("fy");
+  c.cx = reader.require<double>("cx");
+  c.cy = reader.require<double>("cy");
+  c.skew = reader.require<double>("skew");
+  c.center = vector_from(reader.member("center"));
+  for (size_t i = 0; i < 3; ++i) c.world_from_cam.row[i] = vector_from(reader.array("world_from_cam").at(i));
+  reader.finish();
   if (c.width < 1 || c.height < 1)
     fail("the edit's camera has no pixels; the project is damaged, undo or repeat the edit");
   return c;
@@ -108,12 +109,13 @@ void save_projector(const Projector& p, Tensors& tensors, Json& head, const std:
   tensors[prefix + "depth"] = {{p.depth.height, p.depth.width}, p.depth.data, {}};
 }
 
-Projector load_projector(const Tensors& tensors, const Json& head, const std::string& prefix) {
+Projector load_projector(const Tensors& tensors, JsonReader head, const std::string& prefix) {
   Projector p;
-  p.camera = camera_from(head.at("camera"));
-  p.tolerance = head.at("tolerance");
-  p.min_facing = head.at("min_facing");
-  p.min_alpha = head.value("least_alpha", 0.5f);
+  p.camera = camera_from(head.object("camera"));
+  p.tolerance = head.require<float>("tolerance");
+  p.min_facing = head.require<float>("min_facing");
+  p.min_alpha = head.optional("least_alpha", 0.5f);
+  head.finish();
   p.alpha = image_of(tensors, prefix + "alpha");
   p.depth = image_of(tensors, prefix + "depth");
   return p;

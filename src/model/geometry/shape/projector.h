@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "core/base/json.h"
+#include "core/base/json_reader.h"
 #include "core/base/tensors.h"
 #include "core/image/image.h"
 #include "core/math/camera.h"
@@ -35,6 +35,6 @@ struct Projector {
 // Writes tensors under `prefix`, sizes and camera to the head. Errors of loading: missing tensors or keys,
 // sizes that disagree.
 void save_projector(const Projector&, Tensors& tensors, Json& head, const std::string& prefix);
-Projector load_projector(const Tensors& tensors, const Json& head, const std::string& prefix);
+Projector load_projector(const Tensors& tensors, JsonReader head, const std::string& prefix);
 
 }  // namespace cei3d

@@ -79,15 +79,22 @@ void Region::save(Tensors& tensors, Json& head) const {
   if (!projector.empty()) save_projector(projector, tensors, head["projector"], "region/projector/");
 }
 
-Region Region::load(const Tensors& tensors, const Json& head) {
-  if (head.contains("scored")) return Region(ScoredPoints::load(tensors, head.at("scored")));
-  const size_t n = head.at("points").get<size_t>();
+Region Region::load(const Tensors& tensors, const Json& head, const std::string& what) {
+  JsonReader reader(head, what);
+  if (reader.has("scored")) {
+    Region scored(ScoredPoints::load(tensors, reader.object("scored")));
+    reader.finish();
+    return scored;
+  }
+  const auto n = reader.require<size_t>("points");
   Points points;
   points.positions = vectors_of(find(tensors, "region/positions", 3 * n));
   points.normals = vectors_of(find(tensors, "region/normals", 3 * n));
   points.reach = find(tensors, "region/reach", n).f32;
-  if (!head.contains("projector")) return Region(std::move(points));
-  return Region(std::move(points), load_projector(tensors, head["projector"], "region/projector/"));
+  const bool has_projector = reader.has("projector");
+  reader.finish();
+  if (!has_projector) return Region(std::move(points));
+  return Region(std::move(points), load_projector(tensors, reader.object("projector"), "region/projector/"));
 }
 
 }  // namespace cei3d

@@ -11,6 +11,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/math/vec.h"
@@ -43,7 +44,7 @@ class Region {
   // Writes tensors "region/..." and the rest to the head. Errors of load(): missing tensors or keys, sizes
   // that disagree.
   void save(Tensors& tensors, Json& head) const;
-  static Region load(const Tensors& tensors, const Json& head);
+  static Region load(const Tensors& tensors, const Json& head, const std::string& what = "A region");
 
  private:
   struct Data {

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "core/base/error.h"
+#include "core/base/json_reader.h"
 #include "model/geometry/shape/vec_tensors.h"
 
 namespace cei3d {
@@ -93,20 +94,23 @@ void save_reshape(const Reshape& r, Tensors& tensors, Json& head) {
   tensors["reshape/rim_colors"] = tensor_of(std::span(r.rim_colors));
 }
 
-Reshape load_reshape(const Tensors& tensors, const Json& head) {
-  const int64_t moved = rows_from(head.at("moved")), added = rows_from(head.at("added_vertices"));
+Reshape load_reshape(const Tensors& tensors, const Json& head, const std::string& what) {
+  JsonReader reader(head, what);
+  const int64_t moved = rows_from(reader.member("moved")), added = rows_from(reader.member("added_vertices")),
+                removed = rows_from(reader.member("removed")),
+                added_triangles = rows_from(reader.member("added_triangles")),
+                rim = rows_from(reader.member("rim"));
+  reader.finish();
   Reshape r;
   r.moved = numbers_from(tensors, "reshape/moved", moved);
   r.positions = vectors_from(tensors, "reshape/positions", moved);
   r.normals = vectors_from(tensors, "reshape/normals", moved);
   r.gradients = gradients_from(tensors, moved);
-  r.removed = numbers_from(tensors, "reshape/removed", rows_from(head.at("removed")));
+  r.removed = numbers_from(tensors, "reshape/removed", removed);
   r.added_positions = vectors_from(tensors, "reshape/added_positions", added);
   r.added_normals = vectors_from(tensors, "reshape/added_normals", added);
   r.added_colors = vectors_from(tensors, "reshape/added_colors", added);
-  r.added_triangles =
-      triangles_from(tensors, "reshape/added_triangles", rows_from(head.at("added_triangles")));
-  const int64_t rim = rows_from(head.at("rim"));
+  r.added_triangles = triangles_from(tensors, "reshape/added_triangles", added_triangles);
   r.rim = numbers_from(tensors, "reshape/rim", rim);
   r.rim_colors = vectors_from(tensors, "reshape/rim_colors", rim);
   return r;

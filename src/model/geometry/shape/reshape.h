@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "core/base/json.h"
@@ -48,6 +49,6 @@ std::vector<uint32_t> kept_triangles(const Mesh& before, const Reshape&);
 // Writes tensors "reshape/...", sizes to the head. Errors of loading: missing tensors or keys, sizes that
 // disagree.
 void save_reshape(const Reshape&, Tensors& tensors, Json& head);
-Reshape load_reshape(const Tensors& tensors, const Json& head);
+Reshape load_reshape(const Tensors& tensors, const Json& head, const std::string& what = "A change of shape");
 
 }  // namespace cei3d

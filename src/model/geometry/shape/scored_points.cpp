@@ -67,10 +67,11 @@ void ScoredPoints::save(Tensors& tensors, Json& head) const {
   tensors["region/scored/scores"] = {{n, 1}, data_.scores, {}};
 }
 
-ScoredPoints ScoredPoints::load(const Tensors& tensors, const Json& head) {
-  const int64_t n = rows_from(head.at("points"));
+ScoredPoints ScoredPoints::load(const Tensors& tensors, JsonReader head) {
+  const int64_t n = rows_from(head.member("points"));
   ScoredPoints s;
-  s.data_.spacing = head.at("spacing").get<float>();
+  s.data_.spacing = head.require<float>("spacing");
+  head.finish();
   s.data_.positions = vectors_from(tensors, "region/scored/positions", n);
   s.data_.normals = vectors_from(tensors, "region/scored/normals", n);
   s.data_.scores = floats_from(tensors, "region/scored/scores", n, 1).f32;

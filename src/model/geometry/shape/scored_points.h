@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "core/base/json.h"
+#include "core/base/json_reader.h"
 #include "core/base/tensors.h"
 #include "core/math/vec.h"
 #include "model/geometry/shape/point_index.h"
@@ -37,7 +37,7 @@ class ScoredPoints {
   // Writes tensors "region/scored/...", sizes to the head. Errors of load(): missing tensors or keys, sizes
   // that disagree.
   void save(Tensors& tensors, Json& head) const;
-  static ScoredPoints load(const Tensors& tensors, const Json& head);
+  static ScoredPoints load(const Tensors& tensors, JsonReader head);
 
  private:
   float radius() const;

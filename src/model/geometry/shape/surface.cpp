@@ -14,6 +14,7 @@
 #include <memory>
 #include <type_traits>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 
@@ -135,28 +136,35 @@ struct Surface::Bvh {
     return {h.ray.tfar, h.hit.primID, h.hit.u, h.hit.v};  // p = (1 - u - v) v0 + u v1 + v v2
   }
 
-  // Writes the visibility of the vertices with recast[v] = 1; recast empty: of all.
-  void cast_visibility(const Mesh& mesh, std::span<const uint8_t> recast, std::vector<uint8_t>& bits) const {
+  // Writes the visibility of the vertices with recast[v] = 1; recast empty: of all. Error: interrupted.
+  void cast_visibility(const Mesh& mesh, std::span<const uint8_t> recast, std::vector<uint8_t>& bits,
+                       const Progress& progress) const {
+    constexpr int kSlab = 1 << 14;  // vertices between two checks: 1 to 4 s of one core
+    const int n = int(mesh.positions.size());
+    for (int first = 0; first < n; first += kSlab) {
+      check_cancelled(progress);
+      parallel_ranges(std::min(kSlab, n - first), 64, [&](int begin, int end) {
+        for (int v = first + begin; v < first + end; ++v)
+          if (recast.empty() || recast[v]) cast_row(mesh, v, &bits[size_t(v) * kRowBytes]);
+      });
+    }
+  }
+
+  void cast_row(const Mesh& mesh, int vertex, uint8_t* row) const {
     const std::vector<Vec3f>& sky = sky_directions();
-    parallel_ranges(int(mesh.positions.size()), 64, [&](int begin, int end) {
-      for (int v = begin; v < end; ++v) {
-        if (!recast.empty() && !recast[v]) continue;
-        const Vec3f n = mesh.normals[v], o = mesh.positions[v] + n * kRayLift;
-        uint8_t* row = &bits[size_t(v) * kRowBytes];
-        std::fill(row, row + kRowBytes, uint8_t(0));
-        for (int k = 0; k < kSkyDirections; ++k)
-          if (dot(sky[k], n) > 0 && !blocked(o, sky[k])) row[k / 8] |= uint8_t(1 << k % 8);
-      }
-    });
+    const Vec3f n = mesh.normals[vertex], o = mesh.positions[vertex] + n * kRayLift;
+    std::fill(row, row + kRowBytes, uint8_t(0));
+    for (int k = 0; k < kSkyDirections; ++k)
+      if (dot(sky[k], n) > 0 && !blocked(o, sky[k])) row[k / 8] |= uint8_t(1 << k % 8);
   }
 };
 
-Surface::Surface(Mesh mesh) : mesh_(std::move(mesh)) {
+Surface::Surface(Mesh mesh, const Progress& progress) : mesh_(std::move(mesh)) {
   check_mesh(mesh_);
   if (mesh_.normals.empty()) mesh_.normals = angle_weighted_normals(mesh_);
   bvh_ = std::make_unique<Bvh>(mesh_, nullptr);
   visibility_.resize(mesh_.positions.size() * kRowBytes);
-  bvh_->cast_visibility(mesh_, {}, visibility_);
+  bvh_->cast_visibility(mesh_, {}, visibility_, progress);
 }
 
 Surface::Surface(Mesh mesh, std::vector<uint8_t> visibility)
@@ -176,7 +184,7 @@ Surface::Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> reca
     fail("surface: a change needs normals and {} marks, not {}", mesh_.positions.size(), recast.size());
   bvh_ = std::make_unique<Bvh>(mesh_, before.bvh_.get());
   visibility_.resize(mesh_.positions.size() * kRowBytes);
-  bvh_->cast_visibility(mesh_, recast, visibility_);
+  bvh_->cast_visibility(mesh_, recast, visibility_, Progress());
 }
 
 Surface::~Surface() = default;

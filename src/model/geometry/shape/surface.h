@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "core/base/progress.h"
 #include "model/geometry/mesh/mesh.h"
 #include "model/geometry/shape/hit.h"
 #include "model/geometry/shape/sky.h"
@@ -15,7 +16,8 @@ namespace cei3d {
 
 class Surface {
  public:
-  explicit Surface(Mesh mesh);                          // casts the visibility rays (seconds)
+  // Casts the visibility rays: seconds, minutes on one core. Error: interrupted.
+  explicit Surface(Mesh mesh, const Progress& progress = Progress());
   Surface(Mesh mesh, std::vector<uint8_t> visibility);  // from a stored table
   // A surface after an edit. recast: #V, 1: recompute the visibility of the vertex; 0: take it from `before`.
   Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> recast);
