@@ -160,7 +160,9 @@ class Job {
     return row("object", "all views, full size", eval_settings(whole()),
                [&](EvaluationRow& row, Progress& p) {
                  row.seconds = objects_.open(whole(), p);
-                 row.details = session_.info().json();
+                 const ProjectInfo info = session_.info();
+                 row.details = info.json();
+                 row.details["found"] = info.object.text();
                  row.scores = session_.evaluate(eval_request(row.name), p);
                });
   }

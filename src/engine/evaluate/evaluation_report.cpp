@@ -186,6 +186,7 @@ std::string EvaluationReport::markdown() const {
                   "Held-out views, rendered and compared with their photographs; the worst one is shown.",
                   {object}, columns({{kMadeIn}, kNovelViews}));
   text += worst_picture(object);
+  text += fmt::format("\nMaterial and light found: {}.\n", object.details.value("found", ""));
   text += section(
       "A painted edit, and the method without its parts",
       "The same scribble on one view, scored in all held-out views. Images: photograph, before, after.",

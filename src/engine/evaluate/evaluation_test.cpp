@@ -111,6 +111,7 @@ TEST_F(EvaluationTest, RowsAreWhatTheSameCallsGive) {
   EXPECT_EQ(read_image(folder("out/pictures/paint/r_004.png")).width, 3 * kSize);
   session.open(folder("object"), Session::Access::read);
   EXPECT_TRUE(session.log().empty());  // the object that was given is left alone
+  EXPECT_THAT(text, HasSubstr(session.info().object.text()));
 }
 
 TEST_F(EvaluationTest, WhatIsFinishedIsKeptAndWhatChangedIsNot) {
