@@ -51,7 +51,9 @@ void add_small_paint(const fs::path& folder) {
 
 void add_edits(Session& session) {
   Progress quiet;
-  session.change_material({"", {.roughness = 0.4}}, quiet);
+  MaterialCommand rough;
+  rough.effects.roughness = 0.4;
+  session.change_material(rough, quiet);
   PartCommand part;
   part.view = "0";
   part.positive = {{20.5, 20.5}};
