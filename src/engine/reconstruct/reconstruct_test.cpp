@@ -53,10 +53,11 @@ class SmallRun : Owner<BoxCapture>, public AnyRun {
   SmallRun() : AnyRun(own.capture(), own) {}
 };
 
-// Of one of several materials under a light that turns, which has to be found out.
+// Of one of several materials under a light that turns.
 class SmallTurningRun : Owner<TurntableCapture>, public AnyRun {
  public:
   SmallTurningRun() : AnyRun(own.capture(), own) {
+    options.light = LightMotion::turntable;
     preset.appearance.roughness = 0;
     preset.appearance.materials = preset.appearance.albedo;
     preset.appearance.materials.outputs = MaterialField::kOutputs;

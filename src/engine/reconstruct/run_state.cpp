@@ -57,6 +57,7 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
           {"start_seconds", state.start_seconds},
           {"polish_deadline", state.polish_deadline},
           {"look_seconds", state.look_seconds},
+          {"light_frame_known", state.light_frame_known},
           {"has_geometry", bool(state.geometry)}};
   if (state.geometry) {
     Tensors geometry;
@@ -78,6 +79,7 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   state.start_seconds = reader.require<double>("start_seconds");
   state.polish_deadline = reader.require<double>("polish_deadline");
   state.look_seconds = reader.require<double>("look_seconds");
+  state.light_frame_known = reader.optional("light_frame_known", false);
   const bool has_geometry = reader.require<bool>("has_geometry");
   const Json& scene = reader.member("scene");
   reader.finish();
@@ -85,7 +87,6 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   if (has_geometry) {
     state.geometry = make_geometry();
     state.geometry->load(without_prefix(kGeometry, tensors));
-    state.geometry->set_light(state.scene.light_frame);
   }
   return state;
 }

@@ -18,9 +18,10 @@ struct RunState {
   int64_t step = 0;                         // steps of the geometry stage that are done
   double training_seconds = 0;              // s that these steps took
   double start_seconds = 0;                 // s that the comparison of start shapes took
-  double polish_deadline = 0;  // end of all polishing rounds, s since the start of the run; 0: not begun
-  double look_seconds = 0;     // s that the last round took to estimate light and material
-  Scene scene;                 // the finished parts of the object
+  double polish_deadline = 0;      // end of all polishing rounds, s since the start of the run; 0: not begun
+  double look_seconds = 0;         // s that the last round took to estimate light and material
+  bool light_frame_known = false;  // whether scene.light_frame is final
+  Scene scene;                     // the finished parts of the object
 
   // Hits of the appearance stage on scene.surface. Not in checkpoints: they are recomputed.
   ObjectHits hits;

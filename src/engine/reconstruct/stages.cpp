@@ -24,13 +24,15 @@ constexpr double kStartSteps = 50, kTrialsSteps = 1500, kLookSteps = 350, kSurfa
                  kAppearanceSteps = 600, kFinerMeshSteps = 400, kPolishStepLength = 3,
                  kResidualStepLength = 0.4;
 
-// How the light turns in the training views, found on the visual hull if it is not said: matte surfaces of a
-// rough shape tell it well enough.
-LightFrame light_frame_of(const RunContext& run) {
+Vec3f turntable_axis(const RunContext& run) { return to_float(normalize(run.capture.up)); }
+
+// How the light turns in the training views, found on the visual hull if it is not given: the diffuse shading
+// of a rough shape mostly suffices.
+LightFrame first_light_frame(const RunContext& run) {
   constexpr int kCells = 96;
   constexpr size_t kHits = 100000;
   const std::vector<Camera>& cameras = run.views.train.cameras();
-  const Vec3f axis = to_float(normalize(run.capture.up));
+  const Vec3f axis = turntable_axis(run);
   if (run.light) return light_frame(*run.light, cameras, axis);
   run.progress.report({"light", 0, -1, ""});
   const PixelStore& pixels = run.views.train;
@@ -48,7 +50,8 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
   const PixelStore& pixels = run.views.train;
   const double begin = run.progress.now();
   TrialOptions trial = run.preset.trial;
-  trial.light = state.scene.light_frame = light_frame_of(run);
+  trial.light = state.scene.light_frame = first_light_frame(run);
+  state.light_frame_known = run.light || trial.light.motion != LightMotion::world;
   const StartShape start = run.plan.choose_start
                                ? choose_start(run.device, pixels, trial, run.seed, run.progress)
                                : start_shape(pixels, Start::hull, run.seed, trial.shapes, run.progress);
@@ -78,9 +81,17 @@ double polish_seconds(const RunContext& run, const RunState& state, int round) {
 
 using Turns = std::shared_ptr<const LightTurns>;
 
-// Rotations of the light in the training views. Null: the light is fixed to the object.
-Turns light_turns(const RunContext& run, const RunState& state) {
-  return turns_of(state.scene.light_frame, run.views.train.cameras());
+// Rotations of the light in the training views. Null: the light is fixed to the object. A light that seemed
+// to be fixed on the visual hull is tested again on the first trained surface.
+Turns light_turns(const RunContext& run, RunState& state, const std::shared_ptr<const Surface>& surface,
+                  const ObjectHits& hits) {
+  const std::vector<Camera>& cameras = run.views.train.cameras();
+  LightFrame& frame = state.scene.light_frame;
+  if (!state.light_frame_known)
+    frame = find_light_frame({surface, hits.samples()}, hits.views, cameras, turntable_axis(run), run.seed,
+                             run.progress);
+  state.light_frame_known = true;
+  return turns_of(frame, cameras);
 }
 
 // One round of polishing: estimates light and material of the present surface, then improves the surface
@@ -104,7 +115,7 @@ void polish(const RunContext& run, RunState& state, int round) {
   brief.effort = Effort::brief;
   brief.seed = run.seed;
   brief.light_color = run.light_color;
-  const Turns turns = light_turns(run, state);
+  const Turns turns = light_turns(run, state, all.surface, fewer);
   const AppearanceResult appearance =
       fit_appearance(run.device, {all.surface, fewer.samples(turns.get())}, brief, run.progress);
   check_cancelled(run.progress);
@@ -157,7 +168,7 @@ AppearanceOptions appearance_options(const RunContext& run) {
 void estimate_appearance(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   Scene& scene = state.scene;
   if (state.hits.hits.empty()) state.hits = scene_hits(run, scene, {run.preset.max_hits});
-  const Turns turns = light_turns(run, state);
+  const Turns turns = light_turns(run, state, scene.surface, state.hits);
   AppearanceResult made = fit_appearance(run.device, {scene.surface, state.hits.samples(turns.get())},
                                          appearance_options(run), run.progress);
   check_cancelled(run.progress);
@@ -175,7 +186,7 @@ void refine(const RunContext& run, RunState& state, uint64_t subset) {
   Scene& scene = state.scene;
   const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, subset});
   AppearanceResult result{scene.light, scene.material, scene.albedo, {}};
-  const Turns turns = light_turns(run, state);
+  const Turns turns = light_turns(run, state, scene.surface, hits);
   refine_albedo(run.device, {scene.surface, hits.samples(turns.get())}, appearance_options(run), result,
                 run.progress, run.preset.refinement_steps);
   check_cancelled(run.progress);
@@ -196,7 +207,7 @@ void fit_scene_residual(const RunContext& run, RunState& state, const Stage::Che
   options.steps = plan.residual_steps;
   options.seed = run.seed;
   const ObjectHits hits = scene_hits(run, state.scene, {plan.residual_hits, kResidualSubset});
-  const Turns turns = light_turns(run, state);
+  const Turns turns = light_turns(run, state, state.scene.surface, hits);
   ResidualFit fit =
       fit_residual(run.device, state.scene, hits.samples(turns.get()), hits.views, options, run.progress);
   if (fit.residual) state.scene.residual = std::make_shared<const Residual>(std::move(*fit.residual));

@@ -209,6 +209,20 @@ Image GeometryStage::render_radiance(const Camera& camera, int samples) {
   return out;
 }
 
+namespace {
+
+std::vector<float> values_of(const LightFrame& f) {
+  std::vector<float> out{float(f.motion), f.axis.x, f.axis.y, f.axis.z};
+  for (const Vec3f& row : f.reference.row) out.insert(out.end(), {row.x, row.y, row.z});
+  return out;
+}
+LightFrame light_frame_from(const std::vector<float>& v) {
+  const auto vec = [&](size_t i) { return Vec3f{v[i], v[i + 1], v[i + 2]}; };
+  return {LightMotion(int(v[0])), vec(1), {{vec(4), vec(7), vec(10)}}};
+}
+
+}  // namespace
+
 void GeometryStage::save(Tensors& out) const {
   sdf_.params().save(out, "sdf");
   radiance_.save(out, "radiance");
@@ -216,6 +230,7 @@ void GeometryStage::save(Tensors& out) const {
   const int64_t n = grid_.resolution();
   out["pixel_errors"] = {{int64_t(errors_.block_errors().size())}, errors_.block_errors(), {}};
   out["matte_until"] = {{1}, {matte_until_}, {}};
+  out["light_frame"] = {{13}, values_of(light_), {}};
   if (anchor_.n) out["anchor"] = {{anchor_.n, anchor_.n, anchor_.n}, anchor_.values, {}};
   // With cells that are out of date, so that a resumed run equals one that never stopped.
   out["occupancy"] = {{n, n, n}, grid_.values(), {}};
@@ -229,6 +244,7 @@ void GeometryStage::load(const Tensors& in) {
   grid_.set(require_tensor(in, "occupancy", {n, n, n}).f32);
   errors_.set_block_errors(require_tensor(in, "pixel_errors", {int64_t(errors_.block_errors().size())}).f32);
   matte_until_ = require_tensor(in, "matte_until", {1}).f32[0];
+  if (in.contains("light_frame")) light_ = light_frame_from(require_tensor(in, "light_frame", {13}).f32);
   if (const auto anchor = in.find("anchor"); anchor != in.end() && !anchor->second.shape.empty()) {
     const int64_t cells = anchor->second.shape[0];
     anchor_ = {int(cells), require_tensor(in, "anchor", {cells, cells, cells}).f32};

@@ -44,7 +44,7 @@ class GeometryStage {
   GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
                 uint64_t seed);
 
-  // The radiance network gets directions in the frame of this light from now on. Not saved.
+  // The radiance network gets directions in the frame of this light from now on.
   void set_light(const LightFrame& frame) { light_ = frame; }
   // Fits the field to a shape: descent then starts from the right object. Error: it is empty.
   void prefit(const StartShape&, const Progress& progress = Progress());
