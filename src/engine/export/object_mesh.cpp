@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "core/base/error.h"
+#include "model/geometry/mesh/compact.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {
@@ -14,25 +15,6 @@ namespace {
 std::vector<Vec3f> in_capture_frame(std::vector<Vec3f> points, const Normalization& n) {
   for (Vec3f& p : points) p = to_float(n.input_from_unit(to_double(p)));
   return points;
-}
-
-// Drops vertices without triangles, left by removed parts.
-Mesh compact(const Mesh& mesh) {
-  constexpr uint32_t kUnused = ~0u;
-  std::vector<uint32_t> id(mesh.positions.size(), kUnused);
-  Mesh out;
-  out.triangles = mesh.triangles;
-  for (auto& t : out.triangles)
-    for (uint32_t& v : t) {
-      if (id[v] == kUnused) {
-        id[v] = uint32_t(out.positions.size());
-        out.positions.push_back(mesh.positions[v]);
-        out.normals.push_back(mesh.normals[v]);
-        out.colors.push_back(mesh.colors[v]);
-      }
-      v = id[v];
-    }
-  return out;
 }
 
 // A mesh has few materials: where they vary continuously they are rounded.
@@ -68,7 +50,7 @@ ColoredMesh colored_mesh(const Device& device, const Scene& scene) {
   mesh.colors = std::move(look.albedo);
   if (scene.material.varying()) look.material = rounded(std::move(look.material));
   MeshMaterials materials = mesh_materials(mesh, look.material);
-  if (!scene.poses.empty()) mesh = compact(mesh);
+  if (!scene.poses.empty()) mesh = compact(mesh, mesh.triangles);
   mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);
   return {std::move(mesh), std::move(materials)};
 }
