@@ -10,23 +10,6 @@ template <class T>
 struct Vec2 {
   T x, y;
 };
-template <class T>
-HD Vec2<T> operator+(Vec2<T> a, Vec2<T> b) {
-  return {a.x + b.x, a.y + b.y};
-}
-template <class T>
-HD Vec2<T> operator-(Vec2<T> a, Vec2<T> b) {
-  return {a.x - b.x, a.y - b.y};
-}
-template <class T>
-HD Vec2<T> operator*(Vec2<T> a, T s) {
-  return {a.x * s, a.y * s};
-}
-// Of the parallelogram that two vectors span, positive when b lies counter-clockwise of a.
-template <class T>
-HD T signed_area(Vec2<T> a, Vec2<T> b) {
-  return a.x * b.y - a.y * b.x;
-}
 
 template <class T>
 struct Vec3 {
@@ -35,7 +18,6 @@ struct Vec3 {
   HD const T& operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
 };
 using Vec2f = Vec2<float>;
-using Vec2d = Vec2<double>;
 using Vec3f = Vec3<float>;
 using Vec3d = Vec3<double>;
 

@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "model/geometry/mesh/compact.h"
+#include "model/geometry/mesh/simplify.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {
@@ -43,12 +44,19 @@ MeshMaterials mesh_materials(const Mesh& mesh, const std::vector<Material>& of_v
 
 }  // namespace
 
-ColoredMesh colored_mesh(const Device& device, const Scene& scene) {
+ColoredMesh colored_mesh(const Device& device, const Scene& scene, size_t faces) {
   if (!scene.surface || !scene.albedo) fail("The object has no surface to export; reconstruct it again.");
   Mesh mesh = scene.surface->mesh();
   Appearance look = appearance_at(device, scene, vertex_hits(mesh));
   mesh.colors = std::move(look.albedo);
   if (scene.material.varying()) look.material = rounded(std::move(look.material));
+  if (faces > 0) {
+    Simplified simple = simplified(mesh, faces);
+    mesh = std::move(simple.mesh);
+    std::vector<Material> kept;
+    for (const uint32_t v : simple.vertex) kept.push_back(look.material[v]);
+    look.material = std::move(kept);
+  }
   MeshMaterials materials = mesh_materials(mesh, look.material);
   if (!scene.poses.empty()) mesh = compact(mesh, mesh.triangles);
   mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);

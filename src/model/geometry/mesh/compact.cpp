@@ -5,7 +5,7 @@
 
 namespace cei3d {
 
-Mesh compact(const Mesh& mesh, std::vector<std::array<uint32_t, 3>> triangles) {
+Mesh compact(const Mesh& mesh, std::vector<std::array<uint32_t, 3>> triangles, std::vector<uint32_t>* ids) {
   constexpr uint32_t kUnused = ~0u;
   std::vector<uint32_t> id(mesh.positions.size(), kUnused);
   Mesh out;
@@ -15,6 +15,7 @@ Mesh compact(const Mesh& mesh, std::vector<std::array<uint32_t, 3>> triangles) {
       if (id[v] == kUnused) {
         id[v] = uint32_t(out.positions.size());
         out.positions.push_back(mesh.positions[v]);
+        if (ids) ids->push_back(v);
         if (!mesh.normals.empty()) out.normals.push_back(mesh.normals[v]);
         if (!mesh.colors.empty()) out.colors.push_back(mesh.colors[v]);
       }

@@ -8,7 +8,8 @@
 namespace cei3d {
 
 struct Simplified {
-  Mesh mesh;        // its vertices are vertices of the given mesh, with their normals and colors
+  Mesh mesh;                     // its vertices are vertices of the given mesh, with their normals and colors
+  std::vector<uint32_t> vertex;  // #V, which ones
   float error = 0;  // of the last collapse: how far the surface has moved there, unit of the positions
 };
 
