@@ -36,7 +36,7 @@ Image srgb(const Image& linear) {
 
 AssetPictures encode(const Textures& t, PictureKind kind) {
   AssetPictures out;
-  out.mean_specular = t.mean_specular;
+  out.middle_specular = t.middle_specular;
   const std::function<void()> jobs[] = {
       [&] { out.normal = encoded(t.normal, "normal", PictureKind::png); },
       [&] { out.base_color = encoded(srgb(t.base_color), "base_color", kind); },
@@ -49,7 +49,7 @@ AssetPictures encode(const Textures& t, PictureKind kind) {
 }
 
 double index_of_refraction(const AssetPictures& pictures) {
-  const double root = std::sqrt(0.08 * pictures.mean_specular);
+  const double root = std::sqrt(0.08 * pictures.middle_specular);
   return (1 + root) / (1 - root);
 }
 

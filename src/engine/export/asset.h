@@ -27,7 +27,7 @@ struct AssetPictures {
   Picture orm;                      // R: occlusion, G: roughness, B: metalness
   Picture normal;                   // tangent space, y up
   std::optional<Picture> specular;  // RGB, sRGB: specular strength; none: the same everywhere
-  float mean_specular = 0.5f;
+  float middle_specular = 0.5f;
 };
 
 // kind: of all but the normals, which JPEG would spoil.

@@ -195,7 +195,7 @@ class Baker {
 
   static void simplify_specular(Textures& out) {
     const auto [low, high] = std::minmax_element(out.specular.data.begin(), out.specular.data.end());
-    out.mean_specular = *low;
+    out.middle_specular = (*low + *high) / 2;
     constexpr float kSame = 1 / 512.0f;
     if (*high - *low < kSame) out.specular = Image();
   }

@@ -17,7 +17,7 @@ struct Textures {
   Image orm;         // R: share of the sky that is free, G: roughness, B: metalness
   Image normal;      // RGB, tangent space, (n + 1) / 2
   Image specular;    // 1 channel, specular strength; empty where it is the same everywhere
-  float mean_specular = 0.5f;
+  float middle_specular = 0.5f;
 };
 
 struct BakeOptions {

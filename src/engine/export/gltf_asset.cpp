@@ -54,9 +54,9 @@ class Description {
     m["normalTexture"] = texture(p.normal);
     m["occlusionTexture"] = orm;
     // The extension's F0 is 0.04 specularColorFactor; its specularFactor would dim grazing reflections too.
-    if (!p.specular && p.mean_specular == 0.5f) return m;
+    if (!p.specular && p.middle_specular == 0.5f) return m;
     json_["extensionsUsed"] = Json::array({"KHR_materials_specular"});
-    const float s = p.specular ? 2 : 2 * p.mean_specular;
+    const float s = p.specular ? 2 : 2 * p.middle_specular;
     Json& extension = m["extensions"]["KHR_materials_specular"];
     extension["specularColorFactor"] = {s, s, s};
     if (p.specular) extension["specularColorTexture"] = texture(*p.specular);

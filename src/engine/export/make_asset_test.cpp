@@ -134,8 +134,15 @@ TEST_F(MakeAsset, MaterialsVaryFromTexelToTexel) {
   for_each_point([&](size_t texel, Vec3f direction, const auto&, float, float) {
     const float* orm = &made_->textures.orm.data[3 * texel];
     EXPECT_NEAR(orm[0], 1, 1e-5);  // the whole sky is free
-    if (direction.z > 0.35f) EXPECT_EQ(orm[1], 0.8f), EXPECT_EQ(orm[2], 1), ++rough;
-    if (direction.z < 0.0f) EXPECT_EQ(orm[1], 0.4f), EXPECT_EQ(orm[2], 0), ++smooth;
+    if (direction.z > 0.35f) {
+      EXPECT_EQ(orm[1], 0.8f);
+      EXPECT_EQ(orm[2], 1);
+      ++rough;
+    } else if (direction.z < 0) {
+      EXPECT_EQ(orm[1], 0.4f);
+      EXPECT_EQ(orm[2], 0);
+      ++smooth;
+    }
   });
   EXPECT_GT(rough, 1000u);
   EXPECT_GT(smooth, 1000u);

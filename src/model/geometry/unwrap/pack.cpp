@@ -51,8 +51,16 @@ std::vector<Vec2d> hull_of(std::vector<Vec2d> p) {
   return hull;
 }
 
-// Into the smallest box that lies along an edge of the hull, wider than high; its corner in the origin.
-std::vector<Vec2d> boxed(std::vector<Vec2d> points) {
+// Turned so that the lower left corner of its box is the origin.
+std::vector<Vec2d> turned_to_origin(std::vector<Vec2d> points, double radians) {
+  for (Vec2d& p : points) p = turned(p, radians);
+  const Box b = box_of(points);
+  for (Vec2d& p : points) p = p - b.low;
+  return points;
+}
+
+// By which turn the points get into the smallest box that lies along an edge of their hull, wider than high.
+double smallest_box(const std::vector<Vec2d>& points) {
   const std::vector<Vec2d> hull = hull_of(points);
   double best = 1e300, angle = 0;
   for (size_t i = 0; i < hull.size(); ++i) {
@@ -63,10 +71,7 @@ std::vector<Vec2d> boxed(std::vector<Vec2d> points) {
     const Vec2d size = box_of(t).size();
     if (size.x * size.y < best) best = size.x * size.y, angle = size.x < size.y ? a + kPi / 2 : a;
   }
-  for (Vec2d& p : points) p = turned(p, angle);
-  const Box b = box_of(points);
-  for (Vec2d& p : points) p = p - b.low;
-  return points;
+  return angle;
 }
 
 // All cells that a triangle touches, row by row: its part in a row reaches from its leftmost to its rightmost
@@ -107,14 +112,17 @@ BitGrid turned_once(const BitGrid& g) {
   return out;
 }
 
-struct Piece {
-  std::vector<Vec2d> points;  // boxed
+// A piece turned in one way; quarter turns are made on its cells.
+struct Pose {
+  std::vector<Vec2d> points;
   Vec2d size;
-  double area;
 };
 
+// Turns besides those by quarters: pieces that fill their boxes badly often fit aslant.
+constexpr int kPoses = 3;
+
 struct Placement {
-  int x, y, quarters;
+  int x, y, pose, quarters;
 };
 
 // The grid that pieces are placed in: `between` texels are kMargin cells.
@@ -128,27 +136,29 @@ struct Packing {
 class Packer {
  public:
   Packer(std::span<const FlatPiece> pieces, const PackOptions& o)
-      : flat_(pieces), cells_(o.size * kMargin / o.between), pieces_(pieces.size()), order_(pieces.size()) {
+      : flat_(pieces), cells_(o.size * kMargin / o.between), pieces_(pieces.size()) {
     parallel_for(int(pieces.size()), [&](int i) {
-      std::vector<Vec2d> p = boxed(pieces[i].points);
-      const Vec2d size = box_of(p).size();
-      pieces_[i] = {std::move(p), size, size.x * size.y};
+      const double best = smallest_box(pieces[i].points);
+      for (int k = 0; k < kPoses; ++k) {
+        Pose& pose = pieces_[i][k];
+        pose.points = turned_to_origin(pieces[i].points, best + kPi / 2 * k / kPoses);
+        pose.size = box_of(pose.points).size();
+      }
     });
-    std::iota(order_.begin(), order_.end(), size_t(0));
-    const auto rank = [&](size_t i) { return std::max(pieces_[i].size.x, pieces_[i].size.y); };
-    std::stable_sort(order_.begin(), order_.end(), [&](size_t a, size_t b) { return rank(a) > rank(b); });
+    add_order([](Vec2d size) { return std::max(size.x, size.y); });
+    add_order([](Vec2d size) { return size.x * size.y; });
+    add_order([](Vec2d size) { return std::min(size.x, size.y); });
   }
 
-  // The largest of a row of scales at which all pieces find a place.
+  // The largest of a row of scales at which all pieces find a place, in one of the orders.
   Packing best(double total_area) const {
-    constexpr double kMost = 0.94, kFactor = 0.985;  // share of the area that is used, and between attempts
-    constexpr int kAtOnce = 4, kAttempts = 400;
-    for (int i = 0; i < kAttempts; i += kAtOnce) {
-      std::vector<std::optional<Packing>> found(kAtOnce);
-      parallel_for(kAtOnce, [&](int k) {
-        const double share = kMost * std::pow(kFactor, i + k);
-        found[k] = attempt(std::sqrt(share / total_area) * cells_);
-      });
+    constexpr double kMost = 0.93, kFactor = 0.985;  // share of the area that is used, and between attempts
+    constexpr int kSteps = 300;
+    for (int step = 0; step < kSteps; ++step) {
+      std::vector<std::optional<Packing>> found(orders_.size());
+      const double scale = std::sqrt(kMost * std::pow(kFactor, step) / total_area) * cells_;
+      const std::vector<Footprints> prints = footprints_at(scale);
+      parallel_for(int(found.size()), [&](int k) { found[k] = attempt(scale, prints, orders_[k]); });
       for (auto& f : found)
         if (f) return std::move(*f);
     }
@@ -158,12 +168,11 @@ class Packer {
   }
 
   std::vector<Vec2d> placed(const Packing& packing, size_t i) const {
-    const Piece& piece = pieces_[i];
     const Placement& at = packing.of_piece[i];
-    const BitGrid cells(width(piece.size.x, packing.scale), width(piece.size.y, packing.scale));
-    const Vec2d box{double(cells.width()), double(cells.height())};
+    const Pose& pose = pieces_[i][at.pose];
+    const Vec2d box{double(width(pose.size.x, packing.scale)), double(width(pose.size.y, packing.scale))};
     std::vector<Vec2d> out;
-    for (const Vec2d& p : piece.points) {
+    for (const Vec2d& p : pose.points) {
       const Vec2d q = quarter_turned(p * packing.scale, box, at.quarters);
       out.push_back(Vec2d{q.x + at.x + 1, q.y + at.y + 1} * (1.0 / cells_));
     }
@@ -173,44 +182,71 @@ class Packer {
  private:
   static int width(double length, double scale) { return std::max(1, int(std::ceil(length * scale))); }
 
-  BitGrid cells_of(size_t i, double scale) const {
-    BitGrid grid(width(pieces_[i].size.x, scale), width(pieces_[i].size.y, scale));
-    for (const auto& [a, b, c] : flat_[i].triangles) {
-      const auto& p = pieces_[i].points;
-      cover(grid, {p[a] * scale, p[b] * scale, p[c] * scale});
-    }
+  // The largest pieces first, by a measure of their boxes.
+  template <class Measure>
+  void add_order(const Measure& measure) {
+    std::vector<size_t> order(pieces_.size());
+    std::iota(order.begin(), order.end(), size_t(0));
+    const auto rank = [&](size_t i) { return measure(pieces_[i][0].size); };
+    std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return rank(a) > rank(b); });
+    orders_.push_back(std::move(order));
+  }
+
+  BitGrid cells_of(size_t i, const Pose& pose, double scale) const {
+    BitGrid grid(width(pose.size.x, scale), width(pose.size.y, scale));
+    for (const auto& [a, b, c] : flat_[i].triangles)
+      cover(grid, {pose.points[a] * scale, pose.points[b] * scale, pose.points[c] * scale});
     return grid;
   }
 
-  std::optional<Packing> attempt(double scale) const {
+  // Of a piece, in all poses, each turned by all quarters.
+  using Footprints = std::array<Footprint, kPoses * 4>;
+
+  std::vector<Footprints> footprints_at(double scale) const {
+    std::vector<Footprints> out(pieces_.size());
+    parallel_for(int(out.size()), [&](int i) {
+      for (int k = 0; k < kPoses; ++k) {
+        BitGrid grid = cells_of(size_t(i), pieces_[i][k], scale);
+        for (int quarters = 0; quarters < 4; ++quarters) {
+          if (quarters > 0) grid = turned_once(grid);
+          out[i][k * 4 + quarters] = footprint_of(grid);
+        }
+      }
+    });
+    return out;
+  }
+
+  std::optional<Packing> attempt(double scale, const std::vector<Footprints>& prints,
+                                 const std::vector<size_t>& order) const {
     const int inner = cells_ - 2;  // a cell along the rim stays free
     BitGrid taken(inner, inner);
     Packing out{scale, std::vector<Placement>(pieces_.size())};
-    for (const size_t i : order_) {
-      BitGrid grid = cells_of(i, scale);
-      std::optional<Placement> best;
-      Footprint best_piece;
-      int top = inner + 1;
-      for (int quarters = 0; quarters < 4; ++quarters) {
-        if (quarters > 0) grid = turned_once(grid);
-        Footprint piece = footprint_of(grid);
-        const auto at = lowest_place(taken, piece, top - piece.height);
-        if (!at) continue;
-        best = Placement{at->x, at->y, quarters};
-        top = at->y + piece.height;
-        best_piece = std::move(piece);
-      }
-      if (!best) return std::nullopt;
-      take(taken, best_piece, {best->x, best->y}, kMargin);
-      out.of_piece[i] = *best;
+    for (const size_t i : order) {
+      const auto at = place(prints[i], taken);
+      if (!at) return std::nullopt;
+      out.of_piece[i] = *at;
     }
     return out;
   }
 
+  // Where its top is the lowest.
+  static std::optional<Placement> place(const Footprints& prints, BitGrid& taken) {
+    std::optional<Placement> best;
+    int top = taken.height() + 1;
+    for (int k = 0; k < int(prints.size()); ++k) {
+      const auto at = lowest_place(taken, prints[k], top - prints[k].height);
+      if (!at) continue;
+      best = Placement{at->x, at->y, k / 4, k % 4};
+      top = at->y + prints[k].height;
+    }
+    if (best) take(taken, prints[best->pose * 4 + best->quarters], {best->x, best->y}, kMargin);
+    return best;
+  }
+
   std::span<const FlatPiece> flat_;
   int cells_;
-  std::vector<Piece> pieces_;
-  std::vector<size_t> order_;
+  std::vector<std::array<Pose, kPoses>> pieces_;
+  std::vector<std::vector<size_t>> orders_;
 };
 
 double area_of(std::span<const FlatPiece> pieces) {
