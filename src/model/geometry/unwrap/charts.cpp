@@ -5,13 +5,17 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <queue>
 
 namespace cei3d {
 namespace {
 
 constexpr uint32_t kNone = ~0u;
-constexpr float kCone = 0.5f;      // cosine between a face and the axis of its chart, at least
+constexpr float kCone = 0.5f;  // cosine between a face and the axis of its chart, at least
+// The same for small charts that are joined to another, as a share of the whole area: what does not lie flat
+// then is cut again.
+constexpr float kSmallCone = 0.1f, kSmall = 0.005f;
 constexpr float kTurning = 8;      // weight of the turn of the normal against the distance walked
 constexpr int kRounds = 6;         // of moving the seeds
 constexpr int kSmoothPasses = 12;  // of the borders
@@ -110,7 +114,9 @@ class Joiner {
     }
   }
 
-  void join() {
+  // largest: area of the charts that are joined to others; cone: see kCone.
+  void join(float largest, float cone) {
+    cone_ = cone;
     std::priority_queue<std::pair<float, uint32_t>, std::vector<std::pair<float, uint32_t>>, std::greater<>>
         order;
     for (uint32_t c = 0; c < faces_.size(); ++c) order.push({area_[c], c});
@@ -118,6 +124,7 @@ class Joiner {
       const auto [area, c] = order.top();
       order.pop();
       if (area != area_[c] || faces_[c].empty()) continue;  // has become another one since
+      if (area > largest) return;
       const uint32_t into = best_neighbor(c);
       if (into == kNone) continue;
       take(into, c);
@@ -152,7 +159,7 @@ class Joiner {
 
   bool in_one_cone(uint32_t c, uint32_t d) const {
     const Vec3f axis = normalize(sum_of_normals(c) + sum_of_normals(d));
-    const auto fits = [&](uint32_t f) { return dot(graph_.normals[f], axis) >= kCone; };
+    const auto fits = [&](uint32_t f) { return dot(graph_.normals[f], axis) >= cone_; };
     return std::all_of(faces_[c].begin(), faces_[c].end(), fits) &&
            std::all_of(faces_[d].begin(), faces_[d].end(), fits);
   }
@@ -168,6 +175,7 @@ class Joiner {
   std::vector<uint32_t>& chart_;
   std::vector<std::vector<uint32_t>> faces_;
   std::vector<float> area_;
+  float cone_ = kCone;
 };
 
 std::vector<Vec3f> axes_of(const FaceGraph& graph, const std::vector<uint32_t>& chart, uint32_t count) {
@@ -247,7 +255,9 @@ Charts grow_charts(const FaceGraph& graph) {
   }
   std::vector<uint32_t> chart = grower.charts();
   const uint32_t count = uint32_t(grower.seeds.size());
-  Joiner(graph, chart, count).join();
+  Joiner joiner(graph, chart, count);
+  joiner.join(std::numeric_limits<float>::infinity(), kCone);
+  joiner.join(kSmall * std::accumulate(graph.areas.begin(), graph.areas.end(), 0.0f), kSmallCone);
   cut_teeth(graph, chart, count);
   return numbered(graph, chart);
 }

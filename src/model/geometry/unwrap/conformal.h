@@ -16,7 +16,7 @@ namespace cei3d {
 struct Patch2d {
   std::vector<Vec3f> points;                       // #V
   std::vector<std::array<uint32_t, 3>> triangles;  // #F
-  Vec3f axis;                                      // unit, its mean normal
+  Vec3f axis{0, 0, 0};                             // unit, its mean normal
 };
 
 // The least-squares conformal map [Levy et al. 2002]: angles change as little as they can, the border is
