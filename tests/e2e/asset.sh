@@ -18,8 +18,8 @@ python3 -m zipfile -t "$out/usdz/spot.usdz" >/dev/null || fail "spot.usdz is no 
 
 # The same bits every time, whatever the number of threads.
 cei3d export "$project" -o "$out/web.glb" --for web --size 30cm --origin base --light fit
-cei3d export "$project" -o "$out/again.glb" --for web --size 30cm --origin base --threads 1
-same "$out/web.glb" "$out/again.glb"
+cei3d export "$project" -o "$out/again/web.glb" --for web --size 30cm --origin base --threads 1
+same "$out/web.glb" "$out/again/web.glb"
 cei3d export "$project" -o "$out/sky.hdr"
 same "$out/sky.hdr" "$out/web.env.hdr"
 cei3d export "$project" -o "$out/sky.exr"

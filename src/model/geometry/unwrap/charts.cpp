@@ -15,7 +15,7 @@ constexpr uint32_t kNone = ~0u;
 constexpr float kCone = 0.5f;  // cosine between a face and the axis of its chart, at least
 // The same for small charts that are joined to another, as a share of the whole area: what does not lie flat
 // then is cut again.
-constexpr float kSmallCone = 0.1f, kSmall = 0.005f;
+constexpr float kSmallCone = 0.0f, kSmall = 0.02f;
 constexpr float kTurning = 8;      // weight of the turn of the normal against the distance walked
 constexpr int kRounds = 6;         // of moving the seeds
 constexpr int kSmoothPasses = 12;  // of the borders
