@@ -44,7 +44,7 @@ step "The painted object in views nobody painted on" \
 step "Another light" render "$object" -o "$out/relit" --cameras "$sample:test" --env "$sample/envs/venice.hdr"
 step "The same light, turned" render "$object" -o "$out/turned" --cameras "$sample:test" --env "$sample/envs/venice.hdr" --env-rotate 90
 step "All around" render "$object" -o "$out/turntable" --turntable 12 --size 384x384
-step "A model file" export "$object" -o "$out/spot.glb"
+step "A model file" export "$object" -o "$out/spot.glb" --light fit
 page >"$out/index.html"
 
 cat <<TEXT
@@ -53,6 +53,6 @@ Done. Look at
   $out/index.html   all pictures on one page
   $out/painted/rgb  the painted object (take it back: $program undo $object)
   $out/turntable/rgb
-  $out/spot.glb     the model, for Blender and the like
+  $out/spot.glb     the textured model, for Blender and the like; its light: $out/spot.env.hdr
   $object       the project: $program edit $object paint -h
 TEXT

@@ -69,6 +69,12 @@ refused 2 'channel' render "$project" -o "$out/pictures" --channels rgb,smell
 absent "$out/pictures"
 refused 2 'glb|ply|npy|format|suffix' export "$project" -o "$out/spot.doc"
 absent "$out/spot.doc"
+refused 2 'texture' export "$project" -o "$out/spot.glb" --texture 1000000
+refused 2 'faces' export "$project" -o "$out/spot.glb" --faces 0
+refused 2 'size' export "$project" -o "$out/spot.glb" --size 3km
+refused 2 'glb|ply' export "$project" -o "$out/spot.obj" --texture 0
+refused 1 'not a folder' export "$project" -o "$out/truncated.png/spot.glb"
+absent "$out/spot.glb"
 refused 2 'smell' smell
 
 # A project of a newer format, a damaged one.

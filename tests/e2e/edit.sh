@@ -75,7 +75,7 @@ views "$out/turned" --env "$sample/envs/venice.hdr" --env-rotate 90
 cei3d render "$project" -o "$out/turntable" --turntable 3 --size 64x64 --samples 1
 [[ $(ls "$out/turntable/rgb" | wc -l) == 3 ]] || fail "not 3 pictures on the turntable"
 
-cei3d export "$project" -o "$out/spot.glb"
+cei3d export "$project" -o "$out/spot.glb" --faces 5000 --texture 512
 [[ $(head -c 4 "$out/spot.glb") == glTF ]] || fail "spot.glb is no GLB"
 cei3d export "$project" -o "$out/spot.ply"
 head -1 "$out/spot.ply" | grep '^ply' >/dev/null || fail "spot.ply is no PLY"

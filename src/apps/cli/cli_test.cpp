@@ -236,6 +236,15 @@ TEST(Parse, Durations) {
     EXPECT_THROW(parse_duration(bad), Error) << bad;
 }
 
+TEST(Parse, Lengths) {
+  EXPECT_EQ(parse_length("0.3", "--size"), 0.3);
+  EXPECT_EQ(parse_length("2m", "--size"), 2);
+  EXPECT_NEAR(parse_length("30cm", "--size"), 0.3, 1e-12);
+  EXPECT_NEAR(parse_length("12in", "--size"), 0.3048, 1e-12);
+  for (const char* bad : {"", "m", "3 m", "3km", "-1m", "0", "nan", "1e99m"})
+    EXPECT_THROW(parse_length(bad, "--size"), Error) << bad;
+}
+
 TEST(Parse, DurationTexts) {
   EXPECT_EQ(duration_text(7), "0:07");
   EXPECT_EQ(duration_text(59.7), "1:00");

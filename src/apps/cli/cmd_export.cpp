@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/command.h"
+#include "apps/cli/parse.h"
 #include "core/base/error.h"
 
 namespace cei3d {
 namespace {
 
 struct Options {
-  std::string project;
+  std::string project, purpose, origin, size, image, light = "none";
   ExportRequest request;
 };
 
@@ -14,13 +15,64 @@ std::string report_text(const ExportReport& r) {
   const std::string file = r.out.string();
   if (r.lobes > 0) return fmt::format("{}: {} light lobes.", file, r.lobes);
   if (r.triangles == 0) return fmt::format("{}: {} points.", file, r.vertices);
-  return fmt::format("{}: {} vertices, {} triangles.", file, r.vertices, r.triangles);
+  std::string text = fmt::format("{}: {} vertices, {} triangles", file, r.vertices, r.triangles);
+  if (r.texture > 0)
+    text += fmt::format(
+        ", textures of {0} x {0} texels, {1:.0f} % of them used by {2} charts (stretch {3:.3f}). Simplified "
+        "by up to "
+        "{4:.2g} capture units",
+        r.texture, 100 * r.used, r.charts, r.stretch, r.simplification_error);
+  text += ".";
+  for (const auto& f : r.files)
+    if (f != r.out) text += "\n  " + f.string();
+  return text;
+}
+
+ExportRequest request_of(const Options& o) {
+  ExportRequest r = o.request;
+  if (!o.purpose.empty()) r.purpose = export_for_from_name(o.purpose).value_or(ExportFor::any);
+  if (!o.origin.empty()) r.at_base = o.origin == "base";
+  if (!o.image.empty()) r.jpeg = o.image == "jpeg";
+  if (!o.size.empty()) r.size = parse_length(o.size, "--size");
+  r.light = o.light == "fit";
+  return r;
 }
 
 void export_object(const Options& o, Session& session, Console& console) {
+  const ExportRequest request = request_of(o);
   session.open(o.project, Session::Access::read);
-  const ExportReport r = session.export_to(o.request, console);
+  const ExportReport r = session.export_to(request, console);
   console.done(r.json(), report_text(r));
+}
+
+void add_asset_options(CLI::App* verb, Options& o) {
+  verb->add_option(
+      "--faces", o.request.faces,
+      "Triangles, at most: simplified by quadric errors (default: 50000; without a texture: all)");
+  verb->add_option(
+      "--texture", o.request.texture,
+      "Texels of the textures' sides: base color, occlusion-roughness-metalness, normals (default: "
+      "2048; 0, for .glb: no textures, base color by vertex)");
+  verb->add_option(
+          "--for", o.purpose,
+          "Sizes by purpose. web: 30000 faces, 1024 texels, JPEG; ar: 50000, 2048, JPEG, origin at the "
+          "base; dcc: 200000, 4096, PNG. Other options change single ones")
+      ->check(CLI::IsMember({"web", "ar", "dcc"}));
+  verb->add_option("--image", o.image,
+                   "How base color and material are stored (default: png); normals are PNG")
+      ->check(CLI::IsMember({"png", "jpeg"}));
+  verb->add_option(
+          "--origin", o.origin,
+          "input: the capture's own coordinates (default). base: the object stands upright in the origin")
+      ->check(CLI::IsMember({"input", "base"}));
+  auto* scale =
+      verb->add_option("--unit-scale", o.request.unit_scale, "Meters per capture unit (default: 1)");
+  verb->add_option("--size", o.size,
+                   "Longest side of the object, like 0.30m, 30cm or 12in, instead of --unit-scale")
+      ->excludes(scale);
+  verb->add_option("--light", o.light,
+                   "fit: also write the object's light as NAME.env.hdr, latitude-longitude; none (default)")
+      ->check(CLI::IsMember({"fit", "none"}));
 }
 
 }  // namespace
@@ -29,10 +81,13 @@ void add_export(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add("export", "Write the edited object as a file for other programs");
   verb->add_option("project", o->project, "Project folder")->required();
-  verb->add_option("-o,--output", o->request.out,
-                   ".glb or .ply: mesh with albedo per vertex, in the capture's frame and scale. .npy: light "
-                   "lobes [M,7] (axis, sharpness, RGB peak radiance)")
+  verb->add_option(
+          "-o,--output", o->request.out,
+          "By its ending. .glb, .gltf, .obj, .usdz: textured mesh; .ply: mesh with albedo per vertex. "
+          ".hdr, .exr: the light as latitude-longitude picture; .npy, .json: its lobes ([M,7]: axis, "
+          "sharpness, RGB peak radiance)")
       ->required();
+  add_asset_options(verb, *o);
   verb->add_flag("--points", o->request.points,
                  "With .ply: write the handler points with their normals instead of the mesh");
   commands.on(verb, o, export_object);

@@ -45,6 +45,17 @@ std::string duration_text(double seconds) {
                   : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
+double parse_length(const std::string& text, const std::string& option) {
+  double value = 0;
+  const auto [after, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const std::string unit(after, text.data() + text.size());
+  for (const auto& [name, meters] :
+       {std::pair("", 1.0), {"m", 1.0}, {"cm", 0.01}, {"mm", 0.001}, {"in", 0.0254}})
+    if (unit == name && error == std::errc() && value > 0 && value < 1e9) return value * meters;
+  fail_usage("{} '{}' is not a length; write meters or a number with m, cm, mm or in, for example 30cm.",
+             option, text);
+}
+
 ImageExtent parse_size(const std::string& text) {
   ImageExtent size;
   char x = 0, rest = 0;

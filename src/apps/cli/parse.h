@@ -11,6 +11,7 @@ namespace cei3d {
 
 double parse_duration(const std::string& text);  // "90", "90s", "10m", "1h30m": seconds
 std::string duration_text(double seconds);       // "0:07", "12:30", "1:02:03"
+double parse_length(const std::string& text, const std::string& option);  // "0.3", "0.30m", "30cm": meters
 struct ImageExtent {
   int width = 0, height = 0;
 };

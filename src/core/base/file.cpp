@@ -8,6 +8,8 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <memory>
+#include <vector>
 
 #include "core/base/error.h"
 
@@ -81,6 +83,38 @@ void sync_folder(const fs::path& path) {
   if (fd.get() >= 0) ::fsync(fd.get());
 }
 
+// A file beside its target, removed unless it has taken the target's name.
+class Temporary {
+ public:
+  explicit Temporary(const fs::path& target) : target_(target) {
+    make_parent(target);
+    path_ = temporary_name(target);
+  }
+  ~Temporary() {
+    if (!renamed_) ::unlink(path_.c_str());
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+
+  void write(std::string_view bytes) {
+    Descriptor fd(::open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    require(fd.get() >= 0 && write_all(fd.get(), bytes) && ::fsync(fd.get()) == 0 && fd.close());
+  }
+  void rename() {
+    require(::rename(path_.c_str(), target_.c_str()) == 0);
+    renamed_ = true;
+    sync_folder(target_);
+  }
+
+ private:
+  void require(bool done) const {
+    if (!done) fail("Cannot write {}: {}.", target_.string(), reason(errno));
+  }
+
+  fs::path target_, path_;
+  bool renamed_ = false;
+};
+
 }  // namespace
 
 std::string read_file(const fs::path& path) {
@@ -105,18 +139,28 @@ std::string read_file(const fs::path& path) {
 }
 
 void write_file_atomic(const fs::path& path, std::string_view bytes) {
-  make_parent(path);
-  const fs::path temporary = temporary_name(path);
-  Descriptor fd(::open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
-  if (fd.get() < 0) fail("Cannot write {}: {}.", path.string(), reason(errno));
-  const bool written = write_all(fd.get(), bytes) && ::fsync(fd.get()) == 0 && fd.close() &&
-                       ::rename(temporary.c_str(), path.c_str()) == 0;
-  if (!written) {
-    const int code = errno;
-    ::unlink(temporary.c_str());
-    fail("Cannot write {}: {}.", path.string(), reason(code));
+  Temporary file(path);
+  file.write(bytes);
+  file.rename();
+}
+
+void write_files_atomic(std::span<const FileBytes> files) {
+  std::vector<std::unique_ptr<Temporary>> written;
+  for (const FileBytes& f : files) {
+    written.push_back(std::make_unique<Temporary>(f.path));
+    written.back()->write(f.bytes);
   }
-  sync_folder(path);
+  for (const auto& file : written) file->rename();
+}
+
+void require_writable(const fs::path& path) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) fail("Cannot write {}: {}.", path.string(), reason(EISDIR));
+  fs::path folder = fs::absolute(path).parent_path();
+  while (!fs::exists(folder, error) && folder.has_relative_path()) folder = folder.parent_path();
+  if (!fs::is_directory(folder, error))
+    fail("Cannot write {}: {} is not a folder.", path.string(), folder.string());
+  if (::access(folder.c_str(), W_OK) != 0) fail("Cannot write {}: {}.", path.string(), reason(errno));
 }
 
 void append_to_file(const fs::path& path, std::string_view bytes) {

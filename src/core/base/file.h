@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -16,6 +17,18 @@ std::string read_file(const std::filesystem::path&);
 // any error (full disk, no permission) the old file is unchanged, the temporary file is removed, and the
 // error says why.
 void write_file_atomic(const std::filesystem::path&, std::string_view bytes);
+
+struct FileBytes {
+  std::filesystem::path path;
+  std::string bytes;
+};
+// Several files that belong together: all are written and synced before the first is renamed, in their order.
+// An error before that leaves nothing behind.
+void write_files_atomic(std::span<const FileBytes> files);
+
+// Error: no file can be written at that path, as far as can be told without writing. For work that takes long
+// before it writes.
+void require_writable(const std::filesystem::path&);
 
 // Appends the bytes in one piece, also when several processes append; creates the file if missing. Error: it
 // cannot be written.

@@ -73,6 +73,30 @@ TEST(File, FailedWriteKeepsTheOldFile) {
   EXPECT_EQ(files_in(temp.path()), 1);
 }
 
+TEST(File, FilesThatBelongTogetherAreAllWrittenOrNone) {
+  const TempFolder temp;
+  const fs::path a = temp.path() / "a", b = temp.path() / "below" / "b";
+  write_files_atomic(std::vector<FileBytes>{{a, "one"}, {b, "two"}});
+  EXPECT_EQ(read_file(a) + read_file(b), "onetwo");
+  EXPECT_THAT(message([&] {
+                write_files_atomic(std::vector<FileBytes>{{a, "new"}, {a / "c", "no"}});
+              }),
+              HasSubstr("Cannot"));
+  EXPECT_EQ(read_file(a), "one");
+  EXPECT_EQ(files_in(temp.path()), 2);
+}
+
+TEST(File, WhetherItCanBeWrittenIsKnownBefore) {
+  const TempFolder temp;
+  require_writable(temp.path() / "new" / "folder" / "file");
+  require_writable("file_in_the_working_folder");
+  EXPECT_EQ(files_in(temp.path()), 0);
+  write_file_atomic(temp.path() / "file", "x");
+  require_writable(temp.path() / "file");
+  EXPECT_THAT(message([&] { require_writable(temp.path() / "file" / "below"); }), HasSubstr("not a folder"));
+  EXPECT_THAT(message([&] { require_writable(temp.path()); }), HasSubstr("folder"));
+}
+
 TEST(File, TargetThatIsAFolderIsAnError) {
   const TempFolder temp;
   write_file_atomic(temp.path() / "target" / "inside", "x");

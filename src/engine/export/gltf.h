@@ -2,10 +2,10 @@
 // Meshes as binary glTF 2.0 (.glb) with vertex colors and a metallic-roughness material. [Khronos glTF 2.0]
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "engine/export/placement.h"
 #include "model/geometry/mesh/mesh.h"
 #include "model/material/material.h"
 
@@ -19,10 +19,7 @@ struct MeshMaterials {
 
 // Writes POSITION, NORMAL and COLOR_0 (linear, float) where the mesh has them; one primitive per used
 // material, with roughness and metalness as factors; a specular other than 0.5 as KHR_materials_specular with
-// F0 = 0.08 specular. Vertices stay in the capture frame: a rotation of the node maps `up` (capture frame) to
-// glTF's +Y, so that viewers show the object upright.
-std::string encode_glb(const Mesh& mesh, const MeshMaterials& materials, Vec3d up);
-void write_glb(const std::filesystem::path& path, const Mesh& mesh, const MeshMaterials& materials,
-               Vec3d up);  // atomically
+// F0 = 0.08 specular. Vertices stay in the capture frame; the node holds the placement.
+std::string encode_glb(const Mesh& mesh, const MeshMaterials& materials, const Placement& placement);
 
 }  // namespace cei3d

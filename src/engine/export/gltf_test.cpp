@@ -36,7 +36,7 @@ Glb parse_glb(const std::string& bytes) {
 
 TEST(Gltf, HoldsTheMeshAndTheMaterial) {
   const Mesh m = tetrahedron();
-  const Glb glb = parse_glb(encode_glb(m, {{{0.25f, 0.7f, 1}}, {}}, {0, 0, 1}));
+  const Glb glb = parse_glb(encode_glb(m, {{{0.25f, 0.7f, 1}}, {}}, upright({0, 0, 1})));
   const Json& j = glb.json;
   const Json& primitive = j["meshes"][0]["primitives"][0];
   const auto array_of = [&](int accessor) {
@@ -55,12 +55,13 @@ TEST(Gltf, HoldsTheMeshAndTheMaterial) {
   EXPECT_EQ(j["materials"][0]["pbrMetallicRoughness"]["metallicFactor"], 1.0f);
   EXPECT_EQ(j["materials"][0]["extensions"]["KHR_materials_specular"]["specularColorFactor"][0], 1.4f);
   EXPECT_EQ(j["extensionsUsed"][0], "KHR_materials_specular");
-  EXPECT_FALSE(parse_glb(encode_glb(m, {{{}}, {}}, {0, 0, 1})).json.contains("extensionsUsed"));
+  EXPECT_FALSE(parse_glb(encode_glb(m, {{{}}, {}}, upright({0, 0, 1}))).json.contains("extensionsUsed"));
 }
 
 TEST(Gltf, EveryMaterialHasItsTriangles) {
   const Mesh m = tetrahedron();
-  const Glb glb = parse_glb(encode_glb(m, {{{0.2f, 0.5f, 0}, {0.8f, 0.5f, 1}}, {1, 0, 1, 1}}, {0, 0, 1}));
+  const Glb glb =
+      parse_glb(encode_glb(m, {{{0.2f, 0.5f, 0}, {0.8f, 0.5f, 1}}, {1, 0, 1, 1}}, upright({0, 0, 1})));
   const Json &j = glb.json, &primitives = j["meshes"][0]["primitives"];
   ASSERT_EQ(primitives.size(), 2u);
   for (const auto& [primitive, material, count] : {std::tuple(0, 0, 3), {1, 1, 9}}) {
@@ -76,7 +77,7 @@ TEST(Gltf, EveryMaterialHasItsTriangles) {
 
 TEST(Gltf, NodeTurnsUpToY) {
   for (const Vec3d up : {Vec3d{0, 0, 1}, Vec3d{0, 1, 0}, Vec3d{0, -1, 0}, Vec3d{-1, 0, 0}, Vec3d{1, 2, -2}}) {
-    const Json q = parse_glb(encode_glb(tetrahedron(), {{{}}, {}}, up)).json["nodes"][0]["rotation"];
+    const Json q = parse_glb(encode_glb(tetrahedron(), {{{}}, {}}, upright(up))).json["nodes"][0]["rotation"];
     const Vec3d v{q[0], q[1], q[2]}, u = normalize(up);
     const double w = q[3];
     EXPECT_NEAR(dot(v, v) + w * w, 1, 1e-12);
@@ -86,10 +87,10 @@ TEST(Gltf, NodeTurnsUpToY) {
 }
 
 TEST(Gltf, EmptyOrBrokenMeshesAreErrors) {
-  EXPECT_THROW(encode_glb(Mesh(), {{{}}, {}}, {0, 0, 1}), Error);
+  EXPECT_THROW(encode_glb(Mesh(), {{{}}, {}}, upright({0, 0, 1})), Error);
   Mesh m = tetrahedron();
   m.positions[1].y = NAN;
-  EXPECT_THROW(encode_glb(m, {{{}}, {}}, {0, 0, 1}), Error);
+  EXPECT_THROW(encode_glb(m, {{{}}, {}}, upright({0, 0, 1})), Error);
 }
 
 }  // namespace

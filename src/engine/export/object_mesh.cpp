@@ -6,6 +6,8 @@
 #include <tuple>
 
 #include "core/base/error.h"
+#include "model/geometry/mesh/compact.h"
+#include "model/geometry/mesh/simplify.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {
@@ -14,25 +16,6 @@ namespace {
 std::vector<Vec3f> in_capture_frame(std::vector<Vec3f> points, const Normalization& n) {
   for (Vec3f& p : points) p = to_float(n.capture_from_unit(to_double(p)));
   return points;
-}
-
-// Drops vertices without triangles, left by removed parts.
-Mesh compact(const Mesh& mesh) {
-  constexpr uint32_t kUnused = ~0u;
-  std::vector<uint32_t> id(mesh.positions.size(), kUnused);
-  Mesh out;
-  out.triangles = mesh.triangles;
-  for (auto& t : out.triangles)
-    for (uint32_t& v : t) {
-      if (id[v] == kUnused) {
-        id[v] = uint32_t(out.positions.size());
-        out.positions.push_back(mesh.positions[v]);
-        out.normals.push_back(mesh.normals[v]);
-        out.colors.push_back(mesh.colors[v]);
-      }
-      v = id[v];
-    }
-  return out;
 }
 
 // A mesh has few materials: where they vary continuously they are rounded.
@@ -61,14 +44,21 @@ MeshMaterials mesh_materials(const Mesh& mesh, const std::vector<Material>& of_v
 
 }  // namespace
 
-ColoredMesh colored_mesh(const Device& device, const Scene& scene) {
+ColoredMesh colored_mesh(const Device& device, const Scene& scene, size_t faces) {
   if (!scene.surface || !scene.albedo) fail("The object has no surface to export; reconstruct it again.");
   Mesh mesh = scene.surface->mesh();
   Appearance look = appearance_at(device, scene, vertex_hits(mesh));
   mesh.colors = std::move(look.albedo);
   if (scene.material.varying()) look.material = rounded(std::move(look.material));
+  if (faces > 0) {
+    Simplified simple = simplified(mesh, faces);
+    mesh = std::move(simple.mesh);
+    std::vector<Material> kept;
+    for (const uint32_t v : simple.vertex) kept.push_back(look.material[v]);
+    look.material = std::move(kept);
+  }
   MeshMaterials materials = mesh_materials(mesh, look.material);
-  if (!scene.shape_versions.empty()) mesh = compact(mesh);
+  if (!scene.shape_versions.empty()) mesh = compact(mesh, mesh.triangles);
   mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);
   return {std::move(mesh), std::move(materials)};
 }

@@ -13,8 +13,9 @@ struct ColoredMesh {
   MeshMaterials materials;
 };
 
-// The edited surface; vertex colors are linear albedo (glTF: base color). Error: the scene has no surface.
-ColoredMesh colored_mesh(const Device&, const Scene&);
+// The edited surface; vertex colors are linear albedo (glTF: base color). faces: at most; 0: all there are.
+// Error: the scene has no surface.
+ColoredMesh colored_mesh(const Device&, const Scene&, size_t faces = 0);
 
 // The handler points and their normals, without triangles. Error: the scene has none.
 Mesh handler_point_cloud(const Scene&);

@@ -34,6 +34,9 @@ std::vector<Hit> trace_rays(const Device&, const Field& sdf, const Surface&, std
 void refine_hits(const Device&, const Field& sdf, std::span<const Vec3f> directions, std::span<Hit> hits,
                  std::span<float> edges = {});
 
+// Moves hits on the mesh of the scene along their to_camera onto its surface, changes of shape included.
+void refine_hits(const Device&, const Scene&, std::vector<Hit>& hits);
+
 // The same for the scene with its changes of shape.
 std::vector<Hit> trace_rays(const Device&, const Scene&, std::span<const Ray> rays,
                             std::vector<uint32_t>& ray_of_hit);

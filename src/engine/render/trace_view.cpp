@@ -120,10 +120,16 @@ std::vector<Hit> trace_rays(const Device& device, const Field& sdf, const Surfac
 
 std::vector<Hit> trace_rays(const Device& device, const Scene& scene, std::span<const Ray> rays,
                             std::vector<uint32_t>& ray_of_hit) {
-  if (scene.shape_versions.empty()) return trace_rays(device, *scene.sdf, *scene.surface, rays, ray_of_hit);
   std::vector<Hit> hits = mesh_hits(*scene.surface, rays, ray_of_hit);
-  refine_changed(device, scene, hits);
+  refine_hits(device, scene, hits);
   return hits;
+}
+
+void refine_hits(const Device& device, const Scene& scene, std::vector<Hit>& hits) {
+  if (scene.shape_versions.empty())
+    refine_along_rays(device, *scene.sdf, hits);
+  else
+    refine_changed(device, scene, hits);
 }
 
 namespace {

@@ -187,8 +187,21 @@ Json PartInfo::json() const { return {{"name", name}, {"edit", edit}, {"points",
 
 Json PartMasksReport::json() const { return {{"views", views}, {"shown", shown}, {"seconds", seconds}}; }
 
+std::optional<ExportFor> export_for_from_name(const std::string& name) {
+  if (name == "web") return ExportFor::web;
+  if (name == "ar") return ExportFor::ar;
+  if (name == "dcc") return ExportFor::dcc;
+  return std::nullopt;
+}
+
 Json ExportReport::json() const {
-  return {{"file", out.string()}, {"vertices", vertices}, {"triangles", triangles}, {"lobes", lobes}};
+  Json j{{"file", out.string()}, {"vertices", vertices}, {"triangles", triangles}, {"lobes", lobes}};
+  for (const auto& f : files) j["files"].push_back(f.string());
+  if (texture > 0) {
+    j["texture"] = {{"size", texture}, {"charts", charts}, {"used", used}, {"stretch", stretch}};
+    j["simplification_error"] = simplification_error;
+  }
+  return j;
 }
 
 }  // namespace cei3d

@@ -265,13 +265,33 @@ struct PartMasksReport {
   Json json() const;
 };
 
+// What an asset is for: how many faces and texels it has, and how its pictures are stored.
+enum class ExportFor { any, web, ar, dcc };
+std::optional<ExportFor> export_for_from_name(const std::string&);  // "web", "ar", "dcc"
+
 struct ExportRequest {
-  std::filesystem::path out;  // .ply, .glb or .npy
-  bool points = false;        // .ply: the handler points instead of the mesh
+  // The suffix says what is written: .glb .gltf .obj .usdz .ply (the object), .hdr .exr .npy .json (the
+  // light).
+  std::filesystem::path out;
+  bool points = false;  // .ply: the handler points instead of the mesh
+  ExportFor purpose = ExportFor::any;
+  std::optional<int> faces;     // at most; none: as the purpose says; a mesh without texture: all
+  std::optional<int> texture;   // texels of a side; none: as the purpose says; 0: albedo by vertex
+  std::optional<bool> jpeg;     // base color and material as JPEG, not PNG; none: as the purpose says
+  std::optional<bool> at_base;  // the object stands in the origin; none: as the purpose says
+  double unit_scale = 1;        // meters per capture unit
+  double size = 0;              // meters of the longest side, instead of unit_scale; 0: no wish
+  bool light = false;           // the light beside the object, as NAME.env.hdr
 };
 struct ExportReport {
   std::filesystem::path out;
+  std::vector<std::filesystem::path> files;
   size_t vertices = 0, triangles = 0, lobes = 0;
+  // Of the texture; 0 without one.
+  int texture = 0;
+  size_t charts = 0;
+  double used = 0, stretch = 0;     // share of the texture that charts cover; L2 stretch, 1: isometric
+  double simplification_error = 0;  // capture units
   Json json() const;
 };
 

@@ -1,41 +1,204 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
+#include "engine/export/file_names.h"
 #include "engine/export/gltf.h"
+#include "engine/export/gltf_asset.h"
+#include "engine/export/make_asset.h"
+#include "engine/export/obj.h"
 #include "engine/export/object_mesh.h"
+#include "engine/export/usdz.h"
+#include "engine/io/exr_file.h"
+#include "engine/io/hdr_file.h"
 #include "engine/io/npy.h"
 #include "engine/io/ply.h"
 #include "engine/project/project.h"
 #include "engine/session/session.h"
+#include "model/light/envmap.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
+namespace {
+
+struct Preset {
+  int faces = 50000, texture = 2048;
+  bool jpeg = false, at_base = false;
+};
+
+Preset preset_of(ExportFor purpose) {
+  switch (purpose) {
+    case ExportFor::web:
+      return {30000, 1024, true, false};
+    case ExportFor::ar:
+      return {50000, 2048, true, true};
+    case ExportFor::dcc:
+      return {200000, 4096, false, false};
+    case ExportFor::any:
+      break;
+  }
+  return {};
+}
+
+bool has(const std::string& kind, std::initializer_list<const char*> kinds) {
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+void check_sizes(const ExportRequest& r) {
+  constexpr int kLeastTexture = 64, kMostTexture = 8192, kLeastFaces = 4, kMostFaces = 20'000'000;
+  if (r.texture && *r.texture != 0 && (*r.texture < kLeastTexture || *r.texture > kMostTexture))
+    fail_usage("--texture {}: the side of a texture is {} to {} texels, or 0 for none.", *r.texture,
+               kLeastTexture, kMostTexture);
+  if (r.faces && (*r.faces < kLeastFaces || *r.faces > kMostFaces))
+    fail_usage("--faces {}: a mesh has {} to {} faces.", *r.faces, kLeastFaces, kMostFaces);
+  if (!(r.unit_scale > 0) || !std::isfinite(r.unit_scale))
+    fail_usage("--unit-scale {}: meters per unit of the capture, more than 0.", r.unit_scale);
+  if (!(r.size >= 0) || !std::isfinite(r.size)) fail_usage("--size {}: meters, more than 0.", r.size);
+}
+
+void check_request(const ExportRequest& r, const std::string& kind) {
+  if (!has(kind, {".glb", ".gltf", ".obj", ".usdz", ".ply", ".hdr", ".exr", ".npy", ".json"}))
+    fail_usage(
+        "{}: the ending says what to write: .glb, .gltf, .obj, .usdz or .ply for the object, .hdr, .exr, "
+        ".npy or "
+        ".json for its light.",
+        r.out.string());
+  if (r.points && kind != ".ply") fail_usage("--points are written as .ply, not {}.", kind);
+  if (kind == ".ply" && r.texture.value_or(0) > 0)
+    fail_usage("A .ply has its colors at the vertices; for a texture write .glb, .gltf, .obj or .usdz.");
+  if (has(kind, {".gltf", ".obj", ".usdz"}) && r.texture == 0)
+    fail_usage("A {} is written with a texture; without one write .glb or .ply.", kind);
+  check_sizes(r);
+}
+
+// Rows of Blender's and the program's own maps: of a capture that is y-up, row 0 is +Y.
+Image environment_of(const Scene& scene) {
+  constexpr int kHeight = 512;
+  const EnvUp up = std::abs(normalize(scene.up).y) > 0.9 ? EnvUp::y : EnvUp::z;
+  return env_resample(lat_long(scene.light, 2 * kHeight, up), kHeight);
+}
+
+std::string light_json(const SgMixture& light) {
+  Json lobes = Json::array();
+  for (const SgLobe& l : light.lobes)
+    lobes.push_back({{"axis", {l.axis.x, l.axis.y, l.axis.z}},
+                     {"sharpness", l.lambda},
+                     {"radiance", {l.mu.x, l.mu.y, l.mu.z}}});
+  return Json{
+      {"meaning",
+       "radiance from direction w: the sum over lobes of radiance exp(sharpness (w . axis - 1)), linear RGB; "
+       "axes point to the light, in the frame of the capture"},
+      {"lobes", lobes}}
+      .dump(1);
+}
+
+FileBytes light_file(const Scene& scene, const fs::path& path, const std::string& kind) {
+  if (kind == ".hdr") return {path, encode_hdr(environment_of(scene))};
+  if (kind == ".exr") return {path, encode_exr(environment_of(scene))};
+  if (kind == ".json") return {path, light_json(scene.light)};
+  return {path, encode_npy(to_array(scene.light), int64_t(scene.light.lobes.size()), 7)};
+}
+
+std::vector<FileBytes> asset_files(const MadeAsset& made, const fs::path& out, const std::string& kind,
+                                   bool in_capture_frame) {
+  if (kind == ".gltf") return gltf_files(made.asset, out);
+  if (kind == ".obj") return obj_files(made.asset, made.textures, out, in_capture_frame);
+  return {{out, kind == ".usdz" ? encode_usdz(made.asset) : encode_glb(made.asset)}};
+}
+
+// One export: scene in, files and report out.
+class Exporter {
+ public:
+  Exporter(const Device& device, const Scene& scene, const ExportRequest& request, Progress& progress)
+      : device_(device),
+        scene_(scene),
+        request_(request),
+        progress_(progress),
+        kind_(request.out.extension().string()),
+        preset_(preset_of(request.purpose)) {
+    report_.out = request.out;
+  }
+
+  std::vector<FileBytes> files() {
+    if (has(kind_, {".hdr", ".exr", ".npy", ".json"})) {
+      report_.lobes = scene_.light.lobes.size();
+      return {light_file(scene_, request_.out, kind_)};
+    }
+    std::vector<FileBytes> out = kind_ == ".ply" || request_.texture == 0 ? plain() : textured();
+    if (request_.light) out.push_back(light_file(scene_, beside(request_.out, ".env.hdr"), ".hdr"));
+    return out;
+  }
+  ExportReport report() && { return std::move(report_); }
+
+ private:
+  PlacementOptions placement() const {
+    return {request_.at_base.value_or(preset_.at_base) ? Origin::base : Origin::input, request_.unit_scale,
+            request_.size};
+  }
+
+  // Colors at the vertices.
+  std::vector<FileBytes> plain() {
+    const auto [mesh, materials] = request_.points
+                                       ? ColoredMesh{handler_point_cloud(scene_), {}}
+                                       : colored_mesh(device_, scene_, size_t(request_.faces.value_or(0)));
+    report_.vertices = mesh.positions.size();
+    report_.triangles = mesh.triangles.size();
+    if (kind_ == ".ply") return {{request_.out, encode_ply(mesh)}};
+    if (mesh.positions.empty()) fail("There is no surface to export: the mesh is empty.");
+    return {
+        {request_.out, encode_glb(mesh, materials, placement_of(mesh.positions, scene_.up, placement()))}};
+  }
+
+  std::vector<FileBytes> textured() {
+    const bool jpeg = request_.jpeg.value_or(preset_.jpeg);
+    const AssetOptions options{.faces = size_t(request_.faces.value_or(preset_.faces)),
+                               .texture = request_.texture.value_or(preset_.texture),
+                               .pictures = jpeg ? PictureKind::jpeg : PictureKind::png,
+                               .placement = placement()};
+    const std::string name = beside(request_.out, "").filename().string();
+    const MadeAsset made = make_asset(device_, scene_, name, options, progress_);
+    report_.vertices = made.report.vertices;
+    report_.triangles = made.report.triangles;
+    report_.texture = options.texture;
+    report_.charts = made.report.charts;
+    report_.used = made.report.used;
+    report_.stretch = made.report.stretch;
+    report_.simplification_error = made.report.error;
+    return asset_files(made, request_.out, kind_, placement_is_input());
+  }
+
+  bool placement_is_input() const {
+    const PlacementOptions p = placement();
+    return p.origin == Origin::input && p.unit_scale == 1 && p.size == 0;
+  }
+
+  const Device& device_;
+  const Scene& scene_;
+  const ExportRequest& request_;
+  Progress& progress_;
+  std::string kind_;
+  Preset preset_;
+  ExportReport report_;
+};
+
+}  // namespace
 
 ExportReport Session::export_to(const ExportRequest& request, Progress& progress) {
   return threads_->run([&]() -> ExportReport {
-    const std::string kind = request.out.extension().string();
-    if (kind != ".ply" && kind != ".glb" && kind != ".npy")
-      fail_usage("{}: the ending says what to write, and it is .glb, .ply or .npy.", request.out.string());
-    if (request.points && kind != ".ply") fail_usage("--points are written as .ply, not {}.", kind);
+    check_request(request, request.out.extension().string());
+    require_writable(request.out);
     const Scene scene = project().scene();
-    progress.report({"export", 0.2, -1, ""});
-    ExportReport report;
-    report.out = request.out;
-    if (kind == ".npy") {
-      report.lobes = scene.light.lobes.size();
-      write_npy(request.out, to_array(scene.light), int64_t(report.lobes), 7);
-      return report;
-    }
-    const auto [mesh, materials] =
-        request.points ? ColoredMesh{handler_point_cloud(scene), {}} : colored_mesh(*device_, scene);
-    if (kind == ".ply")
-      write_ply(request.out, mesh);
-    else
-      write_glb(request.out, mesh, materials, scene.up);
+    Exporter exporter(*device_, scene, request, progress);
+    const std::vector<FileBytes> files = exporter.files();
+    write_files_atomic(files);
     progress.report({"export", 1, 0, ""});
-    report.vertices = mesh.positions.size();
-    report.triangles = mesh.triangles.size();
+    ExportReport report = std::move(exporter).report();
+    for (const FileBytes& f : files) report.files.push_back(f.path);
     return report;
   });
 }

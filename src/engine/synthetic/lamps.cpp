@@ -4,11 +4,9 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/base/parallel.h"
 #include "core/math/color.h"
 #include "core/math/sg.h"
 #include "engine/synthetic/names.h"
-#include "model/light/envmap.h"
 
 namespace cei3d {
 namespace {
@@ -56,17 +54,6 @@ SgMixture turned_with(const SgMixture& light, Vec3d center) {
   const double azimuth = std::atan2(center.y, center.x);
   const float c = float(std::cos(azimuth)), s = float(std::sin(azimuth));
   return rotated(light, Mat3f{{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}});
-}
-
-Image lat_long(const SgMixture& light, int height) {
-  Image out(2 * height, height, 3);
-  parallel_for(height, [&](int y) {
-    for (int x = 0; x < out.width; ++x) {
-      const Vec3f l = radiance(light, env_direction(float(x) + 0.5f, float(y) + 0.5f, out.width, out.height));
-      for (int c = 0; c < 3; ++c) out.at(x, y)[c] = l[c];
-    }
-  });
-  return out;
 }
 
 LightSampler::LightSampler(const SgMixture& light) {

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "core/image/image.h"
 #include "model/light/sg_mixture.h"
 
 namespace cei3d {
@@ -17,9 +16,6 @@ SgMixture light_by_name(const std::string& name);  // usage error: unknown; the 
 // The light of a body on a turntable, in the body's frame, for a camera there: fixed lamps turn with the
 // camera about +z, L_camera(w) = L(Rz(-azimuth) w) with the azimuth of the camera's position.
 SgMixture turned_with(const SgMixture&, Vec3d camera_center);
-
-// Lat-long, row 0 = +z (EnvUp::z), 2 x height by height, linear radiance at the pixel centers.
-Image lat_long(const SgMixture&, int height);
 
 // Draws directions in proportion to the light's luminance. lambda may be 0: a uniform light.
 class LightSampler {

@@ -13,6 +13,7 @@
 #include "engine/synthetic/synthetic_meta.h"
 #include "engine/synthetic/truth_files.h"
 #include "engine/synthetic/views.h"
+#include "model/light/envmap.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;

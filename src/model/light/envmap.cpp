@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/parallel.h"
+
 namespace cei3d {
 
 Vec3f env_direction(float u, float v, int width, int height, EnvUp up) {
@@ -49,6 +51,18 @@ Vec3f env_radiance(const Image& map, Vec3f direction, EnvUp up) {
     sum += Vec3f{p[0], p[1], p[2]} * t.weight[k];
   }
   return sum;
+}
+
+Image lat_long(const SgMixture& light, int height, EnvUp up) {
+  Image out(2 * height, height, 3);
+  parallel_for(height, [&](int y) {
+    for (int x = 0; x < out.width; ++x) {
+      const Vec3f l =
+          radiance(light, env_direction(float(x) + 0.5f, float(y) + 0.5f, out.width, out.height, up));
+      for (int c = 0; c < 3; ++c) out.at(x, y)[c] = l[c];
+    }
+  });
+  return out;
 }
 
 Image env_resample(const Image& map, int height) {

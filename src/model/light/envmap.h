@@ -29,6 +29,9 @@ EnvTaps env_taps(Vec3f direction, int width, int height, EnvUp up = EnvUp::z);
 // Bilinear lookup. map: 3 or more channels.
 Vec3f env_radiance(const Image& map, Vec3f direction, EnvUp up = EnvUp::z);
 
+// 2 x height by height pixels, the radiance at their centers.
+Image lat_long(const SgMixture& light, int height, EnvUp up = EnvUp::z);
+
 // The image resampled to height rows and 2 height columns, each pixel the mean radiance over its solid angle.
 Image env_resample(const Image& map, int height);
 

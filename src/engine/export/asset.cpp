@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/export/asset.h"
+
+#include <cmath>
+#include <functional>
+
+#include "core/base/parallel.h"
+#include "core/math/color.h"
+#include "engine/io/jpeg_file.h"
+#include "engine/io/png_file.h"
+
+namespace cei3d {
+namespace {
+
+constexpr int kQuality = 92;  // of JPEG
+
+Picture encoded(const Image& image, const std::string& name, PictureKind kind) {
+  if (kind == PictureKind::jpeg) return {name + ".jpg", encode_jpeg(image, kQuality), kind};
+  return {name + ".png", encode_png(image, 8), kind};
+}
+
+Image srgb(const Image& linear) {
+  Image out(linear.width, linear.height, 3);
+  const size_t texels = size_t(out.width) * out.height;
+  parallel_ranges(int(texels), 1 << 16, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i)
+      for (int c = 0; c < 3; ++c) {
+        const float* p = &linear.data[size_t(i) * linear.channels];
+        out.data[3 * size_t(i) + c] = srgb_from_linear(p[linear.channels == 3 ? c : 0]);
+      }
+  });
+  return out;
+}
+
+}  // namespace
+
+AssetPictures encode(const Textures& t, PictureKind kind) {
+  AssetPictures out;
+  out.middle_specular = t.middle_specular;
+  const std::function<void()> jobs[] = {
+      [&] { out.normal = encoded(t.normal, "normal", PictureKind::png); },
+      [&] { out.base_color = encoded(srgb(t.base_color), "base_color", kind); },
+      [&] { out.orm = encoded(t.orm, "occlusion_roughness_metalness", kind); },
+      [&] {
+        if (!t.specular.empty()) out.specular = encoded(srgb(t.specular), "specular", kind);
+      }};
+  parallel_for(int(std::size(jobs)), [&](int i) { jobs[i](); });
+  return out;
+}
+
+double index_of_refraction(const AssetPictures& pictures) {
+  const double root = std::sqrt(0.08 * pictures.middle_specular);
+  return (1 + root) / (1 - root);
+}
+
+Picture gray_picture(const Image& image, int channel, const std::string& name) {
+  Image gray(image.width, image.height, 1);
+  for (size_t i = 0; i < gray.data.size(); ++i) gray.data[i] = image.data[i * image.channels + channel];
+  return encoded(gray, name, PictureKind::png);
+}
+
+}  // namespace cei3d

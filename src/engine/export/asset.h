@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// The textured object as it goes into a file, in whatever format.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "engine/export/bake.h"
+#include "engine/export/placement.h"
+#include "engine/export/textured_mesh.h"
+
+namespace cei3d {
+
+enum class PictureKind { png, jpeg };
+
+// An encoded picture.
+struct Picture {
+  std::string name;  // "base_color.png"
+  std::string bytes;
+  PictureKind kind = PictureKind::png;
+
+  const char* mime() const { return kind == PictureKind::png ? "image/png" : "image/jpeg"; }
+};
+
+struct AssetPictures {
+  Picture base_color;               // RGB, sRGB
+  Picture orm;                      // R: occlusion, G: roughness, B: metalness
+  Picture normal;                   // tangent space, y up
+  std::optional<Picture> specular;  // RGB, sRGB: specular strength; none: the same everywhere
+  float middle_specular = 0.5f;
+};
+
+// kind: of all but the normals, which JPEG would spoil.
+AssetPictures encode(const Textures& textures, PictureKind kind);
+
+struct Asset {
+  std::string name;   // of the object in the file
+  TexturedMesh mesh;  // capture frame
+  AssetPictures pictures;
+  Placement placement;
+};
+
+// Of the mean specular strength, F0 = 0.08 specular, for formats that know no other measure.
+double index_of_refraction(const AssetPictures& pictures);
+
+// Single channels as gray pictures, for formats without packed ones. name: "roughness", without suffix.
+Picture gray_picture(const Image& image, int channel, const std::string& name);
+
+}  // namespace cei3d

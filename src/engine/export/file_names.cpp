@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/export/file_names.h"
+
+#include <cctype>
+
+namespace cei3d {
+
+std::filesystem::path beside(const std::filesystem::path& file, const std::string& ending) {
+  std::string name = file.stem().string();
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-') c = '_';
+  return file.parent_path() / (name + ending);
+}
+
+std::string uri_of(const std::filesystem::path& file) { return file.filename().string(); }
+
+}  // namespace cei3d

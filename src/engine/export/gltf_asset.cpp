@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/export/gltf_asset.h"
+
+#include <functional>
+
+#include "engine/export/file_names.h"
+#include "engine/export/gltf_parts.h"
+
+namespace cei3d {
+namespace {
+
+// Adds an image to the description; returns its entry.
+using AddImage = std::function<Json(const Picture&)>;
+
+class Description {
+ public:
+  Description(const Asset& asset, const AddImage& image)
+      : asset_(asset), image_(image), json_(gltf_head(asset.name, asset.placement)) {}
+
+  Json make(GltfBuffer& buffer) {
+    const Json primitives = Json::array({primitive(buffer)}), materials = Json::array({material()});
+    json_["meshes"] = Json::array({{{"name", asset_.name}, {"primitives", primitives}}});
+    json_["materials"] = materials;
+    constexpr int kLinear = 9729, kTrilinear = 9987, kClamp = 33071;  // OpenGL's names for them
+    json_["samplers"] = Json::array(
+        {{{"magFilter", kLinear}, {"minFilter", kTrilinear}, {"wrapS", kClamp}, {"wrapT", kClamp}}});
+    return std::move(json_);
+  }
+
+ private:
+  Json primitive(GltfBuffer& buffer) const {
+    const TexturedMesh& m = asset_.mesh;
+    std::vector<std::array<float, 4>> tangents;
+    for (const Vec3f& t : m.tangents) tangents.push_back({t.x, t.y, t.z, 1});  // no chart is mirrored
+    Json attributes;
+    attributes["POSITION"] = buffer.add_positions(m.positions);
+    attributes["NORMAL"] = buffer.add_vertices(m.normals.data(), m.normals.size(), 3, "VEC3");
+    attributes["TANGENT"] = buffer.add_vertices(tangents.data(), tangents.size(), 4, "VEC4");
+    attributes["TEXCOORD_0"] = buffer.add_vertices(m.uv.data(), m.uv.size(), 2, "VEC2");
+    return {{"attributes", attributes}, {"indices", buffer.add_triangles(m.triangles)}, {"material", 0}};
+  }
+
+  Json texture(const Picture& picture) {
+    json_["images"].push_back(image_(picture));
+    json_["textures"].push_back({{"sampler", 0}, {"source", json_["images"].size() - 1}});
+    return {{"index", json_["textures"].size() - 1}};
+  }
+
+  Json material() {
+    const AssetPictures& p = asset_.pictures;
+    Json m{{"name", asset_.name}};
+    const Json base = texture(p.base_color), orm = texture(p.orm);
+    m["pbrMetallicRoughness"] = {{"baseColorTexture", base}, {"metallicRoughnessTexture", orm}};
+    m["normalTexture"] = texture(p.normal);
+    m["occlusionTexture"] = orm;
+    // The extension's F0 is 0.04 specularColorFactor; its specularFactor would dim grazing reflections too.
+    if (!p.specular && p.middle_specular == 0.5f) return m;
+    json_["extensionsUsed"] = Json::array({"KHR_materials_specular"});
+    const float s = p.specular ? 2 : 2 * p.middle_specular;
+    Json& extension = m["extensions"]["KHR_materials_specular"];
+    extension["specularColorFactor"] = {s, s, s};
+    if (p.specular) extension["specularColorTexture"] = texture(*p.specular);
+    return m;
+  }
+
+  const Asset& asset_;
+  const AddImage& image_;
+  Json json_;
+};
+
+}  // namespace
+
+std::string encode_glb(const Asset& asset) {
+  GltfBuffer buffer;
+  const AddImage image = [&](const Picture& p) {
+    return Json{{"name", p.name}, {"mimeType", p.mime()}, {"bufferView", buffer.add_file(p.bytes)}};
+  };
+  Json description = Description(asset, image).make(buffer);
+  return glb_of(std::move(description), std::move(buffer));
+}
+
+std::vector<FileBytes> gltf_files(const Asset& asset, const std::filesystem::path& path) {
+  GltfBuffer buffer;
+  std::vector<FileBytes> out;
+  const AddImage image = [&](const Picture& p) {
+    out.push_back({beside(path, "_" + p.name), p.bytes});
+    return Json{{"name", p.name}, {"uri", uri_of(out.back().path)}};
+  };
+  Json description = Description(asset, image).make(buffer);
+  const std::filesystem::path bin = beside(path, ".bin");
+  buffer.describe(description, uri_of(bin));
+  out.push_back({bin, buffer.take_bytes()});
+  out.push_back({path, description.dump(1)});
+  return out;
+}
+
+}  // namespace cei3d

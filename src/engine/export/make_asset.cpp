@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/export/make_asset.h"
+
+#include <algorithm>
+
+#include "core/base/cancel.h"
+#include "core/base/error.h"
+#include "model/geometry/mesh/simplify.h"
+
+namespace cei3d {
+namespace {
+
+// The surface may be farther from the simplified one than the error of the last collapse says, which is a
+// mean over planes.
+float reach_of(float error) {
+  constexpr float kTimes = 5, kLeast = 0.01f, kMost = 0.05f;
+  return std::clamp(kTimes * error, kLeast, kMost);
+}
+
+void to_capture_frame(TexturedMesh& mesh, const Normalization& n) {
+  for (Vec3f& p : mesh.positions) p = to_float(n.capture_from_unit(to_double(p)));
+}
+
+}  // namespace
+
+MadeAsset make_asset(const Device& device, const Scene& scene, const std::string& name,
+                     const AssetOptions& options, Progress& progress) {
+  if (!scene.surface || !scene.albedo) fail("The object has no surface to export; reconstruct it again.");
+  progress.report({"simplify", 0.02, -1, ""});
+  const Simplified coarse = simplified(scene.surface->mesh(), options.faces);
+  check_cancelled(progress, "The export was interrupted; nothing was written.");
+  progress.report({"unwrap", 0.1, -1, ""});
+  const Atlas atlas = unwrap(coarse.mesh, options.texture);
+  const AtlasQuality quality = quality_of(coarse.mesh, atlas, options.texture);
+  check_cancelled(progress, "The export was interrupted; nothing was written.");
+  MadeAsset out;
+  out.asset.name = name;
+  out.asset.mesh = textured_mesh(coarse.mesh, atlas);
+  out.textures = bake(device, scene, out.asset.mesh, {options.texture, reach_of(coarse.error)}, progress);
+  to_capture_frame(out.asset.mesh, scene.normalization);
+  out.asset.placement = placement_of(out.asset.mesh.positions, scene.up, options.placement);
+  progress.report({"pictures", 0.9, -1, ""});
+  out.asset.pictures = encode(out.textures, options.pictures);
+  out.report = {.vertices = out.asset.mesh.positions.size(),
+                .triangles = out.asset.mesh.triangles.size(),
+                .charts = atlas.charts,
+                .used = quality.used,
+                .stretch = quality.stretch,
+                .error = double(coarse.error) / scene.normalization.scale};
+  return out;
+}
+
+}  // namespace cei3d
