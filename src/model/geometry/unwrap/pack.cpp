@@ -113,7 +113,7 @@ BitGrid turned_once(const BitGrid& g) {
 }
 
 // A piece turned in one way; quarter turns are made on its cells.
-struct ShapeVersion {
+struct Pose {
   std::vector<Vec2d> points;
   Vec2d size;
 };
@@ -140,7 +140,7 @@ class Packer {
     parallel_for(int(pieces.size()), [&](int i) {
       const double best = smallest_box(pieces[i].points);
       for (int k = 0; k < kPoses; ++k) {
-        ShapeVersion& pose = pieces_[i][k];
+        Pose& pose = pieces_[i][k];
         pose.points = turned_to_origin(pieces[i].points, best + kPi / 2 * k / kPoses);
         pose.size = box_of(pose.points).size();
       }
@@ -169,7 +169,7 @@ class Packer {
 
   std::vector<Vec2d> placed(const Packing& packing, size_t i) const {
     const Placement& at = packing.of_piece[i];
-    const ShapeVersion& pose = pieces_[i][at.pose];
+    const Pose& pose = pieces_[i][at.pose];
     const Vec2d box{double(width(pose.size.x, packing.scale)), double(width(pose.size.y, packing.scale))};
     std::vector<Vec2d> out;
     for (const Vec2d& p : pose.points) {
@@ -192,7 +192,7 @@ class Packer {
     orders_.push_back(std::move(order));
   }
 
-  BitGrid cells_of(size_t i, const ShapeVersion& pose, double scale) const {
+  BitGrid cells_of(size_t i, const Pose& pose, double scale) const {
     BitGrid grid(width(pose.size.x, scale), width(pose.size.y, scale));
     for (const auto& [a, b, c] : flat_[i].triangles)
       cover(grid, {pose.points[a] * scale, pose.points[b] * scale, pose.points[c] * scale});
@@ -245,7 +245,7 @@ class Packer {
 
   std::span<const FlatPiece> flat_;
   int cells_;
-  std::vector<std::array<ShapeVersion, kPoses>> pieces_;
+  std::vector<std::array<Pose, kPoses>> pieces_;
   std::vector<std::vector<size_t>> orders_;
 };
 
