@@ -123,9 +123,9 @@ class Flattener {
         const Vec2d p = (piece.points[t[k]] - low) * scale;
         return Vec2f{float(p.x), float(p.y)};
       };
-      for_each_texel(at(0), at(1), at(2), width, height, [&](int x, int y, float b1, float b2) {
-        constexpr float kInside = 1e-3f;  // a texel on an edge belongs to both sides
-        if (std::min({b1, b2, 1 - b1 - b2}) < kInside) return;
+      const Vec2f a = at(0), b = at(1), c = at(2);
+      for_each_texel(a, b, c, width, height, [&](int x, int y, float b1, float b2) {
+        if (edge_distance(a, b, c, b1, b2) < kInside) return;
         const size_t i = size_t(y) * width + x;
         twice |= bool(seen[i]);
         seen[i] = true;
@@ -230,13 +230,13 @@ AtlasQuality quality_of(const Mesh& mesh, const Atlas& atlas, int texels) {
     const double area = signed_area(uv[b] - uv[a], uv[c] - uv[a]) / 2;
     q.used += area;
     q.flipped += area < 0;
-    for_each_texel(texel_of(atlas, a, texels), texel_of(atlas, b, texels), texel_of(atlas, c, texels), texels,
-                   texels, [&](int x, int y, float b1, float b2) {
-                     constexpr float kInside = 1e-3f;
-                     if (std::min({b1, b2, 1 - b1 - b2}) < kInside) return;
-                     uint8_t& n = owners[size_t(y) * texels + x];
-                     q.overlapping += n++ == 1;
-                   });
+    const Vec2f p = texel_of(atlas, a, texels), r = texel_of(atlas, b, texels),
+                t = texel_of(atlas, c, texels);
+    for_each_texel(p, r, t, texels, texels, [&](int x, int y, float b1, float b2) {
+      if (edge_distance(p, r, t, b1, b2) < kInside) return;
+      uint8_t& n = owners[size_t(y) * texels + x];
+      q.overlapping += n++ == 1;
+    });
   }
   return q;
 }

@@ -12,7 +12,7 @@ namespace cei3d {
 namespace {
 
 constexpr uint32_t kNone = ~0u;
-constexpr float kCone = 0.5f;  // cosine between a face and the axis of its chart, at least
+constexpr float kCone = 0.4f;  // cosine between a face and the axis of its chart, at least
 // The same for small charts that are joined to another, as a share of the whole area: what does not lie flat
 // then is cut again.
 constexpr float kSmallCone = 0.0f, kSmall = 0.02f;
