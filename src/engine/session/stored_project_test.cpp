@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+// Makes the stored project that tests/e2e/stored.sh opens: disabled, since it is to stay as the program of
+// its day stored it. It is made anew only when a format changes so that it cannot be read any more.
+#include <gtest/gtest.h>
+
+#include "engine/project/project.h"
+#include "engine/reconstruct/test_run.h"
+#include "engine/session/session.h"
+
+namespace cei3d {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kStored = "tests/e2e/data/stored";
+
+Scene reconstructed(const TurntableCapture& capture) {
+  ReconstructOptions options;
+  options.iterations = 150;
+  options.light = LightMotion::turntable;
+  Preset preset = shrunken(preset_by_name("fast"));
+  preset.polish_from_iterations = 1;
+  preset.appearance.albedo_steps = preset.residual_steps = 300;
+  preset.finer_meshing = preset.meshing;
+  MemoryCheckpoints checkpoints;
+  Progress quiet;
+  Scene scene = reconstruct({.device = make_device(),
+                             .capture = capture.capture(),
+                             .images = capture,
+                             .normalization = {},
+                             .options = options,
+                             .preset = preset},
+                            checkpoints, quiet);
+  FieldConfig materials = preset.appearance.albedo;  // so small a run finds one material only
+  materials.outputs = MaterialField::kOutputs;
+  scene.material = {scene.material.mean(), std::make_shared<Field>(materials, 9)};
+  return scene;
+}
+
+// A layer of paint with a network much smaller than those that learn a scribble.
+void add_small_paint(const fs::path& folder) {
+  Project project = Project::open(folder, Project::Mode::write);
+  FieldConfig config;
+  config.encoding = {0, 2, 4, 8, 6};
+  config.width = 32;
+  config.output_activation = Activation::sigmoid;
+  EditLayer layer;
+  layer.id = project.stack().next_id("paint");
+  layer.region = Region({{{0, 0, -0.4f}}, {{0, 0, -1}}, {0.3f}});
+  layer.albedo = std::make_shared<Field>(config, 5);
+  project.add_edit({layer.id, "paint", 1, Json::object(), {}, Json::object(), {}}, layer);
+}
+
+void add_edits(Session& session) {
+  Progress quiet;
+  MaterialCommand smoother;
+  smoother.effects.roughness = 0.4;
+  session.change_material(smoother, quiet);
+  PartCommand part;
+  part.view = "0";
+  part.positive = {{20.5, 20.5}};
+  part.name = "side";
+  part.effects.color = "#4060a0";
+  session.select_part(part, quiet);
+  session.deform({PixelDrag{"0", {20.5, 20.5}, {2, 0}}, 0.3, ""}, quiet);
+  LightChoice light;
+  light.rotate_degrees = 40;
+  light.scale = 1.2;
+  session.change_light(light, quiet);
+}
+
+void render_into(Session& session, const std::string& name) {
+  Progress quiet;
+  const fs::path out = fs::temp_directory_path() / ("stored-" + name);
+  RenderRequest request;
+  request.out = out;
+  request.channels = {Channel::rgb, Channel::albedo, Channel::normal, Channel::roughness};
+  session.render(request, quiet);
+  for (const Channel c : request.channels)
+    fs::copy(out / channel_name(c), kStored / name / channel_name(c), fs::copy_options::recursive);
+  fs::remove_all(out);
+}
+
+TEST(StoredProject, DISABLED_IsMade) {
+  fs::remove_all(kStored);
+  fs::create_directories(kStored);
+  fs::create_directories(kStored / "plain");
+  fs::create_directories(kStored / "edited");
+  const TurntableCapture images(18, 48);
+  Capture capture = images.capture();
+  capture.root = "/nowhere";
+  capture.format = "nerf-synthetic";
+  const Scene scene = reconstructed(images);
+  EXPECT_EQ(scene.light_frame.motion, LightMotion::turntable);
+  EXPECT_TRUE(scene.residual);
+  const fs::path folder = kStored / "project";
+  Project::create(folder, {}, capture, false).save_base(scene);
+  Session session;
+  session.open(folder, Session::Access::read);
+  render_into(session, "plain");
+  session.close();
+  add_small_paint(folder);
+  session.open(folder, Session::Access::write);
+  add_edits(session);
+  render_into(session, "edited");
+  session.close();
+  for (const char* name : {"cache", "runs", ".lock"}) fs::remove_all(folder / name);
+}
+
+}  // namespace
+}  // namespace cei3d
