@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/test_unknown_keys.h"
+#include "engine/reconstruct/run_state.h"
 #include "engine/reconstruct/test_run.h"
 
 namespace cei3d {
@@ -53,16 +54,10 @@ class SmallRun : Owner<BoxCapture>, public AnyRun {
   SmallRun() : AnyRun(own.capture(), own) {}
 };
 
-// Of one of several materials under a light that turns.
+// Under a light that turns: so small a run cannot find out that it does.
 class SmallTurningRun : Owner<TurntableCapture>, public AnyRun {
  public:
-  SmallTurningRun() : AnyRun(own.capture(), own) {
-    options.light = LightMotion::turntable;
-    preset.appearance.roughness = 0;
-    preset.appearance.materials = preset.appearance.albedo;
-    preset.appearance.materials.outputs = MaterialField::kOutputs;
-    preset.appearance.material_steps = 20;
-  }
+  SmallTurningRun() : AnyRun(own.capture(), own) { options.light = LightMotion::turntable; }
 };
 
 void expect_same(const Tensors& a, const Tensors& b, const std::string& where) {
@@ -161,21 +156,44 @@ TEST(Reconstruct, InterruptedAgainAndAgainMakesTheSameObject) {
   EXPECT_EQ(scene.head, reference.scene.head);
 }
 
-TEST(Reconstruct, SeveralMaterialsUnderATurningLightAreResumedAnywhere) {
-  SmallTurningRun small;
-  const Reference reference(small);
-  const Json& head = reference.scene.head;
-  ASSERT_TRUE(head.contains("materials")) << "one material";
-  ASSERT_EQ(head.at("light_frame").at("motion"), "turntable");
-  MemoryCheckpoints checkpoints;
-  const std::vector<std::string>& stages = reference.progress.stages;
-  for (size_t s = 1; s + 1 < stages.size(); ++s)
-    run_interrupted(small, checkpoints, stages[s], reference.progress.checks.at(stages[s]) * 3 / 4,
+// Interrupts each stage from `first` on, at three quarters of its checks, and resumes it.
+Checkpoints::State with_interruptions(AnyRun& small, MemoryCheckpoints& checkpoints,
+                                      const ScriptedProgress& uninterrupted, size_t first) {
+  const std::vector<std::string>& stages = uninterrupted.stages;
+  for (size_t s = first; s + 1 < stages.size(); ++s)
+    run_interrupted(small, checkpoints, stages[s], uninterrupted.checks.at(stages[s]) * 3 / 4,
                     s % 2 ? How::cancel : How::kill);
   ScriptedProgress rest;
-  const Checkpoints::State scene = saved(small.run(checkpoints, rest));
-  expect_same(scene.tensors, reference.scene.tensors, "the object");
-  EXPECT_EQ(scene.head, head);
+  return saved(small.run(checkpoints, rest));
+}
+
+// The state after the stage, with a network of materials, as an object of several has one.
+Checkpoints::State with_materials(const Checkpoints::State& state) {
+  SavedRun run = read_checkpoint(state, {});
+  FieldConfig config = run.state.scene.albedo->config();
+  config.outputs = MaterialField::kOutputs;
+  run.state.scene.material = {run.state.scene.material.mean(), std::make_shared<Field>(config, 9)};
+  return checkpoint_of(run.position, run.state);
+}
+
+TEST(Reconstruct, ATurningLightAndSeveralMaterialsAreResumedAnywhere) {
+  SmallTurningRun small;
+  const Reference turning(small);
+  ASSERT_EQ(turning.scene.head.at("light_frame").at("motion"), "turntable");
+  MemoryCheckpoints again;
+  const Checkpoints::State object = with_interruptions(small, again, turning.progress, 1);
+  expect_same(object.tensors, turning.scene.tensors, "turning light");
+  EXPECT_EQ(object.head, turning.scene.head);
+
+  MemoryCheckpoints of_several;
+  of_several.latest_state = with_materials(turning.checkpoints.after.at("appearance"));
+  MemoryCheckpoints interrupted = of_several;
+  ScriptedProgress progress;
+  const Checkpoints::State several = saved(small.run(of_several, progress));
+  ASSERT_TRUE(several.head.contains("materials"));
+  const Checkpoints::State same = with_interruptions(small, interrupted, progress, 1);
+  expect_same(same.tensors, several.tensors, "several materials");
+  EXPECT_EQ(same.head, several.head);
 }
 
 // Before there were stages, checkpoints held the geometry stage alone.

@@ -44,7 +44,7 @@ class BoxCapture : public ImageSource {
 // The same box, of matte stone below and of polished metal above, on a turntable under fixed lamps.
 class TurntableCapture : public ImageSource {
  public:
-  explicit TurntableCapture(int views = 12, int size = 40) {
+  explicit TurntableCapture(int views = 12, int size = 32) {
     for (int v = 0; v < views; ++v) {
       View view;
       view.name = std::to_string(v);

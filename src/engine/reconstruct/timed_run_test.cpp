@@ -92,8 +92,6 @@ TEST(TimedRun, RefinesTheAlbedoOfManyPixels) {
   EXPECT_TRUE(r.has("albedo 1"));
   EXPECT_LE(r.seconds(), 1.05 * 400);  // a tick is long
   expect_complete(r.scene, "with refinements");
-  for (const Json& line : r.progress->lines) std::printf("%s\n", line.dump().c_str());
-  for (const auto& [stage, checks] : r.progress->checks) std::printf("%s %d checks\n", stage.c_str(), checks);
 }
 
 TEST(TimedRun, ResumedKeepsItsPlanAndItsTime) {
