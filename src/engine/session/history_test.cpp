@@ -196,7 +196,10 @@ TEST_F(RandomEdits, OfTwoSessionsInTwoThreadsAreThoseOfOneAfterTheOther) {
 TEST_F(RandomEdits, AWholeMaterialIsExported) {
   make_edit(2);  // roughness 0.7
   const fs::path file = temp_.path() / "object.glb";
-  session_.export_to({file}, quiet_);
+  ExportRequest request;
+  request.out = file;
+  request.texture = 0;
+  session_.export_to(request, quiet_);
   const std::string glb = read_file(file);
   EXPECT_THAT(glb.substr(0, glb.find("BIN")), HasSubstr("\"roughnessFactor\":0.69999"));
 }
