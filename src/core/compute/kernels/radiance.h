@@ -14,29 +14,27 @@ namespace cei3d {
 inline constexpr int kRadianceOctaves = 4;
 HD constexpr int radiance_rows(int features) { return features + 3 + 3 + 3 + 1 + 3 + 6 * kRadianceOctaves; }
 
-// rotations: [panels][9][32], row-major, or null for none.
+// Rotation of sample i. rotations: [panels][9][32], row-major.
 template <class T>
-HD Vec3<T> rotated(const float* rotations, int i, Vec3<T> v) {
-  if (!rotations) return v;
+HD Mat3<T> load_rotation(const float* rotations, int i) {
   const float* p = rotations + panel_at(i, 1, 0, 9, 0);
   const auto row = [&](int r) {
     const float* q = p + 3 * r * kPanel;
     return Vec3<T>{load<T>(q), load<T>(q + kPanel), load<T>(q + 2 * kPanel)};
   };
-  return {dot(row(0), v), dot(row(1), v), dot(row(2), v)};
+  return {{row(0), row(1), row(2)}};
 }
 HD void store_rotation(float* rotations, int i, const Mat3f& r) {  // [panels][9][32]
   for (int k = 0; k < 9; ++k) rotations[panel_at(i, 1, 0, 9, k)] = r.row[k / 3][k % 3];
 }
+// rotations: null for none.
+template <class T>
+HD Vec3<T> rotated(const float* rotations, int i, Vec3<T> v) {
+  return rotations ? load_rotation<T>(rotations, i) * v : v;
+}
 template <class T>
 HD Vec3<T> rotated_back(const float* rotations, int i, Vec3<T> v) {
-  if (!rotations) return v;
-  const float* p = rotations + panel_at(i, 1, 0, 9, 0);
-  const auto column = [&](int c) {
-    const float* q = p + c * kPanel;
-    return Vec3<T>{load<T>(q), load<T>(q + 3 * kPanel), load<T>(q + 6 * kPanel)};
-  };
-  return {dot(column(0), v), dot(column(1), v), dot(column(2), v)};
+  return rotations ? transpose(load_rotation<T>(rotations, i)) * v : v;
 }
 
 struct RadianceInput {

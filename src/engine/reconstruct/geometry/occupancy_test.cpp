@@ -79,11 +79,15 @@ TEST(OccupancyGrid, RaysThatPassFarFromTheSurfaceAreNotSampled) {
   EXPECT_EQ(count, 0);
 }
 
-TEST(OccupancyGrid, ARefreshPutsTheFieldsDistanceIntoEveryCellWithinTheMargin) {
+Field sphere_field() {
   FieldConfig config;
   config.outputs = 1;
   config.sphere_radius = 0.5f;
-  const Field sdf(config, 3);
+  return {config, 3};
+}
+
+TEST(OccupancyGrid, ARefreshPutsTheFieldsDistanceIntoEveryCellWithinTheMargin) {
+  const Field sdf = sphere_field();
   const Device device = make_device("cpu");
   OccupancyGrid grid(32);
   const float before = grid.at({0, 0, 0});
@@ -112,10 +116,7 @@ class StopsAt : public Progress {
 };
 
 TEST(OccupancyGrid, AnInterruptedRefreshChangesNothing) {
-  FieldConfig config;
-  config.outputs = 1;
-  config.sphere_radius = 0.5f;
-  const Field sdf(config, 3);
+  const Field sdf = sphere_field();
   const Device device = make_device("cpu");
   OccupancyGrid grid(64);
   const std::vector<float> before = grid.values();
