@@ -26,16 +26,30 @@ std::vector<float> directions(int n, uint64_t seed) {  // [3][n]
   return v;
 }
 
+// Unit vectors at right angles to the given ones, whose rows hold kPoints each.
+std::vector<float> normal_to(const std::vector<float>& directions) {
+  std::vector<float> out(directions.size());
+  for (int i = 0; i < kPoints; ++i) {
+    const Vec3f side =
+        normalize(cross(load_planes<float>(directions.data(), kPoints, i), {0.3f, 0.5f, 0.8f}));
+    store_planes(out.data(), kPoints, i, side);
+  }
+  return out;
+}
+
 struct LobeScene {
   std::vector<float> lobes = directions(kLobes, 1), normals = directions(kPoints, 2),
                      mirrors = directions(kPoints, 3);
   // Weights of the outputs in the loss.
   std::vector<float> y1 = noise(3 * kPoints, 4), y2 = noise(3 * kPoints, 5);
-  std::vector<float> roughness;
+  std::vector<float> across = normal_to(mirrors), roughness, stretch;
   LobeScene() {
     for (int k = 0; k < kLobes; ++k) lobes.push_back(0.5f + 80 * square(Rng(6, 0, k).uniform()));
     for (int k = 0; k < 3 * kLobes; ++k) lobes.push_back(Rng(7, 0, k).uniform());
-    for (int i = 0; i < kPoints; ++i) roughness.push_back(0.2f + 0.7f * Rng(8, 0, i).uniform());
+    for (int i = 0; i < kPoints; ++i) {
+      roughness.push_back(0.2f + 0.7f * Rng(8, 0, i).uniform());
+      stretch.push_back(1 + 1.5f * Rng(11, 0, i).uniform());
+    }
   }
   static std::vector<float> noise(int n, uint64_t seed) {
     std::vector<float> v(n);
@@ -43,6 +57,9 @@ struct LobeScene {
     return v;
   }
   LobePlanes planes() const { return {lobes.data(), kLobes, kLobes}; }
+  ReflectionPlanes points() const {
+    return {mirrors.data(), across.data(), roughness.data(), stretch.data()};
+  }
 
   std::vector<float> irradiance(const Device& d) const {
     std::vector<float> out(3 * kPoints);
@@ -51,12 +68,12 @@ struct LobeScene {
   }
   std::vector<float> reflection(const Device& d) const {
     std::vector<float> out(3 * kPoints);
-    d.launch<SgReflection>({planes(), kPoints, mirrors.data(), roughness.data(), out.data()}, kPoints);
+    d.launch<SgReflection>({planes(), kPoints, points(), out.data()}, kPoints);
     return out;
   }
   std::vector<float> reflection_lobes(const Device& d) const {
     std::vector<float> out(ReflectionLobes::kRows * kPoints);
-    d.launch<ReflectionLobes>({kPoints, roughness.data(), out.data()}, kPoints);
+    d.launch<ReflectionLobes>({kPoints, roughness.data(), stretch.data(), out.data()}, kPoints);
     return out;
   }
   std::vector<float> gradient(const Device& d) const {
@@ -68,6 +85,7 @@ struct LobeScene {
                            .end = kPoints,
                            .normals = normals.data(),
                            .axes = mirrors.data(),
+                           .across = across.data(),
                            .reflection_lobes = reflection.data(),
                            .d_irradiance = y1.data(),
                            .d_reflected = y2.data(),
@@ -75,16 +93,17 @@ struct LobeScene {
                           kLobes);
     return out;
   }
-  // [4][kPoints]: by the mirrored direction and by the roughness.
+  // [8][kPoints]: by axis, direction across, roughness and stretch.
   std::vector<float> point_gradient(const Device& d) const {
-    std::vector<float> out(4 * kPoints);
+    std::vector<float> out(8 * kPoints);
     d.launch<SgReflectionGrad>({.lobes = planes(),
                                 .stride = kPoints,
-                                .axes = mirrors.data(),
-                                .roughness = roughness.data(),
+                                .points = points(),
                                 .d_reflected = y2.data(),
                                 .d_axes = out.data(),
-                                .d_roughness = out.data() + 3 * kPoints},
+                                .d_across = out.data() + 3 * kPoints,
+                                .d_roughness = out.data() + 6 * kPoints,
+                                .d_stretch = out.data() + 7 * kPoints},
                                kPoints);
     return out;
   }
@@ -215,18 +234,31 @@ TEST(ShadeKernels, AdjointOfAMirrorDirectionEqualsDifferencesAlongTheSphere) {
     expect_slope_along_the_sphere(s, &LobeScene::mirrors, kPoints, i, vector_at(g, kPoints, i), 0.005);
 }
 
-TEST(ShadeKernels, AdjointOfTheRoughnessEqualsDifferences) {
+TEST(ShadeKernels, AdjointOfTheDirectionAcrossEqualsDifferences) {
   const Device device = make_device("cpu/scalar");
   const LobeScene s;
-  const std::vector<float> g = s.point_gradient(device);
+  const std::vector<float> g = s.point_gradient(device),
+                           across(g.begin() + 3 * kPoints, g.begin() + 6 * kPoints);
+  for (const size_t i : {0, 5, 40, 63})
+    expect_slope_along_the_sphere(s, &LobeScene::across, kPoints, i, vector_at(across, kPoints, i), 0.005);
+}
+
+void expect_slope(std::vector<float> LobeScene::*member, int i, float got) {
+  const Device device = make_device("cpu/scalar");
+  const auto loss_at = [&](float h) {
+    LobeScene moved;
+    (moved.*member)[size_t(i)] += h;
+    return moved.loss(device);
+  };
+  const double slope = (loss_at(0.004f) - loss_at(-0.004f)) / 0.008;
+  EXPECT_NEAR(got, slope, 0.02 * std::abs(slope) + 0.01) << i;
+}
+
+TEST(ShadeKernels, AdjointsOfRoughnessAndStretchEqualDifferences) {
+  const std::vector<float> g = LobeScene().point_gradient(make_device("cpu/scalar"));
   for (const int i : {0, 9, 31, 63}) {
-    const auto loss_at = [&](float h) {
-      LobeScene moved = s;
-      moved.roughness[i] += h;
-      return moved.loss(device);
-    };
-    const double slope = (loss_at(0.004f) - loss_at(-0.004f)) / 0.008;
-    EXPECT_NEAR(g[3 * kPoints + i], slope, 0.02 * std::abs(slope) + 0.01) << i;
+    expect_slope(&LobeScene::roughness, i, g[size_t(6 * kPoints + i)]);
+    expect_slope(&LobeScene::stretch, i, g[size_t(7 * kPoints + i)]);
   }
 }
 

@@ -55,60 +55,102 @@ HD ReflectionLobe<T> reflection_lobe(T roughness) {
   return lobe;
 }
 
-// The mixture and its derivatives by the roughness; below kMinRoughness they are 0.
+// One minus the length of its mean direction: for sharp lobes the variance along every tangent.
 template <class T>
-struct ReflectionLobeGrad {
-  ReflectionLobe<T> lobe;
-  T d_lambda[kReflectionLobes], d_weight[kReflectionLobes];
+HD T reflection_width(T roughness) {
+  const ReflectionLobe<T> lobe = reflection_lobe(roughness);
+  T sum(0.0f);
+  for (int j = 0; j < kReflectionLobes; ++j) {
+    const T e = exp(T(-2.0f) * lobe.lambda[j]), inverse = T(1.0f) / lobe.lambda[j];
+    sum += T(reflection_share(j)) * (inverse - T(2.0f) * e / (T(1.0f) - e));  // 1 - coth + 1 / lambda
+  }
+  return sum;
+}
+
+// The mixture stretched along the plane of incidence: at grazing angles the reflection of a rough surface is
+// longer in that plane than across it. stretch: the ratio of the two widths, >= 1; their product is that of
+// the round lobe.
+template <class T>
+struct StretchedLobe {
+  T along[kReflectionLobes], across[kReflectionLobes], weight[kReflectionLobes];  // sharpnesses, weights
 };
 template <class T>
-HD ReflectionLobeGrad<T> reflection_lobe_grad(T roughness) {
-  const T clamped = max(roughness, T(kMinRoughness));
-  const T d_scale = select(roughness < T(kMinRoughness), T(0.0f), reflection_scale_grad(clamped));
-  ReflectionLobeGrad<T> g{reflection_lobe(roughness), {}, {}};
+HD StretchedLobe<T> stretched_lobe(T roughness, T stretch) {
+  const ReflectionLobe<T> round = reflection_lobe(roughness);
+  const T shrink = T(1.0f) / stretch;
+  StretchedLobe<T> lobe;
   for (int j = 0; j < kReflectionLobes; ++j) {
-    g.d_lambda[j] = T(reflection_node(j)) * d_scale;
-    const T d_integral = sg_integral_grad(g.lobe.lambda[j]) * g.d_lambda[j];
-    g.d_weight[j] = -(g.lobe.weight[j] * d_integral / sg_integral(g.lobe.lambda[j]));
+    lobe.along[j] = round.lambda[j] * shrink;
+    lobe.across[j] = round.lambda[j] * stretch;
+    lobe.weight[j] = round.weight[j];
   }
-  return g;
+  return lobe;
+}
+
+// The adjoint of stretched_lobe(); below kMinRoughness the derivative by the roughness is 0.
+template <class T>
+struct LobeMaterialGrad {
+  T d_roughness, d_stretch;
+};
+template <class T>
+HD LobeMaterialGrad<T> stretched_lobe_grad(T roughness, T stretch, const StretchedLobe<T>& d) {
+  const T clamped = max(roughness, T(kMinRoughness)), shrink = T(1.0f) / stretch;
+  const T d_scale = select(roughness < T(kMinRoughness), T(0.0f), reflection_scale_grad(clamped));
+  const ReflectionLobe<T> round = reflection_lobe(roughness);
+  LobeMaterialGrad<T> sum{T(0.0f), T(0.0f)};
+  for (int j = 0; j < kReflectionLobes; ++j) {
+    const T lambda = round.lambda[j],
+            weight_by_lambda = -(round.weight[j] * sg_integral_grad(lambda) / sg_integral(lambda));
+    const T d_lambda = d.along[j] * shrink + d.across[j] * stretch + d.weight[j] * weight_by_lambda;
+    sum.d_roughness += d_lambda * T(reflection_node(j)) * d_scale;
+    sum.d_stretch += lambda * (d.across[j] - d.along[j] * shrink * shrink);
+  }
+  return sum;
 }
 
 // Radiance of a light lobe of unit height and sharpness lambda, averaged over the reflection lobe; q is the
-// squared distance of the light's axis and the mirror direction on the unit sphere.
+// squared distance of the light's axis and the lobe's on the unit sphere, h its part across the plane of
+// incidence.
 template <class T>
-HD T sg_reflected(T lambda, const ReflectionLobe<T>& lobe, T q) {
+HD T sg_reflected(T lambda, const StretchedLobe<T>& lobe, T q, T h) {
   T sum(0.0f);
-  for (int j = 0; j < kReflectionLobes; ++j) sum += lobe.weight[j] * sg_inner(lambda, lobe.lambda[j], q);
+  for (int j = 0; j < kReflectionLobes; ++j)
+    sum += lobe.weight[j] * sg_stretched_inner(lambda, lobe.along[j], lobe.across[j], q, h);
   return sum;
 }
 template <class T>
 struct SgReflectedGrad {
-  T value, d_lambda, d_q;
+  T value, d_lambda, d_q, d_h;
 };
 template <class T>
-HD SgReflectedGrad<T> sg_reflected_grad(T lambda, const ReflectionLobe<T>& lobe, T q) {
-  SgReflectedGrad<T> sum{T(0.0f), T(0.0f), T(0.0f)};
+HD SgReflectedGrad<T> sg_reflected_grad(T lambda, const StretchedLobe<T>& lobe, T q, T h) {
+  SgReflectedGrad<T> sum{T(0.0f), T(0.0f), T(0.0f), T(0.0f)};
   for (int j = 0; j < kReflectionLobes; ++j) {
-    const SgInnerGrad<T> s = sg_inner_grad(lambda, lobe.lambda[j], q);
+    const SgStretchedInnerGrad<T> s = sg_stretched_inner_grad(lambda, lobe.along[j], lobe.across[j], q, h);
     sum.value += lobe.weight[j] * s.value;
     sum.d_lambda += lobe.weight[j] * s.d_lambda1;
     sum.d_q += lobe.weight[j] * s.d_q;
+    sum.d_h += lobe.weight[j] * s.d_h;
   }
   return sum;
 }
-// Derivatives by q and by the roughness that the lobe was made for.
+// Adds `d` times the derivatives by the lobe to d_lobe. Returns those by q and h.
 template <class T>
-struct SgReflectedMaterialGrad {
-  T d_q, d_roughness;
+struct SgDistanceGrad {
+  T d_q, d_h;
 };
 template <class T>
-HD SgReflectedMaterialGrad<T> sg_reflected_material_grad(T lambda, const ReflectionLobeGrad<T>& g, T q) {
-  SgReflectedMaterialGrad<T> sum{T(0.0f), T(0.0f)};
+HD SgDistanceGrad<T> sg_reflected_lobe_grad(T lambda, const StretchedLobe<T>& lobe, T q, T h, T d,
+                                            StretchedLobe<T>& d_lobe) {
+  SgDistanceGrad<T> sum{T(0.0f), T(0.0f)};
   for (int j = 0; j < kReflectionLobes; ++j) {
-    const SgInnerGrad<T> s = sg_inner_grad(lambda, g.lobe.lambda[j], q);
-    sum.d_q += g.lobe.weight[j] * s.d_q;
-    sum.d_roughness += g.d_weight[j] * s.value + g.lobe.weight[j] * s.d_lambda2 * g.d_lambda[j];
+    const SgStretchedInnerGrad<T> s = sg_stretched_inner_grad(lambda, lobe.along[j], lobe.across[j], q, h);
+    const T weight = d * lobe.weight[j];
+    d_lobe.along[j] += weight * s.d_along;
+    d_lobe.across[j] += weight * s.d_across;
+    d_lobe.weight[j] += d * s.value;
+    sum.d_q += weight * s.d_q;
+    sum.d_h += weight * s.d_h;
   }
   return sum;
 }

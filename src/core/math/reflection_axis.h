@@ -5,7 +5,8 @@
 // at grazing angles, the bias of the split sum, has a lobe of its own: it is narrower and stays near the
 // mirror direction, and makes most of the highlights of rough dielectrics. The round lobe of
 // core/math/reflection.h, turned and scaled, gets the mean direction of each: its axis, and the length of the
-// mean as a measure of its width.
+// mean as a measure of its width. The stretched lobe gets also the ratio of the standard deviations in the
+// plane of incidence and across it.
 #pragma once
 
 #include "core/math/mirror.h"
@@ -35,27 +36,61 @@ HD ReflectionAxis<T> reflection_axis(const float* table, Vec3<T> n, Vec3<T> v, T
   return {normalize(mirrored_direction(n, v) * (one - p.first) + n * p.first), roughness * p.second};
 }
 
+// The table of (the stretched lobe's roughness over the surface's, its stretch). Made on first use (20 ms).
+const float* reflection_stretch_table(ReflectionPart);
+
+// Tables of one part, or copies of them on the device that this runs on.
+struct PartTables {
+  const float *axis, *stretch;
+};
+
+// A stretched_lobe(): at grazing angles reflections are longer in the plane of incidence than across it.
 template <class T>
-struct ReflectionAxisGrad {
+struct LobeFrame {
+  Vec3<T> axis;    // unit
+  Vec3<T> across;  // unit, normal to the plane of incidence; shorter, down to 0, where the viewer is above
+  T roughness, stretch;
+};
+
+// 1 / sin of the angle between normal and viewer, bounded at 0.
+template <class T>
+HD T inverse_sine(T nv) {
+  return T(1.0f) / sqrt(max(T(1.0f) - nv * nv, T(0.0f)) + T(1e-3f));
+}
+
+template <class T>
+HD LobeFrame<T> lobe_frame(const PartTables& tables, Vec3<T> n, Vec3<T> v, T roughness) {
+  const T nv = dot(n, v);
+  const ReflectionAxis<T> round = reflection_axis(tables.axis, n, v, roughness);
+  const TablePair<T> p = table_pair_grad(tables.stretch, nv, roughness).value;
+  return {round.axis, cross(n, v) * inverse_sine(nv), roughness * p.first, p.second};
+}
+
+template <class T>
+struct LobeFrameGrad {
   Vec3<T> d_n, d_v;  // tangent to the unit sphere at n and v
   T d_roughness;
 };
-// From dL/d(axis) and dL/d(the lobe's roughness).
+// d: dL/d(every member of the frame).
 template <class T>
-HD ReflectionAxisGrad<T> reflection_axis_grad(const float* table, Vec3<T> n, Vec3<T> v, T roughness,
-                                              Vec3<T> d_axis, T d_lobe_roughness) {
-  const T one(1.0f), nv = dot(n, v);
-  const TablePairGrad<T> p = table_pair_grad(table, nv, roughness);
-  const T share = p.value.first;
+HD LobeFrameGrad<T> lobe_frame_grad(const PartTables& tables, Vec3<T> n, Vec3<T> v, T roughness,
+                                    const LobeFrame<T>& d) {
+  const T one(1.0f), nv = dot(n, v), inverse = inverse_sine(nv);
+  const TablePairGrad<T> a = table_pair_grad(tables.axis, nv, roughness),
+                         s = table_pair_grad(tables.stretch, nv, roughness);
+  const T share = a.value.first;
   const Vec3<T> mirror = mirrored_direction(n, v), sum = mirror * (one - share) + n * share;
   const T length_of_sum = sqrt(dot(sum, sum));
-  const Vec3<T> axis = sum / length_of_sum, d_sum = (d_axis - axis * dot(axis, d_axis)) / length_of_sum;
-  const T d_share = dot(d_sum, n - mirror);
-  const T d_nv = d_share * p.d_nv.first + d_lobe_roughness * roughness * p.d_nv.second;
-  const Vec3<T> by_n = d_sum * share + v * d_nv, by_v = n * d_nv;
-  ReflectionAxisGrad<T> g{
-      by_n - n * dot(by_n, n), by_v - v * dot(by_v, v),
-      d_share * p.d_roughness.first + d_lobe_roughness * (p.value.second + roughness * p.d_roughness.second)};
+  const Vec3<T> axis = sum / length_of_sum, d_sum = (d.axis - axis * dot(axis, d.axis)) / length_of_sum;
+  const T d_share = dot(d_sum, n - mirror), d_ratio = d.roughness * roughness;
+  const T d_inverse = dot(d.across, cross(n, v));  // by inverse_sine(), whose derivative is nv inverse^3
+  const T d_nv = d_share * a.d_nv.first + d_ratio * s.d_nv.first + d.stretch * s.d_nv.second +
+                 d_inverse * nv * inverse * inverse * inverse;
+  const Vec3<T> by_n = d_sum * share + v * d_nv + cross(v, d.across) * inverse,
+                by_v = n * d_nv + cross(d.across, n) * inverse;
+  LobeFrameGrad<T> g{by_n - n * dot(by_n, n), by_v - v * dot(by_v, v),
+                     d_share * a.d_roughness.first + d.roughness * s.value.first +
+                         d_ratio * s.d_roughness.first + d.stretch * s.d_roughness.second};
   mirrored_direction_grad(n, v, d_sum * (one - share), g.d_n, g.d_v);
   return g;
 }
@@ -70,7 +105,8 @@ HD T base_share(SplitSum<T> s, T specular, T metalness) {
 }
 
 struct ReflectionTables {
-  const float *split_sum, *base, *fresnel;
+  const float* split_sum;
+  PartTables base, fresnel;
 };
 ReflectionTables reflection_tables();  // on the host
 
@@ -78,13 +114,13 @@ ReflectionTables reflection_tables();  // on the host
 // reflection lobe, which the reflectance multiplies.
 template <class T>
 struct SurfaceReflection {
-  ReflectionAxis<T> base, fresnel;
+  LobeFrame<T> base, fresnel;
   T share;  // of the base lobe, the rest being Fresnel's
 };
 template <class T>
 HD SurfaceReflection<T> surface_reflection(const ReflectionTables& t, Vec3<T> n, Vec3<T> v, T roughness,
                                            T specular, T metalness) {
-  return {reflection_axis(t.base, n, v, roughness), reflection_axis(t.fresnel, n, v, roughness),
+  return {lobe_frame(t.base, n, v, roughness), lobe_frame(t.fresnel, n, v, roughness),
           base_share(split_sum(t.split_sum, dot(n, v), roughness), specular, metalness)};
 }
 
@@ -99,10 +135,8 @@ HD SurfaceReflectionGrad<T> surface_reflection_grad(const ReflectionTables& t, V
                                                     T roughness, T specular, T metalness,
                                                     const SurfaceReflection<T>& d) {
   const T one(1.0f), zero(0.0f), nv = dot(n, v);
-  const ReflectionAxisGrad<T> base =
-      reflection_axis_grad(t.base, n, v, roughness, d.base.axis, d.base.roughness);
-  const ReflectionAxisGrad<T> fresnel =
-      reflection_axis_grad(t.fresnel, n, v, roughness, d.fresnel.axis, d.fresnel.roughness);
+  const LobeFrameGrad<T> base = lobe_frame_grad(t.base, n, v, roughness, d.base),
+                         fresnel = lobe_frame_grad(t.fresnel, n, v, roughness, d.fresnel);
   const SplitSumGrad<T> s = split_sum_grad(t.split_sum, nv, roughness);
   const T f0 = dielectric_f0(specular, metalness) + metalness * T(kMetalF0),
           sum = f0 * s.value.scale + s.value.bias;

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <utility>
+
 #include "core/math/dual.h"
 #include "core/math/reflection.h"
 #include "core/math/rng.h"
@@ -14,13 +17,12 @@ using D = Dual<double>;
 
 Vec3d viewer_at(double nv) { return {std::sqrt(1 - nv * nv), 0, nv}; }
 
-// Brute force over light directions: the mean direction of what reaches the viewer of uniform light, of the
-// part of the reflectance that F0 scales, or of what it is without F0.
-Vec3d mean_direction(ReflectionPart part, double nv, double roughness) {
+// Brute force over the light directions of what reaches the viewer of uniform light, of the part of the
+// reflectance that F0 scales, or of what it is without F0: calls visit(direction, weight).
+template <class F>
+void for_directions(ReflectionPart part, double nv, double roughness, const F& visit) {
   const int rows = 500, columns = 500;
   const Vec3d n{0, 0, 1}, v = viewer_at(nv);
-  Vec3d sum{0, 0, 0};
-  double total = 0;
   for (int i = 0; i < rows; ++i) {
     const double t = 0.5 * M_PI * (i + 0.5) / rows, s = std::sin(t), c = std::cos(t);
     for (int j = 0; j < columns; ++j) {
@@ -28,12 +30,30 @@ Vec3d mean_direction(ReflectionPart part, double nv, double roughness) {
       const Vec3d l{s * std::cos(a), s * std::sin(a), c};
       const double none = microfacet_brdf(n, v, l, 0.0, roughness),
                    all = microfacet_brdf(n, v, l, 1.0, roughness);
-      const double weight = s * c * (part == ReflectionPart::base ? all - none : none);
-      sum += l * weight;
-      total += weight;
+      visit(l, s * c * (part == ReflectionPart::base ? all - none : none));
     }
   }
+}
+
+Vec3d mean_direction(ReflectionPart part, double nv, double roughness) {
+  Vec3d sum{0, 0, 0};
+  double total = 0;
+  for_directions(part, nv, roughness, [&](Vec3d l, double weight) {
+    sum += l * weight;
+    total += weight;
+  });
   return sum / total;
+}
+
+// Length of the mean direction of the base part, and the mean squares along two axes.
+std::pair<double, std::array<double, 2>> moments(double roughness, double nv, Vec3d x, Vec3d y) {
+  double total = 0, xx = 0, yy = 0;
+  for_directions(ReflectionPart::base, nv, roughness, [&](Vec3d l, double weight) {
+    xx += weight * square(dot(l, x));
+    yy += weight * square(dot(l, y));
+    total += weight;
+  });
+  return {length(mean_direction(ReflectionPart::base, nv, roughness)), {xx / total, yy / total}};
 }
 
 // Mean direction of reflection_lobe() along the axis.
@@ -69,6 +89,34 @@ TEST(ReflectionAxis, SmoothSurfacesMirror) {
   }
 }
 
+// Brute force as above: standard deviations of the directions in the plane of incidence and across it.
+TEST(ReflectionAxis, StretchIsTheRatioOfTheReflectionsWidths) {
+  for (const double roughness : {0.3, 0.6})
+    for (const double nv : {0.2, 0.5, 0.8}) {
+      const Vec3d n{0, 0, 1}, v = viewer_at(nv);
+      const LobeFrame<double> lobe = lobe_frame(reflection_tables().base, n, v, roughness);
+      const Vec3d across = normalize(cross(n, v)), along = cross(across, lobe.axis);
+      const auto [mean, squares] = moments(roughness, nv, along, across);
+      EXPECT_NEAR(lobe.stretch, std::sqrt(squares[0] / squares[1]), 0.03) << roughness << ' ' << nv;
+      EXPECT_GT(lobe.stretch, 1);
+      // The widths of the lobe itself, in the plane: the sum of both variances is 2 (1 - length of the mean).
+      const ReflectionLobe<double> round = reflection_lobe(lobe.roughness);
+      double width = 0;
+      for (int j = 0; j < kReflectionLobes; ++j)
+        width += reflection_share(j) * (1 - 1 / std::tanh(round.lambda[j]) + 1 / round.lambda[j]);
+      EXPECT_NEAR(width * (lobe.stretch + 1 / lobe.stretch) / 2, 1 - mean, 0.01) << roughness << ' ' << nv;
+    }
+}
+
+TEST(ReflectionAxis, LobesSeenFromAboveAreRound) {
+  const Vec3d n{0, 0, 1};
+  for (const double roughness : {0.1, 0.3, 0.9}) {
+    const LobeFrame<double> lobe = lobe_frame(reflection_tables().base, n, n, roughness);
+    EXPECT_NEAR(lobe.stretch, 1, 0.01);
+    EXPECT_EQ(length(lobe.across), 0);
+  }
+}
+
 // A point's normal, viewer and material, each moved along one of eight directions.
 struct Moved {
   Vec3<D> n, v;
@@ -83,7 +131,8 @@ void expect_adjoint(Vec3d n, Vec3d v, double roughness, double metalness) {
   const Vec3d tangent = normalize(cross(n, Vec3d{0.2, 0.5, 0.8})), other = cross(n, tangent);
   const Vec3d side = normalize(cross(v, Vec3d{0.7, 0.1, 0.3})), up = cross(v, side);
   const ReflectionTables tables = reflection_tables();
-  const SurfaceReflection<double> d{{{0.3, -0.7, 0.5}, 0.4}, {{-0.2, 0.6, 0.9}, -0.8}, 0.55};
+  const SurfaceReflection<double> d{
+      {{0.3, -0.7, 0.5}, {0.8, 0.1, -0.4}, 0.4, -0.6}, {{-0.2, 0.6, 0.9}, {-0.5, 0.2, 0.3}, -0.8, 0.7}, 0.55};
   const SurfaceReflectionGrad<double> g = surface_reflection_grad(tables, n, v, roughness, 0.5, metalness, d);
   const double got[kMoves] = {dot(g.d_n, tangent), dot(g.d_n, other), dot(g.d_v, side), dot(g.d_v, up),
                               g.d_roughness,       g.d_specular,      g.d_metalness};
@@ -96,10 +145,12 @@ void expect_adjoint(Vec3d n, Vec3d v, double roughness, double metalness) {
     const auto along = [](Vec3<D> x, Vec3d by) {
       return derivative_of(x.x) * by.x + derivative_of(x.y) * by.y + derivative_of(x.z) * by.z;
     };
-    const double want = along(r.base.axis, d.base.axis) + along(r.fresnel.axis, d.fresnel.axis) +
-                        derivative_of(r.base.roughness) * d.base.roughness +
-                        derivative_of(r.fresnel.roughness) * d.fresnel.roughness +
-                        derivative_of(r.share) * d.share;
+    const auto of_lobe = [&](const LobeFrame<D>& lobe, const LobeFrame<double>& by) {
+      return along(lobe.axis, by.axis) + along(lobe.across, by.across) +
+             derivative_of(lobe.roughness) * by.roughness + derivative_of(lobe.stretch) * by.stretch;
+    };
+    const double want =
+        of_lobe(r.base, d.base) + of_lobe(r.fresnel, d.fresnel) + derivative_of(r.share) * d.share;
     EXPECT_NEAR(got[k], want, 1e-8 * (1 + std::abs(want))) << "move " << k;
   }
 }

@@ -63,6 +63,47 @@ HD SgInnerGrad<T> sg_inner_grad(T lambda1, T lambda2, T q) {
           d_n * (sum - lambda1 * half) * inverse - value, d_n * (T(-0.5f) * lambda1 * lambda2 * inverse)};
 }
 
+// Integral over the sphere of the product of a round lobe and a stretched one. The stretched lobe has another
+// sharpness along its long side than across it. h is the squared distance of the axes across the long side,
+// h <= q. For small angles the product is that of two Gaussians in the plane: it acts like a round lobe of
+// sharpness `round` at the squared distance `q`. [as for anisotropic Gaussians, Xu et al. 2013]
+template <class T>
+struct SgRounded {
+  T round, q;
+  T along_sum, across_sum, root;  // lambda1 + along, lambda1 + across, the root of their product
+};
+template <class T>
+HD SgRounded<T> sg_rounded(T lambda1, T along, T across, T q, T h) {
+  const T a = lambda1 + along, c = lambda1 + across, root = sqrt(a * c);
+  const T round = (lambda1 * (along + across) + along * across) / (root + lambda1);  // root - lambda1
+  return {round, (along * c * (q - h) + across * a * h) / (root * round), a, c, root};
+}
+template <class T>
+HD T sg_stretched_inner(T lambda1, T along, T across, T q, T h) {
+  const SgRounded<T> r = sg_rounded(lambda1, along, across, q, h);
+  return sg_inner(lambda1, r.round, r.q);
+}
+template <class T>
+struct SgStretchedInnerGrad {
+  T value, d_lambda1, d_along, d_across, d_q, d_h;
+};
+template <class T>
+HD SgStretchedInnerGrad<T> sg_stretched_inner_grad(T lambda1, T along, T across, T q, T h) {
+  const SgRounded<T> r = sg_rounded(lambda1, along, across, q, h);
+  const SgInnerGrad<T> g = sg_inner_grad(lambda1, r.round, r.q);
+  const T a = r.along_sum, c = r.across_sum, gap = q - h, inverse = T(1.0f) / (r.root * r.round);
+  const T d_product = g.d_q * inverse;  // by the numerator of r.q
+  const T d_round = g.d_lambda2 - g.d_q * r.q * r.root * inverse;
+  const T d_root = (d_round - g.d_q * r.q * r.round * inverse) * T(0.5f) / r.root;
+  const T d_a = d_root * c + d_product * across * h, d_c = d_root * a + d_product * along * gap;
+  return {g.value,
+          g.d_lambda1 - d_round + d_a + d_c,
+          d_a + d_product * c * gap,
+          d_c + d_product * a * h,
+          d_product * along * c,
+          d_product * (across * a - along * c)};
+}
+
 // Integral over the hemisphere around a normal at cosine c to the axis, lambda >= 0.02: a fit that blends the
 // integrals over the hemispheres around the axis and against it by s = (1 + tanh(t c / 2) / tanh(t / 2)) / 2.
 template <class T>

@@ -204,25 +204,73 @@ TEST(Reflection, LobeOfAnyRoughnessHoldsTheSpheresEnergyOnce) {
   }
 }
 
-TEST(Reflection, SlopesByRoughnessLightAndDistanceEqualDualNumbers) {
+void expect_reflected_grad(double lambda, double roughness, double stretch, double q, double h) {
+  const auto value = [](D l, D r, D s, D q_, D h_) { return sg_reflected(l, stretched_lobe(r, s), q_, h_); };
+  const StretchedLobe<double> lobe = stretched_lobe(roughness, stretch);
+  const SgReflectedGrad<double> light = sg_reflected_grad(lambda, lobe, q, h);
+  StretchedLobe<double> d_lobe{};
+  const SgDistanceGrad<double> distance = sg_reflected_lobe_grad(lambda, lobe, q, h, 0.7, d_lobe);
+  const LobeMaterialGrad<double> material = stretched_lobe_grad(roughness, stretch, d_lobe);
+  const D l(lambda), r(roughness), s(stretch), d(q), e(h);
+  EXPECT_NEAR(light.value, value_of(value(l, r, s, d, e)), 1e-12);
+  const auto near = [](double got, D wanted, double times = 1) {
+    const double want = derivative_of(wanted) * times;
+    EXPECT_NEAR(got, want, 1e-9 * (1 + std::abs(want)));
+  };
+  near(light.d_lambda, value(D(lambda, 1.0), r, s, d, e));
+  near(light.d_q, value(l, r, s, D(q, 1.0), e));
+  near(light.d_h, value(l, r, s, d, D(h, 1.0)));
+  near(distance.d_q, value(l, r, s, D(q, 1.0), e), 0.7);
+  near(distance.d_h, value(l, r, s, d, D(h, 1.0)), 0.7);
+  near(material.d_roughness, value(l, D(roughness, 1.0), s, d, e), 0.7);
+  near(material.d_stretch, value(l, r, D(stretch, 1.0), d, e), 0.7);
+}
+
+TEST(Reflection, SlopesByLobeLightAndDistanceEqualDualNumbers) {
   for (const double roughness : {0.07, 0.3, 0.65, 0.95})
-    for (const double lambda : {0.8, 12.0, 300.0})
-      for (const double q : {0.001, 0.2, 1.5}) {
-        const SgReflectedGrad<double> light = sg_reflected_grad(lambda, reflection_lobe(roughness), q);
-        const SgReflectedMaterialGrad<double> material =
-            sg_reflected_material_grad(lambda, reflection_lobe_grad(roughness), q);
-        const auto value = [](D l, D r, D q_) { return sg_reflected(l, reflection_lobe(r), q_); };
-        const D l(lambda), r(roughness), d(q);
-        EXPECT_NEAR(light.value, value_of(value(l, r, d)), 1e-12);
-        const double want_l = derivative_of(value(D(lambda, 1.0), r, d)),
-                     want_r = derivative_of(value(l, D(roughness, 1.0), d)),
-                     want_q = derivative_of(value(l, r, D(q, 1.0)));
-        EXPECT_NEAR(light.d_lambda, want_l, 1e-9 * (1 + std::abs(want_l)));
-        EXPECT_NEAR(light.d_q, want_q, 1e-9 * (1 + std::abs(want_q)));
-        EXPECT_NEAR(material.d_q, want_q, 1e-9 * (1 + std::abs(want_q)));
-        EXPECT_NEAR(material.d_roughness, want_r, 1e-9 * (1 + std::abs(want_r)));
+    for (const double stretch : {1.0, 1.3, 3.0})
+      for (const double lambda : {0.8, 12.0, 300.0})
+        for (const double q : {0.001, 0.2, 1.5})
+          for (const double share : {0.0, 0.4})
+            expect_reflected_grad(lambda, roughness, stretch, q, share * q);
+  StretchedLobe<double> d_lobe{};
+  sg_reflected_lobe_grad(2.0, stretched_lobe(0.01, 1.0), 0.1, 0.0, 1.0, d_lobe);
+  EXPECT_EQ(stretched_lobe_grad(0.01, 1.0, d_lobe).d_roughness, 0);
+}
+
+TEST(Reflection, StretchedLobeOfStretchOneIsTheRoundOne) {
+  for (const double lambda : {0.8, 12.0, 300.0})
+    for (const double q : {0.001, 0.2, 1.5}) {
+      const ReflectionLobe<double> round = reflection_lobe(0.4);
+      double want = 0;
+      for (int j = 0; j < kReflectionLobes; ++j)
+        want += round.weight[j] * sg_inner(lambda, round.lambda[j], q);
+      EXPECT_NEAR(sg_reflected(lambda, stretched_lobe(0.4, 1.0), q, 0.3 * q), want, 1e-12 * (1 + want));
+    }
+}
+
+// Brute force over directions of the product of a light lobe and a lobe whose logarithm is quadratic in the
+// distances along and across, which the closed form approximates for sharp lobes.
+TEST(Reflection, StretchedLobeIntegratesAGaussianOfTwoWidths) {
+  const double lambda = 60, along = 40, across = 160;
+  const Vec3d axis{0, 0, 1}, side{0, 1, 0};
+  for (const Vec3d light : {Vec3d{0.2, 0.0, 1.0}, Vec3d{0.0, 0.2, 1.0}, Vec3d{-0.15, 0.1, 1.0}}) {
+    const Vec3d l = normalize(light);
+    double sum = 0;
+    constexpr int kSteps = 600;
+    for (int i = 0; i < kSteps; ++i)
+      for (int j = 0; j < kSteps; ++j) {
+        const double x = -1 + 2 * (i + 0.5) / kSteps, y = -1 + 2 * (j + 0.5) / kSteps, zz = 1 - x * x - y * y;
+        if (zz <= 0) continue;
+        const Vec3d w{x, y, std::sqrt(zz)};
+        const double q = dot(w - axis, w - axis), h = square(dot(w, side));
+        sum += std::exp(lambda * (dot(w, l) - 1) - 0.5 * (along * (q - h) + across * h)) / w.z;
       }
-  EXPECT_EQ(sg_reflected_material_grad(2.0, reflection_lobe_grad(0.01), 0.1).d_roughness, 0);
+    sum *= square(2.0 / kSteps);
+    const Vec3d gap = l - axis;
+    const double got = sg_stretched_inner(lambda, along, across, dot(gap, gap), square(dot(gap, side)));
+    EXPECT_NEAR(got, sum, 0.03 * sum);
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/compute/kernels/shade.h"
 #include "engine/render/hit_reflection.h"
+#include "engine/render/lobe_frames.h"
 
 namespace cei3d {
 namespace {
@@ -22,25 +23,15 @@ struct Planes {
   Vec3f get(int r, size_t i) { return load_planes<float>(row(r), kBlock, int(i)); }
 };
 
-// One of the two lobes of every hit.
-struct LobeOfHits {
-  Planes<3> axes;
-  Planes<1> roughness;
-
-  void put(size_t i, const ReflectionAxis<float>& lobe) {
-    axes.put(0, i, lobe.axis);
-    roughness.row(0)[i] = lobe.roughness;
-  }
-};
-struct ReflectionPlanes {
-  LobeOfHits base, fresnel;
+struct ReflectionOfHits {
+  LobeFrames base{kBlock}, fresnel{kBlock};
   std::vector<float> share;  // of the base lobe
 
-  explicit ReflectionPlanes(const HitBatch& batch) {
+  explicit ReflectionOfHits(const HitBatch& batch) {
     for (size_t i = 0; i < batch.size(); ++i) {
       const SurfaceReflection<float> r = reflection_of(batch.hits[i], batch.materials[i]);
-      base.put(i, {batch.turned.in_room(i, r.base.axis), r.base.roughness});
-      fresnel.put(i, {batch.turned.in_room(i, r.fresnel.axis), r.fresnel.roughness});
+      base.put(i, in_room(batch.turned, i, r.base));
+      fresnel.put(i, in_room(batch.turned, i, r.fresnel));
       share.push_back(r.share);
     }
   }
@@ -137,37 +128,30 @@ void Lighting::set_lobes(const SgMixture& light) {
 
 namespace {
 
-Planes<3> sky_along(const Device& device, const LobePlanes& light, LobeOfHits& lobe, size_t hits) {
+Planes<3> sky_along(const Device& device, const LobePlanes& light, const LobeFrames& lobes, size_t hits) {
   Planes<3> out;
-  device.launch<SgReflection>({.lobes = light,
-                               .stride = kBlock,
-                               .axes = lobe.axes.row(0),
-                               .roughness = lobe.roughness.row(0),
-                               .out = out.row(0)},
+  device.launch<SgReflection>({.lobes = light, .stride = kBlock, .points = lobes.planes(), .out = out.row(0)},
                               padded_to_panels(int(hits)));
   return out;
 }
 
-// dL/d(axis and roughness of the lobe) from dL/d(radiance along it), times `share` of each hit.
-struct LobeGrad {
-  Planes<3> d_axes;
-  Planes<1> d_roughness;
-
-  LobeGrad(const Device& device, const LobePlanes& light, LobeOfHits& lobe, std::span<const Vec3f> d_radiance,
-           const std::vector<float>& share) {
-    Planes<3> d_reflected;
-    for (size_t i = 0; i < share.size(); ++i) d_reflected.put(0, i, d_radiance[i] * share[i]);
-    device.launch<SgReflectionGrad>({.lobes = light,
-                                     .stride = kBlock,
-                                     .axes = lobe.axes.row(0),
-                                     .roughness = lobe.roughness.row(0),
-                                     .d_reflected = d_reflected.row(0),
-                                     .d_axes = d_axes.row(0),
-                                     .d_roughness = d_roughness.row(0)},
-                                    padded_to_panels(int(share.size())));
-  }
-  ReflectionAxis<float> of(size_t i) { return {d_axes.get(0, i), d_roughness.row(0)[i]}; }
-};
+// dL/d(the frame of every lobe) from dL/d(radiance along it), times `share` of each hit.
+LobeFrames frames_grad(const Device& device, const LobePlanes& light, const LobeFrames& lobes,
+                       std::span<const Vec3f> d_radiance, const std::vector<float>& share) {
+  LobeFrames d(kBlock);
+  Planes<3> d_reflected;
+  for (size_t i = 0; i < share.size(); ++i) d_reflected.put(0, i, d_radiance[i] * share[i]);
+  device.launch<SgReflectionGrad>({.lobes = light,
+                                   .stride = kBlock,
+                                   .points = lobes.planes(),
+                                   .d_reflected = d_reflected.row(0),
+                                   .d_axes = d.axes(),
+                                   .d_across = d.across(),
+                                   .d_roughness = d.roughness(),
+                                   .d_stretch = d.stretch()},
+                                  padded_to_panels(int(share.size())));
+  return d;
+}
 
 std::vector<float> rest_of(std::vector<float> share) {
   for (float& s : share) s = 1 - s;
@@ -178,7 +162,7 @@ std::vector<float> rest_of(std::vector<float> share) {
 
 // batch: at most kBlock hits.
 std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
-  ReflectionPlanes in(batch);
+  const ReflectionOfHits in(batch);
   Planes<3> base = sky_along(device_, lobes(), in.base, batch.size()),
             fresnel = sky_along(device_, lobes(), in.fresnel, batch.size());
   std::vector<Vec3f> radiance(batch.size());
@@ -259,18 +243,16 @@ Shading Lighting::shade(const HitBatch& batch, std::span<const Vec3f> albedo,
 
 std::vector<SurfaceReflectionGrad<float>> Lighting::reflection_grad(
     const HitBatch& batch, std::span<const Vec3f> d_reflection) const {
-  ReflectionPlanes in(batch);
+  const ReflectionOfHits in(batch);
   Planes<3> base = sky_along(device_, lobes(), in.base, batch.size()),
             fresnel = sky_along(device_, lobes(), in.fresnel, batch.size());
-  LobeGrad d_base(device_, lobes(), in.base, d_reflection, in.share),
-      d_fresnel(device_, lobes(), in.fresnel, d_reflection, rest_of(in.share));
+  const LobeFrames d_base = frames_grad(device_, lobes(), in.base, d_reflection, in.share),
+                   d_fresnel = frames_grad(device_, lobes(), in.fresnel, d_reflection, rest_of(in.share));
   std::vector<SurfaceReflectionGrad<float>> out;
   for (size_t i = 0; i < batch.size(); ++i) {
     const Material& m = batch.materials[i];
-    const auto in_object = [&](ReflectionAxis<float> d) {
-      return ReflectionAxis<float>{batch.turned.in_object(i, d.axis), d.roughness};
-    };
-    const SurfaceReflection<float> d{in_object(d_base.of(i)), in_object(d_fresnel.of(i)),
+    const SurfaceReflection<float> d{in_object(batch.turned, i, d_base.get(i)),
+                                     in_object(batch.turned, i, d_fresnel.get(i)),
                                      dot(d_reflection[i], base.get(0, i) - fresnel.get(0, i))};
     out.push_back(surface_reflection_grad(reflection_tables(), batch.hits[i].normal, batch.hits[i].to_camera,
                                           m.roughness, m.specular, m.metalness, d));

@@ -6,6 +6,7 @@
 
 #include "core/compute/kernels/shade.h"
 #include "engine/render/hit_reflection.h"
+#include "engine/render/lobe_frames.h"
 
 namespace cei3d {
 namespace {
@@ -131,16 +132,15 @@ std::vector<Vec3f> SelfReflection::mirrored(const Met& met, const std::vector<si
                                             const TurnedHits& turned) const {
   const size_t n = which.size(), stride = size_t(padded_to_panels(int(n)));
   std::vector<Vec3f> from(n), axes(n), out(n);
-  std::vector<float> axis_planes(3 * stride, 0.0f), roughness(stride, 1.0f), sky(3 * stride);
+  std::vector<float> sky(3 * stride);
+  LobeFrames lobes{int(stride)};
   for (size_t k = 0; k < n; ++k) {
-    const ReflectionAxis<float> lobe = reflection_of(met.hits[which[k]], met.materials[which[k]]).base;
+    const LobeFrame<float> lobe = reflection_of(met.hits[which[k]], met.materials[which[k]]).base;
     axes[k] = lobe.axis;
     from[k] = ray_origin(met.hits[which[k]]);
-    roughness[k] = lobe.roughness;
-    store_planes(axis_planes.data(), int(stride), int(k), turned.in_room(met.owner[which[k]], lobe.axis));
+    lobes.put(k, in_room(turned, met.owner[which[k]], lobe));
   }
-  device_.launch<SgReflection>({light_, int(stride), axis_planes.data(), roughness.data(), sky.data()},
-                               int(stride));
+  device_.launch<SgReflection>({light_, int(stride), lobes.planes(), sky.data()}, int(stride));
   std::vector<Surface::RayHit> next(n);
   surface_.intersect(from, axes, 0, next);
   for (size_t k = 0; k < n; ++k)

@@ -29,72 +29,100 @@ struct SgIrradiance {
   }
 };
 
+// The reflection lobes of points, as planes; core/math/reflection_axis.h.
+struct ReflectionPlanes {
+  const float *axes, *across;        // [3][stride] unit
+  const float *roughness, *stretch;  // [stride]
+};
+
+// The distance of a light lobe from a reflection lobe.
+template <class T>
+struct LobeGap {
+  Vec3<T> along;  // from the light's axis to the reflection's
+  T across;
+  T q() const { return dot(along, along); }
+  T h() const { return across * across; }
+};
+template <class T>
+HD LobeGap<T> lobe_gap(Vec3<T> axis, Vec3<T> across, Vec3<T> light) {
+  const Vec3<T> gap = axis - light;
+  return {gap, dot(gap, across)};
+}
+
 // Mean radiance of the environment over the reflection lobe, without occlusion. Item: a point.
 struct SgReflection {
   struct Args {
     LobePlanes lobes;
     int stride;
-    const float* axes;       // [3][stride] unit, core/math/reflection_axis.h
-    const float* roughness;  // [stride]
-    float* out;              // [3][stride]
+    ReflectionPlanes points;
+    float* out;  // [3][stride]
   };
   template <class T>
   static HD void run(const Args& a, int i) {
-    const Vec3<T> r = load_planes<T>(a.axes, a.stride, i);
-    const ReflectionLobe<T> lobe = reflection_lobe(load<T>(a.roughness + i));
+    const Vec3<T> r = load_planes<T>(a.points.axes, a.stride, i),
+                  across = load_planes<T>(a.points.across, a.stride, i);
+    const StretchedLobe<T> lobe =
+        stretched_lobe(load<T>(a.points.roughness + i), load<T>(a.points.stretch + i));
     Vec3<T> sum{T(0.0f), T(0.0f), T(0.0f)};
     for (int k = 0; k < a.lobes.count; ++k) {
-      const Vec3<T> d = r - a.lobes.axis<T>(k);
-      sum += a.lobes.mu<T>(k) * sg_reflected(a.lobes.lambda<T>(k), lobe, dot(d, d));
+      const LobeGap<T> gap = lobe_gap(r, across, a.lobes.axis<T>(k));
+      sum += a.lobes.mu<T>(k) * sg_reflected(a.lobes.lambda<T>(k), lobe, gap.q(), gap.h());
     }
     store_planes(a.out, a.stride, i, sum);
   }
 };
 
-// Adjoint of SgReflection for the axes, as if their length were free, and for the roughness.
-// Item: a point.
+// Adjoint of SgReflection for the points' lobes, as if the length of axes were free. Item: a point.
 struct SgReflectionGrad {
   struct Args {
     LobePlanes lobes;
     int stride;
-    const float *axes, *roughness;  // as in SgReflection
-    const float* d_reflected;       // [3][stride]
-    float* d_axes;                  // [3][stride], written
-    float* d_roughness;             // [stride], written
+    ReflectionPlanes points;
+    const float* d_reflected;        // [3][stride]
+    float *d_axes, *d_across;        // [3][stride], written
+    float *d_roughness, *d_stretch;  // [stride], written
   };
   template <class T>
   static HD void run(const Args& a, int i) {
-    const Vec3<T> r = load_planes<T>(a.axes, a.stride, i), g = load_planes<T>(a.d_reflected, a.stride, i);
-    const ReflectionLobeGrad<T> lobe = reflection_lobe_grad(load<T>(a.roughness + i));
-    Vec3<T> d_axis{T(0.0f), T(0.0f), T(0.0f)};
-    T d_roughness(0.0f);
+    const Vec3<T> r = load_planes<T>(a.points.axes, a.stride, i),
+                  across = load_planes<T>(a.points.across, a.stride, i),
+                  g = load_planes<T>(a.d_reflected, a.stride, i);
+    const T roughness = load<T>(a.points.roughness + i), stretch = load<T>(a.points.stretch + i), zero(0.0f);
+    const StretchedLobe<T> lobe = stretched_lobe(roughness, stretch);
+    StretchedLobe<T> d_lobe;
+    for (int j = 0; j < kReflectionLobes; ++j) d_lobe.along[j] = d_lobe.across[j] = d_lobe.weight[j] = zero;
+    Vec3<T> d_axis{zero, zero, zero}, d_across{zero, zero, zero};
     for (int k = 0; k < a.lobes.count; ++k) {
-      const Vec3<T> d = r - a.lobes.axis<T>(k);
-      const T weight = dot(g, a.lobes.mu<T>(k));
-      const SgReflectedMaterialGrad<T> s = sg_reflected_material_grad(a.lobes.lambda<T>(k), lobe, dot(d, d));
-      d_axis += d * (T(2.0f) * weight * s.d_q);
-      d_roughness += weight * s.d_roughness;
+      const LobeGap<T> gap = lobe_gap(r, across, a.lobes.axis<T>(k));
+      const SgDistanceGrad<T> s = sg_reflected_lobe_grad(a.lobes.lambda<T>(k), lobe, gap.q(), gap.h(),
+                                                         dot(g, a.lobes.mu<T>(k)), d_lobe);
+      const T d_side = T(2.0f) * gap.across * s.d_h;
+      d_axis += gap.along * (T(2.0f) * s.d_q) + across * d_side;
+      d_across += gap.along * d_side;
     }
+    const LobeMaterialGrad<T> d = stretched_lobe_grad(roughness, stretch, d_lobe);
     store_planes(a.d_axes, a.stride, i, d_axis);
-    store<T>(a.d_roughness + i, d_roughness);
+    store_planes(a.d_across, a.stride, i, d_across);
+    store<T>(a.d_roughness + i, d.d_roughness);
+    store<T>(a.d_stretch + i, d.d_stretch);
   }
 };
 
-// The reflection lobes of the points' roughness, for SgLobesGrad, whose items are the light's lobes. Item: a
-// point.
+// The reflection lobes of points, for SgLobesGrad, whose items are the light's lobes. Item: a point.
 struct ReflectionLobes {
-  static constexpr int kRows = 2 * kReflectionLobes;  // sharpness, then weights
+  static constexpr int kRows = 3 * kReflectionLobes;  // sharpness along, across, weights
   struct Args {
     int stride;
-    const float* roughness;  // [stride]
-    float* out;              // [kRows][stride]
+    const float *roughness, *stretch;  // [stride]
+    float* out;                        // [kRows][stride]
   };
   template <class T>
   static HD void run(const Args& a, int i) {
-    const ReflectionLobe<T> lobe = reflection_lobe(load<T>(a.roughness + i));
+    const StretchedLobe<T> lobe = stretched_lobe(load<T>(a.roughness + i), load<T>(a.stretch + i));
     for (int j = 0; j < kReflectionLobes; ++j) {
-      store<T>(a.out + j * a.stride + i, lobe.lambda[j]);
-      store<T>(a.out + (kReflectionLobes + j) * a.stride + i, lobe.weight[j]);
+      store<T>(a.out + j * a.stride + i, lobe.along[j]);
+      store<T>(a.out + (kReflectionLobes + j) * a.stride + i, lobe.across[j]);
+      store<T>(a.out + (2 * kReflectionLobes + j) * a.stride + i, lobe.weight[j]);
     }
   }
 };
@@ -105,7 +133,7 @@ struct SgLobesGrad {
   struct Args {
     LobePlanes lobes;
     int stride, begin, end;
-    const float *normals, *axes;              // [3][stride]
+    const float *normals, *axes, *across;     // [3][stride]
     const float* reflection_lobes;            // [ReflectionLobes::kRows][stride]
     const float *d_irradiance, *d_reflected;  // [3][stride]
     float* d_lobes;                           // [7][lobes.padded]: axis, sharpness, color; written
@@ -121,12 +149,14 @@ struct SgLobesGrad {
       const Vec3<T> n = point<T>(a.normals, a.stride, h), e = point<T>(a.d_irradiance, a.stride, h);
       const SgCosineGrad<T> diffuse = sg_irradiance_grad(lambda, dot(n, axis));
       const T d_diffuse = dot(e, mu);
-      const Vec3<T> g = point<T>(a.d_reflected, a.stride, h), gap = point<T>(a.axes, a.stride, h) - axis;
-      const SgReflectedGrad<T> specular = sg_reflected_grad(lambda, lobe<T>(a, h), dot(gap, gap));
+      const Vec3<T> g = point<T>(a.d_reflected, a.stride, h), across = point<T>(a.across, a.stride, h);
+      const LobeGap<T> gap = lobe_gap(point<T>(a.axes, a.stride, h), across, axis);
+      const SgReflectedGrad<T> specular = sg_reflected_grad(lambda, lobe<T>(a, h), gap.q(), gap.h());
       const T d_specular = dot(g, mu);
       d_mu += e * diffuse.value + g * specular.value;
       d_lambda += d_diffuse * diffuse.d_lambda + d_specular * specular.d_lambda;
-      d_axis += n * (d_diffuse * diffuse.d_cosine) + gap * (T(-2.0f) * d_specular * specular.d_q);
+      d_axis += n * (d_diffuse * diffuse.d_cosine) -
+                (gap.along * specular.d_q + across * (gap.across * specular.d_h)) * (T(2.0f) * d_specular);
     }
     store_planes(a.d_lobes, p, i, d_axis);
     store<T>(a.d_lobes + 3 * p + i, d_lambda);
@@ -139,11 +169,13 @@ struct SgLobesGrad {
     return {T(p[i]), T(p[stride + i]), T(p[2 * stride + i])};
   }
   template <class T>
-  static HD ReflectionLobe<T> lobe(const Args& a, int point) {
-    ReflectionLobe<T> lobe;
+  static HD StretchedLobe<T> lobe(const Args& a, int point) {
+    const auto row = [&](int r) { return T(a.reflection_lobes[r * a.stride + point]); };
+    StretchedLobe<T> lobe;
     for (int j = 0; j < kReflectionLobes; ++j) {
-      lobe.lambda[j] = T(a.reflection_lobes[j * a.stride + point]);
-      lobe.weight[j] = T(a.reflection_lobes[(kReflectionLobes + j) * a.stride + point]);
+      lobe.along[j] = row(j);
+      lobe.across[j] = row(kReflectionLobes + j);
+      lobe.weight[j] = row(2 * kReflectionLobes + j);
     }
     return lobe;
   }

@@ -34,10 +34,14 @@ class BlurLadder {
   std::array<std::unique_ptr<LobeBlur>, kLevels> blurs_;
 };
 
-// Where a row reads the blurred light for a part of the split sum, given a roughness.
+// Where a row reads the blurred light for a part of the split sum, given a roughness: a stretched lobe is the
+// weighted mean of three round ones in the plane of incidence, as in Gauss-Hermite quadrature.
 struct ReflectedSky {
-  BlurLadder::Place lobe;
-  EnvTaps taps;
+  static constexpr int kMaxLobes = 3;
+  BlurLadder::Place lobe;  // of all of them
+  int count = 1;
+  EnvTaps taps[kMaxLobes];
+  float weight[kMaxLobes] = {1, 0, 0};
 };
 ReflectedSky reflected_sky(const SplitRow&, ReflectionPart, float roughness, int light_height);
 

@@ -7,6 +7,7 @@
 #include "core/compute/kernels/adam.h"
 #include "core/compute/kernels/shade.h"
 #include "engine/render/hit_reflection.h"
+#include "engine/render/lobe_frames.h"
 
 namespace cei3d {
 namespace {
@@ -24,32 +25,28 @@ std::vector<float> planes_of(std::span<const Vec3f> v, int stride) {
 
 // Inputs of the lobes' gradient for the hits and one part of their reflection, as planes.
 struct HitPlanes {
-  int stride;
-  std::vector<float> normals, axes, reflection_lobes, d_irradiance, d_reflected;
+  LobeFrames lobes;
+  std::vector<float> normals, reflection_lobes, d_irradiance, d_reflected;
 };
 
 HitPlanes hit_planes(const Device& device, const HitBatch& batch, ReflectionPart part,
                      std::span<const Vec3f> d_irradiance, std::span<const Vec3f> d_reflected) {
-  HitPlanes p;
-  p.stride = padded_to_panels(int(batch.size()));
+  const int stride = padded_to_panels(int(batch.size()));
   const bool base = part == ReflectionPart::base;
-  std::vector<Vec3f> normals, axes, d_lobe;
-  std::vector<float> roughness;
+  HitPlanes p{LobeFrames(stride), {}, {}, {}, {}};
+  std::vector<Vec3f> normals, d_lobe;
   for (size_t i = 0; i < batch.size(); ++i) {
     const SurfaceReflection<float> r = reflection_of(batch.hits[i], batch.materials[i]);
-    const ReflectionAxis<float>& lobe = base ? r.base : r.fresnel;
     normals.push_back(batch.turned.in_room(i, batch.hits[i].normal));
-    axes.push_back(batch.turned.in_room(i, lobe.axis));
-    roughness.push_back(lobe.roughness);
+    p.lobes.put(i, in_room(batch.turned, i, base ? r.base : r.fresnel));
     d_lobe.push_back(d_reflected[i] * (base ? r.share : 1 - r.share));
   }
-  p.normals = planes_of(normals, p.stride);
-  p.axes = planes_of(axes, p.stride);
-  p.d_irradiance = base ? planes_of(d_irradiance, p.stride) : planes_of({}, p.stride);
-  p.d_reflected = planes_of(d_lobe, p.stride);
-  roughness.resize(size_t(p.stride), 1.0f);
-  p.reflection_lobes.resize(size_t(ReflectionLobes::kRows) * p.stride);
-  device.launch<ReflectionLobes>({p.stride, roughness.data(), p.reflection_lobes.data()}, p.stride);
+  p.normals = planes_of(normals, stride);
+  p.d_irradiance = base ? planes_of(d_irradiance, stride) : planes_of({}, stride);
+  p.d_reflected = planes_of(d_lobe, stride);
+  p.reflection_lobes.resize(size_t(ReflectionLobes::kRows) * stride);
+  const ReflectionPlanes lobes = p.lobes.planes();
+  device.launch<ReflectionLobes>({stride, lobes.roughness, lobes.stretch, p.reflection_lobes.data()}, stride);
   return p;
 }
 
@@ -60,11 +57,12 @@ void add_lobes_grad(const Device& device, const LobePlanes& lobes, int n, const 
   std::vector<std::vector<float>> parts(size_t(chunks), std::vector<float>(sum.size(), 0.0f));
   parallel_for(chunks, [&](int c) {
     device.launch<SgLobesGrad>({.lobes = lobes,
-                                .stride = hits.stride,
+                                .stride = hits.lobes.stride(),
                                 .begin = c * kGrain,
                                 .end = min(n, (c + 1) * kGrain),
                                 .normals = hits.normals.data(),
-                                .axes = hits.axes.data(),
+                                .axes = hits.lobes.planes().axes,
+                                .across = hits.lobes.planes().across,
                                 .reflection_lobes = hits.reflection_lobes.data(),
                                 .d_irradiance = hits.d_irradiance.data(),
                                 .d_reflected = hits.d_reflected.data(),

@@ -64,9 +64,9 @@ double slope(const Problem& p, int lobe, int member) {
   double sum = 0;
   for (size_t i = 0; i < kHits; ++i) {
     const SurfaceReflection<float> s = reflection_of(p.hits[i], p.materials[i]);
-    const auto along = [&](const ReflectionAxis<float>& a) {
-      const Vec3<D> gap = dual(a.axis) - axis;
-      return sg_reflected(x[3], reflection_lobe(D(a.roughness)), dot(gap, gap));
+    const auto along = [&](const LobeFrame<float>& a) {
+      const LobeGap<D> gap = lobe_gap(dual(a.axis), dual(a.across), axis);
+      return sg_reflected(x[3], stretched_lobe(D(a.roughness), D(a.stretch)), gap.q(), gap.h());
     };
     const D e = sg_irradiance(x[3], dot(dual(p.hits[i].normal), axis)),
             r = D(s.share) * along(s.base) + D(1 - s.share) * along(s.fresnel);
@@ -127,9 +127,9 @@ double distance_to(const Problem& p, const SgMixture& light, const SgMixture& wa
   const auto sent = [&](const SgMixture& m, size_t i, bool reflected) {
     Vec3f sum{0, 0, 0};
     const SurfaceReflection<float> s = reflection_of(p.hits[i], p.materials[i]);
-    const auto along = [](const ReflectionAxis<float>& a, const SgLobe& l) {
-      const Vec3f gap = a.axis - l.axis;
-      return sg_reflected(l.lambda, reflection_lobe(a.roughness), dot(gap, gap));
+    const auto along = [](const LobeFrame<float>& a, const SgLobe& l) {
+      const LobeGap<float> gap = lobe_gap(a.axis, a.across, l.axis);
+      return sg_reflected(l.lambda, stretched_lobe(a.roughness, a.stretch), gap.q(), gap.h());
     };
     for (const SgLobe& l : m.lobes)
       sum += l.mu * (reflected ? s.share * along(s.base, l) + (1 - s.share) * along(s.fresnel, l)

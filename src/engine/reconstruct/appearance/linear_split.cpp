@@ -26,7 +26,7 @@ constexpr double kFar = 1.25;  // a residual this much above the best ends the s
 constexpr double kMetalBy = 0.5;
 // Several materials always fit a little better than one. They are chosen only if the residual falls below
 // this factor, and by more than the noise of photographs, 37 dB.
-constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
+constexpr double kSeveralBy = 0.65, kNoise = 2e-4;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
 constexpr double kSharedError = 0.1;
@@ -184,24 +184,17 @@ std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMate
   return std::move(several.materials);
 }
 
-bool all_metal(const SplitSolution& s) {
-  const auto& of = s.materials.of;
-  return std::all_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
-}
-
-bool has_metals(const SplitSolution& s) {
-  const auto& of = s.materials.of;
-  return std::any_of(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
-}
+// A few dielectric vertices say nothing of the light.
+bool all_metal(const SplitSolution& s) { return s.materials.metal_share() > 1 - kFewVertices; }
 
 // Combines the prior of the light's color with the estimate from the samples and scales the light. Returns
 // the remaining covariance.
 LightCovariance believe_light(SplitSolver& solver, const LinearSplitOptions& options, SplitSolution& s,
                               Progress& progress) {
   if (all_metal(s)) return {};
-  LightScale evidence = solver.light_scale(s);
+  LightScale evidence = solver.light_correction(s);
   // The common strength was already combined with the colors of the metals.
-  if (has_metals(s))
+  if (s.materials.metal_share() > 0)
     evidence.factor = evidence.factor / std::cbrt(evidence.factor.x * evidence.factor.y * evidence.factor.z);
   for (int c = 0; c < 3; ++c)
     evidence.covariance.row[c][c] +=

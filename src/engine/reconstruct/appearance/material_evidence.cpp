@@ -150,20 +150,41 @@ std::vector<Vec3f> LitSamples::fit_diffuse(const SplitMaterials& materials, std:
   return before;
 }
 
+template <class F>
+void LitSamples::for_dielectrics(const SplitMaterials& materials, const F& visit) const {
+  for (uint32_t v = 0; v + 1 < start_.size(); ++v)
+    if (!materials.is_metal(v) && start_[v + 1] > start_[v]) visit(v, of_dielectric(v, materials.of[v]));
+}
+
+LightScale LitSamples::light_scale(const SplitMaterials& materials, const std::vector<Vec3f>& positions,
+                                   const SampleNoise& noise) const {
+  std::vector<ScaleEquations> places(kPlaces);
+  for_dielectrics(materials, [&](uint32_t v, const std::vector<ReflectionSample>& samples) {
+    places[place_of(positions[v])].add(samples, noise);
+  });
+  return cei3d::light_scale(places);
+}
+
+NoiseSums LitSamples::noise(const SplitMaterials& materials) const {
+  NoiseSums sums;
+  for_dielectrics(materials,
+                  [&](uint32_t, const std::vector<ReflectionSample>& samples) { sums.add(samples); });
+  return sums;
+}
+
 LightScale LitSamples::light_scale(const SplitMaterials& materials,
                                    const std::vector<Vec3f>& positions) const {
-  const auto for_dielectrics = [&](const auto& use) {
-    for (uint32_t v = 0; v + 1 < start_.size(); ++v)
-      if (!materials.is_metal(v) && start_[v + 1] > start_[v]) use(v, of_dielectric(v, materials.of[v]));
-  };
-  NoiseSums noise;
-  for_dielectrics([&](uint32_t, const std::vector<ReflectionSample>& samples) { noise.add(samples); });
-  std::vector<ScaleEquations> places(kPlaces);
-  for_dielectrics([&](uint32_t v, const std::vector<ReflectionSample>& samples) {
-    places[place_of(positions[v])].add(samples, noise.noise());
-  });
-  LightScale scale = cei3d::light_scale(places);
-  scale.reflected = noise.reflected();
+  return light_scale(materials, positions, noise(materials).noise());
+}
+
+LightScale LitSamples::light_correction(const SplitMaterials& materials,
+                                        const std::vector<Vec3f>& positions) const {
+  const NoiseSums sums = noise(materials);
+  SampleNoise plain = sums.noise();
+  LightScale scale = light_scale(materials, positions, plain);
+  plain.diffuse = 0;
+  scale.factor = scale.factor / light_scale(materials, positions, plain).factor;
+  scale.reflected = sums.reflected();
   return scale;
 }
 

@@ -32,8 +32,16 @@ class LitSamples {
   std::vector<Vec3f> fit_diffuse(const SplitMaterials&, std::vector<Vec3f> before) const;
   // Factor on the light that fits the dielectrics. positions: of the vertices, unit frame.
   LightScale light_scale(const SplitMaterials&, const std::vector<Vec3f>& positions) const;
+  // The same over the factor of plain least squares of the same samples, for a light that plain least squares
+  // determined: how much less weight changes along the color of a surface deserve.
+  LightScale light_correction(const SplitMaterials&, const std::vector<Vec3f>& positions) const;
 
  private:
+  template <class F>
+  void for_dielectrics(const SplitMaterials&, const F& visit) const;  // visit(vertex, its samples)
+  NoiseSums noise(const SplitMaterials&) const;
+  LightScale light_scale(const SplitMaterials&, const std::vector<Vec3f>& positions,
+                         const SampleNoise&) const;
   // Light seen by a row if its surface has a given roughness.
   struct Seen {
     Vec3f base, fresnel;  // reflected radiance: the part scaled by F0, and the rest

@@ -160,7 +160,6 @@ namespace {
 // darken; 0 if there are few. Gray metals are not used: their reflectance is anywhere between .5 and .97.
 float colored_metal_peak(const SplitMaterials& materials) {
   constexpr float kColored = 1.25f;  // ratio of the brightest and the darkest channel
-  constexpr double kFew = 0.02;      // of the vertices
   constexpr double kClean = 0.7;     // the quantile; estimates of vertices scatter
   std::vector<float> peaks;
   for (uint32_t v = 0; v < materials.of.size(); ++v) {
@@ -169,7 +168,7 @@ float colored_metal_peak(const SplitMaterials& materials) {
     const float peak = max(c.x, max(c.y, c.z));
     if (peak > kColored * min(c.x, min(c.y, c.z))) peaks.push_back(peak);
   }
-  if (double(peaks.size()) < kFew * double(materials.of.size())) return 0;
+  if (double(peaks.size()) < kFewVertices * double(materials.of.size())) return 0;
   const auto rank = size_t(kClean * double(peaks.size()));
   return value_of_rank(std::move(peaks), rank);
 }
@@ -185,7 +184,8 @@ void SplitSolver::fix_scale(SplitSolution& s) {
   constexpr float kPeakError = 0.2f, kDielectricError = 0.1f;  // of the logarithms
   system_.set_materials(s.materials);
   s.materials.color = system_.fit_metal_color(s.x);
-  const Vec3f of_dielectrics = light_scale(s).factor;
+  if (s.materials.metal_share() > 1 - kFewVertices) return;  // decided after the separation
+  const Vec3f of_dielectrics = lit_samples(s.x).light_scale(s.materials, mesh_.positions).factor;
   scale(s, of_dielectrics);
   const float peak = colored_metal_peak(s.materials);
   progress_.log(Json{
@@ -199,9 +199,9 @@ void SplitSolver::fix_scale(SplitSolution& s) {
   scale(s, {common, common, common});
 }
 
-LightScale SplitSolver::light_scale(const SplitSolution& s) {
+LightScale SplitSolver::light_correction(const SplitSolution& s) {
   system_.set_materials(s.materials);
-  return lit_samples(s.x).light_scale(s.materials, mesh_.positions);
+  return lit_samples(s.x).light_correction(s.materials, mesh_.positions);
 }
 
 SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {

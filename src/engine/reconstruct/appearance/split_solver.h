@@ -40,8 +40,8 @@ class SplitSolver {
   SplitSolution several(SplitSolution start, double max_residual);
   // Light and D for given materials.
   SplitSolution with_materials(const SplitMaterials&);
-  // Estimate of a factor on the light from the samples.
-  LightScale light_scale(const SplitSolution&);
+  // Estimate of a factor on the light of the solution from the samples.
+  LightScale light_correction(const SplitSolution&);
   // Multiplies the light by `factor`, divides the color of metals by it, and refits the dielectrics.
   void scale_light(SplitSolution&, Vec3f factor);
 

@@ -13,6 +13,12 @@ constexpr int kChunks = 16;  // of rows; fixed, so that sums are the same on any
 
 }  // namespace
 
+double SplitMaterials::metal_share() const {
+  const auto metals =
+      std::count_if(of.begin(), of.end(), [](const Material& m) { return m.metalness > 0.5f; });
+  return double(metals) / double(std::max<size_t>(of.size(), 1));
+}
+
 SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
                          const LinearSplitOptions& options)
     : mesh_(mesh),
@@ -254,8 +260,8 @@ SplitUnknowns SplitSystem::diagonal() const {
         d.diffuse[row.far_vertices[k]] += gg * far * far * square(row.far_barycentric[k]);
     else
       for (int k = 0; k < 4; ++k)
-        mass[size_t(o.base.lobe.level) + (o.base.lobe.above > 0.5f)][o.base.taps.pixel[k]] +=
-            gg * o.base.taps.weight[k];
+        mass[size_t(o.base.lobe.level) + (o.base.lobe.above > 0.5f)][o.base.taps[0].pixel[k]] +=
+            gg * o.base.taps[0].weight[k];
   }
   for (int level = 0; level < BlurLadder::kLevels; ++level) {
     if (!in_use_[size_t(level)]) continue;

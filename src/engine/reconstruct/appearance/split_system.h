@@ -29,7 +29,11 @@ struct SplitMaterials {
   std::vector<Material> of;  // #V
   std::vector<Vec3f> color;  // #V, albedo of the metals, linear
   bool is_metal(uint32_t v) const { return of[v].metalness > 0.5f; }
+  // Share of the vertices.
+  double metal_share() const;
 };
+// With fewer dielectric or metallic vertices than this share, those few determine nothing about the light.
+inline constexpr double kFewVertices = 0.02;
 inline SplitMaterials one_material(size_t vertices, const Material& m) {
   return {std::vector<Material>(vertices, m), std::vector<Vec3f>(vertices, Vec3f{0.7f, 0.7f, 0.7f})};
 }
