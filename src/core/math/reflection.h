@@ -67,6 +67,14 @@ HD T reflection_width(T roughness) {
   return sum;
 }
 
+// The variance along a tangent of a Gaussian with the mean sharpness of the mixture: that of its peak.
+template <class T>
+HD T reflection_peak_width(T roughness) {
+  T sum(0.0f);
+  for (int j = 0; j < kReflectionLobes; ++j) sum += T(reflection_share(j) * reflection_node(j));
+  return T(1.0f) / (sum * reflection_scale(max(roughness, T(kMinRoughness))));
+}
+
 // The mixture stretched along the plane of incidence: at grazing angles the reflection of a rough surface is
 // longer in that plane than across it. stretch: the ratio of the two widths, >= 1; their product is that of
 // the round lobe.

@@ -41,10 +41,11 @@ ReflectedSky round_sky(const ReflectionAxis<float>& lobe, int height) {
 }
 
 // Three round lobes as wide as the stretched one is across the plane of incidence; the variance of their
-// angles is what it has more along that plane. The variance of a lobe grows with roughness^4.
+// angles is what its peak has more along that plane. (That of the whole lobe, three times as large because of
+// its tails, would move the outer lobes out of the peak.) The variance of a lobe grows with roughness^4.
 ReflectedSky stretched_sky(const LobeFrame<float>& lobe, int height) {
   constexpr float kMaxAngle = 1.2f, kOuter = 1.0f / 6;  // Gauss-Hermite: at +- sqrt(3) standard deviations
-  const float variance = reflection_width(lobe.roughness) * (lobe.stretch - 1 / lobe.stretch),
+  const float variance = reflection_peak_width(lobe.roughness) * (lobe.stretch - 1 / lobe.stretch),
               angle = min(std::sqrt(3 * variance), kMaxAngle);
   const Vec3f along = normalize(cross(lobe.across, lobe.axis)) * std::sin(angle);
   ReflectedSky sky = round_sky({lobe.axis, lobe.roughness / std::sqrt(std::sqrt(lobe.stretch))}, height);
