@@ -221,6 +221,22 @@ const Field& present_field(const Scene& scene) {
   return *scene.sdf;
 }
 
+// How far the zero set of a field is from a surface, on average; infinite where the field has no inside.
+float misfit_of(const Device& device, const Field& sdf, const Reshape& surface,
+                const std::vector<Vec3f>& on_zero_set) {
+  constexpr float kBelow = 0.01f, kMinInside = 0.5f;  // thin parts end above that depth
+  const std::vector<float> values = first_output(device, sdf, on_zero_set);
+  std::vector<Vec3f> below;
+  double sum = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    sum += max(length(on_zero_set[i] - surface.positions[i]), std::abs(values[i])) / double(values.size());
+    below.push_back(surface.positions[i] - surface.normals[i] * kBelow);
+  }
+  const std::vector<float> depths = first_output(device, sdf, below);
+  const auto inside = std::count_if(depths.begin(), depths.end(), [](float d) { return d < 0; });
+  return float(inside) < kMinInside * float(depths.size()) ? INFINITY : float(sum);
+}
+
 // Gives the moved surface a field of its own, and takes the change of shape to the zero set of it. Returns
 // the mean distance between both.
 float refit(const Device& device, const Scene& scene, const DeformRequest& request, Reshape& change,
@@ -230,22 +246,21 @@ float refit(const Device& device, const Scene& scene, const DeformRequest& reque
   sdf = std::make_shared<const Field>(
       refit_field(device, present_field(scene), deformed_points(scene, change), request.refit, progress));
   const std::vector<Vec3f> fitted = on_zero_set(device, *sdf, change.positions);
-  const std::vector<float> values = first_output(device, *sdf, fitted);
-  double misfit = 0;
-  for (size_t i = 0; i < fitted.size(); ++i)
-    misfit += max(length(fitted[i] - change.positions[i]), std::abs(values[i])) / double(fitted.size());
+  const float misfit = misfit_of(device, *sdf, change, fitted);
+  if (std::isinf(misfit))
+    fail("The field has lost its inside{}.", request.refit.distance == SurfaceDistance::l1
+                                                 ? ", as unsigned distances have none; use --distance signed"
+                                                 : "; use --geometry mesh");
   if (!(misfit < kMaxMisfit))
-    fail("The field did not take the new shape: its surface is {:.3g} away on average. {}",
-         misfit / scene.normalization.scale,
-         request.refit.distance == SurfaceDistance::l1
-             ? "Unsigned distances leave a field without an inside; use --distance signed."
-             : "Drag less far, or use --geometry mesh.");
-  const Mesh& mesh = scene.surface->mesh();
-  std::vector<Vec3f> after = mesh.positions;
+    fail(
+        "The field did not take the new shape: its surface is {:.3g} away on average. Drag less far, or use "
+        "--geometry mesh.",
+        misfit / scene.normalization.scale);
+  std::vector<Vec3f> after = scene.surface->mesh().positions;
   for (size_t i = 0; i < fitted.size(); ++i) after[change.moved[i]] = fitted[i];
   change = reshape_to(scene, after);
   sdf_normals(device, *sdf, change.positions, change.normals);
-  return float(misfit);
+  return misfit;
 }
 
 }  // namespace
