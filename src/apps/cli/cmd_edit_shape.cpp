@@ -7,7 +7,8 @@ namespace cei3d {
 namespace {
 
 struct DeformOptions {
-  std::string from, to, view, pixel, drag, part;
+  std::vector<std::string> from, to, turn, pin;
+  std::string view, pixel, drag, part, geometry = "mesh", distance = "signed";
   std::optional<double> radius;
   EditOutput output;
 };
@@ -27,6 +28,18 @@ Vec2<double> pixel_of(const std::string& text, const std::string& option) {
   return {v[0], v[1]};
 }
 
+std::vector<PointDrag> drags_of(const DeformOptions& o) {
+  if (o.from.size() != o.to.size()) fail_usage("There must be one --to for every --from.");
+  if (!o.turn.empty() && o.turn.size() != o.from.size())
+    fail_usage("There must be one --turn for every --from, or none.");
+  std::vector<PointDrag> drags;
+  for (size_t i = 0; i < o.from.size(); ++i) {
+    drags.push_back({point_of(o.from[i], "--from"), point_of(o.to[i], "--to")});
+    if (!o.turn.empty()) drags.back().turn = point_of(o.turn[i], "--turn");
+  }
+  return drags;
+}
+
 DeformCommand command_of(const DeformOptions& o) {
   const bool points = !o.from.empty() && !o.to.empty();
   const bool pixels = !o.view.empty() && !o.pixel.empty() && !o.drag.empty();
@@ -35,10 +48,18 @@ DeformCommand command_of(const DeformOptions& o) {
   if (any_point == any_pixel || points == pixels)
     fail_usage("Give --from X,Y,Z --to X,Y,Z, or --view NAME --pixel X,Y --drag DX,DY.");
   DeformCommand c;
-  if (points)
-    c.drag = PointDrag{point_of(o.from, "--from"), point_of(o.to, "--to")};
-  else
+  if (points) {
+    const std::vector<PointDrag> drags = drags_of(o);
+    c.drag = drags.front();
+    c.more.assign(drags.begin() + 1, drags.end());
+  } else {
+    if (!o.turn.empty()) fail_usage("--turn needs --from and --to.");
     c.drag = PixelDrag{o.view, pixel_of(o.pixel, "--pixel"), pixel_of(o.drag, "--drag")};
+  }
+  for (const std::string& pin : o.pin) c.pins.push_back(point_of(pin, "--pin"));
+  if (o.distance != "signed" && o.geometry != "field") fail_usage("--distance needs --geometry field.");
+  c.geometry = o.geometry;
+  c.distance = o.distance;
   c.radius = o.radius;
   c.part = o.part;
   return c;
@@ -53,8 +74,19 @@ std::string deform_text(const EditSummary& s) {
 void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
   auto o = std::make_shared<DeformOptions>();
   CLI::App* verb = commands.add("deform", "Drag a point of the surface; its surroundings follow", edit);
-  verb->add_option("--from", o->from, "Point on the surface to drag, X,Y,Z in the capture's frame");
-  verb->add_option("--to", o->to, "Where the point goes, X,Y,Z in the capture's frame");
+  const auto each = [&](const char* name, std::vector<std::string>& values, const char* help) {
+    verb->add_option(name, values, help)->expected(1)->take_all();
+  };
+  each("--from", o->from,
+       "Point on the surface to drag, X,Y,Z in the capture's frame; again for more points");
+  each("--to", o->to, "Where the point goes, X,Y,Z in the capture's frame; one for each --from");
+  each("--turn", o->turn,
+       "Rotation of the surface around the point, X,Y,Z: axis in the capture's frame times angle in degrees; "
+       "one "
+       "for each --from, or none");
+  each(
+      "--pin", o->pin,
+      "Point on the surface around which nothing moves, X,Y,Z in the capture's frame; again for more points");
   verb->add_option("--view", o->view, "Instead of --from and --to: name of a view to drag in");
   verb->add_option("--pixel", o->pixel,
                    "With --view: pixel of the point to drag, X,Y (column, row from the top left corner)");
@@ -63,6 +95,17 @@ void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
                    "Distance along the surface up to which it moves, capture units (default: 0.3 of the "
                    "object's radius, or 1.5 times the drag if that is more)");
   verb->add_option("--part", o->part, "Move only this part");
+  verb->add_option(
+          "--geometry", o->geometry,
+          "mesh: the object's distance field stays, and is read through the deformation of its mesh. "
+          "field: a copy of the field is trained until its surface is the deformed one")
+      ->check(CLI::IsMember({"mesh", "field"}))
+      ->capture_default_str();
+  verb->add_option("--distance", o->distance,
+                   "With --geometry field, what it is trained on. signed: distances to the deformed surface, "
+                   "negative inside. l1: as the paper prints it, without a sign")
+      ->check(CLI::IsMember({"signed", "l1"}))
+      ->capture_default_str();
   add_output(verb, o->output);
   commands.on(verb, o, [project](const DeformOptions& options, Session& session, Console& console) {
     const DeformCommand command = command_of(options);

@@ -48,6 +48,12 @@ void add_schedule_options(CLI::App* verb, Options& o) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->excludes(time);
+  verb->add_option(
+          "--joint", options.joint_steps,
+          "Steps, at most, of a last descent on surface, albedo, material and light together, which is "
+          "kept if it explains pixels better that it has not seen; 0: none; -1: the preset's")
+      ->check(CLI::Range(-1, 1000000))
+      ->capture_default_str();
   verb->add_option("--seed", options.seed,
                    "Random seed. Without --time the same seed gives the same object, bit for bit")
       ->capture_default_str();

@@ -122,6 +122,28 @@ std::vector<float> linear_case(const Device& device, int in, int out) {
   return y;
 }
 
+// Hits of rays that enter a surface, some of them grazing it.
+std::vector<float> field_hit_case(const Device& device, bool gradient) {
+  std::vector<float> depths = noise(kN, 18), positions = noise(3 * kN, 19), directions = noise(3 * kN, 20),
+                     gradients = noise(3 * kN, 21, 0.3f);
+  const std::vector<float> values = noise(kN, 22, 0.1f), along = noise(3 * kN, 23), d_depths = noise(kN, 24),
+                           d_positions = noise(3 * kN, 25), d_normals = noise(3 * kN, 26);
+  for (int i = 0; i < kN; ++i) {
+    const Vec3f d = normalize(load_planes<float>(directions.data(), kN, i));
+    store_planes(directions.data(), kN, i, d);
+    store_planes(gradients.data(), kN, i, load_planes<float>(gradients.data(), kN, i) - d * 0.5f);
+  }
+  std::vector<float> out(7 * kN);
+  const TracedHitPlanes hits{
+      kN, depths.data(), positions.data(), directions.data(), values.data(), gradients.data(), along.data()};
+  if (gradient)
+    device.launch<FieldHitsGrad>(
+        {hits, d_depths.data(), d_positions.data(), d_normals.data(), out.data(), out.data() + kN}, kN);
+  else
+    device.launch<FieldHits>({hits, out.data(), out.data() + kN, out.data() + 4 * kN}, kN);
+  return out;
+}
+
 // The cases of kernel K. A kernel without any does not compile: add a specialization.
 template <class K>
 struct Parity;
@@ -187,6 +209,19 @@ struct Parity<RadianceInputGrad> {
   static Cases cases() {
     return {{"", [](const Device& d) { return radiance_case(d, true, false); }},
             {"turned", [](const Device& d) { return radiance_case(d, true, true); }}};
+  }
+};
+
+template <>
+struct Parity<FieldHits> {
+  static Cases cases() {
+    return {{"", [](const Device& d) { return field_hit_case(d, false); }}};
+  }
+};
+template <>
+struct Parity<FieldHitsGrad> {
+  static Cases cases() {
+    return {{"", [](const Device& d) { return field_hit_case(d, true); }}};
   }
 };
 

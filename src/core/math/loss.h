@@ -44,5 +44,13 @@ HD LossValue<T> empty_push(T sdf, float inv_s) {
   const ActivationValue<T> inside = Softplus::eval(-sdf, inv_s);
   return {inside.value, -inside.first};
 }
+// softplus(sdf): the opposite, for the point of a ray through the object that comes nearest to the surface
+// but misses it. The two are the cross entropy of a mask with the coverage sigmoid(-inv_s sdf), over inv_s.
+// [Yariv et al. 2020]
+template <class T>
+HD LossValue<T> cover_pull(T sdf, float inv_s) {
+  const ActivationValue<T> outside = Softplus::eval(sdf, inv_s);
+  return {outside.value, outside.first};
+}
 
 }  // namespace cei3d

@@ -56,6 +56,14 @@ TEST(EmptyPush, GradientEqualsDualNumbers) {
   }
 }
 
+TEST(CoverPull, GradientEqualsDualNumbersAndMirrorsThatOfEmptyPush) {
+  for (double sdf : {-0.1, -0.004, 1e-6, 0.002, 0.05}) {
+    const auto v = cover_pull(sdf, 200);
+    EXPECT_NEAR(v.gradient, cover_pull(D(sdf, 1), 200).value.derivative, 1e-9) << sdf;
+    EXPECT_NEAR(v.value, empty_push(-sdf, 200).value, 1e-12);
+  }
+}
+
 TEST(EmptyPush, PushesWithFullStrengthFromDeepInsideAndNotAtAllFarOutside) {
   EXPECT_NEAR(empty_push(-0.1, 400).gradient, -1, 1e-9);
   EXPECT_NEAR(empty_push(-0.1, 400).value, 0.1, 1e-9);

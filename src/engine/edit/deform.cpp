@@ -7,10 +7,13 @@
 #include "core/base/cancel.h"
 #include "core/base/clock.h"
 #include "core/base/error.h"
+#include "core/math/rotation.h"
 #include "engine/edit/part_vertices.h"
 #include "model/geometry/mesh/arap.h"
 #include "model/geometry/mesh/geodesic.h"
 #include "model/geometry/mesh/surface_gradient.h"
+#include "model/geometry/shape/carry.h"
+#include "model/geometry/shape/sdf_normals.h"
 
 namespace cei3d {
 namespace {
@@ -32,18 +35,28 @@ std::string in_capture(const Scene& scene, Vec3f p) {
   return fmt::format("{:.4g},{:.4g},{:.4g}", q.x, q.y, q.z);
 }
 
+// d rotated by an axis times an angle.
+Vec3f turned(Vec3f turn, Vec3f d) {
+  const float angle = length(turn);
+  return angle == 0 ? d : about_axis(turn / angle, angle) * d;
+}
+
 bool is_finite(Vec3f p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-void check_drag(const Scene& scene, const DeformRequest& r) {
-  if (!is_finite(r.from) || !is_finite(r.to)) fail_usage("The ends of the drag must be finite numbers.");
-  if (length(r.to - r.from) < 1e-5f)
-    fail_usage("The drag has no length: --from and --to are the same point.");
+void check_drags(const Scene& scene, const DeformRequest& r) {
+  if (r.handles.empty()) fail_usage("A deformation needs a point to drag.");
+  for (const DeformHandle& h : r.handles) {
+    if (!is_finite(h.from) || !is_finite(h.to) || !is_finite(h.turn))
+      fail_usage("The ends of the drag must be finite numbers.");
+    if (length(h.to - h.from) < 1e-5f && length(h.turn) == 0)
+      fail_usage("The drag has no length: --from and --to are the same point.");
+    if (length(h.to) > 1)
+      fail(
+          "The drag ends at {}, outside the sphere of radius {:.4g} around {} that the object lives in; drag "
+          "less far.",
+          in_capture(scene, h.to), 1 / scene.normalization.scale, in_capture(scene, {0, 0, 0}));
+  }
   if (r.radius && !(*r.radius > 0)) fail_usage("--radius must be more than 0.");
-  if (length(r.to) > 1)
-    fail(
-        "The drag ends at {}, outside the sphere of radius {:.4g} around {} that the object lives in; drag "
-        "less far.",
-        in_capture(scene, r.to), 1 / scene.normalization.scale, in_capture(scene, {0, 0, 0}));
 }
 
 uint32_t nearest_vertex(const Mesh& mesh, Vec3f to) {
@@ -57,16 +70,22 @@ uint32_t nearest_vertex(const Mesh& mesh, Vec3f to) {
   return best;
 }
 
-uint32_t find_handle(const Scene& scene, const DeformRequest& r, const std::vector<uint8_t>& on_part) {
+// what: "Drag from" or "Pin".
+uint32_t vertex_at(const Scene& scene, Vec3f given, const char* what) {
   const Mesh& mesh = scene.surface->mesh();
-  const uint32_t handle = nearest_vertex(mesh, r.from);
-  const Vec3f p = mesh.positions[handle];
-  if (length(p - r.from) > kNear)
-    fail("There is no surface at {}; the nearest is at {}, {:.3g} away. Drag from a point of the surface.",
-         in_capture(scene, r.from), in_capture(scene, p), length(p - r.from) / scene.normalization.scale);
+  const uint32_t vertex = nearest_vertex(mesh, given);
+  const Vec3f p = mesh.positions[vertex];
+  if (!is_finite(given) || length(p - given) > kNear)
+    fail("There is no surface at {}; the nearest is at {}, {:.3g} away. {} a point of the surface.",
+         in_capture(scene, given), in_capture(scene, p), length(p - given) / scene.normalization.scale, what);
+  return vertex;
+}
+
+uint32_t find_handle(const Scene& scene, const DeformRequest& r, Vec3f from,
+                     const std::vector<uint8_t>& on_part) {
+  const uint32_t handle = vertex_at(scene, from, "Drag from");
   if (!on_part.empty() && !on_part[handle])
-    fail("The point {} is not on part '{}'; drag from a point of the part.", in_capture(scene, r.from),
-         r.part);
+    fail("The point {} is not on part '{}'; drag from a point of the part.", in_capture(scene, from), r.part);
   return handle;
 }
 
@@ -75,33 +94,57 @@ struct Reach {
   float radius = 0;
 };
 
-// Constraints: the disc around the handle moves with the drag, the rest of the radius or the part is free.
-Reach reach_of(const Mesh& mesh, const DeformRequest& r, const std::vector<uint8_t>& on_part,
-               uint32_t handle) {
+// Distances along the surface from a vertex; infinite beyond the limits.
+std::vector<float> distances_from(const Mesh& mesh, const std::vector<uint8_t>& on_part, uint32_t vertex,
+                                  float farthest) {
   GeodesicLimits limits;
-  if (r.radius)
-    limits.farthest = *r.radius;
-  else if (on_part.empty())
-    limits.farthest = max(kDefaultRadius, kRadiusPerDrag * length(r.to - r.from));
+  limits.farthest = farthest;
   if (!on_part.empty()) limits.may_enter = [&](uint32_t v) { return on_part[v] != 0; };
-  const std::vector<float> distance = geodesic_distances(mesh.positions, mesh.triangles, handle, limits);
+  return geodesic_distances(mesh.positions, mesh.triangles, vertex, limits);
+}
+
+// Maximum distance from a handle that moves; infinite: the whole part.
+float farthest_of(const DeformRequest& r, bool has_part) {
+  if (r.radius) return *r.radius;
+  if (has_part) return GeodesicLimits().farthest;
+  float longest = 0;
+  for (const DeformHandle& h : r.handles) longest = max(longest, length(h.to - h.from));
+  return max(kDefaultRadius, kRadiusPerDrag * longest);
+}
+
+// Constraints: a disc around each handle moves with its drag, discs around pins stay, the rest of the radius
+// or of the part is free.
+Reach reach_of(const Scene& scene, const DeformRequest& r, const std::vector<uint8_t>& on_part) {
+  const Mesh& mesh = scene.surface->mesh();
+  const size_t n = mesh.positions.size();
+  const float farthest = farthest_of(r, !on_part.empty());
   Reach reach;
-  reach.radius = limits.farthest;
-  if (std::isinf(reach.radius)) {
-    reach.radius = 0;
-    for (const float d : distance)
+  std::vector<std::vector<float>> distances;
+  for (const DeformHandle& h : r.handles) {
+    distances.push_back(distances_from(mesh, on_part, find_handle(scene, r, h.from, on_part), farthest));
+    for (const float d : distances.back())
       if (!std::isinf(d)) reach.radius = max(reach.radius, d);
   }
-  reach.constraints.free.assign(distance.size(), 0);
-  for (uint32_t v = 0; v < distance.size(); ++v) {
-    if (std::isinf(distance[v])) continue;
-    if (distance[v] > kHandleShare * reach.radius) {
+  if (!std::isinf(farthest)) reach.radius = farthest;
+  const float disc = kHandleShare * reach.radius;
+  reach.constraints.free.assign(n, 0);
+  std::vector<uint8_t> held(n, 0);
+  for (size_t k = 0; k < r.handles.size(); ++k)
+    for (uint32_t v = 0; v < n; ++v) {
+      if (std::isinf(distances[k][v]) || held[v]) continue;
       reach.constraints.free[v] = 1;
-    } else {
+      if (distances[k][v] > disc) continue;
+      held[v] = 1;
+      const DeformHandle& h = r.handles[k];
       reach.constraints.handles.push_back(v);
-      reach.constraints.targets.push_back(mesh.positions[v] + (r.to - r.from));
+      reach.constraints.targets.push_back(h.to + turned(h.turn, mesh.positions[v] - h.from));
     }
+  for (const Vec3f pin : r.pins) {
+    const std::vector<float> d = distances_from(mesh, {}, vertex_at(scene, pin, "Pin"), disc);
+    for (uint32_t v = 0; v < n; ++v)
+      if (!std::isinf(d[v])) reach.constraints.free[v] = 0;
   }
+  for (const uint32_t v : reach.constraints.handles) reach.constraints.free[v] = 0;
   return reach;
 }
 
@@ -114,7 +157,7 @@ void check_reach(const Scene& scene, const DeformRequest& r, const Reach& reach)
     fail("The whole object would move; give a smaller --radius, or the --part that should.");
   if (std::none_of(triangles.begin(), triangles.end(), moves_all))
     fail("Not one triangle of the surface is within {:.3g} of {}; give a larger {}.",
-         reach.radius / scene.normalization.scale, in_capture(scene, r.from),
+         reach.radius / scene.normalization.scale, in_capture(scene, r.handles[0].from),
          r.part.empty() ? "--radius" : "part");
 }
 
@@ -138,16 +181,98 @@ Reshape reshape_to(const Scene& scene, const std::vector<Vec3f>& after) {
   return reshape;
 }
 
+// The points of the deformed surface, for its field: handler points, and the vertices of the mesh, which are
+// also where no view has seen it.
+DeformedPoints deformed_points(const Scene& scene, const Reshape& change) {
+  const Mesh &before = scene.surface->mesh(), after = apply(before, change);
+  DeformedPoints out;
+  std::vector<uint8_t> moved(before.positions.size(), 0), used(moved);
+  for (const uint32_t v : change.moved) moved[v] = 1;
+  for (const auto& t : before.triangles)
+    for (const uint32_t v : t) used[v] = 1;
+  for (size_t v = 0; v < before.positions.size(); ++v) {
+    if (!used[v]) continue;
+    if (moved[v]) out.vacated.push_back(before.positions[v]);
+    out.points.positions.push_back(after.positions[v]);
+    out.points.normals.push_back(after.normals[v]);
+    out.moved.push_back(moved[v]);
+  }
+  double edges = 0;
+  for (const auto& t : before.triangles) edges += length(before.positions[t[1]] - before.positions[t[0]]);
+  out.points.spacing = max(1e-4f, float(edges / double(std::max<size_t>(before.triangles.size(), 1))));
+  if (scene.handlers) {
+    const HandlerPoints& were = *scene.handlers;
+    const HandlerPoints now = carried(were, before, after, change);
+    for (size_t i = 0; i < now.positions.size(); ++i) {
+      const Vec3f step = now.positions[i] - were.positions[i];
+      out.points.positions.push_back(now.positions[i]);
+      out.points.normals.push_back(now.normals[i]);
+      out.moved.push_back(dot(step, step) > 0);
+    }
+  }
+  out.points.footprints.assign(out.points.positions.size(), out.points.spacing);
+  return out;
+}
+
+// The field that the edit starts from: that of the last version that has one.
+const Field& present_field(const Scene& scene) {
+  for (auto v = scene.shape_versions.rbegin(); v != scene.shape_versions.rend(); ++v)
+    if ((*v)->sdf) return *(*v)->sdf;
+  return *scene.sdf;
+}
+
+// How far the zero set of a field is from a surface, on average; infinite where the field has no inside.
+float misfit_of(const Device& device, const Field& sdf, const Reshape& surface,
+                const std::vector<Vec3f>& on_zero_set) {
+  constexpr float kBelow = 0.01f, kMinInside = 0.5f;  // thin parts end above that depth
+  const std::vector<float> values = first_output(device, sdf, on_zero_set);
+  std::vector<Vec3f> below;
+  double sum = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    sum += max(length(on_zero_set[i] - surface.positions[i]), std::abs(values[i])) / double(values.size());
+    below.push_back(surface.positions[i] - surface.normals[i] * kBelow);
+  }
+  const std::vector<float> depths = first_output(device, sdf, below);
+  const auto inside = std::count_if(depths.begin(), depths.end(), [](float d) { return d < 0; });
+  return float(inside) < kMinInside * float(depths.size()) ? INFINITY : float(sum);
+}
+
+// Gives the moved surface a field of its own, and takes the change of shape to the zero set of it. Returns
+// the mean distance between both.
+float refit(const Device& device, const Scene& scene, const DeformRequest& request, Reshape& change,
+            std::shared_ptr<const Field>& sdf, const Progress& progress) {
+  constexpr float kMaxMisfit = 0.01f;
+  if (!scene.sdf) fail("The object has no distance field to deform; use --geometry mesh.");
+  sdf = std::make_shared<const Field>(
+      refit_field(device, present_field(scene), deformed_points(scene, change), request.refit, progress));
+  const std::vector<Vec3f> fitted = on_zero_set(device, *sdf, change.positions);
+  const float misfit = misfit_of(device, *sdf, change, fitted);
+  if (std::isinf(misfit))
+    fail("The field has lost its inside{}.", request.refit.distance == SurfaceDistance::l1
+                                                 ? ", as unsigned distances have none; use --distance signed"
+                                                 : "; use --geometry mesh");
+  if (!(misfit < kMaxMisfit))
+    fail(
+        "The field did not take the new shape: its surface is {:.3g} away on average. Drag less far, or use "
+        "--geometry mesh.",
+        misfit / scene.normalization.scale);
+  std::vector<Vec3f> after = scene.surface->mesh().positions;
+  for (size_t i = 0; i < fitted.size(); ++i) after[change.moved[i]] = fitted[i];
+  change = reshape_to(scene, after);
+  sdf_normals(device, *sdf, change.positions, change.normals);
+  return misfit;
+}
+
 }  // namespace
 
-DeformResult deform(const Scene& scene, const DeformRequest& request, Progress& progress) {
+DeformResult deform(const Device& device, const Scene& scene, const DeformRequest& request,
+                    Progress& progress) {
   const double start = steady_seconds();
-  check_drag(scene, request);
+  check_drags(scene, request);
   const std::vector<uint8_t> on_part =
       request.part.empty() ? std::vector<uint8_t>() : part_vertices(scene, request.part);
-  const uint32_t handle = find_handle(scene, request, on_part);
   const Mesh& mesh = scene.surface->mesh();
-  const Reach reach = reach_of(mesh, request, on_part, handle);
+  const Reach reach = reach_of(scene, request, on_part);
   check_reach(scene, request, reach);
   progress.report({"deform", 0.1, -1, ""});
   ArapOptions options;
@@ -155,13 +280,15 @@ DeformResult deform(const Scene& scene, const DeformRequest& request, Progress& 
   const int free = int(std::count(reach.constraints.free.begin(), reach.constraints.free.end(), 1));
   options.max_iterations = std::clamp(kVertexIterations / std::max(free, 1), kMinIterations, kMaxIterations);
   const ArapResult moved = arap_deform(mesh.positions, mesh.triangles, reach.constraints, options);
-  progress.report({"deform", 0.8, -1, ""});
+  progress.report({"deform", request.geometry == DeformedGeometry::field ? 0.2 : 0.8, -1, ""});
   check_cancelled(progress, "deforming was interrupted; nothing was changed");
   auto reshape = std::make_shared<Reshape>(reshape_to(scene, moved.positions));
 
   DeformResult result;
   result.layer.id = request.id;
   DeformReport& report = result.report;
+  if (request.geometry == DeformedGeometry::field)
+    report.misfit = refit(device, scene, request, *reshape, result.layer.sdf, progress);
   report.vertices = reshape->moved.size();
   for (size_t i = 0; i < reshape->moved.size(); ++i)
     report.farthest = max(report.farthest, length(reshape->positions[i] - mesh.positions[reshape->moved[i]]));

@@ -57,7 +57,7 @@ class ShapeEdits : public ::testing::Test {
   static const Mesh& mesh() { return scene_->surface->mesh(); }
   static DeformResult drag(const DeformRequest& r) {
     Progress quiet;
-    return deform(*scene_, r, quiet);
+    return deform(make_device(), *scene_, r, quiet);
   }
   static RemoveResult remove(const std::string& part) {
     Progress quiet;
@@ -78,7 +78,7 @@ class ShapeEdits : public ::testing::Test {
 };
 
 TEST_F(ShapeEdits, TheHandleArrivesAndWhatIsOutsideTheRadiusStays) {
-  const DeformResult r = drag({"0001-deform", kTop, kUp, 0.4f, ""});
+  const DeformResult r = drag({"0001-deform", {{kTop, kUp}}, 0.4f, ""});
   const Reshape& change = *r.layer.reshape;
   const Mesh after = apply(mesh(), change);
   EXPECT_EQ(r.report.vertices, change.moved.size());
@@ -97,7 +97,7 @@ TEST_F(ShapeEdits, TheHandleArrivesAndWhatIsOutsideTheRadiusStays) {
 }
 
 TEST_F(ShapeEdits, TheHillHasNoSpikeAndNoCrease) {
-  const DeformResult r = drag({"0001-deform", kTop, kUp, 0.4f, ""});
+  const DeformResult r = drag({"0001-deform", {{kTop, kUp}}, 0.4f, ""});
   const Mesh after = apply(mesh(), *r.layer.reshape);
   // Neighboring triangles: on the ball they meet at about 0.05, on the steepest hill some times more.
   float worst = 0;
@@ -113,7 +113,7 @@ TEST_F(ShapeEdits, TheHillHasNoSpikeAndNoCrease) {
 }
 
 TEST_F(ShapeEdits, NormalsAreThoseOfTheNewShape) {
-  const DeformResult r = drag({"0001-deform", kTop, kUp, 0.4f, ""});
+  const DeformResult r = drag({"0001-deform", {{kTop, kUp}}, 0.4f, ""});
   Mesh after = apply(mesh(), *r.layer.reshape);
   const std::vector<Vec3f> given = std::move(after.normals);
   after.normals.clear();
@@ -122,25 +122,63 @@ TEST_F(ShapeEdits, NormalsAreThoseOfTheNewShape) {
 }
 
 TEST_F(ShapeEdits, APartMovesAndTheRestStays) {
-  const DeformResult r = drag({"0001-deform", kTop, kUp, std::nullopt, "cap"});
+  const DeformResult r = drag({"0001-deform", {{kTop, kUp}}, std::nullopt, "cap"});
   EXPECT_GT(r.layer.reshape->moved.size(), 300u);
   for (const uint32_t v : r.layer.reshape->moved) EXPECT_GT(mesh().positions[v].z, 0.32f);
 }
 
 TEST_F(ShapeEdits, BadDragsSayWhatToDo) {
   const auto error = [&](DeformRequest r) { return error_of([&] { drag(r); }); };
-  EXPECT_THAT(error({"", {0, 0, 0.3f}, kUp, 0.4f, ""}),
+  EXPECT_THAT(error({"", {{{0, 0, 0.3f}, kUp}}, 0.4f, ""}),
               HasSubstr("There is no surface at 1,2,3.6; the nearest is at"));
-  EXPECT_THAT(error({"", kTop, kTop, 0.4f, ""}), HasSubstr("no length"));
-  EXPECT_THAT(error({"", kTop, {0, 0, 1.2f}, 0.4f, ""}),
+  EXPECT_THAT(error({"", {{kTop, kTop}}, 0.4f, ""}), HasSubstr("no length"));
+  EXPECT_THAT(error({"", {{kTop, {0, 0, 1.2f}}}, 0.4f, ""}),
               HasSubstr("outside the sphere of radius 2 around 1,2,3"));
-  EXPECT_THAT(error({"", kTop, {0, 0.9f, 0.43f}, 1.0f, ""}), HasSubstr("outside the sphere"));
-  EXPECT_THAT(error({"", kTop, {0, 0, NAN}, 0.4f, ""}), HasSubstr("finite"));
-  EXPECT_THAT(error({"", kTop, kUp, 9.0f, ""}), HasSubstr("whole object would move"));
-  EXPECT_THAT(error({"", kTop, kUp, 1e-3f, ""}), HasSubstr("give a larger --radius"));
-  EXPECT_THAT(error({"", kTop, kUp, -1.0f, ""}), HasSubstr("more than 0"));
-  EXPECT_THAT(error({"", kTop, kUp, 0.4f, "ear"}), HasSubstr("no part 'ear'; there are 'all', 'cap'"));
-  EXPECT_THAT(error({"", {0, 0, -kRadius}, kTop, 0.4f, "cap"}), HasSubstr("is not on part 'cap'"));
+  EXPECT_THAT(error({"", {{kTop, {0, 0.9f, 0.43f}}}, 1.0f, ""}), HasSubstr("outside the sphere"));
+  EXPECT_THAT(error({"", {{kTop, {0, 0, NAN}}}, 0.4f, ""}), HasSubstr("finite"));
+  EXPECT_THAT(error({"", {{kTop, kUp}}, 9.0f, ""}), HasSubstr("whole object would move"));
+  EXPECT_THAT(error({"", {{kTop, kUp}}, 1e-3f, ""}), HasSubstr("give a larger --radius"));
+  EXPECT_THAT(error({"", {{kTop, kUp}}, -1.0f, ""}), HasSubstr("more than 0"));
+  EXPECT_THAT(error({"", {{kTop, kUp}}, 0.4f, "ear"}), HasSubstr("no part 'ear'; there are 'all', 'cap'"));
+  EXPECT_THAT(error({"", {{{0, 0, -kRadius}, kTop}}, 0.4f, "cap"}), HasSubstr("is not on part 'cap'"));
+}
+
+TEST_F(ShapeEdits, SeveralHandlesArriveAtOnceAndPinsStay) {
+  const Vec3f side{kRadius, 0, 0}, between = normalize(Vec3f{1, 0, 1}) * kRadius;
+  DeformRequest r{"0001-deform", {{kTop, kUp}, {side, side + Vec3f{0.15f, 0, 0}}}, 0.7f, ""};
+  const auto moved_by = [&](const DeformRequest& request, Vec3f at) {
+    const Mesh after = apply(mesh(), *drag(request).layer.reshape);
+    size_t nearest = 0;
+    for (size_t v = 0; v < after.positions.size(); ++v)
+      if (length(mesh().positions[v] - at) < length(mesh().positions[nearest] - at)) nearest = v;
+    return length(after.positions[nearest] - mesh().positions[nearest]);
+  };
+  EXPECT_NEAR(moved_by(r, kTop), 0.2f, 1e-5f);
+  EXPECT_NEAR(moved_by(r, side), 0.15f, 1e-5f);
+  EXPECT_GT(moved_by(r, between), 0.02f);
+  r.pins = {between};
+  EXPECT_EQ(moved_by(r, between), 0);
+  EXPECT_NEAR(moved_by(r, kTop), 0.2f, 1e-5f);
+}
+
+TEST_F(ShapeEdits, ATurnedHandleTakesItsSurroundingsAlong) {
+  DeformRequest r{"0001-deform", {{kTop, kTop, {0, 0, kPi / 2}}}, 0.5f, ""};
+  const Mesh after = apply(mesh(), *drag(r).layer.reshape);
+  size_t checked = 0;
+  for (size_t v = 0; v < after.positions.size(); ++v) {
+    const Vec3f p = mesh().positions[v], q = after.positions[v];
+    if (kRadius * std::acos(clamp(p.z / kRadius, -1.0f, 1.0f)) > 0.07f) continue;
+    EXPECT_NEAR(length(q - Vec3f{-p.y, p.x, p.z}), 0, 1e-5f);
+    ++checked;
+  }
+  EXPECT_GT(checked, 5u);
+}
+
+TEST_F(ShapeEdits, BadPinsSayWhatToDo) {
+  DeformRequest r{"", {{kTop, kUp}}, 0.4f, ""};
+  r.pins = {{0, 0, 0.1f}};
+  EXPECT_THAT(error_of([&] { drag(r); }), HasSubstr("Pin a point of the surface"));
+  EXPECT_THAT(error_of([&] { drag({"", {}, 0.4f, ""}); }), HasSubstr("needs a point to drag"));
 }
 
 TEST_F(ShapeEdits, ARemovedPartIsGoneAndClosed) {
@@ -157,12 +195,12 @@ TEST_F(ShapeEdits, ARemovedPartIsGoneAndClosed) {
 }
 
 TEST_F(ShapeEdits, AFartherDragOfADraggedPartMovesTheSameMatter) {
-  const DeformResult first = drag({"0001-deform", kTop, kUp, std::nullopt, "cap"});
+  const DeformResult first = drag({"0001-deform", {{kTop, kUp}}, std::nullopt, "cap"});
   const Scene once = with_layer(*scene_, first.layer);
   EXPECT_EQ(part_vertices(once, "cap"), part_vertices(*scene_, "cap"));
   Progress quiet;
-  const DeformResult second =
-      deform(once, {"0002-deform", kUp, {0.1f, 0, kRadius + 0.2f}, std::nullopt, "cap"}, quiet);
+  const DeformResult second = deform(
+      make_device(), once, {"0002-deform", {{kUp, {0.1f, 0, kRadius + 0.2f}}}, std::nullopt, "cap"}, quiet);
   EXPECT_EQ(second.layer.reshape->moved, first.layer.reshape->moved);
 }
 
@@ -177,7 +215,8 @@ TEST_F(ShapeEdits, APatchCanBeDraggedAndIsNoneOfTheParts) {
   for (uint32_t i = 0; i < added.size(); ++i)
     if (std::hypot(added[i].x, added[i].y) < std::hypot(added[top].x, added[top].y)) top = i;
   Progress quiet;
-  const DeformResult r = deform(flat, {"0002-deform", added[top], {0, 0, kRadius}, 0.3f, ""}, quiet);
+  const DeformResult r =
+      deform(make_device(), flat, {"0002-deform", {{added[top], {0, 0, kRadius}}}, 0.3f, ""}, quiet);
   const Scene hill = with_layer(flat, r.layer);
   EXPECT_NEAR(hill.surface->mesh().positions[mesh().positions.size() + top].z, kRadius, 1e-5f);
 }

@@ -18,11 +18,14 @@ constexpr double kResidualStep = 8;    // a training step of the correction netw
 constexpr double kFullSplit = 2e7, kBriefSplit = 1.2e7;  // the linear separation, in Rates::hit_shaded
 // Fit of lobes and descents, in Rates::albedo_step.
 constexpr double kFullDescent = 2500, kBriefDescent = 750;
+constexpr double kJointStep = 95;   // a step of the joint descent, in Rates::sdf_step
+constexpr double kJointHits = 0.3;  // shading of the pixels that judge it, in those of the appearance stage
 constexpr double kRefinementStep = 2;  // a step of a refinement, in Rates::albedo_step
 constexpr double kReserve = 3;         // reading and writing files, in times of the first surface
 
 // Minimum shares of all steps; fewer are not worth the time.
-constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinResidualShare = 0.13;
+constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinResidualShare = 0.13,
+                 kMinJointShare = 0.25;
 constexpr size_t kUntimedResidualHits = 1000000;
 
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
@@ -35,6 +38,7 @@ constexpr double kPolishShare = 0.1;        // a round's descent
 constexpr double kPolishRoundsShare = 0.3;  // all rounds
 constexpr double kFullEffortShare = 0.36;   // the appearance stage at full effort; else it is brief
 constexpr double kRefinementsShare = 0.1;
+constexpr double kJointShare = 0.1;
 constexpr double kFinerMeshShare = 1.0 / 40;
 constexpr double kResidualShare = 0.1;           // training of the correction network
 constexpr double kResidualShadingShare = 0.018;  // shading of the pixels of the correction network
@@ -47,6 +51,7 @@ struct Costs {
   double trials, surface, full_appearance, brief_appearance, refinement, finer_mesh;
   double look;      // of a polishing round
   double polish;    // all steps of a round
+  double joint;     // all steps of it, hits and judgement
   double residual;  // all steps of its training
   double residual_hit;
 };
@@ -64,6 +69,7 @@ Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
   c.look = c.surface + c.brief_appearance;
   c.polish = preset.polish_steps * kPolishStep * r.sdf_step;
   c.refinement = hits * hit + kRefinementStep * preset.refinement_steps * r.albedo_step;
+  c.joint = preset.joint_steps * kJointStep * r.sdf_step + c.surface + kJointHits * hits * hit;
   c.finer_mesh = mesh(preset.finer_meshing);
   c.residual_hit = hit;
   c.residual = preset.residual_steps * kResidualStep * r.sdf_step;
@@ -80,6 +86,7 @@ Plan untimed_plan(const ReconstructOptions& options, const Preset& preset) {
   p.choose_start = p.iterations >= preset.trials_from_iterations;
   p.polish_rounds = p.iterations >= preset.polish_from_iterations ? 2 : 0;
   p.polish_steps = preset.polish_steps / 2;
+  p.joint_steps = p.polish_rounds > 0 ? preset.joint_steps / 2 : 0;
   p.has_finer_mesh = has_finer_meshing(preset) && p.polish_rounds > 0;
   p.residual_steps = std::min(preset.residual_steps, p.iterations) / 2;
   p.residual_hits = std::min(preset.max_residual_hits, kUntimedResidualHits);
@@ -109,6 +116,13 @@ void plan_appearance(double t, const Preset& preset, const Costs& c, size_t pixe
   p.refinements = std::max(0, int(std::min(wanted, affordable)));
 }
 
+// wanted: by the user, however few steps there is time for.
+void plan_joint(double t, const Costs& c, const Preset& preset, bool wanted, Plan& p) {
+  if (preset.joint_steps <= 0 || (!wanted && kJointShare * t < kMinJointShare * c.joint)) return;
+  p.joint_steps = preset.joint_steps;
+  p.joint = std::min(c.joint, kJointShare * t);
+}
+
 void plan_residual(double t, const Costs& c, const Preset& preset, size_t pixels, Plan& p) {
   if (kResidualShare * t < kMinResidualShare * c.residual) return;
   p.residual_steps = preset.residual_steps;
@@ -119,13 +133,16 @@ void plan_residual(double t, const Costs& c, const Preset& preset, size_t pixels
 
 // Seconds of all but the geometry stage.
 double rest_of(const Plan& p) {
-  return p.polish_rounds * (p.polish + p.look) + p.appearance + p.refinements * p.refinement + p.finer_mesh +
-         p.residual + p.reserve;
+  return p.polish_rounds * (p.polish + p.look) + p.appearance + p.refinements * p.refinement + p.joint +
+         p.finer_mesh + p.residual + p.reserve;
 }
 
 // Removes the least valuable stage; false: nothing is left to remove.
 bool leave_one_out(const Costs& c, Plan& p) {
-  if (p.refinements > 0) {
+  if (p.joint_steps > 0) {
+    p.joint_steps = 0;
+    p.joint = 0;
+  } else if (p.refinements > 0) {
     --p.refinements;
   } else if (p.polish_rounds > 0) {
     --p.polish_rounds;
@@ -144,10 +161,11 @@ bool leave_one_out(const Costs& c, Plan& p) {
   return true;
 }
 
-Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c) {
+Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, bool joint_wanted) {
   Plan p;
   plan_polish(t, preset, c, p);
   plan_appearance(t, preset, c, pixels, p);
+  plan_joint(t, c, preset, joint_wanted, p);
   plan_residual(t, c, preset, pixels, p);
   p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
   p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
@@ -160,9 +178,12 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c) {
 
 }  // namespace
 
-Plan plan_of(const ReconstructOptions& options, const Preset& preset, size_t pixels, const Rates& rates) {
+Plan plan_of(const ReconstructOptions& options, const Preset& given, size_t pixels, const Rates& rates) {
+  Preset preset = given;
+  if (options.joint_steps >= 0) preset.joint_steps = options.joint_steps;
   if (options.seconds <= 0 || options.iterations > 0) return untimed_plan(options, preset);
-  return timed_plan(options.seconds, preset, pixels, costs_of(rates, preset, pixels));
+  return timed_plan(options.seconds, preset, pixels, costs_of(rates, preset, pixels),
+                    options.joint_steps > 0);
 }
 
 Json to_json(const Plan& p) {
@@ -176,6 +197,8 @@ Json to_json(const Plan& p) {
           {"appearance", p.appearance},
           {"refinements", p.refinements},
           {"refinement", p.refinement},
+          {"joint_steps", p.joint_steps},
+          {"joint", p.joint},
           {"finer_mesh", p.finer_mesh},
           {"residual_hits", p.residual_hits},
           {"residual", p.residual},

@@ -24,7 +24,7 @@ Plan plan_for(const char* name, double seconds, size_t pixels, double slowness) 
 
 double sum_of(const Plan& p) {
   return p.geometry + p.polish_rounds * (p.polish + p.look) + p.appearance + p.refinements * p.refinement +
-         p.finer_mesh + p.residual + p.reserve;
+         p.joint + p.finer_mesh + p.residual + p.reserve;
 }
 
 TEST(Plan, SpendsNoMoreThanWasAskedFor) {

@@ -7,6 +7,7 @@
 #include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/appearance/surface_polish.h"
 #include "engine/reconstruct/geometry/geometry_stage.h"
+#include "engine/reconstruct/joint/joint_descent.h"
 #include "engine/reconstruct/start/start.h"
 #include "model/geometry/mesh/surface_nets.h"
 
@@ -17,10 +18,12 @@ struct Preset {
   TrialOptions trial;  // with the networks of "fast" in all presets
   AppearanceOptions appearance;
   PolishOptions polish;
+  JointOptions joint;
   MeshingOptions meshing;              // of the surface on which light and material are fitted, by vertex
   MeshingOptions finer_meshing;        // of the finished object, whose silhouettes are those of its mesh
   bool resolution_from_views = false;  // grids as fine as the pixels, see fit_to_footprint()
   int polish_steps = 600;              // of a round, at most; half of them in a run by steps
+  int joint_steps = 0;                 // of the joint descent, at most; half of them in a run by steps
   int residual_steps = 9000;           // at most; half of them in a run by steps
   int refinement_steps = 600;          // of the albedo on another subset of the pixels
   int iterations = 0;                  // of the geometry stage, when neither a time nor a number is asked for

@@ -16,6 +16,7 @@ struct ReconstructOptions {
   double seconds = 0;           // time of the whole run; 0: no limit, the steps of the preset decide
   // Steps of the geometry stage, instead of seconds; the result is then a function of the seed.
   int iterations = 0;
+  int joint_steps = -1;  // of the joint descent, at most; 0: none; -1: the preset's
   uint64_t seed = 1;
   int downscale = 1;                 // use images at 1/N of their size
   int test_every = 8;                // hold out every Nth view when the capture has no split; 0: none

@@ -130,8 +130,9 @@ TEST(Reconstruct, ResumedAnywhereMakesTheSameObject) {
   SmallRun small;
   const Reference& reference = uninterrupted();
   const std::vector<std::string>& stages = reference.progress.stages;
-  const std::vector<std::string> expected{"loading", "start",      "geometry",   "polish 1", "polish 2",
-                                          "surface", "appearance", "finer mesh", "residual", "done"};
+  const std::vector<std::string> expected{"loading",    "start",    "geometry",   "polish 1",
+                                          "polish 2",   "surface",  "appearance", "joint",
+                                          "finer mesh", "residual", "done"};
   ASSERT_EQ(stages, expected);
   EXPECT_GT(reference.checkpoints.midway.at("geometry"), 0);
   for (size_t s = 1; s + 1 < stages.size(); ++s) {
@@ -246,7 +247,7 @@ TEST(Reconstruct, RefusesUnknownKeysInACheckpoint) {
     MemoryCheckpoints checkpoints;
     checkpoints.latest_state = Checkpoints::State{bad, good.tensors};
     ScriptedProgress progress;
-    progress.stop_at("finer mesh", 1);  // where it would resume
+    progress.stop_at("joint", 1);  // where it would resume
     small.run(checkpoints, progress);
   };
   EXPECT_EQ(objects_with_unknown_keys_read(good.head, "the checkpoint", read), std::vector<std::string>());

@@ -8,20 +8,25 @@
 #include "engine/reconstruct/appearance/residual_fit.h"
 #include "engine/reconstruct/geometry/silhouette_level.h"
 #include "engine/reconstruct/geometry_training.h"
+#include "engine/reconstruct/joint/joint_stage.h"
 
 namespace cei3d {
 
 namespace {
 
-constexpr uint64_t kResidualSubset = 1000;  // of pixels; the albedo's refinements take 1, 2, ...
-constexpr float kHandlerSpacing = 1.5f;     // of handler points, in pixels
+// Of pixels; the albedo's refinements take 1, 2, ...
+constexpr uint64_t kResidualSubset = 1000, kJointSubset = 1001;
+// Of the joint descent's time; the rest is hits, a mesh and the judgement.
+constexpr double kJointDescentShare = 0.7;
+constexpr double kMinJointGain = 0.02;   // dB on pixels that the joint descent does not see
+constexpr float kHandlerSpacing = 1.5f;  // of handler points, in pixels
 constexpr float kMaxLevel = 0.002f;  // maximum shift of the zero level: the thickness of the sharpest density
 // A shorter descent is not worth another estimate of light and material.
 constexpr double kMinPolishSeconds = 10;
 
 // Lengths of the stages of a run by steps, in steps of the geometry stage.
 constexpr double kStartSteps = 50, kTrialsSteps = 1500, kLookSteps = 350, kSurfaceSteps = 80,
-                 kAppearanceSteps = 600, kFinerMeshSteps = 400, kPolishStepLength = 3,
+                 kAppearanceSteps = 600, kFinerMeshSteps = 400, kPolishStepLength = 3, kJointStepLength = 2,
                  kResidualStepLength = 0.4;
 
 Vec3f turntable_axis(const RunContext& run) { return to_float(normalize(run.capture.up)); }
@@ -139,6 +144,11 @@ Field at_silhouettes(const RunContext& run, Field sdf) {
   return sdf;
 }
 
+std::shared_ptr<const HandlerPoints> handlers_from(const RunContext& run, const ObjectHits& hits) {
+  return std::make_shared<const HandlerPoints>(
+      thin_hits(hits.hits, hits.footprints, kHandlerSpacing * float(run.views.footprint)));
+}
+
 void make_surface(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   Scene& scene = state.scene;
   scene.sdf = std::make_shared<const Field>(at_silhouettes(run, state.geometry->sdf()));
@@ -149,8 +159,7 @@ void make_surface(const RunContext& run, RunState& state, const Stage::Checkpoin
   scene.surface = std::move(made.surface);
   state.hits = std::move(made.hits);
   run.progress.report({"handler points", 0.8, -1, ""});
-  scene.handlers = std::make_shared<const HandlerPoints>(
-      thin_hits(state.hits.hits, state.hits.footprints, kHandlerSpacing * float(run.views.footprint)));
+  scene.handlers = handlers_from(run, state.hits);
 }
 
 ObjectHits scene_hits(const RunContext& run, const Scene& scene, const HitOptions& options) {
@@ -193,6 +202,37 @@ void refine(const RunContext& run, RunState& state, uint64_t subset) {
   scene.albedo = std::move(result.albedo);
 }
 
+// Descends on everything at once, and keeps the result if it explains pixels better that the descent has not
+// seen.
+void descend_on_all(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  const Plan& plan = run.plan;
+  if (run.progress.left() < plan.joint + plan.finer_mesh + plan.residual) return;
+  Scene& scene = state.scene;
+  const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, kJointSubset});
+  const Turns turns = light_turns(run, state, scene.surface, hits);
+  JointStageOptions options{run.preset.joint, plan.joint_steps, kJointDescentShare * plan.joint,
+                            run.progress.clock()};
+  options.descent.seed = run.seed;
+  JointObject made =
+      descend_jointly(run.device, {scene.surface, hits.samples(turns.get())}, run.views.train,
+                      {*scene.sdf, *scene.albedo, scene.material, scene.light}, options, run.progress);
+  Scene after = scene;
+  after.sdf = std::make_shared<const Field>(std::move(made.sdf));
+  after.albedo = std::make_shared<const Field>(std::move(made.albedo));
+  after.material = made.material;
+  after.light = std::move(made.light);
+  after.surface = extract_surface(run.device, *after.sdf, run.preset.meshing, run.progress);
+  const SurfaceSamples samples = hits.samples(turns.get());
+  const double before_psnr = held_out_psnr(run.device, scene, samples, run.progress),
+               psnr = held_out_psnr(run.device, after, samples, run.progress);
+  const bool kept = psnr > before_psnr + kMinJointGain;
+  run.progress.log(Json{{"stage", "joint"}, {"before", before_psnr}, {"after", psnr}, {"kept", kept}}.dump());
+  check_cancelled(run.progress);
+  if (!kept) return;
+  after.handlers = handlers_from(run, scene_hits(run, after, {run.preset.max_hits}));
+  scene = std::move(after);
+}
+
 void make_finer_mesh(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   state.scene.surface = extract_surface(run.device, *state.scene.sdf, run.preset.finer_meshing, run.progress);
 }
@@ -217,7 +257,7 @@ void fit_scene_residual(const RunContext& run, RunState& state, const Stage::Che
 
 // Lengths of the stages: those of the plan, or of a run by steps, estimated.
 struct Budgets {
-  double start, geometry, polish, surface, appearance, refinement, finer_mesh, residual;
+  double start, geometry, polish, surface, appearance, refinement, joint, finer_mesh, residual;
 };
 
 Budgets budgets_of(const Plan& p) {
@@ -229,6 +269,7 @@ Budgets budgets_of(const Plan& p) {
             .surface = 0.5 * p.reserve,
             .appearance = p.appearance,
             .refinement = p.refinement,
+            .joint = p.joint,
             .finer_mesh = p.finer_mesh,
             .residual = p.residual};
   return {.start = kStartSteps + (p.choose_start ? kTrialsSteps : 0),
@@ -237,6 +278,7 @@ Budgets budgets_of(const Plan& p) {
           .surface = kSurfaceSteps,
           .appearance = kAppearanceSteps,
           .refinement = 0,
+          .joint = kJointStepLength * p.joint_steps,
           .finer_mesh = kFinerMeshSteps,
           .residual = kResidualStepLength * p.residual_steps};
 }
@@ -258,6 +300,7 @@ std::vector<Stage> stages_of(const Plan& plan) {
                       [k](const RunContext& run, RunState& state, const Stage::Checkpoint&) {
                         refine(run, state, uint64_t(k));
                       }});
+  if (plan.joint_steps > 0) stages.push_back({"joint", budget.joint, descend_on_all});
   if (plan.has_finer_mesh) stages.push_back({"finer mesh", budget.finer_mesh, make_finer_mesh});
   if (plan.residual_steps > 0) stages.push_back({"residual", budget.residual, fit_scene_residual});
   return stages;

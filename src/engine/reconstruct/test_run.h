@@ -115,6 +115,10 @@ inline Preset shrunken(Preset p) {
   p.brief_hits = 2000;
   p.max_residual_hits = 2000;
   p.polish_steps = 8;
+  p.joint_steps = 8;
+  p.joint.rays = 64;
+  p.joint.box_points = p.joint.near_points = p.joint.mask_rays = 32;
+  p.joint.refresh = 3;
   p.residual_steps = 12;
   p.refinement_steps = 4;
   return p;

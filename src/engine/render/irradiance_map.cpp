@@ -37,4 +37,15 @@ Vec3f IrradianceMap::at(Vec3f normal) const {
   return (n[0] * (1 - u) + n[1] * u) * (1 - v) + (n[kNodes] * (1 - u) + n[kNodes + 1] * u) * v;
 }
 
+Vec3f IrradianceMap::grad(Vec3f normal, Vec3f d_irradiance) const {
+  constexpr float kStep = 1.5f / kCells;
+  const Vec3f t = normalize(cross(std::abs(normal.z) < 0.9f ? Vec3f{0, 0, 1} : Vec3f{1, 0, 0}, normal)),
+              b = cross(normal, t);
+  const auto slope = [&](Vec3f along) {
+    const Vec3f more = at(normal + along * kStep), less = at(normal - along * kStep);
+    return dot(d_irradiance, more - less) / (2 * kStep);
+  };
+  return t * slope(t) + b * slope(b);
+}
+
 }  // namespace cei3d

@@ -16,6 +16,9 @@ class IrradianceMap {
   IrradianceMap(const Device&, const LobePlanes&);
 
   Vec3f at(Vec3f normal) const;  // normal: unit
+  // dL/d(normal), tangent to the unit sphere, from dL/d(irradiance). By differences over the size of a cell,
+  // at whose borders the table has kinks.
+  Vec3f grad(Vec3f normal, Vec3f d_irradiance) const;
 
  private:
   std::vector<Vec3f> nodes_;  // of an octahedron's square, row by row

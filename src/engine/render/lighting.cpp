@@ -177,7 +177,7 @@ IncidentLight<float> Lighting::incident_at(const HitBatch& batch, size_t hit, Ve
   const Hit& h = batch.hits[hit];
   const auto& t = mesh.triangles[h.triangle];
   const VertexLight& vertices = vertices_[batch.turned.bin(hit)];
-  const Vec3f normal = normalize(at_corners(mesh.normals, t, h.b1, h.b2));
+  const Vec3f normal = hit_normals_ ? h.normal : normalize(at_corners(mesh.normals, t, h.b1, h.b2));
   return {.sky_irradiance = irradiance_.at(batch.turned.in_room(hit, normal)),
           .visibility = at_corners(vertices.visibility, t, h.b1, h.b2),
           .bounce = at_corners(vertices.bounce, t, h.b1, h.b2),
@@ -278,6 +278,9 @@ ShadingGrads Lighting::block_grad(const HitBatch& batch, std::span<const Inciden
     const float d_nv = d_points.row(Rows::kNv)[i], nv = dot(n, v);
     const SurfaceReflectionGrad<float>& r = reflection[i];
     out.d_normal[i] = (v - n * nv) * d_nv + r.d_n;
+    if (hit_normals_)
+      out.d_normal[i] +=
+          batch.turned.in_object(i, irradiance_.grad(batch.turned.in_room(i, n), out.d_sky_irradiance[i]));
     out.d_view[i] = (n - v * nv) * d_nv + r.d_v;
     out.d_material[i] = {d_points.row(Rows::kRoughness)[i] + r.d_roughness,
                          d_points.row(Rows::kSpecular)[i] + r.d_specular,

@@ -63,13 +63,15 @@ class Lighting {
   // The radiance of every hit as a linear function of its albedo.
   std::vector<ShadingTerms<float>> terms(const HitBatch&, std::span<const IncidentLight<float>>) const;
   std::vector<ShadingTerms<float>> terms(const HitBatch&, const VertexMaterials& seen = {}) const;
-  // The adjoint. Irradiance is taken at the mesh's normals, so that only reflection and reflectance depend on
-  // the hit's; visibility, bounces and self reflection are held constant.
+  // The adjoint. Visibility, bounces and self reflection are held constant.
   ShadingGrads grad(const HitBatch&, std::span<const IncidentLight<float>>, std::span<const Vec3f> albedo,
                     std::span<const Vec3f> d_radiance) const;
 
   // Replaces the lobes and keeps visibility and bounces: for descent on a light, whose steps are small.
   void set_lobes(const SgMixture&);
+  // From now on the sky's irradiance is taken at the hits' normals, so that it depends on them: for descent
+  // on a field, which the mesh does not follow. Without this it is taken at the mesh's.
+  void use_hit_normals() { hit_normals_ = true; }
 
  private:
   LobePlanes lobes() const { return {lobe_planes_.data(), n_lobes_, padded_}; }
@@ -87,6 +89,7 @@ class Lighting {
   int n_lobes_ = 0, padded_ = 0;
   IrradianceMap irradiance_;
   std::vector<VertexLight> vertices_;  // by bin of the light's turns
+  bool hit_normals_ = false;           // see use_hit_normals()
 };
 
 }  // namespace cei3d

@@ -293,6 +293,24 @@ TEST_F(LightingGrad, OfNormalAndViewEqualsDifferencesAlongTheSphere) {
   }
 }
 
+TEST_F(LightingGrad, OfNormalsIncludesIrradianceWhereItIsTakenAtHits) {
+  lighting_->use_hit_normals();
+  const HitBatch batch{hits_, materials_};
+  const ShadingGrads slopes = lighting_->grad(batch, lighting_->incident_light(batch), albedo_, weight_);
+  double changed = 0;
+  for (size_t i = 0; i < kHits; ++i) {
+    const Vec3f t = normalize(cross(hits_[i].normal, Vec3f{0.3f, 0.5f, 0.8f}));
+    const auto turned = [&](float h) {
+      Hit hit = hits_[i];
+      hit.normal = normalize(hit.normal + t * h);
+      return loss(i, hit, materials_[i], albedo_[i]);
+    };
+    expect_slope(dot(slopes.d_normal[i], t), turned, 0.012, "normal");  // over kinks of the table
+    changed += length(slopes.d_normal[i] - slopes_->d_normal[i]);
+  }
+  EXPECT_GT(changed, 0.1);
+}
+
 TEST_F(LightingGrad, OfTheEnvironmentsLightEqualsDifferences) {
   // The light's color scales both kinds of light at once: dL/d(scale) is the sum of slope times light.
   const std::vector<IncidentLight<float>> light = lighting_->incident_light({hits_, materials_});

@@ -83,15 +83,37 @@ void from_rest(const ShapeVersions& versions, const RestHit& r, const Hit& refin
   hit.normal = normalize(inverse_transpose(r.gradient) * refined.normal);
 }
 
-// Added surface is its mesh; moved surface is refined in shape version 0; the rest is refined in place.
+// The version that gave a hit's triangle its shape, if it has a distance field of its own; else 0.
+int version_with_field(const ShapeVersions& versions, const Hit& hit) {
+  const ShapeVersion& now = *versions.back();
+  const int k = now.shaped_in(hit.triangle);
+  return now.born_in(hit.triangle) == 0 && versions[size_t(k)]->sdf ? k : 0;
+}
+
+// Refines hits on surface that has a field of its own, in place.
+void refine_on_own_fields(const Device& device, const ShapeVersions& versions, std::vector<Hit>& hits) {
+  std::vector<std::vector<uint32_t>> by_version(versions.size());
+  for (uint32_t i = 0; i < hits.size(); ++i)
+    if (const int k = version_with_field(versions, hits[i])) by_version[size_t(k)].push_back(i);
+  for (size_t k = 0; k < versions.size(); ++k) {
+    std::vector<Hit> own;
+    for (const uint32_t i : by_version[k]) own.push_back(hits[i]);
+    if (!own.empty()) refine_along_rays(device, *versions[k]->sdf, own);
+    for (size_t j = 0; j < own.size(); ++j) hits[by_version[k][j]] = own[j];
+  }
+}
+
+// Added surface is its mesh; moved surface is refined on its own field, or in shape version 0; the rest is
+// refined in place.
 void refine_changed(const Device& device, const Scene& scene, std::vector<Hit>& hits) {
   const ShapeVersion& now = *scene.shape_versions.back();
+  refine_on_own_fields(device, scene.shape_versions, hits);
   std::vector<RestHit> moved;
   std::vector<uint32_t> of;
   std::vector<Hit> field_hits;
   std::vector<Vec3f> directions;
   for (uint32_t i = 0; i < hits.size(); ++i) {
-    if (now.born_in(hits[i].triangle) > 0) continue;
+    if (now.born_in(hits[i].triangle) > 0 || version_with_field(scene.shape_versions, hits[i])) continue;
     of.push_back(i);
     field_hits.push_back(hits[i]);
     directions.push_back(-hits[i].to_camera);

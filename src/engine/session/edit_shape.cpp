@@ -13,25 +13,51 @@ Vec3d point_from(JsonReader& params, const char* key) {
   return {x, y, z};
 }
 
+DeformHandle handle_from(JsonReader& params, const Normalization& n) {
+  DeformHandle h{to_float(n.unit_from_capture(point_from(params, "from"))),
+                 to_float(n.unit_from_capture(point_from(params, "to")))};
+  if (params.has("turn")) h.turn = to_float(point_from(params, "turn") * (double(kPi) / 180));
+  return h;
+}
+
+void read_geometry(JsonReader& params, DeformRequest& request) {
+  const auto geometry = params.optional<std::string>("geometry", "mesh"),
+             distance = params.optional<std::string>("distance", "signed");
+  if (geometry != "mesh" && geometry != "field") fail_usage("unknown geometry '{}': mesh or field", geometry);
+  if (distance != "signed" && distance != "l1") fail_usage("unknown distance '{}': signed or l1", distance);
+  if (geometry == "field") request.geometry = DeformedGeometry::field;
+  if (distance == "l1") request.refit.distance = SurfaceDistance::l1;
+}
+
 EditOutcome make_deform(const EditContext& context, const EditJob& job) {
   const Normalization& n = context.scene.normalization;
   JsonReader params = job.reader();
   DeformRequest request;
   request.id = job.id;
-  request.from = to_float(n.unit_from_capture(point_from(params, "from")));
-  request.to = to_float(n.unit_from_capture(point_from(params, "to")));
+  request.handles.push_back(handle_from(params, n));
+  if (params.has("more"))
+    for (const Json& more : params.array("more")) {
+      JsonReader reader(more, "A handle of edit " + job.id);
+      request.handles.push_back(handle_from(reader, n));
+      reader.finish();
+    }
+  if (params.has("pins"))
+    for (const Json& pin : params.array("pins")) {
+      const Json named = {{"pin", pin}};
+      JsonReader reader(named, "A pin of edit " + job.id);
+      request.pins.push_back(to_float(n.unit_from_capture(point_from(reader, "pin"))));
+    }
+  read_geometry(params, request);
   if (const auto radius = params.optional<double>("radius")) request.radius = float(*radius * n.scale);
   request.part = params.optional<std::string>("part", "");
   params.finish();
-  DeformResult result = deform(context.scene, request, context.progress);
+  DeformResult result = deform(context.device, context.scene, request, context.progress);
   const DeformReport& r = result.report;
-  return {std::move(result.layer),
-          {{"from", job.params.at("from")},
-           {"to", job.params.at("to")},
-           {"vertices", r.vertices},
-           {"radius", r.radius / n.scale},
-           {"farthest", r.farthest / n.scale},
-           {"iterations", r.iterations}}};
+  Json report = {{"from", job.params.at("from")},    {"to", job.params.at("to")},
+                 {"vertices", r.vertices},           {"radius", r.radius / n.scale},
+                 {"farthest", r.farthest / n.scale}, {"iterations", r.iterations}};
+  if (r.misfit) report["misfit"] = *r.misfit / n.scale;
+  return {std::move(result.layer), std::move(report)};
 }
 
 EditOutcome make_remove(const EditContext& context, const EditJob& job) {

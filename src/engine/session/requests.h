@@ -136,6 +136,7 @@ struct MaterialCommand {
 // Drag of a surface point, capture frame.
 struct PointDrag {
   Vec3d from, to;
+  Vec3d turn{0, 0, 0};  // rotation of the surface around the point: axis times angle in degrees
 };
 // Drag of the surface point seen at `pixel` by `drag` pixels, in the plane through it parallel to the image.
 struct PixelDrag {
@@ -144,8 +145,12 @@ struct PixelDrag {
 };
 struct DeformCommand {
   std::variant<PointDrag, PixelDrag> drag;
-  std::optional<double> radius;  // along the surface, capture units
-  std::string part;              // empty: the whole object
+  std::optional<double> radius;     // along the surface, capture units
+  std::string part;                 // empty: the whole object
+  std::vector<PointDrag> more{};    // further points that are dragged at once
+  std::vector<Vec3d> pins{};        // points of the surface around which nothing moves, capture frame
+  std::string geometry = "mesh";    // "mesh", or "field": the moved surface gets a distance field of its own
+  std::string distance = "signed";  // what that field is fitted to: "signed" distances or "l1", the paper's
 };
 // A part by clicks, a mask or a clicked material in one view, and optional changes of its material and color.
 struct PartCommand {

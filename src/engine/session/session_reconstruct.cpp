@@ -34,6 +34,7 @@ Json options_json(const ReconstructRequest& r) {
   return {{"preset", o.preset},
           {"seconds", o.seconds},
           {"iterations", o.iterations},
+          {"joint_steps", o.joint_steps},
           {"seed", o.seed},
           {"downscale", o.downscale},
           {"test_every", o.test_every},
@@ -49,6 +50,7 @@ ReconstructOptions options_from_json(const Json& j) {
   o.preset = reader.require<std::string>("preset");
   o.seconds = reader.require<double>("seconds");
   o.iterations = reader.require<int>("iterations");
+  o.joint_steps = reader.optional("joint_steps", 0);  // missing in older projects
   o.seed = reader.require<uint64_t>("seed");
   o.downscale = reader.require<int>("downscale");
   o.test_every = reader.require<int>("test_every");

@@ -31,6 +31,12 @@ PointDrag drag_of(const Device& device, const Scene& scene, const Capture& captu
 
 Json list_of(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
+Json handle_json(const PointDrag& drag) {
+  Json j = {{"from", list_of(drag.from)}, {"to", list_of(drag.to)}};
+  if (length(drag.turn) > 0) j["turn"] = list_of(drag.turn);
+  return j;
+}
+
 }  // namespace
 
 EditSummary Session::deform(const DeformCommand& command, Progress& progress) {
@@ -39,7 +45,13 @@ EditSummary Session::deform(const DeformCommand& command, Progress& progress) {
     const PointDrag drag =
         points ? *points
                : drag_of(*device_, project().scene(), project().capture(), std::get<PixelDrag>(command.drag));
-    Json params = {{"from", list_of(drag.from)}, {"to", list_of(drag.to)}};
+    Json params = handle_json(drag);
+    for (const PointDrag& d : command.more) params["more"].push_back(handle_json(d));
+    for (const Vec3d pin : command.pins) params["pins"].push_back(list_of(pin));
+    if (command.geometry != "mesh") {
+      params["geometry"] = command.geometry;
+      params["distance"] = command.distance;
+    }
     if (command.radius) params["radius"] = *command.radius;
     if (!command.part.empty()) params["part"] = command.part;
     return add_edit("deform", std::move(params), {}, progress);

@@ -71,12 +71,19 @@ class Field {
 // Output 0 of the field at points x (for an SDF, the distance): #N.
 std::vector<float> first_output(const Device&, const Field&, std::span<const Vec3f> x);
 
+// Output 0 of a field at a point, and its derivatives by the point.
+struct FieldJet {
+  float value;
+  Vec3f gradient;
+};
+
 // Fits a field to a loss on its values, by Adam.
 class FieldTrainer {
  public:
   struct Options {
-    float encoding_rate = 1e-2f;  // Adam's rate for hash tables (entries without gradient are skipped)
-    float network_rate = 2e-3f;   // Adam's rate for layers
+    float encoding_rate = 1e-2f;        // Adam's rate for hash tables (entries without gradient are skipped)
+    float network_rate = 2e-3f;         // Adam's rate for layers
+    float beta2 = 0.99f, eps = 1e-15f;  // of Adam
   };
   FieldTrainer(Field& field, const Options& options);
   ~FieldTrainer();
@@ -89,8 +96,19 @@ class FieldTrainer {
   void step(const Device& device, std::span<const Vec3f> x, const Loss& loss, float rate = 1,
             int levels = -1);
 
+  // A step by the sum of several losses: accumulate() and accumulate_jets() add up gradients, update() makes
+  // the step.
+  void accumulate(const Device& device, std::span<const Vec3f> x, const Loss& loss, int levels = -1);
+  // The derivative of a loss by the value and the spatial gradient of output 0 at point i.
+  using JetLoss = std::function<FieldJet(int i, const FieldJet&)>;
+  void accumulate_jets(const Device& device, std::span<const Vec3f> x, const JetLoss& loss, int levels = -1);
+  void update(const Device& device, float rate = 1);
+  std::span<const float> gradient(const Param& param) const;  // accumulated since the last update
+
  private:
   struct State;
+  template <class Chunk>
+  void for_chunks(const Device&, std::span<const Vec3f> x, int columns, int levels, const Chunk&);
   Field& field_;
   Options options_;
   std::unique_ptr<State> state_;

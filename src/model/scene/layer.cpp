@@ -100,6 +100,7 @@ void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
   if (!layer.material.empty()) head["material"] = change_json(layer.material);
   if (layer.light) save_light(*layer.light, tensors, head);
   if (layer.reshape) save_reshape(*layer.reshape, tensors, head["reshape"]);
+  save_field(layer.sdf, "sdf", tensors, head);
 }
 
 EditLayer load_layer(const Tensors& tensors, const Json& head, const std::string& what) {
@@ -123,6 +124,7 @@ EditLayer load_layer(const Tensors& tensors, const Json& head, const std::string
     if (reader.has("reshape"))
       layer.reshape = std::make_shared<const Reshape>(
           load_reshape(tensors, reader.member("reshape"), "'reshape' of " + what));
+    layer.sdf = load_field("sdf", tensors, reader);
     reader.finish();
     return layer;
   });

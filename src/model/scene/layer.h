@@ -38,6 +38,7 @@ struct EditLayer {
   MaterialChange material;
   std::optional<SgMixture> light;          // replaces the object's light, everywhere
   std::shared_ptr<const Reshape> reshape;  // null: no change of shape
+  std::shared_ptr<const Field> sdf;        // of the surface that `reshape` moved; null: see ShapeVersion::sdf
 
   bool contains(Vec3f position, Vec3f normal) const { return weight(position, normal) > 0; }
   // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. The material changes

@@ -30,7 +30,7 @@ std::shared_ptr<const Reshape> some_reshape() {
 }
 
 std::vector<EditLayer> one_of_each_kind() {
-  std::vector<EditLayer> layers(8);
+  std::vector<EditLayer> layers(9);
   for (EditLayer& l : layers) l.id = "0001-test";
   layers[0].region = some_region();
   layers[0].albedo = some_field();
@@ -52,6 +52,8 @@ std::vector<EditLayer> one_of_each_kind() {
   layers[7].also = {some_region(), Region({{{0.5f, 0, 0}}, {{1, 0, 0}}, {0.2f}})};
   layers[7].albedo = nullptr;
   layers[7].erase = layers[7].erase_material = true;
+  layers[8].reshape = some_reshape();
+  layers[8].sdf = some_field();
   return layers;
 }
 
@@ -71,6 +73,7 @@ TEST(EditLayer, LoadGivesWhatWasSaved) {
         load_layer(tensors_from_bytes(tensors_to_bytes(tensors), "test"), Json::parse(head.dump()));
     EXPECT_EQ(bytes_of(again), bytes_of(layer));
     EXPECT_EQ(again.part, layer.part);
+    EXPECT_EQ(bool(again.sdf), bool(layer.sdf));
     EXPECT_EQ(again.everywhere, layer.everywhere);
     EXPECT_EQ(again.unlit, layer.unlit);
     EXPECT_EQ(again.erase_material, layer.erase_material);

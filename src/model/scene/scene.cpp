@@ -124,10 +124,10 @@ std::shared_ptr<const Field> load_materials(const Tensors& tensors, JsonReader& 
   return field;
 }
 
-Scene reshaped(Scene scene, const Reshape& change) {
+Scene reshaped(Scene scene, const Reshape& change, const std::shared_ptr<const Field>& sdf) {
   const std::shared_ptr<const Surface> before = scene.surface;
   if (!before) fail("The object has no surface that could be changed; reconstruct it again.");
-  scene.shape_versions = with_version(std::move(scene.shape_versions), before, change);
+  scene.shape_versions = with_version(std::move(scene.shape_versions), before, change, sdf);
   scene.surface = scene.shape_versions.back()->surface;
   if (scene.handlers)
     scene.handlers = std::make_shared<const HandlerPoints>(
@@ -149,7 +149,7 @@ Scene with_layer(Scene scene, EditLayer layer) {
     scene.light_error = {};
     scene.residual = nullptr;
   }
-  if (layer.reshape) scene = reshaped(std::move(scene), *layer.reshape);
+  if (layer.reshape) scene = reshaped(std::move(scene), *layer.reshape, layer.sdf);
   scene.layers.push_back(std::move(layer));
   return scene;
 }

@@ -6,6 +6,7 @@
 #include "core/compute/kernels/activate.h"
 #include "core/compute/kernels/adam.h"
 #include "core/compute/kernels/encode.h"
+#include "core/compute/kernels/field_hit.h"
 #include "core/compute/kernels/light.h"
 #include "core/compute/kernels/radiance.h"
 #include "core/compute/kernels/shade.h"

@@ -34,6 +34,9 @@ struct EncodePoint;
 struct EncodeFrequency;
 struct EncodeGrid;
 struct EncodeGridGrad;
+// kernels/field_hit.h
+struct FieldHits;
+struct FieldHitsGrad;
 // kernels/light.h
 struct SgFitResidual;
 struct SgFitGather;
@@ -54,6 +57,7 @@ using AllKernels =
                Activate<Relu>, ActivateGrad<Relu>, Activate<Elu>, ActivateGrad<Elu>, Activate<Softplus>,
                ActivateGrad<Softplus>, Activate<Sigmoid>, ActivateGrad<Sigmoid>, Adam, RadianceInput,
                RadianceInputGrad, SgFitResidual, SgFitGather,  //
+               FieldHits, FieldHitsGrad,                       //
                SgIrradiance, SgReflection, SgReflectionGrad, ReflectionLobes, SgLobesGrad, Shade, ShadeGrad>;
 
 template <class K>

@@ -134,20 +134,6 @@ class Descent {
     ++epoch_;
   }
 
-  // For the field outputs [begin, end): calls use(pixel of the batch, its mean albedo, dL/d(albedo) to set).
-  template <class Use>
-  static void for_each_pixel(int begin, int end, const float* out, float* d_out, const Use& use) {
-    for (int first = begin; first < end; first += kPixelPoints) {
-      Vec3f mean{0, 0, 0}, d_mean{0, 0, 0};
-      const float* points = out + 3 * (first - begin);
-      for (int k = 0; k < kPixelPoints; ++k)
-        for (int c = 0; c < 3; ++c) mean[c] += points[3 * k + c] / kPixelPoints;
-      use(first / kPixelPoints, mean, d_mean);
-      for (int k = 0; k < kPixelPoints; ++k)
-        for (int c = 0; c < 3; ++c) d_out[3 * (first - begin + k) + c] = d_mean[c] / kPixelPoints;
-    }
-  }
-
   void joint_step(LightDescent& descent, float rate) {
     choose_batch();
     std::vector<Hit> hits(options_.batch);

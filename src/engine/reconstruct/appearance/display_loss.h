@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loss of the appearance stage: Huber loss of display-encoded colors.
+// Losses of colors. Of the appearance stage: Huber loss of display-encoded ones.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/math/color.h"
 #include "core/math/loss.h"
@@ -11,13 +12,24 @@
 
 namespace cei3d {
 
-// dL/d(radiance) of one channel; radiance and photo are linear. The slope of the display curve is bounded
-// near black. clipped: `photo` is only a lower bound of the true radiance.
-inline float display_loss_grad(float radiance, float photo, bool clipped = false) {
+// Of one channel, with dL/d(radiance); radiance and photo are linear. The slope of the display curve is
+// bounded near black. clipped: `photo` is only a lower bound of the true radiance.
+inline LossValue<float> display_loss(float radiance, float photo, bool clipped = false) {
   constexpr float kWidth = 0.05f, kDarkest = 0.004f;
-  if (clipped && radiance >= photo) return 0;
-  const float error = srgb_from_linear(std::max(radiance, 0.0f)) - srgb_from_linear(photo);
-  return huber(error, kWidth).gradient * srgb_slope(std::max(radiance, kDarkest));
+  if (clipped && radiance >= photo) return {0, 0};
+  const LossValue<float> loss =
+      huber(srgb_from_linear(std::max(radiance, 0.0f)) - srgb_from_linear(photo), kWidth);
+  return {loss.value, loss.gradient * srgb_slope(std::max(radiance, kDarkest))};
+}
+inline float display_loss_grad(float radiance, float photo, bool clipped = false) {
+  return display_loss(radiance, photo, clipped).gradient;
+}
+
+// |error| of linear radiance, instead. [paper eq. 16]
+inline LossValue<float> absolute_loss(float radiance, float photo, bool clipped = false) {
+  if (clipped && radiance >= photo) return {0, 0};
+  const float error = radiance - photo;
+  return {std::abs(error), error > 0 ? 1.0f : -1.0f};
 }
 
 // Gradients of the loss of a surface sample, times `weight`.

@@ -10,11 +10,9 @@
 #include "core/base/pool.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/display_loss.h"
-#include "engine/reconstruct/appearance/pixel_points.h"
-#include "engine/render/lighting.h"
+#include "engine/reconstruct/appearance/shaded_samples.h"
 #include "model/field/gradients.h"
 #include "model/field/optimizer.h"
-#include "model/scene/appearance.h"
 
 namespace cei3d {
 
@@ -28,43 +26,6 @@ constexpr double kMinGain = 0.03;  // relative decrease of the squared error on 
 constexpr double kValidationFraction = 0.2;  // share of the steps before the validation
 constexpr double kWarmUp = 0.05;  // share of the steps at rising rates: large first steps kill units
 
-// Mean albedo of each pixel: at pixel centers the texture is sharper than the image, and the network would
-// learn to blur it.
-std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::span<const Hit> hits,
-                                std::span<const float> footprints) {
-  std::vector<Vec3f> points, out(hits.size(), Vec3f{0, 0, 0});
-  for (size_t i = 0; i < hits.size(); ++i)
-    for (const Vec3f p : pixel_points(hits[i], footprints.empty() ? 0 : footprints[i])) points.push_back(p);
-  const std::vector<Vec3f> values = albedo.eval3(device, points);
-  for (size_t k = 0; k < points.size(); ++k) out[k / kPixelPoints] += values[k] / float(kPixelPoints);
-  return out;
-}
-
-// Radiance by light and material.
-std::vector<Vec3f> physical(const Device& device, const Scene& scene, const SurfaceSamples& samples,
-                            const Progress& progress) {
-  const std::vector<Vec3f>& vertices = scene.surface->mesh().positions;
-  const Lighting light(
-      device, scene.surface, scene.light,
-      turned_vertex_lights(Transport(scene.surface, {}, progress), scene.light,
-                           {scene.albedo->eval3(device, vertices), scene.material.at(device, vertices)},
-                           samples.turned.turns));
-  std::vector<Vec3f> out;
-  out.reserve(samples.hits.size());
-  for (size_t begin = 0; begin < samples.hits.size(); begin += kSlab) {
-    check_cancelled(progress);
-    const size_t n = std::min(kSlab, samples.hits.size() - begin);
-    const std::span<const Hit> hits = samples.hits.subspan(begin, n);
-    const std::vector<Material> materials = scene.material.at(device, positions_of(hits));
-    const std::vector<Vec3f> albedo =
-        pixel_colors(device, *scene.albedo, hits,
-                     samples.footprints.empty() ? samples.footprints : samples.footprints.subspan(begin, n));
-    const Shading shading = light.shade({hits, materials, samples.turned.part(begin, n)}, albedo);
-    for (size_t i = 0; i < n; ++i) out.push_back(shading.diffuse[i] + shading.specular[i]);
-  }
-  return out;
-}
-
 class Trainer {
  public:
   Trainer(const Device& device, const Scene& scene, const SurfaceSamples& samples,
@@ -73,7 +34,7 @@ class Trainer {
         samples_(samples),
         seed_(options.seed),
         warm_up_(kWarmUp * options.steps),
-        sent_(physical(device, scene, samples, progress)),
+        sent_(radiance_of(device, scene, samples, progress)),
         features_(std::make_shared<Field>(*scene.sdf)),
         features_learn_(features_->config().encoding.levels > 0),
         residual_(make_residual(features_learn_ ? features_ : scene.sdf, options.seed)),
@@ -166,11 +127,7 @@ class Trainer {
   }
 
   double squared_error(uint32_t sample, Vec3f got) const {
-    double sum = 0;
-    for (int c = 0; c < 3; ++c)
-      sum +=
-          square(srgb_from_linear(clamp(got[c], 0.0f, 1.0f)) - srgb_from_linear(samples_.colors[sample][c]));
-    return sum;
+    return display_error(got, samples_.colors[sample]);
   }
 
   // dL/d(output of the network).

@@ -23,10 +23,18 @@ NormalSteps normal_steps(const FieldConfig&);
 void sdf_normals(const Device&, const Field& sdf, std::span<const Vec3f> x, std::span<Vec3f> out,
                  std::span<float> edges = {});
 
-// Adjoint of sdf_normals(): appends the points whose field values enter the normals, and dL/d(those values),
-// from d_normals (tangent to the surface). Assumes a field gradient of length one, and takes `edges`, #N, as
-// constant.
-void add_value_slopes(const FieldConfig&, std::span<const Vec3f> x, std::span<const Vec3f> d_normals,
+// The gradients whose directions sdf_normals() gives. x: #N. edges: as there.
+std::vector<Vec3f> sdf_gradients(const Device&, const Field& sdf, std::span<const Vec3f> x,
+                                 std::span<float> edges = {});
+// Their derivatives along unit directions (#N): Hessian times direction, by central differences. edges: #N,
+// of sdf_gradients(), held constant.
+std::vector<Vec3f> sdf_gradients_along(const Device&, const Field& sdf, std::span<const Vec3f> x,
+                                       std::span<const Vec3f> directions, std::span<const float> edges);
+
+// Adjoint of sdf_gradients(): appends the points whose field values enter the gradients, and dL/d(those
+// values), from d_gradients. Takes `edges`, #N, as constant. For gradients of length one and d_gradients
+// tangent to the surface it is the adjoint of sdf_normals(), too.
+void add_value_slopes(const FieldConfig&, std::span<const Vec3f> x, std::span<const Vec3f> d_gradients,
                       std::span<const float> edges, std::vector<Vec3f>& points, std::vector<float>& d_values);
 
 }  // namespace cei3d

@@ -59,9 +59,10 @@ T blend(const std::vector<T>& v, const Corners& c, const Hit& hit) {
 }  // namespace
 
 ShapeVersions with_version(ShapeVersions versions, std::shared_ptr<const Surface> surface,
-                           const Reshape& change) {
+                           const Reshape& change, std::shared_ptr<const Field> sdf) {
   if (versions.empty())
-    versions.push_back(std::make_shared<const ShapeVersion>(ShapeVersion{surface, {}, {}, {}, {}, {}}));
+    versions.push_back(
+        std::make_shared<const ShapeVersion>(ShapeVersion{surface, {}, {}, {}, {}, {}, nullptr}));
   const ShapeVersion& before = *versions.back();
   Mesh mesh = apply(surface->mesh(), change);
   const size_t vertices = mesh.positions.size();
@@ -70,6 +71,7 @@ ShapeVersions with_version(ShapeVersions versions, std::shared_ptr<const Surface
   version->surface = std::make_shared<const Surface>(std::move(mesh), *surface, changed);
   version->gradients = next_gradients(before, vertices, change);
   version->colors = next_colors(before, vertices, change);
+  version->sdf = std::move(sdf);
   follow_triangles(before, int(versions.size()), change, changed, *version);
   versions.push_back(std::move(version));
   return versions;

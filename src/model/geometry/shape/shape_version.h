@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "model/field/field.h"
 #include "model/geometry/shape/reshape.h"
 #include "model/geometry/shape/surface.h"
 
@@ -21,6 +22,9 @@ struct ShapeVersion {
   // #F, id of the triangle in the version before; 0 for a triangle that this version added.
   std::vector<uint32_t> before;
   std::vector<Vec3f> colors;  // #V, linear albedo of added surface; unused elsewhere
+  // Distance field of the surface that this version gave its shape; null: that of version 0, in which points
+  // of that surface are looked up.
+  std::shared_ptr<const Field> sdf;
 
   int born_in(uint32_t triangle) const { return born.empty() ? 0 : born[triangle]; }
   int shaped_in(uint32_t triangle) const { return shaped.empty() ? 0 : shaped[triangle]; }
@@ -30,10 +34,10 @@ struct ShapeVersion {
 using ShapeVersions = std::vector<std::shared_ptr<const ShapeVersion>>;
 
 // Appends the version after a change of `surface`, the present one. Visibility is recomputed for vertices
-// that moved or are new; the others keep theirs, so that unchanged surface renders as before. Error: the
-// change does not fit the surface.
+// that moved or are new; the others keep theirs, so that unchanged surface renders as before. sdf: of the
+// changed surface; may be null. Error: the change does not fit the surface.
 ShapeVersions with_version(ShapeVersions versions, std::shared_ptr<const Surface> surface,
-                           const Reshape& change);
+                           const Reshape& change, std::shared_ptr<const Field> sdf = nullptr);
 
 struct SurfacePoint {
   Vec3f position, normal;  // unit frame; unit

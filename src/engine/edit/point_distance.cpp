@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/edit/point_distance.h"
+
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+
+namespace cei3d {
+namespace {
+
+constexpr int kLevels = 5;
+constexpr float kSpacings = 4;  // of a level, to the radius of its searches and to the spacing of the next
+constexpr float kFlat = 1, kRound = 3;  // spacings up to which a plane is used, and from which the point is
+
+HandlerPoints thinned(const HandlerPoints& points, float spacing) {
+  std::vector<Hit> hits;
+  for (size_t i = 0; i < points.positions.size(); ++i)
+    hits.push_back({points.positions[i], points.normals[i], points.normals[i], 0, 0, 0});
+  return thin_hits(hits, points.footprints, spacing);
+}
+
+constexpr float kFarAway = 4;  // distance of what is far outside the unit sphere
+
+float length_1(Vec3f v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); }
+
+}  // namespace
+
+PointDistance::PointDistance(HandlerPoints points) {
+  if (points.positions.empty()) fail("a surface without points has no distance");
+  for (int k = 0; k < kLevels; ++k) {
+    const float spacing = points.spacing, radius = kSpacings * spacing;
+    PointIndex index(points.positions, radius);
+    HandlerPoints coarser = k + 1 < kLevels ? thinned(points, radius) : HandlerPoints();
+    levels_.push_back({std::move(points), radius, std::move(index)});
+    points = std::move(coarser);
+    points.spacing = radius;
+  }
+}
+
+// The finest level that has a point within its radius gives the nearest one of its points, since no norm used
+// here is below the Euclidean one. Finer points around that one come nearer.
+template <class Norm>
+float PointDistance::nearest(Vec3f x, const Norm& norm, size_t& point) const {
+  float least = std::numeric_limits<float>::infinity();
+  const auto search = [&](const Level& l, Vec3f center) {
+    l.index.any_within(center, l.radius, [&](size_t i) {
+      const float d = norm(x - l.points.positions[i]);
+      if (d < least || (d == least && i < point)) least = d, point = i;
+      return false;
+    });
+  };
+  size_t level = 0;
+  for (; level < levels_.size() && !(least <= levels_[level].radius); ++level) search(levels_[level], x);
+  for (size_t k = level; k > 1 && std::isfinite(least); --k) {
+    const Vec3f from = levels_[k - 1].points.positions[point];
+    least = std::numeric_limits<float>::infinity();
+    search(levels_[k - 2], from);
+  }
+  return least;
+}
+
+float PointDistance::l1_distance(Vec3f x) const {
+  size_t point = 0;
+  return min(nearest(x, length_1, point), kFarAway);
+}
+
+float PointDistance::signed_distance(Vec3f x) const {
+  size_t point = 0;
+  const float d = nearest(
+      x, [](Vec3f v) { return length(v); }, point);
+  if (!(d < kFarAway)) return kFarAway;
+  const HandlerPoints& points = levels_.front().points;
+  const float along = dot(x - points.positions[point], points.normals[point]);
+  const float t = clamp((d / points.spacing - kFlat) / (kRound - kFlat), 0.0f, 1.0f);
+  return std::copysign(std::abs(along) * (1 - t) + d * t, along);
+}
+
+}  // namespace cei3d

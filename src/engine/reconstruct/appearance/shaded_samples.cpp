@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/appearance/shaded_samples.h"
+
+#include "core/base/cancel.h"
+#include "core/math/color.h"
+#include "engine/reconstruct/appearance/pixel_points.h"
+#include "engine/render/lighting.h"
+
+namespace cei3d {
+
+std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::span<const Hit> hits,
+                                std::span<const float> footprints) {
+  std::vector<Vec3f> points, out(hits.size(), Vec3f{0, 0, 0});
+  for (size_t i = 0; i < hits.size(); ++i)
+    for (const Vec3f p : pixel_points(hits[i], footprints.empty() ? 0 : footprints[i])) points.push_back(p);
+  const std::vector<Vec3f> values = albedo.eval3(device, points);
+  for (size_t k = 0; k < points.size(); ++k) out[k / kPixelPoints] += values[k] / float(kPixelPoints);
+  return out;
+}
+
+std::vector<Vec3f> radiance_of(const Device& device, const Scene& scene, const SurfaceSamples& samples,
+                               const Progress& progress) {
+  constexpr size_t kSlab =
+      1 << 15;  // hits between two checks for interruption: 5 s with the largest networks
+  const std::vector<Vec3f>& vertices = scene.surface->mesh().positions;
+  const Lighting light(
+      device, scene.surface, scene.light,
+      turned_vertex_lights(Transport(scene.surface, {}, progress), scene.light,
+                           {scene.albedo->eval3(device, vertices), scene.material.at(device, vertices)},
+                           samples.turned.turns));
+  std::vector<Vec3f> out;
+  out.reserve(samples.hits.size());
+  for (size_t begin = 0; begin < samples.hits.size(); begin += kSlab) {
+    check_cancelled(progress);
+    const size_t n = std::min(kSlab, samples.hits.size() - begin);
+    const std::span<const Hit> hits = samples.hits.subspan(begin, n);
+    const std::vector<Material> materials = scene.material.at(device, positions_of(hits));
+    const std::vector<Vec3f> albedo =
+        pixel_colors(device, *scene.albedo, hits,
+                     samples.footprints.empty() ? samples.footprints : samples.footprints.subspan(begin, n));
+    const Shading shading = light.shade({hits, materials, samples.turned.part(begin, n)}, albedo);
+    for (size_t i = 0; i < n; ++i) out.push_back(shading.diffuse[i] + shading.specular[i]);
+  }
+  return out;
+}
+
+double display_error(Vec3f got, Vec3f photo) {
+  double sum = 0;
+  for (int c = 0; c < 3; ++c)
+    sum += square(srgb_from_linear(clamp(got[c], 0.0f, 1.0f)) - srgb_from_linear(photo[c]));
+  return sum;
+}
+
+}  // namespace cei3d

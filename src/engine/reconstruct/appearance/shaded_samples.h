@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// What light and material make of surface samples, and how far it is from their photographs.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/base/progress.h"
+#include "engine/reconstruct/appearance/linear_split.h"
+#include "model/scene/scene.h"
+
+namespace cei3d {
+
+// Mean albedo of the pixels of hits: at pixel centers the texture is sharper than the image, and what is
+// fitted to the difference would learn to blur it. footprints: #hits, or empty: of points.
+std::vector<Vec3f> pixel_colors(const Device&, const Field& albedo, std::span<const Hit> hits,
+                                std::span<const float> footprints);
+
+// Linear radiance by light and material, without the correction network: #samples. Error: interrupted.
+std::vector<Vec3f> radiance_of(const Device&, const Scene&, const SurfaceSamples&, const Progress&);
+
+// Squared error of a pixel, summed over its channels; display-encoded. Both linear.
+double display_error(Vec3f got, Vec3f photo);
+
+}  // namespace cei3d

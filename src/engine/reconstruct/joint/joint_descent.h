@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// The joint descent: one hit per ray; distance field, albedo, material and light descend together on the
+// color of pixels, the unit slope of the field and the mask. [paper eq. 6-16; docs/method.md#joint-descent]
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "core/base/progress.h"
+#include "engine/reconstruct/appearance/appearance_stage.h"
+#include "engine/reconstruct/appearance/light_descent.h"
+#include "engine/reconstruct/joint/material_descent.h"
+#include "engine/reconstruct/joint/traced_hits.h"
+#include "engine/reconstruct/pixels.h"
+#include "engine/render/lighting.h"
+
+namespace cei3d {
+
+enum class ColorLoss { display, linear };  // Huber of display-encoded colors; L1 of linear ones, the paper's
+
+// Of Adam, at the beginning. 0: held constant.
+struct JointRates {
+  float sdf_tables = 1e-4f, sdf_layers = 5e-5f;
+  float albedo = 0.05f;    // times the default rates of FieldTrainer
+  float material = 1e-3f;  // of logits, see MaterialDescent
+  float light = 0.3f;      // times the rates of LightDescent
+};
+
+struct JointOptions {
+  JointRates rates;
+  ColorLoss color = ColorLoss::display;
+  int rays = 4096;             // on the object, per step
+  float eikonal = 0.1f;        // weight of (|gradient| - 1)^2 [paper eq. 16]
+  int box_points = 1024;       // random points of the object's box at which it is taken
+  int near_points = 1024;      // random hits of the step at which it is taken, too
+  int mask_rays = 1024;        // around the object, per step
+  float mask = 0.1f;           // weight of the mask loss, per mask_sharpness
+  float mask_sharpness = 800;  // 1 / length
+  bool keep_power = true;      // of the light, see LightDescent
+  bool learn_specular = false;
+  int refresh = 100;  // steps after which visibility and bounces are recomputed
+  uint64_t seed = 1;
+};
+
+struct JointObject {
+  Field sdf, albedo;
+  MaterialField material;
+  SgMixture light;
+};
+
+// Means over rays and points, weighted.
+struct JointLoss {
+  double color = 0, eikonal = 0, mask = 0;
+  double total() const { return color + eikonal + mask; }
+};
+
+// Every kHeldOutStride-th sample is not descended on, so that it can judge the result.
+inline constexpr size_t kHeldOutStride = 20;
+
+class JointDescent {
+ public:
+  // input: the surface, which stands for visibility and bounces throughout, and its hits. pixels: whose empty
+  // pixels the mask loss takes. All must outlive the object.
+  JointDescent(const Device&, const AppearanceInput& input, const PixelStore& pixels, JointObject start,
+               const JointOptions&, const Progress&);
+
+  // rate: times all rates.
+  JointLoss step(int step, float rate);
+  const JointObject& object() const { return object_; }
+
+ private:
+  friend struct JointDescentProbe;  // the gradient test sees gradients before they are used
+  struct Shaded {                   // the hits of a step, and dL/d(all that their radiance depends on)
+    std::vector<Hit> hits;
+    std::vector<Material> materials;
+    std::vector<uint16_t> views;
+    ShadingGrads grads{0};
+  };
+  // Accumulates the gradients of a step.
+  JointLoss accumulate(int step, Shaded& shaded);
+  void update(const Shaded&, float rate);
+
+  void relight();
+  std::vector<uint32_t> choose_samples(int step) const;
+  double accumulate_color(const TracedHits&, const std::vector<uint32_t>& samples, Shaded&, ValueGrads&);
+  double color_loss(uint32_t sample, Vec3f radiance, Vec3f& d_radiance) const;
+  HitBatch batch_of(const Shaded&) const;
+  std::vector<float> depth_grads(const TracedHits&, std::span<const float> footprints,
+                                 const ShadingGrads&) const;
+  double accumulate_mask(int step, const std::vector<Ray>& missed, ValueGrads&) const;
+  double accumulate_eikonal(int step, const TracedHits&);
+
+  const Device& device_;
+  const AppearanceInput& input_;
+  const PixelStore& pixels_;
+  JointOptions options_;
+  JointObject object_;
+  FieldTrainer sdf_trainer_, albedo_trainer_;
+  MaterialDescent material_;
+  LightDescent light_;
+  Transport transport_;
+  std::unique_ptr<Lighting> lighting_;
+  std::vector<uint32_t> empty_;  // pixels without any object
+  Vec3f box_min_, box_max_;      // of the object
+};
+
+}  // namespace cei3d

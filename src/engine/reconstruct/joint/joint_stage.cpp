@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/joint/joint_stage.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/cancel.h"
+#include "engine/reconstruct/appearance/shaded_samples.h"
+#include "engine/render/render.h"
+
+namespace cei3d {
+namespace {
+
+constexpr double kWarmUp = 0.05;  // share of the descent at rising rates: Adam's first steps have full length
+constexpr double kLastRate = 0.1;
+constexpr float kBehind = 2.5f;  // rays of samples begin so far before them: outside the unit sphere
+
+}  // namespace
+
+JointObject descend_jointly(const Device& device, const AppearanceInput& input, const PixelStore& pixels,
+                            JointObject start, const JointStageOptions& options, Progress& progress) {
+  const double begin = options.clock();
+  progress.report({"joint descent", 0, -1, ""});
+  JointDescent descent(device, input, pixels, std::move(start), options.descent, progress);
+  JointLoss sum;
+  int summed = 0;
+  for (int step = 0; step < options.steps; ++step) {
+    check_cancelled(progress);
+    const double time = options.seconds > 0 ? (options.clock() - begin) / options.seconds : 0,
+                 u = std::max(time, double(step) / options.steps);
+    if (u >= 1) break;
+    const JointLoss loss = descent.step(
+        step, float(std::min(1.0, (u + 1.0 / options.steps) / kWarmUp) * std::pow(kLastRate, u)));
+    sum.color += loss.color, sum.eikonal += loss.eikonal, sum.mask += loss.mask;
+    if (++summed < 50) continue;
+    progress.report({"joint descent", u, -1, ""});
+    progress.log(Json{{"stage", "joint descent"},
+                      {"step", step},
+                      {"color", sum.color / summed},
+                      {"eikonal", sum.eikonal / summed},
+                      {"mask", sum.mask / summed}}
+                     .dump());
+    sum = {};
+    summed = 0;
+  }
+  return descent.object();
+}
+
+double held_out_psnr(const Device& device, const Scene& scene, const SurfaceSamples& samples,
+                     const Progress& progress) {
+  std::vector<uint32_t> judged;
+  std::vector<Ray> rays;
+  for (uint32_t i = 0; i < samples.hits.size(); i += uint32_t(kHeldOutStride)) {
+    const Hit& h = samples.hits[i];
+    judged.push_back(i);
+    rays.push_back({h.position + h.to_camera * kBehind, -h.to_camera});
+  }
+  std::vector<uint32_t> ray_of_hit;
+  const std::vector<Hit> hits = trace_rays(device, *scene.sdf, *scene.surface, rays, ray_of_hit);
+  std::vector<float> footprints;
+  std::vector<uint32_t> met;
+  for (const uint32_t ray : ray_of_hit) {
+    met.push_back(judged[ray]);
+    if (!samples.footprints.empty()) footprints.push_back(samples.footprints[judged[ray]]);
+  }
+  const std::vector<uint16_t> views = views_of(samples.turned, met);
+  const std::vector<Vec3f> radiance =
+      radiance_of(device, scene, {hits, {}, {}, footprints, {samples.turned.turns, views}}, progress);
+  std::vector<Vec3f> got(judged.size(), Vec3f{0, 0, 0});
+  for (size_t k = 0; k < radiance.size(); ++k) got[ray_of_hit[k]] = radiance[k];
+  double sum = 1e-12;
+  for (size_t k = 0; k < judged.size(); ++k) sum += display_error(got[k], samples.colors[judged[k]]);
+  return -10 * std::log10(sum / (3 * double(std::max<size_t>(judged.size(), 1))));
+}
+
+}  // namespace cei3d

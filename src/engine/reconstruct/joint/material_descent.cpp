@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/joint/material_descent.h"
+
+#include <cmath>
+
+#include "core/math/activation.h"
+#include "core/math/split_sum.h"
+
+namespace cei3d {
+namespace {
+
+constexpr float kFullRate = 1e-2f;
+constexpr float kMargin = 1e-3f;  // logits of 0 and 1 do not exist
+
+float logit(float x) {
+  const float y = clamp(x, kMargin, 1 - kMargin);
+  return std::log(y / (1 - y));
+}
+float share(float logit) { return Sigmoid::eval(logit, 1).value; }
+// Roughnesses below kMinRoughness are shaded like it.
+float roughness_from(float share) { return kMinRoughness + (1 - kMinRoughness) * share; }
+
+}  // namespace
+
+MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool learn_specular)
+    : field_(start), rate_(rate) {
+  if (start.varying()) {
+    varying_ = std::make_shared<Field>(*start.varying());
+    field_ = {start.mean(), varying_};
+    trainer_ = std::make_unique<FieldTrainer>(*varying_, FieldTrainer::Options{});
+    return;
+  }
+  const Material& m = start.mean();
+  logits_ = &params_.add("logits", {3});
+  logits_->value[0] = logit((m.roughness - kMinRoughness) / (1 - kMinRoughness));
+  logits_->value[1] = logit(m.specular);
+  logits_->value[2] = logit(m.metalness);
+  learned_[0] = true;
+  learned_[1] = learn_specular;
+  learned_[2] = m.metalness > 0 && m.metalness < 1;
+  optimizer_.add(params_, "", {.rate = kFullRate, .eps = 1e-12f});
+}
+
+Material MaterialDescent::from_logits() const {
+  const Material& m = field_.mean();
+  const float* v = logits_->value.data();
+  return {learned_[0] ? roughness_from(share(v[0])) : m.roughness, learned_[1] ? share(v[1]) : m.specular,
+          learned_[2] ? share(v[2]) : m.metalness};
+}
+
+void MaterialDescent::accumulate(const Device& device, std::span<const Vec3f> positions,
+                                 std::span<const Material> d_material) {
+  if (varying_) {
+    constexpr int kOutputs = MaterialField::kOutputs;
+    const auto loss = [&](int begin, int end, const float* out, float* d_out) {
+      for (int i = begin; i < end; ++i)
+        material_of_grad(out + kOutputs * (i - begin), d_material[size_t(i)], d_out + kOutputs * (i - begin));
+    };
+    trainer_->accumulate(device, positions, loss);
+    return;
+  }
+  double sum[3] = {};
+  for (const Material& d : d_material) sum[0] += d.roughness, sum[1] += d.specular, sum[2] += d.metalness;
+  const std::span<float> gradient = optimizer_.gradient(*logits_);
+  for (int k = 0; k < 3; ++k) {
+    const float slope = Sigmoid::eval(logits_->value[size_t(k)], 1).first;
+    if (learned_[k]) gradient[size_t(k)] += float(sum[k]) * slope * (k == 0 ? 1 - kMinRoughness : 1);
+  }
+}
+
+void MaterialDescent::update(const Device& device, float rate) {
+  if (varying_) {
+    trainer_->update(device, rate * rate_ / kFullRate);
+    return;
+  }
+  optimizer_.step(device, rate * rate_ / kFullRate);
+  field_ = MaterialField(from_logits());
+}
+
+}  // namespace cei3d
