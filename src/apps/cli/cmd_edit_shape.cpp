@@ -7,7 +7,7 @@ namespace cei3d {
 namespace {
 
 struct DeformOptions {
-  std::string from, to, view, pixel, drag, part;
+  std::string from, to, view, camera, pixel, drag, part;
   std::optional<double> radius;
   EditOutput output;
 };
@@ -29,16 +29,18 @@ Vec2<double> pixel_of(const std::string& text, const std::string& option) {
 
 DeformCommand command_of(const DeformOptions& o) {
   const bool points = !o.from.empty() && !o.to.empty();
-  const bool pixels = !o.view.empty() && !o.pixel.empty() && !o.drag.empty();
+  const bool pixels = o.view.empty() != o.camera.empty() && !o.pixel.empty() && !o.drag.empty();
   const bool any_point = !o.from.empty() || !o.to.empty();
-  const bool any_pixel = !o.view.empty() || !o.pixel.empty() || !o.drag.empty();
+  const bool any_pixel = !o.view.empty() || !o.camera.empty() || !o.pixel.empty() || !o.drag.empty();
   if (any_point == any_pixel || points == pixels)
-    fail_usage("Give --from X,Y,Z --to X,Y,Z, or --view NAME --pixel X,Y --drag DX,DY.");
+    fail_usage(
+        "Give --from X,Y,Z --to X,Y,Z, or --view NAME (or --camera FILE.json) --pixel X,Y --drag DX,DY.");
   DeformCommand c;
   if (points)
     c.drag = PointDrag{point_of(o.from, "--from"), point_of(o.to, "--to")};
   else
-    c.drag = PixelDrag{o.view, pixel_of(o.pixel, "--pixel"), pixel_of(o.drag, "--drag")};
+    c.drag = PixelDrag{o.view, pixel_of(o.pixel, "--pixel"), pixel_of(o.drag, "--drag"),
+                       o.camera.empty() ? std::nullopt : std::optional(read_camera(o.camera))};
   c.radius = o.radius;
   c.part = o.part;
   return c;
@@ -56,6 +58,7 @@ void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
   verb->add_option("--from", o->from, "Point on the surface to drag, X,Y,Z in the capture's frame");
   verb->add_option("--to", o->to, "Where the point goes, X,Y,Z in the capture's frame");
   verb->add_option("--view", o->view, "Instead of --from and --to: name of a view to drag in");
+  verb->add_option("--camera", o->camera, "Instead of --view: " + std::string(kCameraHelp));
   verb->add_option("--pixel", o->pixel,
                    "With --view: pixel of the point to drag, X,Y (column, row from the top left corner)");
   verb->add_option("--drag", o->drag, "With --view: movement in pixels, DX,DY, at the depth of the point");

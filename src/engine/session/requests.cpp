@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 
 namespace cei3d {
 namespace {
@@ -148,9 +149,14 @@ Json ProjectInfo::json() const {
 }
 
 Json LogEntry::json() const {
-  return {{"id", id},     {"op", op},         {"enabled", enabled},
-          {"done", done}, {"params", params}, {"report", report}};
+  Json j = {{"id", id},     {"op", op},         {"enabled", enabled},
+            {"done", done}, {"params", params}, {"report", report}};
+  if (!name.empty()) j["name"] = name;
+  if (set_aside) j["set_aside"] = true;
+  return j;
 }
+
+std::string InputFile::read() const { return bytes ? *bytes : read_file(path); }
 
 Json EditSummary::json() const {
   Json j = {{"id", id}};
@@ -171,6 +177,17 @@ Json ReplayReport::json() const {
   Json list = Json::array();
   for (const auto& [from, to] : edits) list.push_back({{"from", from}, {"to", to}});
   return {{"edits", list}, {"notes", notes}};
+}
+
+Json PickedPoint::json() const {
+  return {{"position", vector_json(position)},
+          {"normal", vector_json(normal)},
+          {"depth", depth},
+          {"albedo", albedo},
+          {"roughness", roughness},
+          {"specular", specular},
+          {"metalness", metalness},
+          {"parts", parts}};
 }
 
 Json RenderReport::json() const {

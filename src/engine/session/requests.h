@@ -89,6 +89,8 @@ struct LogEntry {
   std::string id, op;
   bool enabled = true, done = true;  // done: not undone
   Json params, report;
+  std::string name;        // given by the user; empty: none
+  bool set_aside = false;  // displaced by a later edit; `restore` puts it back
   Json json() const;
 };
 
@@ -109,9 +111,20 @@ std::string material_preset_names();
 // Empty if there is a preset of that name; else an error message with similar names.
 std::string unknown_preset(const std::string& name);
 
+// A file that an edit is made from. The bytes may be given; else they are read from the path.
+struct InputFile {
+  InputFile() = default;
+  InputFile(std::filesystem::path file) : path(std::move(file)) {}
+  std::filesystem::path path;
+  std::optional<std::string> bytes;
+  bool empty() const { return path.empty() && !bytes; }
+  std::string read() const;  // errors: missing, unreadable
+};
+
 struct PaintStroke {
-  std::string view;                // a view's name
-  std::filesystem::path scribble;  // RGBA PNG of the view's size
+  std::string view;                   // a view's name
+  InputFile scribble;                 // RGBA PNG of the view's size
+  std::optional<Camera> camera = {};  // instead of a view, capture frame
 };
 enum class PaintTarget {
   albedo,      // the albedo
@@ -140,7 +153,8 @@ struct PointDrag {
 // Drag of the surface point seen at `pixel` by `drag` pixels, in the plane through it parallel to the image.
 struct PixelDrag {
   std::string view;
-  Vec2<double> pixel, drag;  // (column, row), pixel centers at +0.5
+  Vec2<double> pixel, drag;           // (column, row), pixel centers at +0.5
+  std::optional<Camera> camera = {};  // instead of a view, capture frame
 };
 struct DeformCommand {
   std::variant<PointDrag, PixelDrag> drag;
@@ -151,7 +165,7 @@ struct DeformCommand {
 struct PartCommand {
   std::string view;
   std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centers at +0.5
-  std::filesystem::path mask;                    // PNG in place of clicks; empty: none
+  InputFile mask;                                // PNG in place of clicks; empty: none
   std::optional<Vec2<double>> like{};            // instead of clicks: surface with the material at this pixel
   bool like_color = false;                       // compare the albedo, too
   std::string segmenter = "grow";                // or "sam"
@@ -159,6 +173,7 @@ struct PartCommand {
   std::string name;                      // empty: that of the part combined with, else "part1", "part2", ...
   std::string add, subtract, intersect;  // name of a part to combine with; at most one
   MaterialEffects effects;
+  std::optional<Camera> camera = {};  // instead of a view, capture frame
 };
 struct RemoveCommand {
   std::string part;
@@ -224,6 +239,10 @@ enum class Channel { rgb, albedo, diffuse, specular, normal, depth, roughness, m
 const char* channel_name(Channel);
 std::optional<Channel> channel_from_name(const std::string&);
 
+// One camera, capture frame: FILE.json of `--camera`. Errors: unreadable, not exactly one camera.
+Camera read_camera(const std::filesystem::path&);
+void check_camera(const Camera&, const std::string& what);  // error: no size, focal length or rotation
+
 enum class EnvConvention { by_up_axis, zup, yup, mitsuba, blender };
 std::optional<EnvConvention> env_convention_from_name(const std::string&);  // "zup", ...
 
@@ -236,6 +255,10 @@ struct LightChoice {
   bool is_own() const { return env.empty() && rotate_degrees == 0 && scale == 1; }
 };
 
+// Every edit.
+using EditCommand =
+    std::variant<PaintCommand, MaterialCommand, LightChoice, DeformCommand, RemoveCommand, PartCommand>;
+
 struct RenderRequest {
   std::filesystem::path out;
   CameraChoice cameras;
@@ -245,6 +268,28 @@ struct RenderRequest {
   int samples = 2;       // per pixel and axis
   bool residual = true;  // with the correction network, which is never used under another light
 };
+struct FrameRequest {
+  Camera camera;  // capture frame
+  Channel channel = Channel::rgb;
+  int samples = 1;               // per pixel and axis
+  LightChoice light;             // to look under another light, which is no edit
+  bool as_photographed = false;  // under the light that a photograph by this camera was taken in
+};
+// Surface seen at a pixel; positions in the capture frame.
+struct PickedPoint {
+  Vec3d position, normal;
+  double depth = 0;    // along the camera's axis
+  std::string albedo;  // "#RRGGBB", sRGB
+  double roughness = 0, specular = 0, metalness = 0;
+  std::vector<std::string> parts;  // that it belongs to
+  Json json() const;
+};
+struct NamedCamera {
+  std::string name;  // "test/r_000"
+  std::string file;  // "r_000", or the whole name where two views share the last part
+  Camera camera;
+};
+
 struct RenderReport {
   size_t views = 0;
   double seconds = 0, trace_seconds = 0, shade_seconds = 0;
