@@ -22,6 +22,7 @@ constexpr const char* kAbout =
     "  cei3d reconstruct CAPTURE -o PROJECT                   reconstruct an object from photographs\n"
     "  cei3d edit PROJECT paint --view NAME --scribble S.png  paint on one view, see it in all\n"
     "  cei3d render PROJECT -o DIR                            images, also under another light\n"
+    "  cei3d open PROJECT                                     the live editor, in the browser\n"
     "  cei3d export PROJECT -o OBJECT.glb                     a model file\n"
     "  cei3d COMMAND -h                                       the options of a command";
 
@@ -150,7 +151,7 @@ int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostrea
   app.require_subcommand(0, 1);
   Commands commands(app, common);
   for (const auto add : {add_check, add_reconstruct, add_render, add_edit, add_parts, add_history, add_export,
-                         add_eval, add_evaluate, add_info, add_bench, add_synth})
+                         add_eval, add_evaluate, add_info, add_bench, add_synth, add_open})
     add(commands);
   app.footer(footer());
   wrap_help(app);

@@ -26,6 +26,11 @@ void add_output(CLI::App* verb, EditOutput& o) {
       ->check(CLI::Validator(ends_in_png, "PNG"));
 }
 
+void add_amend(CLI::App* verb, bool& amend) {
+  verb->add_flag("--amend", amend,
+                 "In place of the last edit, which must be of the same kind and on the same part");
+}
+
 void finish_edit(Session& session, Console& console, const EditSummary& s, std::string text,
                  const EditOutput& o) {
   Json json = s.json();

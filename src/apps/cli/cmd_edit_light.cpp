@@ -8,6 +8,7 @@ namespace {
 struct Options {
   LightChoice light;
   std::string env, convention;
+  bool amend = false;
   EditOutput output;
 };
 
@@ -27,13 +28,14 @@ void add_edit_light(Commands& commands, CLI::App* edit, ProjectName project) {
   verb->add_option("--rotate", o->light.rotate_degrees,
                    "Rotate the light around the up axis, degrees, counter-clockwise seen from above");
   verb->add_option("--scale", o->light.scale, "Multiply the light by this factor");
+  add_amend(verb, o->amend);
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {
     LightChoice choice = options.light;
     choice.env = options.env;
     if (!options.convention.empty()) choice.convention = parse_env_convention(options.convention);
     open_for_edit(session, *project, "light --env FILE");
-    const EditSummary s = session.change_light(choice, console);
+    const EditSummary s = session.edit(choice, console, options.amend);
     finish_edit(
         session, console, s,
         fmt::format("{}: light of {} lobes; {}.", s.id, s.report.at("lobes").get<size_t>(), stages_text(s)),

@@ -6,6 +6,7 @@ namespace {
 
 struct Options {
   MaterialCommand command;
+  bool amend = false;
   EditOutput output;
 };
 
@@ -49,10 +50,11 @@ void add_edit_material(Commands& commands, CLI::App* edit, ProjectName project) 
   verb->add_option("--part", o->command.part,
                    "Name of a part, made by `edit part` (default: the whole object)");
   add_effects(verb, o->command.effects);
+  add_amend(verb, o->amend);
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {
     open_for_edit(session, *project, "material --roughness R");
-    const EditSummary s = session.change_material(options.command, console);
+    const EditSummary s = session.edit(options.command, console, options.amend);
     const std::string& part = options.command.part;
     const std::string text = fmt::format("{}: {}, {} points of the surface; {}.", s.id,
                                          part.empty() ? "the whole object" : "part " + part,

@@ -6,19 +6,29 @@ namespace {
 
 struct Options {
   std::string target = "albedo", routing = "both";
-  std::vector<std::string> views, scribbles;
+  std::vector<std::string> views, cameras, scribbles;
   PaintCommand command;
   EditOutput output;
 };
 
 PaintCommand command_of(const Options& o) {
-  if (o.views.size() != o.scribbles.size())
-    fail_usage("There are {} --view and {} --scribble options; give one --view for each scribble.",
-               o.views.size(), o.scribbles.size());
+  const size_t places = o.views.size() + o.cameras.size();
+  if (!o.views.empty() && !o.cameras.empty()) fail_usage("Give --view or --camera, not both.");
+  if (places != o.scribbles.size())
+    fail_usage("There are {} --view or --camera and {} --scribble options; give one for each scribble.",
+               places, o.scribbles.size());
   PaintCommand c = o.command;
   c.target = *paint_target_from_name(o.target);
   c.routing = *routing_from_name(o.routing);
-  for (size_t i = 0; i < o.views.size(); ++i) c.strokes.push_back({o.views[i], o.scribbles[i]});
+  for (size_t i = 0; i < o.scribbles.size(); ++i) {
+    PaintStroke s;
+    if (o.cameras.empty())
+      s.view = o.views[i];
+    else
+      s.camera = read_camera(o.cameras[i]);
+    s.scribble = std::filesystem::path(o.scribbles[i]);
+    c.strokes.push_back(std::move(s));
+  }
   return c;
 }
 
@@ -46,7 +56,9 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
   verb->add_option("--view", o->views,
                    "View that was painted on, for example train/r_055. --view and --scribble may be given "
                    "several times, in pairs; later scribbles cover earlier ones")
-      ->required()
+      ->expected(1)
+      ->take_all();
+  verb->add_option("--camera", o->cameras, "Instead of --view: " + std::string(kCameraHelp))
       ->expected(1)
       ->take_all();
   verb->add_option(

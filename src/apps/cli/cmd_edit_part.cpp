@@ -8,7 +8,8 @@ namespace {
 struct Options {
   PartCommand command;
   std::vector<std::string> positive, negative;
-  std::string like;
+  std::string mask;
+  std::string like, camera;
   bool replace = true, remove = false;
   EditOutput output;
 };
@@ -17,6 +18,9 @@ PartCommand command_of(const Options& o) {
   PartCommand c = o.command;
   c.positive = parse_pixels(o.positive, "--positive");
   c.negative = parse_pixels(o.negative, "--negative");
+  if (c.view.empty() == o.camera.empty()) fail_usage("Give --view NAME or --camera FILE.json.");
+  if (!o.camera.empty()) c.camera = read_camera(o.camera);
+  if (!o.mask.empty()) c.mask = std::filesystem::path(o.mask);
   if (!o.like.empty()) c.like = parse_pixels({o.like}, "--like").front();
   c.effects.replace = !c.effects.color.empty() && o.replace;
   return c;
@@ -30,14 +34,15 @@ std::string text_of(const EditSummary& s) {
 
 void add_where(CLI::App* verb, Options& o) {
   PartCommand& c = o.command;
-  verb->add_option("--view", c.view, "View of the clicks, for example train/r_055")->required();
+  verb->add_option("--view", c.view, "View of the clicks, for example train/r_055");
+  verb->add_option("--camera", o.camera, "Instead of --view: " + std::string(kCameraHelp));
   CLI::Option* positive = verb->add_option(
       "--positive", o.positive, "Clicks on the part, X,Y ... (column, row from the top left corner)");
   CLI::Option* negative =
       verb->add_option("--negative", o.negative, "Clicks that are not on the part, X,Y ...");
   CLI::Option* mask =
       verb->add_option(
-              "--mask", c.mask,
+              "--mask", o.mask,
               "Instead of clicks: a PNG of the view's size that shows the whole part, opaque, or bright "
               "if it is opaque everywhere")
           ->excludes(positive)

@@ -8,7 +8,7 @@ namespace {
 
 struct DeformOptions {
   std::vector<std::string> from, to, turn, pin;
-  std::string view, pixel, drag, part, geometry = "mesh", distance = "signed";
+  std::string view, camera, pixel, drag, part, geometry = "mesh", distance = "signed";
   std::optional<double> radius;
   EditOutput output;
 };
@@ -42,11 +42,12 @@ std::vector<PointDrag> drags_of(const DeformOptions& o) {
 
 DeformCommand command_of(const DeformOptions& o) {
   const bool points = !o.from.empty() && !o.to.empty();
-  const bool pixels = !o.view.empty() && !o.pixel.empty() && !o.drag.empty();
+  const bool pixels = o.view.empty() != o.camera.empty() && !o.pixel.empty() && !o.drag.empty();
   const bool any_point = !o.from.empty() || !o.to.empty();
-  const bool any_pixel = !o.view.empty() || !o.pixel.empty() || !o.drag.empty();
+  const bool any_pixel = !o.view.empty() || !o.camera.empty() || !o.pixel.empty() || !o.drag.empty();
   if (any_point == any_pixel || points == pixels)
-    fail_usage("Give --from X,Y,Z --to X,Y,Z, or --view NAME --pixel X,Y --drag DX,DY.");
+    fail_usage(
+        "Give --from X,Y,Z --to X,Y,Z, or --view NAME (or --camera FILE.json) --pixel X,Y --drag DX,DY.");
   DeformCommand c;
   if (points) {
     const std::vector<PointDrag> drags = drags_of(o);
@@ -54,7 +55,8 @@ DeformCommand command_of(const DeformOptions& o) {
     c.more.assign(drags.begin() + 1, drags.end());
   } else {
     if (!o.turn.empty()) fail_usage("--turn needs --from and --to.");
-    c.drag = PixelDrag{o.view, pixel_of(o.pixel, "--pixel"), pixel_of(o.drag, "--drag")};
+    c.drag = PixelDrag{o.view, pixel_of(o.pixel, "--pixel"), pixel_of(o.drag, "--drag"),
+                       o.camera.empty() ? std::nullopt : std::optional(read_camera(o.camera))};
   }
   for (const std::string& pin : o.pin) c.pins.push_back(point_of(pin, "--pin"));
   if (o.distance != "signed" && o.geometry != "field") fail_usage("--distance needs --geometry field.");
@@ -88,6 +90,7 @@ void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
       "--pin", o->pin,
       "Point on the surface around which nothing moves, X,Y,Z in the capture's frame; again for more points");
   verb->add_option("--view", o->view, "Instead of --from and --to: name of a view to drag in");
+  verb->add_option("--camera", o->camera, "Instead of --view: " + std::string(kCameraHelp));
   verb->add_option("--pixel", o->pixel,
                    "With --view: pixel of the point to drag, X,Y (column, row from the top left corner)");
   verb->add_option("--drag", o->drag, "With --view: movement in pixels, DX,DY, at the depth of the point");

@@ -135,7 +135,7 @@ void add_object(CLI::App* verb, Options& o) {
 
 void add_edits(CLI::App* verb, Options& o) {
   verb->add_option("--view", o.paint.view, "View of the scribble (default: no paint edit is scored)");
-  verb->add_option("--scribble", o.paint.scribble, "RGBA PNG to paint, as in `edit paint`")
+  verb->add_option("--scribble", o.paint.scribble.path, "RGBA PNG to paint, as in `edit paint`")
       ->check(CLI::ExistingFile);
   verb->add_option("--truth", o.request.paint_truth.pictures,
                    "Folder of true images of the painted object, named like the views")

@@ -39,6 +39,7 @@ class Commands {
     Session session(common_.device, common_.threads);
     run_(session, console);
   }
+  const CommonOptions& common() const { return common_; }
   bool chosen() const { return bool(run_); }
 
  private:
@@ -55,12 +56,13 @@ void add_reconstruct(Commands&);
 void add_render(Commands&);
 void add_edit(Commands&);
 void add_parts(Commands&);
-void add_history(Commands&);  // log, undo, redo, toggle, replay
+void add_history(Commands&);  // log, undo, redo, toggle, goto, rename, restore, forget, replay
 void add_export(Commands&);
 void add_eval(Commands&);
 void add_evaluate(Commands&);
 void add_info(Commands&);  // info, doctor
 void add_bench(Commands&);
+void add_open(Commands&);
 void add_synth(Commands&);
 
 }  // namespace cei3d

@@ -17,6 +17,10 @@ std::string stages_text(const EditSummary&);
 
 std::string remove_text(const EditSummary&);
 
+// Of --camera.
+inline constexpr const char* kCameraHelp =
+    "a camera of its own, FILE.json as a render.json with one camera; the scribble or mask has its size";
+
 // --picture, an option of every edit.
 struct EditOutput {
   std::string picture;
@@ -24,6 +28,8 @@ struct EditOutput {
 void add_output(CLI::App* verb, EditOutput&);
 // Prints the report of an edit and writes its --picture.
 void finish_edit(Session&, Console&, const EditSummary&, std::string text, const EditOutput&);
+
+void add_amend(CLI::App* verb, bool& amend);  // --amend
 
 // --material, --roughness, --roughness-scale, --specular, --metalness
 void add_material_values(CLI::App* verb, MaterialEffects&);

@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <fstream>
@@ -55,6 +56,21 @@ std::string utc_text(const char* format) {
   char text[64];
   std::strftime(text, sizeof text, format, &utc);
   return text;
+}
+
+std::string machine_name() {
+  char name[256] = "";
+  const bool known = ::gethostname(name, sizeof name - 1) == 0 && name[0] != 0;
+  return known ? name : "this-machine";
+}
+
+bool has_desktop() { return std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr; }
+
+void open_on_desktop(const fs::path& file) {
+  if (::fork() != 0) return;
+  ::setsid();
+  ::execlp("xdg-open", "xdg-open", file.c_str(), static_cast<char*>(nullptr));
+  ::_exit(127);
 }
 
 fs::path make_temporary_folder() {

@@ -17,6 +17,11 @@ double process_seconds();  // processor time of all threads
 
 std::string utc_text(const char* format);  // the time now, by a format of strftime
 
+std::string machine_name();  // as other machines may know it; "this-machine" where it cannot be told
+
+bool has_desktop();                                  // a browser can open a window
+void open_on_desktop(const std::filesystem::path&);  // with the user's own program for it; does not wait
+
 std::filesystem::path make_temporary_folder();  // a new, empty one
 
 // A lock on a file, held by one process at a time and released when the process ends, however it ends.

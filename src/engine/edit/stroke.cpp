@@ -124,18 +124,6 @@ PixelBox painted_box(const Image& rgba, int margin) {
   return {x0, y0, x1 - x0 + 1, y1 - y0 + 1};
 }
 
-Camera crop_camera(const Camera& camera, const PixelBox& box, int scale) {
-  Camera c = camera;
-  c.width = box.width * scale;
-  c.height = box.height * scale;
-  c.fx *= scale;
-  c.fy *= scale;
-  c.skew *= scale;
-  c.cx = (camera.cx - box.x0) * scale;
-  c.cy = (camera.cy - box.y0) * scale;
-  return c;
-}
-
 Stroke trace_stroke(const Device& device, const Scene& scene, const Camera& camera, const Image& rgba) {
   Stroke s;
   const PixelBox box = painted_box(rgba, 2);

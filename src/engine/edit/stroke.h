@@ -5,23 +5,18 @@
 #include <vector>
 
 #include "core/image/image.h"
+#include "core/math/pixel_box.h"
 #include "engine/edit/routing.h"
 #include "engine/render/render.h"
 #include "model/geometry/shape/region.h"
 
 namespace cei3d {
 
-// A rectangle of pixels.
-struct PixelBox {
-  int x0 = 0, y0 = 0, width = 0, height = 0;
-};
 // Alpha from which a pixel of the scribble counts as painted: one half where partial alpha occurs only at
 // smooth edges of opaque strokes; else, with semi-transparent strokes, half an 8-bit step.
 float min_alpha(const Image& rgba);
 // Bounding box of the painted pixels plus `margin` pixels, within the image. Width 0: nothing is painted.
 PixelBox painted_box(const Image& rgba, int margin);
-// The camera of the box, at `scale` pixels per pixel.
-Camera crop_camera(const Camera& camera, const PixelBox& box, int scale);
 
 // Rays through the painted part of a view, several per pixel where the painted area is small.
 struct Stroke {

@@ -124,7 +124,7 @@ class Job {
     Json j = eval_settings(o);
     if (r_.paint)
       j["paint"] = {{"view", r_.paint->view},
-                    {"scribble", content_hash(read_file(r_.paint->scribble))},
+                    {"scribble", content_hash(r_.paint->scribble.read())},
                     {"truth", full_path(r_.paint_truth.pictures)},
                     {"masks", full_path(r_.paint_truth.masks)}};
     return j;

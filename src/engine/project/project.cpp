@@ -283,8 +283,8 @@ void Project::collect_garbage() {
   try {
     for (const fs::path& p : checkpoint_files()) read_json_file(p, note);
     if (has_base()) read_json_file(file("base/scene.json"), note);
-    for (const StackEntry& e : stack_.entries())
-      for (const std::string& object : edit_objects(e.id)) keep.insert(object);
+    for (const std::string& id : stack_.all_ids())
+      for (const std::string& object : edit_objects(id)) keep.insert(object);
   } catch (const Error&) {
     return;  // an unreadable file might name any object: nothing is removed
   }

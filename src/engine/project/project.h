@@ -34,8 +34,8 @@
 namespace cei3d {
 
 // 1: one result per edit. 2: one result per state that the edit depends on. 3: the correction network has
-// features of its own. 4: materials may vary over the surface.
-inline constexpr int kProjectVersion = 4;
+// features of its own. 4: materials may vary over the surface. 5: displaced edits are set aside.
+inline constexpr int kProjectVersion = 5;
 
 struct ProjectHead {
   Normalization normalization;
@@ -96,14 +96,19 @@ class Project {
   Scene scene() const;
   const SceneCache& scene_cache() const { return scenes_; }
 
-  // Adds an edit at the cursor. record.id must be stack().next_id(record.op), which is also the layer's.
-  void add_edit(const EditRecord& record, const EditLayer& layer);
+  // Adds an edit at the cursor, or in place of the last edit that is done. record.id must be
+  // stack().next_id(record.op), which is also the layer's.
+  enum class Place { on_top, instead_of_last };
+  void add_edit(const EditRecord& record, const EditLayer& layer, Place = Place::on_top);
   EditRecord edit(const std::string& id) const;
   std::vector<std::pair<std::string, std::string>> edit_inputs(const std::string& id) const;
-  // Move the cursor; switch an edit. Error: an active edit has to be remade first, see first_stale().
+  // Takes the place of stack(). event: for history.jsonl. Error: an active edit has to be remade first, see
+  // first_stale().
+  void move_to(const Stack& next, Json event);
   std::string undo();  // id of the edit
   std::string redo();
   bool toggle(const std::string& id);  // the new state
+  void forget_set_aside();             // for good
 
   // The result of an edit depends on its record, the base and those earlier edits that change an aspect it
   // depends on; all results are kept, by a hash of these. With another stack an active edit may have no
@@ -123,7 +128,6 @@ class Project {
   std::filesystem::path file(const std::string& name) const { return folder_ / name; }
   void require_writable() const;
   void save_stack(const Stack&);
-  void move_to(const Stack& next, Json event);
   std::vector<std::filesystem::path> checkpoint_files() const;  // newest first
   struct StoredResult;
   struct Resolved;

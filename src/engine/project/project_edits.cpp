@@ -166,10 +166,13 @@ void Project::add_result(const Stack& stack, const std::string& id, const EditLa
   write_json_file(edit_file(id), j);
 }
 
-void Project::add_edit(const EditRecord& record, const EditLayer& layer) {
+void Project::add_edit(const EditRecord& record, const EditLayer& layer, Place place) {
   require_writable();
   if (record.id != stack_.next_id(record.op) || layer.id != record.id)
     fail("Edit '{}' is out of order (an error in the program).", record.id);
+  Stack below = stack_, next = stack_;
+  if (place == Place::instead_of_last) below.undo();
+  place == Place::on_top ? next.push(record.id) : next.amend(record.id);
   const fs::path folder = file("edits") / record.id;
   EditGuard guard(folder);
   Json inputs = Json::object();
@@ -186,9 +189,7 @@ void Project::add_edit(const EditRecord& record, const EditLayer& layer) {
                    {"inputs", std::move(inputs)},
                    {"depends", to_json(record.depends)},
                    {"report", record.report},
-                   {"results", store_result(result_key(record.depends, resolve(stack_).results), layer)}});
-  Stack next = stack_;
-  next.push(record.id);
+                   {"results", store_result(result_key(record.depends, resolve(below).results), layer)}});
   save_stack(next);
   guard.keep();
   collect_garbage();
@@ -236,6 +237,13 @@ void Project::move_to(const Stack& next, Json event) {
   if (const auto id = first_stale(next)) fail("Edit {} must be remade first (an error in the program).", *id);
   save_stack(next);
   add_history(std::move(event));
+}
+
+void Project::forget_set_aside() {
+  Stack next = stack_;
+  next.forget();
+  move_to(next, {{"do", "forget"}});
+  collect_garbage();
 }
 
 std::string Project::undo() {

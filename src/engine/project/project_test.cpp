@@ -213,13 +213,25 @@ TEST_F(ProjectTest, AddsToTheSceneInMemoryOnlyWhatIsNew) {
   EXPECT_EQ(p.scene_cache().layers_added(), 6u);
 }
 
-TEST_F(ProjectTest, AnEditAfterUndoDropsWhatWasUndone) {
+TEST_F(ProjectTest, AnEditAfterUndoSetsAsideWhatWasUndone) {
   Project p = make_with_base();
   add_paint(p, 1);
   add_paint(p, 2);
+  const std::string two = bytes_of(p.scene());
   p.undo();
   add_paint(p, 3);
-  EXPECT_EQ(p.stack().active(), (std::vector<std::string>{"0001-paint", "0003-paint"}));
+  const std::vector<std::string> now = {"0001-paint", "0003-paint"}, then = {"0001-paint", "0002-paint"};
+  EXPECT_EQ(p.stack().active(), now);
+  EXPECT_TRUE(fs::exists(folder() / "edits/0002-paint"));
+  Stack back = p.stack();
+  back.restore("0002-paint");
+  p.move_to(back, {{"do", "restore"}});
+  EXPECT_EQ(p.stack().active(), then);
+  EXPECT_EQ(bytes_of(Project::open(folder(), Project::Mode::read).scene()), two);
+  back.restore("0003-paint");
+  p.move_to(back, {{"do", "restore"}});
+  p.forget_set_aside();
+  EXPECT_EQ(p.stack().active(), now);
   EXPECT_FALSE(fs::exists(folder() / "edits/0002-paint"));
   EXPECT_EQ(files_below(folder() / "objects", ".safetensors").size(), 3u);  // base and two layers
   EXPECT_EQ(read_file(folder() / "edits/0003-paint/scribble.png"), "not really a picture");

@@ -108,12 +108,58 @@ TEST(Stack, NumbersAreNeverUsedTwice) {
   }
 }
 
+std::vector<std::string> ids_of(const std::vector<StackEntry>& entries) {
+  std::vector<std::string> ids;
+  for (const StackEntry& e : entries) ids.push_back(e.id);
+  return ids;
+}
+
+using Ids = std::vector<std::string>;
+
+TEST(Stack, WhatIsDisplacedComesBackWhereItStood) {
+  Stack stack;
+  for (const char* id : {"0001-a", "0002-b", "0003-c"}) stack.push(id);
+  stack.go_to(1);
+  stack.push("0004-d");
+  ASSERT_EQ(stack.set_aside().size(), 1u);
+  EXPECT_EQ(stack.set_aside()[0].after, "0001-a");
+  EXPECT_EQ(ids_of(stack.set_aside()[0].entries), (Ids{"0002-b", "0003-c"}));
+  EXPECT_TRUE(stack.contains("0003-c"));
+  EXPECT_EQ(Stack::from_json(stack.to_json(), "stack.json"), stack);
+  stack.restore("0003-c");
+  EXPECT_EQ(ids_of(stack.entries()), (Ids{"0001-a", "0002-b", "0003-c"}));
+  EXPECT_EQ(stack.cursor(), 3u);
+  EXPECT_EQ(ids_of(stack.set_aside()[0].entries), (Ids{"0004-d"}));
+  EXPECT_THROW(stack.restore("0003-c"), Error);
+  stack.forget();
+  EXPECT_FALSE(stack.contains("0004-d"));
+}
+
+TEST(Stack, AnAmendedEditIsOneStep) {
+  Stack stack;
+  stack.push("0001-a");
+  stack.push("0002-b");
+  stack.rename("0002-b", "shiny");
+  stack.undo();
+  stack.push("0003-c");
+  stack.amend("0004-c");
+  stack.amend("0005-c");
+  EXPECT_EQ(ids_of(stack.entries()), (Ids{"0001-a", "0005-c"}));
+  EXPECT_EQ(stack.next_id("x"), "0006-x");
+  stack.restore("0002-b");
+  EXPECT_EQ(stack.entries()[1].name, "shiny");
+  EXPECT_EQ(Stack::from_json(stack.to_json(), "stack.json"), stack);
+  EXPECT_THROW(stack.rename("0002-b", "two\nlines"), Error);
+  EXPECT_THROW(stack.go_to(3), Error);
+}
+
 TEST(Stack, DamagedFilesAreRefused) {
   const Json good = {{"edits", {{{"id", "0001-paint"}, {"enabled", true}}}}, {"cursor", 1}, {"next", 2}};
   EXPECT_NO_THROW(Stack::from_json(good, "stack.json"));
   for (const char* patch : {R"({"cursor": 2})", R"({"cursor": "x"})", R"({"edits": 3})", R"({"next": null})",
                             R"({"edits": [{"id": "../../home", "enabled": true}]})", R"({"cursors": 1})",
-                            R"({"edits": [{"id": "0001-paint", "enabled": true, "color": 1}]})"}) {
+                            R"({"edits": [{"id": "0001-paint", "enabled": true, "color": 1}]})",
+                            R"({"set_aside": [{"after": "", "edits": [{"id": "..", "enabled": true}]}]})"}) {
     Json bad = good;
     bad.update(Json::parse(patch));
     EXPECT_THROW(Stack::from_json(bad, "stack.json"), Error) << patch;

@@ -53,8 +53,7 @@ std::vector<NamedCamera> read_camera_file(const fs::path& path) {
          e.what());
   }
   for (const NamedCamera& c : cameras)
-    if (c.camera.width < 1 || c.camera.height < 1 || !(c.camera.fx > 0) || !(c.camera.fy > 0))
-      fail("{}: camera {} has no size or no focal length.", path.string(), c.name);
+    check_camera(c.camera, fmt::format("{}: camera {}", path.string(), c.name));
   return cameras;
 }
 
@@ -72,6 +71,26 @@ void set_files(std::vector<NamedCamera>& cameras) {
 }
 
 }  // namespace
+
+void check_camera(const Camera& c, const std::string& what) {
+  constexpr int kMostPixels = 1 << 16;
+  if (c.width < 1 || c.height < 1 || !(c.fx > 0) || !(c.fy > 0))
+    fail("{} has no size or no focal length.", what);
+  if (c.width > kMostPixels || c.height > kMostPixels)
+    fail("{} is {}x{} pixels, which is too large.", what, c.width, c.height);
+  double sum = c.fx + c.fy + c.cx + c.cy + c.skew + c.center.x + c.center.y + c.center.z;
+  const Mat3d product = c.world_from_cam * transpose(c.world_from_cam);
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) sum += std::abs(product.row[i][j] - double(i == j)) < 1e-3 ? 0 : NAN;
+  if (!std::isfinite(sum)) fail("{} has numbers that are not finite, or a rotation that is none.", what);
+}
+
+Camera read_camera(const fs::path& path) {
+  const std::vector<NamedCamera> cameras = read_camera_file(path);
+  if (cameras.size() != 1)
+    fail_usage("{} has {} cameras; --camera takes a file with one.", path.string(), cameras.size());
+  return cameras[0].camera;
+}
 
 bool shows_photographs(const CameraChoice& choice) {
   return std::holds_alternative<ProjectViews>(choice) || std::holds_alternative<CaptureViews>(choice);

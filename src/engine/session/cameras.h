@@ -6,15 +6,9 @@
 #include <vector>
 
 #include "engine/project/project.h"
-#include "engine/session/requests.h"
+#include "engine/session/look_requests.h"
 
 namespace cei3d {
-
-struct NamedCamera {
-  std::string name;  // "test/r_000"
-  std::string file;  // "r_000", or the whole name where two views share the last part
-  Camera camera;
-};
 
 // Errors: no views, unreadable files. size 0: the cameras' own.
 std::vector<NamedCamera> choose_cameras(const Project&, const CameraChoice&, int width, int height);

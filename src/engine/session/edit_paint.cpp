@@ -2,7 +2,6 @@
 #include <optional>
 
 #include "core/base/error.h"
-#include "engine/capture/capture.h"
 #include "engine/edit/paint.h"
 #include "engine/edit/stroke.h"
 #include "engine/io/image_file.h"
@@ -28,7 +27,7 @@ Image decode_scribble(const std::string& bytes, const std::string& name) {
   return image;
 }
 
-void require_size(const Image& scribble, const View& view, const std::string& name) {
+void require_size(const Image& scribble, const EditPlace& view, const std::string& name) {
   const Camera& c = view.camera;
   if (scribble.width != c.width || scribble.height != c.height)
     fail("{} is {}x{} pixels, view {} is {}x{}; paint on an image of the view's size.", name, scribble.width,
@@ -44,7 +43,7 @@ void require_paint(const Image& scribble, const std::string& name) {
 
 Scribble scribble_of(const EditContext& context, const EditJob& job, const Json& j) {
   JsonReader stroke(j, fmt::format("A stroke of edit {}", job.id));
-  const View& view = find_view(context.capture, stroke.require<std::string>("view"));
+  const EditPlace view = place_from(context.capture, stroke);
   const std::string name = stroke.optional<std::string>("file", "the scribble");
   Scribble s;
   s.image = decode_scribble(job.input(stroke.optional<std::string>("input", "scribble.png")), name);
@@ -123,7 +122,7 @@ Aspects depends(const Json& stored) {
 
 }  // namespace
 
-// Version 2: several strokes; version 3: materials, also erased ones.
-const EditOp kPaintOp{"paint", 3, make, depends, migrate};
+// Version 2: several strokes; version 3: materials, also erased ones; version 4: cameras of their own.
+const EditOp kPaintOp{"paint", 4, make, depends, migrate};
 
 }  // namespace cei3d

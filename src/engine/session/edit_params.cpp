@@ -8,6 +8,8 @@
 #include "core/base/error.h"
 #include "core/base/name_distance.h"
 #include "core/math/color.h"
+#include "engine/capture/capture.h"
+#include "engine/project/dataset.h"
 #include "model/material/presets.h"
 
 namespace cei3d {
@@ -91,6 +93,30 @@ Effects effects_from_params(JsonReader& params) {
     e.replace = replace;
   }
   return e;
+}
+
+EditPlace place_from(const Capture& capture, JsonReader& params) {
+  if (params.has("camera")) {
+    if (params.has("view")) fail("{} has a view and a camera.", params.what());
+    JsonReader reader = params.object("camera");
+    const Camera camera = camera_from_json(reader);
+    reader.finish();
+    check_camera(camera, reader.what());
+    return {"of the edit's own camera", false, camera};
+  }
+  const View& view = find_view(capture, params.require<std::string>("view"));
+  return {view.name, true, view.camera};
+}
+
+void put_place(const Capture& capture, const std::string& view, const std::optional<Camera>& camera,
+               Json& params) {
+  if (camera && !view.empty()) fail_usage("Give a view or a camera, not both.");
+  if (!camera) {
+    params["view"] = find_view(capture, view).name;
+    return;
+  }
+  check_camera(*camera, "The camera of the edit");
+  params["camera"] = camera_json(*camera);
 }
 
 void put_effects(const MaterialEffects& effects, Json& params) {

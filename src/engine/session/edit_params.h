@@ -3,9 +3,11 @@
 #pragma once
 
 #include "core/base/json_reader.h"
+#include "core/math/camera.h"
 #include "core/math/vec.h"
 #include "engine/session/requests.h"
 #include "model/material/change.h"
+#include "model/scene/view.h"
 
 namespace cei3d {
 
@@ -24,5 +26,17 @@ Effects effects_from_params(JsonReader& params);
 // Writes the keys that the command sets. Usage errors: no such preset, values out of range, no color,
 // --replace without a color, --blend alone, both roughness and roughness scale.
 void put_effects(const MaterialEffects&, Json& params);
+
+// Where an edit was made: a view of the capture, or a camera of its own. Key "view", a name, or "camera", as
+// camera_json() writes it.
+struct EditPlace {
+  std::string name;  // for messages; of the view, if it is one
+  bool is_view = false;
+  Camera camera;  // capture frame
+};
+// Errors: neither or both of the keys, an unknown view.
+EditPlace place_from(const Capture&, JsonReader& params);
+// Writes the key. Usage errors: neither or both, an unknown view.
+void put_place(const Capture&, const std::string& view, const std::optional<Camera>&, Json& params);
 
 }  // namespace cei3d

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
-#include "engine/capture/capture.h"
 #include "engine/edit/part.h"
 #include "engine/edit/sam_part.h"
 #include "engine/io/image_file.h"
@@ -67,7 +66,7 @@ std::vector<float> scores_by_network(const EditContext& context, const std::stri
 
 PartRequest request_of(const EditContext& context, const EditJob& job) {
   JsonReader params = job.reader();
-  const View& view = find_view(context.capture, params.require<std::string>("view"));
+  const EditPlace view = place_from(context.capture, params);
   const Effects effects = effects_from_params(params);
   PartRequest r;
   r.id = job.id;
@@ -78,8 +77,8 @@ PartRequest request_of(const EditContext& context, const EditJob& job) {
   if (const auto mask = params.optional<std::string>("mask"))
     r.mask = decode_mask(job.input("mask.png"), *mask);
   if (params.optional<std::string>("segmenter", "grow") == "sam")
-    r.network = [&context, name = view.name](const Scene& scene, const PartRequest& request,
-                                             Progress& progress) {
+    r.network = [&context, name = view.is_view ? view.name : std::string()](
+                    const Scene& scene, const PartRequest& request, Progress& progress) {
       return scores_by_network(context, name, scene, request, progress);
     };
   r.like = likeness_from(params);
@@ -111,7 +110,7 @@ Aspects depends(const Json& params) {
 
 }  // namespace
 
-// Version 2: scales, blends and presets; parts of like material.
-const EditOp kPartOp{"part", 2, make, depends};
+// Version 2: scales, blends and presets; parts of like material. Version 3: a camera of its own.
+const EditOp kPartOp{"part", 3, make, depends};
 
 }  // namespace cei3d

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 
 namespace cei3d {
 namespace {
@@ -148,9 +149,14 @@ Json ProjectInfo::json() const {
 }
 
 Json LogEntry::json() const {
-  return {{"id", id},     {"op", op},         {"enabled", enabled},
-          {"done", done}, {"params", params}, {"report", report}};
+  Json j = {{"id", id},     {"op", op},         {"enabled", enabled},
+            {"done", done}, {"params", params}, {"report", report}};
+  if (!name.empty()) j["name"] = name;
+  if (set_aside) j["set_aside"] = true;
+  return j;
 }
+
+std::string InputFile::read() const { return bytes ? *bytes : read_file(path); }
 
 Json EditSummary::json() const {
   Json j = {{"id", id}};
@@ -191,6 +197,13 @@ std::optional<ExportFor> export_for_from_name(const std::string& name) {
   if (name == "web") return ExportFor::web;
   if (name == "ar") return ExportFor::ar;
   if (name == "dcc") return ExportFor::dcc;
+  return std::nullopt;
+}
+
+std::optional<ExportImage> export_image_from_name(const std::string& name) {
+  if (name == "png") return ExportImage::png;
+  if (name == "jpeg") return ExportImage::jpeg;
+  if (name == "webp") return ExportImage::webp;
   return std::nullopt;
 }
 

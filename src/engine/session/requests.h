@@ -89,6 +89,8 @@ struct LogEntry {
   std::string id, op;
   bool enabled = true, done = true;  // done: not undone
   Json params, report;
+  std::string name;        // given by the user; empty: none
+  bool set_aside = false;  // displaced by a later edit; `restore` puts it back
   Json json() const;
 };
 
@@ -109,9 +111,20 @@ std::string material_preset_names();
 // Empty if there is a preset of that name; else an error message with similar names.
 std::string unknown_preset(const std::string& name);
 
+// A file that an edit is made from. The bytes may be given; else they are read from the path.
+struct InputFile {
+  InputFile() = default;
+  InputFile(std::filesystem::path file) : path(std::move(file)) {}
+  std::filesystem::path path;
+  std::optional<std::string> bytes;
+  bool empty() const { return path.empty() && !bytes; }
+  std::string read() const;  // errors: missing, unreadable
+};
+
 struct PaintStroke {
-  std::string view;                // a view's name
-  std::filesystem::path scribble;  // RGBA PNG of the view's size
+  std::string view;                   // a view's name
+  InputFile scribble;                 // RGBA PNG of the view's size
+  std::optional<Camera> camera = {};  // instead of a view, capture frame
 };
 enum class PaintTarget {
   albedo,      // the albedo
@@ -141,7 +154,8 @@ struct PointDrag {
 // Drag of the surface point seen at `pixel` by `drag` pixels, in the plane through it parallel to the image.
 struct PixelDrag {
   std::string view;
-  Vec2<double> pixel, drag;  // (column, row), pixel centers at +0.5
+  Vec2<double> pixel, drag;           // (column, row), pixel centers at +0.5
+  std::optional<Camera> camera = {};  // instead of a view, capture frame
 };
 struct DeformCommand {
   std::variant<PointDrag, PixelDrag> drag;
@@ -156,7 +170,7 @@ struct DeformCommand {
 struct PartCommand {
   std::string view;
   std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centers at +0.5
-  std::filesystem::path mask;                    // PNG in place of clicks; empty: none
+  InputFile mask;                                // PNG in place of clicks; empty: none
   std::optional<Vec2<double>> like{};            // instead of clicks: surface with the material at this pixel
   bool like_color = false;                       // compare the albedo, too
   std::string segmenter = "grow";                // or "sam"
@@ -164,6 +178,7 @@ struct PartCommand {
   std::string name;                      // empty: that of the part combined with, else "part1", "part2", ...
   std::string add, subtract, intersect;  // name of a part to combine with; at most one
   MaterialEffects effects;
+  std::optional<Camera> camera = {};  // instead of a view, capture frame
 };
 struct RemoveCommand {
   std::string part;
@@ -229,6 +244,10 @@ enum class Channel { rgb, albedo, diffuse, specular, normal, depth, roughness, m
 const char* channel_name(Channel);
 std::optional<Channel> channel_from_name(const std::string&);
 
+// One camera, capture frame: FILE.json of `--camera`. Errors: unreadable, not exactly one camera.
+Camera read_camera(const std::filesystem::path&);
+void check_camera(const Camera&, const std::string& what);  // error: no size, focal length or rotation
+
 enum class EnvConvention { by_up_axis, zup, yup, mitsuba, blender };
 std::optional<EnvConvention> env_convention_from_name(const std::string&);  // "zup", ...
 
@@ -240,6 +259,10 @@ struct LightChoice {
   double scale = 1;  // times the radiance
   bool is_own() const { return env.empty() && rotate_degrees == 0 && scale == 1; }
 };
+
+// Every edit.
+using EditCommand =
+    std::variant<PaintCommand, MaterialCommand, LightChoice, DeformCommand, RemoveCommand, PartCommand>;
 
 struct RenderRequest {
   std::filesystem::path out;
@@ -274,19 +297,23 @@ struct PartMasksReport {
 enum class ExportFor { any, web, ar, dcc };
 std::optional<ExportFor> export_for_from_name(const std::string&);  // "web", "ar", "dcc"
 
+// How the pictures of an asset are stored.
+enum class ExportImage { png, jpeg, webp };
+std::optional<ExportImage> export_image_from_name(const std::string&);  // "png", "jpeg", "webp"
+
 struct ExportRequest {
-  // The suffix says what is written: .glb .gltf .obj .usdz .ply (the object), .hdr .exr .npy .json (the
-  // light).
+  // The suffix says what is written: .glb .gltf .obj .usdz .ply (the object), .html (a page that shows
+  // it), .hdr .exr .npy .json (the light).
   std::filesystem::path out;
   bool points = false;  // .ply: the handler points instead of the mesh
   ExportFor purpose = ExportFor::any;
-  std::optional<int> faces;     // at most; none: as the purpose says; a mesh without texture: all
-  std::optional<int> texture;   // texels of a side; none: as the purpose says; 0: albedo by vertex
-  std::optional<bool> jpeg;     // base color and material as JPEG, not PNG; none: as the purpose says
-  std::optional<bool> at_base;  // the object stands in the origin; none: as the purpose says
-  double unit_scale = 1;        // meters per capture unit
-  double size = 0;              // meters of the longest side, instead of unit_scale; 0: no wish
-  bool light = false;           // the light beside the object, as NAME.env.hdr
+  std::optional<int> faces;          // at most; none: as the purpose says; a mesh without texture: all
+  std::optional<int> texture;        // texels of a side; none: as the purpose says; 0: albedo by vertex
+  std::optional<ExportImage> image;  // of base color and material; none: as the purpose says
+  std::optional<bool> at_base;       // the object stands in the origin; none: as the purpose says
+  double unit_scale = 1;             // meters per capture unit
+  double size = 0;                   // meters of the longest side, instead of unit_scale; 0: no wish
+  bool light = false;                // the light beside the object, as NAME.env.hdr
 };
 struct ExportReport {
   std::filesystem::path out;

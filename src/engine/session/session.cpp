@@ -115,11 +115,13 @@ ReconstructReport Session::reconstruct(const ReconstructRequest& request, Progre
 std::vector<LogEntry> Session::log() const {
   std::vector<LogEntry> entries;
   const Stack& stack = project().stack();
-  for (size_t i = 0; i < stack.entries().size(); ++i) {
-    const StackEntry& e = stack.entries()[i];
+  const auto add = [&](const StackEntry& e, bool done, bool set_aside) {
     const EditRecord r = project().edit(e.id);
-    entries.push_back({e.id, r.op, e.enabled, i < stack.cursor(), r.params, r.report});
-  }
+    entries.push_back({e.id, r.op, e.enabled, done, r.params, r.report, e.name, set_aside});
+  };
+  for (size_t i = 0; i < stack.entries().size(); ++i) add(stack.entries()[i], i < stack.cursor(), false);
+  for (const SetAside& s : stack.set_aside())
+    for (const StackEntry& e : s.entries) add(e, false, true);
   return entries;
 }
 

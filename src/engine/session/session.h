@@ -13,6 +13,7 @@
 #include "core/base/progress.h"
 #include "engine/capture/capture.h"
 #include "engine/reconstruct/reconstruct.h"
+#include "engine/session/look_requests.h"
 #include "engine/session/requests.h"
 
 namespace cei3d {
@@ -21,8 +22,11 @@ class Device;
 class Project;
 class RenderCache;
 class Threads;
+class Stack;
+class TiledFrame;
+struct EditPlan;
+struct EditPreview;
 struct Scene;
-using EditInputs = std::vector<std::pair<std::string, std::string>>;  // file name, bytes
 
 // For one thread at a time; it computes on several threads. Several sessions, each with its own project, may
 // be used by different threads at the same time.
@@ -59,25 +63,58 @@ class Session {
   EditSummary deform(const DeformCommand&, Progress&);
   EditSummary remove(const RemoveCommand&, Progress&);
   EditSummary select_part(const PartCommand&, Progress&);
+  // Any of them. amend: in place of the last edit, which must be of the same kind and on the same part, so
+  // that several tries are one step of the history.
+  EditSummary edit(const EditCommand&, Progress&, bool amend = false);
+  // The same in two steps: what preview() made is not stored before commit(). Error of commit(): the history
+  // has changed since.
+  std::shared_ptr<const EditPreview> preview(const EditCommand&, Progress&, bool amend = false);
+  EditSummary commit(const EditPreview&);
   ChangeSummary show_change(const ChangeRequest&);  // of an edit that is on
   // Edits that depend on the one that appears or disappears are remade. Error: one of them cannot be remade;
   // nothing is changed.
   std::string undo(Progress&);  // id of the edit that is undone now
   std::string redo(Progress&);
   bool toggle(const std::string& id, Progress&);  // the new state
+  void go_to(size_t done, Progress&);             // so many edits are done then
+  void rename(const std::string& id, const std::string& name);
+  // Brings back the edits that were set aside together with this one; see Stack::restore().
+  void restore(const std::string& id, Progress&);
+  void forget_set_aside();
   // Makes the edits of this project that are done on top of those of another project; edits that are off are
   // switched off there. Error: an edit cannot be made there; those before it are kept.
   ReplayReport replay(const std::filesystem::path& on, Progress&);
   std::vector<PartInfo> parts() const;  // sorted by name
   PartMasksReport part_masks(const PartMasksRequest&, Progress&) const;
   RenderReport render(const RenderRequest&, Progress&);
+  // A frame that is computed tile by tile; on_top: with this edit, too. It shows the object as it is now,
+  // whatever is edited meanwhile, and must not outlive the open project.
+  std::unique_ptr<TiledFrame> frame(const FrameRequest&, const EditPreview* on_top = nullptr);
+  // The surface seen at a pixel (column, row); none: the background. camera: capture frame.
+  std::optional<PickedPoint> pick(const Camera& camera, Vec2<double> pixel);
+  // Where the camera sees the part: 1 channel, share of the pixel. preview: a part that is not stored.
+  Image part_picture(const Camera&, const std::string& part, const EditPreview* preview = nullptr);
+  std::vector<View> views() const;  // of the capture
+  // The object as a page draws it: packs of engine/view by kind, "shape", "look", "vertex_light", "light" or
+  // "tables". view_keys(): a key for each kind, which changes when the pack does.
+  std::string view_pack(const std::string& kind, const EditPreview* on_top = nullptr);
+  Json view_keys() const;
+  // The photograph of a view on white, sRGB, 3 channels, at 1/n of its size so that it is at least `width`
+  // wide where it was. Error: the view has none, or it cannot be read.
+  Image photograph(const std::string& view, int width) const;
+  NamedCamera start_camera() const;  // from which the object is well seen
   ExportReport export_to(const ExportRequest&, Progress&);
   EvalReport evaluate(const EvalRequest&, Progress&);
 
  private:
   Project& project() const;  // error when none is open
-  EditSummary add_edit(const char* op, Json params, EditInputs inputs, Progress&);
-
+  EditPlan plan(const PaintCommand&) const;
+  EditPlan plan(const MaterialCommand&) const;
+  EditPlan plan(const LightChoice&) const;
+  EditPlan plan(const DeformCommand&) const;
+  EditPlan plan(const RemoveCommand&) const;
+  EditPlan plan(const PartCommand&) const;
+  void move_to(const Stack& next, Json event, Progress&);
   ReconstructReport run_reconstruction(const ReconstructRequest&, Progress&);
 
   std::unique_ptr<Device> device_;

@@ -7,6 +7,7 @@
 #include "engine/capture/capture.h"
 #include "engine/edit/change_report.h"
 #include "engine/io/image_file.h"
+#include "engine/project/dataset.h"
 #include "engine/project/project.h"
 #include "engine/render/render_cache.h"
 #include "engine/session/frame_files.h"
@@ -15,11 +16,26 @@
 namespace cei3d {
 namespace {
 
+// The camera of its own that an edit was made with.
+std::optional<View> own_camera(const Json& params) {
+  const Json& j = params.contains("strokes") ? params.at("strokes").at(0) : params;
+  if (!j.contains("camera")) return std::nullopt;
+  JsonReader reader(j, "The edit");
+  reader.has("view");
+  View view;
+  JsonReader camera = reader.object("camera");
+  view.name = "of the edit's own camera";
+  view.camera = camera_from_json(camera);
+  return view;
+}
+
 // The view that an edit was made in, else the first one that was held out, else the first.
-const View& view_to_show(const Project& project, const ChangeRequest& request) {
+View view_to_show(const Project& project, const ChangeRequest& request) {
   const std::vector<View>& views = project.capture().views;
   std::string name = request.view;
-  if (name.empty()) name = project.edit(request.id).params.value("view", "");
+  const Json params = project.edit(request.id).params;
+  if (name.empty()) name = params.value("view", "");
+  if (const auto own = own_camera(params); own && name.empty()) return *own;
   name = name.substr(0, name.find(' '));  // of several views, the first
   if (!name.empty()) return find_view(project.capture(), name);
   const auto held_out =
@@ -32,7 +48,7 @@ const View& view_to_show(const Project& project, const ChangeRequest& request) {
 
 ChangeSummary Session::show_change(const ChangeRequest& request) {
   return threads_->run([&]() -> ChangeSummary {
-    const View& view = view_to_show(project(), request);
+    const View view = view_to_show(project(), request);
     const Scene before = project().scene_below(project().stack(), request.id);
     const Scene all = project().scene();
     const auto layer = std::find_if(all.layers.begin(), all.layers.end(),

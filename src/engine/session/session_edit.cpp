@@ -11,6 +11,7 @@
 #include "engine/render/render_cache.h"
 #include "engine/session/edit_ops.h"
 #include "engine/session/edit_params.h"
+#include "engine/session/edit_plan.h"
 #include "engine/session/light_choice.h"
 #include "engine/session/session.h"
 #include "engine/session/stopwatch.h"
@@ -25,23 +26,45 @@ struct Tools {
   Progress& progress;
 };
 
-EditSummary add_edit_to(Project& project, const Tools& tools, const char* name, Json params,
-                        EditInputs inputs) {
+// Usage error: the last edit that is done is not one of this kind and on the same part.
+void require_amendable(const Project& project, const EditPlan& plan) {
+  const Stack& stack = project.stack();
+  const std::string last = stack.cursor() == 0 ? "" : stack.entries()[stack.cursor() - 1].id;
+  const bool fits = !last.empty() && stack.entries()[stack.cursor() - 1].enabled;
+  const EditRecord record = fits ? project.edit(last) : EditRecord();
+  if (record.op != plan.op || record.params.value("part", "") != plan.params.value("part", ""))
+    fail_usage("The last edit is no '{}' of the same part: there is nothing to amend.", plan.op);
+}
+
+EditPreview made_of(const Project& project, const Tools& tools, EditPlan plan, bool amend) {
   Stopwatch watch;
-  const EditOp& op = edit_op(name);
-  const Scene scene = project.scene();
-  EditSummary s;
-  s.load_seconds = watch.lap();
-  const EditJob job{project.stack().next_id(name), std::move(params), std::move(inputs)};
-  EditOutcome made = op.make({tools.device, project.capture(), scene, tools.frames, tools.progress}, job);
+  const EditOp& op = edit_op(plan.op);
+  EditPreview p;
+  p.stack = project.stack();
+  p.place = amend ? Project::Place::instead_of_last : Project::Place::on_top;
+  if (amend) require_amendable(project, plan);
+  p.below =
+      amend ? project.scene_below(p.stack, p.stack.entries()[p.stack.cursor() - 1].id) : project.scene();
+  p.load_seconds = watch.lap();
+  const EditJob job{p.stack.next_id(plan.op), std::move(plan.params), std::move(plan.inputs)};
+  EditOutcome made = op.make({tools.device, project.capture(), p.below, tools.frames, tools.progress}, job);
   const double seconds = watch.lap();
-  if (!made.report.contains("seconds")) made.report["seconds"] = {{name, seconds}};
-  s.id = job.id;
-  s.report = made.report;
-  project.add_edit({job.id, name, op.version, job.params, op.depends(job.params), made.report, job.inputs},
-                   made.layer);
-  s.store_seconds = watch.lap();
-  return s;
+  if (!made.report.contains("seconds")) made.report["seconds"] = {{plan.op, seconds}};
+  p.record = {job.id, plan.op, op.version, job.params, op.depends(job.params), made.report, job.inputs};
+  p.layer = std::move(made.layer);
+  return p;
+}
+
+EditSummary store(Project& project, const EditPreview& p) {
+  if (!(project.stack() == p.stack))
+    fail("The history has changed since this edit was prepared; make it again.");
+  Stopwatch watch;
+  project.add_edit(p.record, p.layer, p.place);
+  return {p.record.id, p.record.report, p.load_seconds, watch.lap()};
+}
+
+EditSummary add_edit_to(Project& project, const Tools& tools, EditPlan plan, bool amend = false) {
+  return store(project, made_of(project, tools, std::move(plan), amend));
 }
 
 // Remakes the edits that a change of the history needs before the change, so that the stored history is
@@ -93,36 +116,64 @@ bool toggle_edit(Project& project, const Tools& tools, const std::string& id) {
 
 }  // namespace
 
-EditSummary Session::add_edit(const char* op, Json params, EditInputs inputs, Progress& progress) {
+EditSummary Session::edit(const EditCommand& command, Progress& progress, bool amend) {
   return threads_->run([&]() -> EditSummary {
-    return add_edit_to(project(), {*device_, *frames_, progress}, op, std::move(params), std::move(inputs));
+    const auto make_plan = [&](const auto& c) { return plan(c); };
+    return add_edit_to(project(), {*device_, *frames_, progress}, std::visit(make_plan, command), amend);
   });
 }
 
-EditSummary Session::paint(const PaintCommand& command, Progress& progress) {
+std::shared_ptr<const EditPreview> Session::preview(const EditCommand& command, Progress& progress,
+                                                    bool amend) {
+  return threads_->run([&]() -> std::shared_ptr<const EditPreview> {
+    const auto make_plan = [&](const auto& c) { return plan(c); };
+    EditPlan edit = std::visit(make_plan, command);
+    return std::make_shared<const EditPreview>(
+        made_of(project(), {*device_, *frames_, progress}, std::move(edit), amend));
+  });
+}
+
+EditSummary Session::commit(const EditPreview& preview) {
+  return threads_->run([&]() -> EditSummary { return store(project(), preview); });
+}
+
+EditSummary Session::paint(const PaintCommand& c, Progress& p) { return edit(c, p); }
+EditSummary Session::change_material(const MaterialCommand& c, Progress& p) { return edit(c, p); }
+EditSummary Session::change_light(const LightChoice& c, Progress& p) { return edit(c, p); }
+EditSummary Session::deform(const DeformCommand& c, Progress& p) { return edit(c, p); }
+EditSummary Session::remove(const RemoveCommand& c, Progress& p) { return edit(c, p); }
+EditSummary Session::select_part(const PartCommand& c, Progress& p) { return edit(c, p); }
+
+EditPlan Session::plan(const PaintCommand& command) const {
   check_paint(command);
   Json strokes = Json::array();
   EditInputs inputs;
   std::string views;
   for (const PaintStroke& s : command.strokes) {
-    const View& view = find_view(project().capture(), s.view);
     const std::string input =
         inputs.empty() ? "scribble.png" : fmt::format("scribble{}.png", inputs.size() + 1);
-    strokes.push_back({{"view", view.name}, {"file", s.scribble.string()}, {"input", input}});
-    inputs.emplace_back(input, read_file(s.scribble));
-    views += (views.empty() ? "" : " ") + view.name;
+    strokes.push_back(Json::object());
+    put_place(project().capture(), s.view, s.camera, strokes.back());
+    if (!s.scribble.path.empty()) strokes.back()["file"] = s.scribble.path.string();
+    strokes.back()["input"] = input;
+    inputs.emplace_back(input, s.scribble.read());
+    const std::string view = strokes.back().value("view", "");
+    views += (views.empty() || view.empty() ? "" : " ") + view;
   }
-  Json params = {{"view", views}, {"strokes", std::move(strokes)}, {"seed", command.seed}};
+  Json params = Json::object();
+  if (!views.empty()) params["view"] = views;
+  params["strokes"] = std::move(strokes);
+  params["seed"] = command.seed;
   if (command.erase)
     params["erase"] = true;
   else
     params["target"] = paint_target_name(command.target);
   if (command.routing != Routing::both) params["routing"] = routing_name(command.routing);
   put_effects(command.material, params);
-  return add_edit("paint", std::move(params), std::move(inputs), progress);
+  return {"paint", std::move(params), std::move(inputs)};
 }
 
-EditSummary Session::change_material(const MaterialCommand& command, Progress& progress) {
+EditPlan Session::plan(const MaterialCommand& command) const {
   if (command.effects.empty())
     fail_usage(
         "Nothing to change: give --material, --roughness, --roughness-scale, --specular, --metalness or "
@@ -130,26 +181,23 @@ EditSummary Session::change_material(const MaterialCommand& command, Progress& p
   Json params = Json::object();
   if (!command.part.empty()) params["part"] = command.part;
   put_effects(command.effects, params);
-  return add_edit("material", std::move(params), {}, progress);
+  return {"material", std::move(params), {}};
 }
 
-EditSummary Session::change_light(const LightChoice& choice, Progress& progress) {
-  return threads_->run([&]() -> EditSummary {
-    if (choice.env.empty() && choice.rotate_degrees == 0 && choice.scale == 1)
-      fail_usage("Nothing to change: give --env, --rotate or --scale.");
-    check_turn(choice);
-    Json params = Json::object();
-    EditInputs inputs;
-    if (!choice.env.empty()) {
-      const SgMixture light =
-          environment_light(*device_, choice, project().base().up, {project().folder() / "cache", true});
-      params["env"] = choice.env.string();
-      inputs.emplace_back("light.npy", encode_npy(to_array(light), int64_t(light.lobes.size()), 7));
-    }
-    if (choice.rotate_degrees != 0) params["rotate_degrees"] = choice.rotate_degrees;
-    if (choice.scale != 1) params["scale"] = choice.scale;
-    return add_edit("light", std::move(params), std::move(inputs), progress);
-  });
+EditPlan Session::plan(const LightChoice& choice) const {
+  if (choice.is_own()) fail_usage("Nothing to change: give --env, --rotate or --scale.");
+  check_turn(choice);
+  Json params = Json::object();
+  EditInputs inputs;
+  if (!choice.env.empty()) {
+    const SgMixture light =
+        environment_light(*device_, choice, project().base().up, {project().folder() / "cache", true});
+    params["env"] = choice.env.string();
+    inputs.emplace_back("light.npy", encode_npy(to_array(light), int64_t(light.lobes.size()), 7));
+  }
+  if (choice.rotate_degrees != 0) params["rotate_degrees"] = choice.rotate_degrees;
+  if (choice.scale != 1) params["scale"] = choice.scale;
+  return {"light", std::move(params), std::move(inputs)};
 }
 
 std::string Session::undo(Progress& progress) {
@@ -170,6 +218,33 @@ std::string Session::redo(Progress& progress) {
   });
 }
 
+void Session::move_to(const Stack& next, Json event, Progress& progress) {
+  threads_->run([&] {
+    make_anew(project(), {*device_, *frames_, progress}, next);
+    project().move_to(next, std::move(event));
+  });
+}
+
+void Session::go_to(size_t done, Progress& progress) {
+  Stack next = project().stack();
+  next.go_to(done);
+  move_to(next, {{"do", "goto"}, {"done", done}}, progress);
+}
+
+void Session::rename(const std::string& id, const std::string& name) {
+  Stack next = project().stack();
+  next.rename(id, name);
+  project().move_to(next, {{"do", "rename"}, {"id", id}, {"name", name}});
+}
+
+void Session::restore(const std::string& id, Progress& progress) {
+  Stack next = project().stack();
+  next.restore(id);
+  move_to(next, {{"do", "restore"}, {"id", id}}, progress);
+}
+
+void Session::forget_set_aside() { project().forget_set_aside(); }
+
 bool Session::toggle(const std::string& id, Progress& progress) {
   return threads_->run([&]() -> bool { return toggle_edit(project(), {*device_, *frames_, progress}, id); });
 }
@@ -189,7 +264,7 @@ ReplayReport Session::replay(const std::filesystem::path& on, Progress& progress
       try {
         const EditOp& op = edit_op(record.op);
         const EditSummary s =
-            add_edit_to(other, tools, op.name, present_params(op, record), project().edit_inputs(entry.id));
+            add_edit_to(other, tools, {op.name, present_params(op, record), project().edit_inputs(entry.id)});
         if (record.op_version < op.version)
           report.notes.push_back(version_note(entry.id, record.op_version, op));
         if (!entry.enabled) toggle_edit(other, tools, s.id);

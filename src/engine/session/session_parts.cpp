@@ -12,6 +12,8 @@
 #include "engine/render/render.h"
 #include "engine/session/cameras.h"
 #include "engine/session/edit_params.h"
+#include "engine/session/edit_plan.h"
+#include "engine/session/part_mask.h"
 #include "engine/session/session.h"
 #include "engine/session/stopwatch.h"
 #include "model/scene/appearance.h"
@@ -53,24 +55,13 @@ void check_place(const PartCommand& c) {
   if (c.like_color && !c.like) fail_usage("--like-color goes with --like.");
 }
 
-// Share of each pixel's samples that meet the part.
-Image part_mask(const Scene& scene, const EditLayer& part, const GBuffer& g) {
-  const std::vector<uint8_t> inside = inside_layer(scene, part, g.hits);
-  Image mask(g.width, g.height, 1);
-  for (size_t p = 0; p < mask.data.size(); ++p) {
-    int hits = 0;
-    for (uint32_t i = g.pixel_start[p]; i < g.pixel_start[p + 1]; ++i) hits += inside[i];
-    mask.data[p] = float(hits) / float(g.samples_of(p));
-  }
-  return mask;
-}
-
 }  // namespace
 
-EditSummary Session::select_part(const PartCommand& command, Progress& progress) {
+EditPlan Session::plan(const PartCommand& command) const {
   check_place(command);
-  Json params = {{"view", find_view(project().capture(), command.view).name},
-                 {"segmenter", command.segmenter}};
+  Json params = Json::object();
+  put_place(project().capture(), command.view, command.camera, params);
+  params["segmenter"] = command.segmenter;
   if (command.in_view) params["in_view"] = true;
   put_combination(command, params);
   std::string name = command.name;
@@ -83,11 +74,11 @@ EditSummary Session::select_part(const PartCommand& command, Progress& progress)
   if (command.like_color) params["like_color"] = true;
   EditInputs inputs;
   if (!command.mask.empty()) {
-    params["mask"] = command.mask.string();
-    inputs.emplace_back("mask.png", read_file(command.mask));
+    params["mask"] = command.mask.path.string();
+    inputs.emplace_back("mask.png", command.mask.read());
   }
   put_effects(command.effects, params);
-  return add_edit("part", std::move(params), std::move(inputs), progress);
+  return {"part", std::move(params), std::move(inputs)};
 }
 
 std::vector<PartInfo> Session::parts() const {

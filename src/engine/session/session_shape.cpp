@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
-#include "core/base/parallel.h"
-#include "engine/capture/capture.h"
 #include "engine/project/project.h"
 #include "engine/render/render.h"
+#include "engine/session/edit_params.h"
+#include "engine/session/edit_plan.h"
 #include "engine/session/session.h"
 
 namespace cei3d {
@@ -11,7 +11,10 @@ namespace {
 
 // The surface point at the pixel, and its target after the drag in the plane parallel to the image.
 PointDrag drag_of(const Device& device, const Scene& scene, const Capture& capture, const PixelDrag& d) {
-  const View& view = find_view(capture, d.view);
+  Json where = Json::object();
+  put_place(capture, d.view, d.camera, where);
+  JsonReader reader(where, "The drag");
+  const EditPlace view = place_from(capture, reader);
   const Camera camera = scene.normalization.unit_from_capture(view.camera);
   if (!(d.pixel.x >= 0 && d.pixel.y >= 0 && d.pixel.x <= camera.width && d.pixel.y <= camera.height))
     fail_usage("Pixel {:.6g},{:.6g} is not in view {}, which is {}x{}.", d.pixel.x, d.pixel.y, view.name,
@@ -39,27 +42,25 @@ Json handle_json(const PointDrag& drag) {
 
 }  // namespace
 
-EditSummary Session::deform(const DeformCommand& command, Progress& progress) {
-  return threads_->run([&]() -> EditSummary {
-    const auto* points = std::get_if<PointDrag>(&command.drag);
-    const PointDrag drag =
-        points ? *points
-               : drag_of(*device_, project().scene(), project().capture(), std::get<PixelDrag>(command.drag));
-    Json params = handle_json(drag);
-    for (const PointDrag& d : command.more) params["more"].push_back(handle_json(d));
-    for (const Vec3d pin : command.pins) params["pins"].push_back(list_of(pin));
-    if (command.geometry != "mesh") {
-      params["geometry"] = command.geometry;
-      params["distance"] = command.distance;
-    }
-    if (command.radius) params["radius"] = *command.radius;
-    if (!command.part.empty()) params["part"] = command.part;
-    return add_edit("deform", std::move(params), {}, progress);
-  });
+EditPlan Session::plan(const DeformCommand& command) const {
+  const auto* points = std::get_if<PointDrag>(&command.drag);
+  const PointDrag drag =
+      points ? *points
+             : drag_of(*device_, project().scene(), project().capture(), std::get<PixelDrag>(command.drag));
+  Json params = handle_json(drag);
+  for (const PointDrag& d : command.more) params["more"].push_back(handle_json(d));
+  for (const Vec3d pin : command.pins) params["pins"].push_back(list_of(pin));
+  if (command.geometry != "mesh") {
+    params["geometry"] = command.geometry;
+    params["distance"] = command.distance;
+  }
+  if (command.radius) params["radius"] = *command.radius;
+  if (!command.part.empty()) params["part"] = command.part;
+  return {"deform", std::move(params), {}};
 }
 
-EditSummary Session::remove(const RemoveCommand& command, Progress& progress) {
-  return add_edit("remove", {{"part", command.part}}, {}, progress);
+EditPlan Session::plan(const RemoveCommand& command) const {
+  return {"remove", {{"part", command.part}}, {}};
 }
 
 }  // namespace cei3d

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/server/edit_json.h"
+
+#include "engine/project/dataset.h"
+
+namespace cei3d {
+namespace {
+
+MaterialEffects effects_from(JsonReader& j) {
+  MaterialEffects e;
+  e.preset = j.optional<std::string>("material", "");
+  e.roughness = j.optional<double>("roughness");
+  e.specular = j.optional<double>("specular");
+  e.metalness = j.optional<double>("metalness");
+  e.roughness_scale = j.optional<double>("roughness_scale");
+  e.color = j.optional<std::string>("color", "");
+  e.replace = j.optional("replace", false);
+  e.blend = j.optional<double>("blend");
+  return e;
+}
+
+// "view" or "camera".
+void read_place(JsonReader& j, std::string& view, std::optional<Camera>& camera) {
+  view = j.optional<std::string>("view", "");
+  if (j.has("camera")) camera = camera_member(j, "camera");
+}
+
+template <class Enum>
+Enum named(JsonReader& j, const char* key, std::optional<Enum> (*from_name)(const std::string&),
+           const char* otherwise) {
+  const auto name = j.optional<std::string>(key, otherwise);
+  const std::optional<Enum> value = from_name(name);
+  if (!value) fail_usage("{}: there is no {} '{}'.", j.what(), key, name);
+  return *value;
+}
+
+Vec2<double> pixel_from(JsonReader& j, const char* key) {
+  const auto [x, y] = j.numbers<2>(key);
+  return {x, y};
+}
+
+Vec3d point_from(JsonReader& j, const char* key) {
+  const auto [x, y, z] = j.numbers<3>(key);
+  return {x, y, z};
+}
+
+std::vector<Vec2<double>> pixels_from(JsonReader& j, const char* key) {
+  std::vector<Vec2<double>> pixels;
+  if (!j.has(key)) return pixels;
+  for (const Json& p : j.array(key)) {
+    const Json pair = {{"at", p}};
+    JsonReader reader(pair, "A click");
+    pixels.push_back(pixel_from(reader, "at"));
+  }
+  return pixels;
+}
+
+InputFile sent_file(const Uploads& uploads, const std::string& id) {
+  InputFile file;
+  file.bytes = uploads.bytes(id);
+  return file;
+}
+
+PaintCommand paint_from(JsonReader& j, const Uploads& uploads) {
+  PaintCommand c;
+  for (const Json& s : j.array("strokes")) {
+    JsonReader reader(s, "A stroke");
+    PaintStroke stroke;
+    read_place(reader, stroke.view, stroke.camera);
+    stroke.scribble = sent_file(uploads, reader.require<std::string>("scribble"));
+    reader.finish();
+    c.strokes.push_back(std::move(stroke));
+  }
+  if (c.strokes.empty()) fail_usage("There is no stroke to paint.");
+  c.seed = j.optional<uint64_t>("seed", 1);
+  c.target = named(j, "target", paint_target_from_name, "albedo");
+  c.routing = named(j, "routing", routing_from_name, "both");
+  c.erase = j.optional("erase", false);
+  c.material = effects_from(j);
+  return c;
+}
+
+DeformCommand deform_from(JsonReader& j) {
+  DeformCommand c;
+  if (j.has("from")) {
+    c.drag = PointDrag{point_from(j, "from"), point_from(j, "to")};
+  } else {
+    PixelDrag drag;
+    read_place(j, drag.view, drag.camera);
+    drag.pixel = pixel_from(j, "pixel");
+    drag.drag = pixel_from(j, "drag");
+    c.drag = drag;
+  }
+  c.radius = j.optional<double>("radius");
+  c.part = j.optional<std::string>("part", "");
+  return c;
+}
+
+PartCommand part_from(JsonReader& j, const Uploads& uploads) {
+  PartCommand c;
+  read_place(j, c.view, c.camera);
+  c.positive = pixels_from(j, "positive");
+  c.negative = pixels_from(j, "negative");
+  if (const auto mask = j.optional<std::string>("mask")) {
+    c.mask = sent_file(uploads, *mask);
+    c.mask.path = "mask.png";
+  }
+  if (j.has("like")) c.like = pixel_from(j, "like");
+  c.like_color = j.optional("like_color", false);
+  c.segmenter = j.optional<std::string>("segmenter", "grow");
+  c.in_view = j.optional("in_view", false);
+  c.name = j.optional<std::string>("name", "");
+  c.add = j.optional<std::string>("add", "");
+  c.subtract = j.optional<std::string>("subtract", "");
+  c.intersect = j.optional<std::string>("intersect", "");
+  c.effects = effects_from(j);
+  return c;
+}
+
+EditCommand command_from(const std::string& op, JsonReader& j, const Uploads& uploads) {
+  if (op == "paint") return paint_from(j, uploads);
+  if (op == "deform") return deform_from(j);
+  if (op == "part") return part_from(j, uploads);
+  if (op == "light") return light_choice(j, uploads);
+  if (op == "remove") return RemoveCommand{j.require<std::string>("part")};
+  if (op != "material") fail_usage("There is no edit '{}'.", op);
+  MaterialCommand c;
+  c.part = j.optional<std::string>("part", "");
+  c.effects = effects_from(j);
+  return c;
+}
+
+}  // namespace
+
+EditCommand edit_command(const std::string& op, const Json& params, const Uploads& uploads) {
+  JsonReader reader(params, "The request for '" + op + "'");
+  EditCommand command = command_from(op, reader, uploads);
+  reader.finish();
+  return command;
+}
+
+Camera camera_member(JsonReader& j, const char* key) {
+  JsonReader reader = j.object(key);
+  const Camera camera = camera_from_json(reader);
+  reader.finish();
+  return camera;
+}
+
+LightChoice light_choice(JsonReader& j, const Uploads& uploads) {
+  LightChoice c;
+  if (const auto env = j.optional<std::string>("env"); env && !env->empty()) c.env = uploads.path(*env);
+  c.rotate_degrees = j.optional("rotate", 0.0);
+  c.scale = j.optional("scale", 1.0);
+  if (const auto name = j.optional<std::string>("env_convention"))
+    c.convention = named(j, "env_convention", env_convention_from_name, name->c_str());
+  return c;
+}
+
+FrameRequest frame_request(JsonReader& j, const Uploads& uploads) {
+  constexpr int kMostSide = 2048, kMostSamples = 4;
+  FrameRequest r;
+  r.camera = camera_member(j, "camera");
+  if (r.camera.width > kMostSide || r.camera.height > kMostSide)
+    fail_usage("A frame has at most {} pixels a side.", kMostSide);
+  r.channel = named(j, "channel", channel_from_name, "rgb");
+  r.samples = j.optional("samples", 1);
+  if (r.samples < 1 || r.samples > kMostSamples)
+    fail_usage("A frame has 1 to {} samples a pixel and axis.", kMostSamples);
+  if (j.has("light")) {
+    JsonReader light = j.object("light");
+    r.light = light_choice(light, uploads);
+    light.finish();
+  }
+  r.as_photographed = j.optional("as_photographed", false);
+  return r;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// The editor behind the browser: every request becomes one call of the Session, on the worker's thread.
+//
+//   GET  /                      the page; its modules below /app/
+//   GET  /api/state             what is open: history, parts, findings, jobs
+//   GET  /api/object            what does not change while it is open: views, cameras, frame
+//   GET  /api/photo/VIEW?width= a photograph, JPEG
+//   GET  /api/pack/KIND?key=    what the page draws, by a key of the state; or ?preview=TOKEN
+//   POST /api/upload?name=      bytes in, {"id"} out
+//   POST /api/edit              {"op", "params", "amend"}
+//   POST /api/preview           the same, not stored: {"token", "report"}; then /api/commit {"token"}
+//   POST /api/pick              {"camera", "pixel"}: the surface there, or null
+//   POST /api/mask              {"camera", "part" or "token"}: PNG
+//   POST /api/undo redo toggle goto rename restore forget
+//   POST /api/export            {"file", ...}; then GET /api/download/FILE
+//   POST /api/open close reconstruct cancel
+//   /socket                     frames and news, see sockets.cpp
+//
+// A change may carry If-Match: REVISION and is refused with 409 when the history is another one by now.
+#pragma once
+
+#include <atomic>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "apps/server/guard.h"
+#include "apps/server/http.h"
+#include "apps/server/library.h"
+#include "apps/server/uploads.h"
+#include "core/base/json_reader.h"
+#include "engine/session/worker.h"
+
+namespace cei3d {
+
+struct EditorOptions {
+  std::filesystem::path path;     // a project, a capture, or a folder of them
+  std::filesystem::path project;  // where a capture's object goes; empty: NAME-object beside the capture
+  bool read_only = false;
+  std::filesystem::path app;  // folder to read the page from; empty: the embedded one
+  std::string device = "auto";
+  int threads = 0;
+};
+
+class Editor : public HttpApp, private JobListener {
+ public:
+  // Errors: the path holds nothing, or cannot be read.
+  Editor(const EditorOptions&, Guard);
+  ~Editor() override;
+
+  std::optional<HttpResponse> refuse(const HttpRequest&) override;
+  size_t body_limit(const HttpRequest&) override;
+  void answer(HttpRequest, std::function<void(HttpResponse)> reply) override;
+  void opened(const SocketPtr&) override;
+  void received(const SocketPtr&, const std::string& text) override;
+  void closed(const SocketPtr&) override;
+
+  // Ends the work that runs, saved, and forgets who waits for answers: before what carries them goes away.
+  void stop();
+  void wait_until_idle() { worker_->wait_until_idle(); }  // for tests
+
+ private:
+  using Reply = std::function<void(HttpResponse)>;
+  using Work = std::function<HttpResponse(Session&, Progress&)>;
+  using Route = void (Editor::*)(JsonReader&, const HttpRequest&, Reply);
+  struct Tab {
+    bool trusted = false;  // has sent the token
+    std::string name;
+  };
+
+  // routes.cpp
+  static const std::map<std::string, Route>& routes();
+  void get(const HttpRequest&, Reply);
+  void photo(const HttpRequest&, Reply);
+  void pack(const HttpRequest&, Reply);
+  void download(const HttpRequest&, Reply);
+  void upload(const HttpRequest&, Reply);
+  void edit(JsonReader&, const HttpRequest&, Reply);
+  void preview(JsonReader&, const HttpRequest&, Reply);
+  void commit(JsonReader&, const HttpRequest&, Reply);
+  void pick(JsonReader&, const HttpRequest&, Reply);
+  void mask(JsonReader&, const HttpRequest&, Reply);
+  void undo(JsonReader&, const HttpRequest&, Reply);
+  void redo(JsonReader&, const HttpRequest&, Reply);
+  void toggle(JsonReader&, const HttpRequest&, Reply);
+  void go_to(JsonReader&, const HttpRequest&, Reply);
+  void rename(JsonReader&, const HttpRequest&, Reply);
+  void restore(JsonReader&, const HttpRequest&, Reply);
+  void forget(JsonReader&, const HttpRequest&, Reply);
+  void export_file(JsonReader&, const HttpRequest&, Reply);
+  void open(JsonReader&, const HttpRequest&, Reply);
+  void close(JsonReader&, const HttpRequest&, Reply);
+  void reconstruct(JsonReader&, const HttpRequest&, Reply);
+  void cancel(JsonReader&, const HttpRequest&, Reply);
+
+  // Runs the work on the worker; errors become responses.
+  void on_worker(const std::string& job, Reply, Work);
+  // A change of the history: refused when read-only or at another revision; the answer has the new state.
+  void change(const HttpRequest&, Reply, std::function<Json(Session&, Progress&)>);
+  void keep(const std::string& token, std::shared_ptr<const EditPreview>);
+  std::shared_ptr<const EditPreview> kept(const std::string& token);  // usage error: it is gone
+
+  // places.cpp: what is open. On the worker's thread.
+  void open_path(Session&, const std::filesystem::path&);
+  void open_project(Session&, const std::filesystem::path&);
+  void open_capture(Session&, const std::filesystem::path&);
+  void show_library();
+  void publish(Session&);  // the present state, to everybody
+  void publish(Json state);
+  Json state() const;
+  std::filesystem::path object_folder() const;
+
+  // sockets.cpp
+  void on_progress(const std::string& job, const ProgressReport&) override;
+  void broadcast(const Json&);
+  void show_view(const SocketPtr&, const std::string& tab, const Json& message);
+
+  EditorOptions options_;
+  Guard guard_;
+  Uploads uploads_;
+  std::filesystem::path home_;     // the served folder; empty: only one project or capture is served
+  std::filesystem::path capture_;  // that is open, or that the open project is to be made from
+  std::atomic<bool> read_only_ = false;
+  mutable std::mutex mutex_;  // of the members below
+  Json state_, object_;
+  std::deque<std::pair<std::string, std::shared_ptr<const EditPreview>>> previews_;
+  std::set<std::string> exports_;  // names of files that may be downloaded
+  std::filesystem::path exports_folder_;
+  std::map<SocketPtr, Tab> tabs_;
+  std::atomic<uint64_t> tokens_ = 0;
+  std::unique_ptr<Worker> worker_;  // last: it uses the others
+};
+
+}  // namespace cei3d

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "apps/server/test_editor.h"
+#include "core/base/file.h"
+#include "engine/io/png_file.h"
+#include "engine/project/dataset.h"
+
+namespace cei3d {
+namespace {
+
+using ::testing::HasSubstr;
+
+Json paint_params(const Json& camera, const std::string& scribble) {
+  return {{"strokes", {{{"camera", camera}, {"scribble", scribble}}}}};
+}
+
+std::vector<std::string> result_objects(const std::filesystem::path& project) {
+  std::vector<std::string> objects;
+  for (const auto& e : std::filesystem::recursive_directory_iterator(project / "edits"))
+    if (e.path().filename() == "edit.json") {
+      const Json edit = Json::parse(read_file(e.path()));
+      for (const auto& [key, r] : edit["results"].items())
+        objects.push_back(r["object"].get<std::string>() + r["head"].dump());
+    }
+  std::sort(objects.begin(), objects.end());
+  return objects;
+}
+
+TEST_F(EditorTest, EveryToolGivesTheObjectsOfItsCommand) {
+  const std::string png = encode_png(square_scribble({0.8f, 0.1f, 0.1f}, 6), 8);
+  const auto done = [&](const std::string& op, const Json& params) {
+    const HttpResponse r = post("/api/edit", {{"op", op}, {"params", params}});
+    EXPECT_EQ(r.status, 200) << r.body;
+  };
+  done("paint", paint_params(camera(0), upload(png)));
+  done("part", {{"camera", camera(0)}, {"positive", {{24, 24}}}, {"name", "cap"}, {"in_view", true}});
+  done("material", {{"part", "cap"}, {"roughness", 0.4}, {"metalness", 1}});
+  done("light", {{"rotate", 40}, {"scale", 1.5}});
+  done("deform", {{"camera", camera(0)}, {"pixel", {24, 24}}, {"drag", {4, 2}}, {"radius", 0.35}});
+  const std::vector<std::string> by_editor = result_objects(folder());
+  ASSERT_EQ(by_editor.size(), 5u);
+
+  editor_.reset();
+  const std::filesystem::path other = temp_.path() / "other", file = temp_.path() / "scribble.png";
+  Project::create(other, {}, three_views(), false).save_base(sphere_with_handlers());
+  write_file_atomic(file, png);
+  Session session("cpu");
+  Progress quiet;
+  session.open(other, Session::Access::write);
+  session.paint({{{"train/r_0", file}}}, quiet);
+  PartCommand part;
+  part.view = "train/r_0";
+  part.positive = {{24, 24}};
+  part.name = "cap";
+  part.in_view = true;
+  session.select_part(part, quiet);
+  MaterialCommand material{"cap", {}};
+  material.effects.roughness = 0.4;
+  material.effects.metalness = 1;
+  session.change_material(material, quiet);
+  session.change_light({"", 40, EnvConvention::by_up_axis, 1.5}, quiet);
+  session.deform({PixelDrag{"train/r_0", {24, 24}, {4, 2}, {}}, 0.35, ""}, quiet);
+  EXPECT_EQ(result_objects(other), by_editor);
+}
+
+TEST_F(EditorTest, TheHistoryIsThatOfTheProject) {
+  const Json rough = {{"op", "material"}, {"params", {{"roughness", 0.3}}}};
+  post("/api/edit", rough);
+  Json amended = rough;
+  amended["amend"] = true;
+  amended["params"]["roughness"] = 0.6;
+  post("/api/edit", amended);
+  post("/api/edit", {{"op", "light"}, {"params", {{"rotate", 10}}}});
+  EXPECT_EQ(state()["done"], 2);
+  EXPECT_EQ(state()["history"][0]["params"]["roughness"], 0.6);
+  post("/api/undo", Json::object());
+  EXPECT_EQ(state()["done"], 1);
+  post("/api/redo", Json::object());
+  post("/api/goto", {{"done", 0}});
+  EXPECT_EQ(state()["done"], 0);
+  const std::string light = state()["history"][1]["id"];
+  post("/api/rename", {{"id", light}, {"name", "evening"}});
+  post("/api/edit", {{"op", "light"}, {"params", {{"scale", 2}}}});
+  EXPECT_EQ(state()["history"].size(), 3u);
+  post("/api/restore", {{"id", light}});
+  EXPECT_EQ(state()["done"], 2);
+  EXPECT_EQ(state()["history"][1]["name"], "evening");
+  post("/api/toggle", {{"id", light}});
+  EXPECT_EQ(state()["history"][1]["enabled"], false);
+  post("/api/forget", Json::object());
+  editor_.reset();
+  Session session("cpu");
+  session.open(folder(), Session::Access::read);
+  ASSERT_EQ(session.log().size(), 2u);
+  EXPECT_EQ(session.log()[1].name, "evening");
+  EXPECT_FALSE(session.log()[1].enabled);
+}
+
+TEST_F(EditorTest, AChangeToAnotherHistoryIsRefused) {
+  const std::string before = state()["revision"];
+  const Json rough = {{"op", "material"}, {"params", {{"roughness", 0.3}}}};
+  EXPECT_EQ(post("/api/edit", rough, before).status, 200);
+  const HttpResponse late = post("/api/edit", rough, before);
+  EXPECT_EQ(late.status, 409);
+  EXPECT_THAT(late.body, HasSubstr("another window"));
+  EXPECT_EQ(state()["done"], 1);
+  EXPECT_EQ(post("/api/undo", Json::object(), state()["revision"]).status, 200);
+  EXPECT_EQ(state()["revision"] == before, false);  // the undone edit is still listed
+}
+
+TEST_F(EditorTest, APreviewIsShownAndThenKeptOrNot) {
+  const Json part = {{"camera", camera(0)}, {"positive", {{24, 24}}}, {"name", "cap"}, {"in_view", true}};
+  const HttpResponse made = post("/api/preview", {{"op", "part"}, {"params", part}});
+  ASSERT_EQ(made.status, 200) << made.body;
+  const std::string token = Json::parse(made.body)["token"];
+  EXPECT_EQ(state()["history"].size(), 0u);
+  const HttpResponse mask = post("/api/mask", {{"camera", camera(0)}, {"token", token}});
+  ASSERT_EQ(mask.type, "image/png");
+  EXPECT_EQ(decode_png(mask.body, "mask").at(24, 24)[0], 1);
+  EXPECT_EQ(post("/api/commit", {{"token", token}}).status, 200);
+  EXPECT_EQ(state()["parts"][0]["name"], "cap");
+  EXPECT_EQ(post("/api/commit", {{"token", token}}).status, 422);  // the history is another one
+  EXPECT_EQ(post("/api/commit", {{"token", "preview999"}}).status, 400);
+}
+
+TEST_F(EditorTest, TellsWhatIsUnderThePointer) {
+  const Json on = Json::parse(post("/api/pick", {{"camera", camera(0)}, {"pixel", {24, 24}}}).body);
+  EXPECT_EQ(on["albedo"].get<std::string>().size(), 7u);
+  EXPECT_EQ(post("/api/pick", {{"camera", camera(0)}, {"pixel", {0, 0}}}).body, "null");
+}
+
+TEST_F(EditorTest, BadRequestsAreSentencesAndChangeNothing) {
+  const std::string before = files_of(folder());
+  const std::pair<const char*, Json> bad[] = {
+      {"edit", {{"op", "explode"}, {"params", Json::object()}}},
+      {"edit", {{"op", "material"}, {"params", {{"roughness", 7}}}}},
+      {"edit", {{"op", "material"}, {"params", {{"rugosity", 0.5}}}}},
+      {"edit", {{"op", "paint"}, {"params", {{"strokes", Json::array()}}}}},
+      {"edit", {{"op", "paint"}, {"params", paint_params(camera(0), "nothing")}}},
+      {"edit", {{"op", "remove"}, {"params", {{"part", "<img onerror>"}}}}},
+      {"pick", {{"camera", {{"width", 1}}}, {"pixel", {1, 1}}}},
+      {"goto", {{"done", 5}}},
+      {"rename", {{"id", "../../x"}, {"name", "x"}}},
+      {"restore", {{"id", "x"}}},
+      {"export", {{"file", "ball.exe"}}},
+      {"export", {{"file", "../../ball.ply"}, {"color", 1}}},
+      {"nothing", Json::object()}};
+  for (const auto& [route, body] : bad) {
+    const HttpResponse r = post(std::string("/api/") + route, body);
+    EXPECT_GE(r.status, 400) << route << body;
+    EXPECT_LT(r.status, 500) << route << body;
+    EXPECT_FALSE(Json::parse(r.body)["error"].get<std::string>().empty());
+  }
+  HttpRequest broken;
+  broken.method = "POST";
+  broken.path = "/api/edit";
+  broken.body = "{\"op\":";
+  EXPECT_EQ(ask(broken).status, 400);
+  for (const char* path :
+       {"/api/none", "/api/photo/..%2f..%2fetc%2fpasswd", "/api/download/..%2fproject.json",
+        "/app/../editor.h", "/app/%2e%2e/x", "/etc/passwd", "/api/photo/%zz"})
+    EXPECT_GE(get(path).status, 400) << path;
+  EXPECT_EQ(files_of(folder()), before);
+}
+
+TEST_F(EditorTest, ExportsGoToTheProjectAndCanBeFetched) {
+  const HttpResponse r = post("/api/export", {{"file", "../ball.ply"}});
+  ASSERT_EQ(r.status, 200) << r.body;
+  EXPECT_EQ(Json::parse(r.body)["files"][0]["name"], "ball.ply");
+  EXPECT_EQ(get("/api/download/ball.ply").body, read_file(folder() / "exports" / "ball.ply"));
+}
+
+TEST_F(EditorTest, ReadOnlyLooksAndChangesNothing) {
+  start(true);
+  EXPECT_EQ(state()["read_only"], true);
+  EXPECT_EQ(post("/api/edit", {{"op", "material"}, {"params", {{"roughness", 0.3}}}}).status, 403);
+  EXPECT_EQ(post("/api/undo", Json::object()).status, 403);
+  EXPECT_EQ(post("/api/pick", {{"camera", camera(0)}, {"pixel", {24, 24}}}).status, 200);
+}
+
+TEST_F(EditorTest, AProjectThatAnotherProgramChangesIsOpenedForLooking) {
+  editor_.reset();
+  Project other = Project::open(folder(), Project::Mode::write);
+  start();
+  EXPECT_EQ(state()["read_only"], true);
+  EXPECT_THAT(state()["note"].get<std::string>(), HasSubstr("Another cei3d"));
+}
+
+TEST_F(EditorTest, HoldsTheLockWhileItIsOpen) {
+  EXPECT_THROW(Project::open(folder(), Project::Mode::write), Error);
+  editor_.reset();
+  EXPECT_NO_THROW(Project::open(folder(), Project::Mode::write));
+}
+
+TEST_F(EditorTest, AWindowGetsItsFrameInTilesAndHearsOfChanges) {
+  const auto socket = std::make_shared<FakeSocket>();
+  editor_->opened(socket);
+  editor_->received(socket, Json{{"type", "hello"}, {"token", kTestToken}}.dump());
+  EXPECT_EQ(socket->count("welcome"), 1u);
+  editor_->received(socket, Json{{"type", "view"}, {"seq", 7}, {"camera", camera(0)}, {"samples", 2}}.dump());
+  editor_->wait_until_idle();
+  ASSERT_EQ(socket->count("frame"), 1u);
+  ASSERT_EQ(socket->pictures.size(), 1u);
+  const std::string& bytes = socket->pictures[0];
+  const size_t head = size_t((unsigned char)bytes[0]) + 256 * size_t((unsigned char)bytes[1]);
+  EXPECT_EQ(Json::parse(bytes.substr(4, head))["seq"], 7);
+  EXPECT_EQ(bytes.size(), 4 + head + 4 * kSize * kSize);
+  EXPECT_EQ((unsigned char)bytes[4 + head + 4 * (24 * kSize + 24) + 3], 255);  // the ball is opaque
+  post("/api/edit", {{"op", "material"}, {"params", {{"roughness", 0.3}}}});
+  EXPECT_EQ(socket->count("state"), 1u);
+  editor_->received(socket, "{\"type\": \"view\"}");
+  EXPECT_EQ(socket->count("error"), 1u);
+  editor_->closed(socket);
+}
+
+TEST_F(EditorTest, AWindowWithoutTheKeyIsClosed) {
+  for (const char* first : {R"({"type": "hello", "token": "0123456789abcdee"})", R"({"type": "hello"})",
+                            R"({"type": "view", "seq": 1})", "nonsense"}) {
+    const auto socket = std::make_shared<FakeSocket>();
+    editor_->opened(socket);
+    editor_->received(socket, first);
+    EXPECT_TRUE(socket->closed) << first;
+    editor_->closed(socket);
+  }
+}
+
+TEST(EditorLibrary, ListsProjectsAndCapturesAndExplainsAnEmptyFolder) {
+  TempFolder temp;
+  EditorOptions options;
+  options.path = temp.path();
+  options.device = "cpu";
+  const auto entries = [&] {
+    Editor editor(options, Guard(kTestToken));
+    editor.wait_until_idle();
+    HttpRequest r;
+    r.method = "GET";
+    r.path = "/api/state";
+    std::promise<HttpResponse> promise;
+    editor.answer(r, [&](HttpResponse response) { promise.set_value(std::move(response)); });
+    const Json state = Json::parse(promise.get_future().get().body);
+    EXPECT_EQ(state["mode"], "library");
+    return state["entries"];
+  };
+  EXPECT_TRUE(entries().empty());
+  Project::create(temp.path() / "ball", {}, three_views(), false).save_base(sphere_with_handlers());
+  std::filesystem::create_directory(temp.path() / "other");
+  ASSERT_EQ(entries().size(), 1u);
+  EXPECT_EQ(entries()[0]["id"], "ball");
+}
+
+}  // namespace
+}  // namespace cei3d

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a path holds: a project, a capture, or a folder of them.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/base/json.h"
+
+namespace cei3d {
+
+struct LibraryEntry {
+  enum class Kind { project, capture } kind = Kind::project;
+  std::filesystem::path path;
+  std::string name;
+  bool finished = true;  // of a project
+  Json json() const;     // id: its name
+};
+
+// None: neither a project nor a capture.
+std::optional<LibraryEntry> entry_at(const std::filesystem::path&);
+// Those directly below a folder, by name; symbolic links that lead out of it are left out.
+std::vector<LibraryEntry> entries_below(const std::filesystem::path&);
+// The sample capture that comes with the program; none: it is not there.
+std::optional<std::filesystem::path> sample_capture();
+
+}  // namespace cei3d

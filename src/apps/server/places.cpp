@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is open: a folder, a capture, a project; and what the page is told of it.
+#include "apps/server/edit_json.h"
+#include "apps/server/editor.h"
+#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "engine/capture/normalize.h"
+#include "engine/project/dataset.h"
+#include "engine/project/project.h"
+#include "engine/segment/sam.h"
+#include "engine/session/version.h"
+#include "model/material/presets.h"
+#include "model/scene/scene.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
+
+// As the page shows it: without the pictures and cameras of strokes.
+Json entry_json(const LogEntry& e) {
+  Json j = e.json();
+  if (j["params"].contains("strokes")) {
+    j["strokes"] = j["params"]["strokes"].size();
+    j["params"].erase("strokes");
+  }
+  j["params"].erase("camera");
+  return j;
+}
+
+Json views_json(const std::vector<View>& views) {
+  Json list = Json::array();
+  for (const View& v : views)
+    list.push_back({{"name", v.name},
+                    {"split", split_name(v.split)},
+                    {"photo", !v.image_path.empty()},
+                    {"camera", camera_json(v.camera)}});
+  return list;
+}
+
+Json presets_json() {
+  Json list = Json::array();
+  for (const MaterialPreset& p : material_presets()) list.push_back(std::string(p.name));
+  return list;
+}
+
+// What does not change while a project is open.
+Json object_json(const Session& session) {
+  const Scene scene = session.scene();
+  const ProjectInfo info = session.info();
+  const NamedCamera start = session.start_camera();
+  return {{"views", views_json(session.views())},
+          {"start", {{"view", start.name}, {"camera", camera_json(start.camera)}}},
+          {"center", vector_json(info.normalization.center)},
+          {"radius", kObjectRadius / info.normalization.scale},
+          {"up", vector_json(normalize(scene.up))},
+          {"material", info.object.json()},
+          {"summary", info.object.text()},
+          {"warning", info.object.warning()},
+          {"presets", presets_json()},
+          {"segment", fs::exists(installed_sam() / "encoder.onnx")}};
+}
+
+bool in_use(const Error& e) { return std::string(e.what()).find("in use by another") != std::string::npos; }
+
+}  // namespace
+
+void Editor::open_path(Session& session, const fs::path& path) {
+  {
+    const std::lock_guard lock(mutex_);
+    previews_.clear();
+  }
+  if (!home_.empty()) options_.project.clear();  // it belonged to what was open
+  worker_->drop_frames();                        // they are of the object that was open
+  if (!Project::is_project(path)) return open_capture(session, path);
+  open_project(session, path);
+}
+
+void Editor::open_project(Session& session, const fs::path& path) {
+  std::string note;
+  read_only_ = options_.read_only;
+  try {
+    session.open(path, read_only_ ? Session::Access::read : Session::Access::write);
+  } catch (const Error& e) {
+    if (!in_use(e)) throw;
+    session.open(path, Session::Access::read);
+    read_only_ = true;
+    note = "Another cei3d is changing this object, so it is open for looking only.";
+  }
+  const ProjectInfo info = session.info();
+  if (!info.finished) {
+    const fs::path capture = info.capture_root;
+    session.close();
+    capture_ = capture;
+    options_.project = path;
+    return publish(Json{{"mode", "capture"},
+                        {"name", path.filename().string()},
+                        {"resume", true},
+                        {"project", path.string()},
+                        {"can_close", !home_.empty()},
+                        {"program", kVersion}});
+  }
+  const Json object = object_json(session);
+  {
+    const std::lock_guard lock(mutex_);
+    object_ = object;
+    exports_.clear();
+    exports_folder_ = path / "exports";
+    state_ = {{"mode", "project"},
+              {"name", entry_at(path)->name},
+              {"folder", fs::absolute(path).lexically_normal().string()},
+              {"read_only", read_only_.load()},
+              {"note", note},
+              {"can_close", !home_.empty()},
+              {"program", kVersion}};
+  }
+  publish(session);
+}
+
+fs::path Editor::object_folder() const {
+  if (!options_.project.empty()) return options_.project;
+  std::error_code error;
+  fs::path folder = fs::absolute(capture_).lexically_normal();
+  if (!folder.has_filename() || fs::is_regular_file(folder, error)) folder = folder.parent_path();
+  return (home_.empty() ? folder.parent_path() : home_) / (folder.filename().string() + "-object");
+}
+
+void Editor::open_capture(Session& session, const fs::path& path) {
+  session.close();
+  capture_ = path;
+  if (Project::is_project(object_folder())) return open_project(session, object_folder());
+  publish(Json{{"mode", "checking"}, {"name", entry_at(path)->name}, {"can_close", !home_.empty()}});
+  const CheckReport checked = session.check({path, CheckRequest().options, {}});
+  publish(Json{{"mode", "capture"},
+               {"name", entry_at(path)->name},
+               {"check", checked.json()},
+               {"project", object_folder().string()},
+               {"resume", false},
+               {"can_close", !home_.empty()},
+               {"program", kVersion}});
+}
+
+void Editor::show_library() {
+  worker_->drop_frames();
+  Json entries = Json::array();
+  for (const LibraryEntry& e : entries_below(home_)) entries.push_back(e.json());
+  publish(Json{{"mode", "library"},
+               {"name", fs::weakly_canonical(home_).filename().string()},
+               {"folder", fs::absolute(home_).lexically_normal().string()},
+               {"entries", entries},
+               {"formats", capture_format_layouts("\n")},
+               {"sample", sample_capture().has_value()},
+               {"program", kVersion}});
+}
+
+void Editor::publish(Session& session) {
+  Json state = this->state(), history = Json::array(), parts = Json::array();
+  size_t done = 0;
+  for (const LogEntry& e : session.log()) {
+    history.push_back(entry_json(e));
+    done += e.done && !e.set_aside;
+  }
+  for (const PartInfo& p : session.parts()) parts.push_back(p.json());
+  state["revision"] = content_hash(history.dump()).substr(0, 12);
+  state["done"] = done;
+  state["packs"] = session.view_keys();
+  state["history"] = std::move(history);
+  state["parts"] = std::move(parts);
+  publish(std::move(state));
+}
+
+void Editor::publish(Json state) {
+  {
+    const std::lock_guard lock(mutex_);
+    state_ = state;
+  }
+  broadcast({{"type", "state"}, {"mode", state["mode"]}, {"revision", state.value("revision", "")}});
+}
+
+void Editor::reconstruct(JsonReader& j, const HttpRequest&, Reply reply) {
+  constexpr double kLeast = 20, kMost = 7 * 24 * 3600;
+  ReconstructRequest request;
+  request.resume = j.optional("resume", false);
+  request.options.seconds = j.optional("seconds", 300.0);
+  j.finish();
+  if (!(request.options.seconds >= kLeast && request.options.seconds <= kMost))
+    fail_usage("A reconstruction takes {} seconds to {} days.", kLeast, int(kMost / 86400));
+  if (options_.read_only) fail_usage("This folder is open for looking only.");
+  on_worker("reconstruct", std::move(reply), [this, request](Session& session, Progress& progress) mutable {
+    if (state().value("mode", "") != "capture") fail_usage("There is no capture open to make an object of.");
+    if (!request.resume) request.capture = capture_;
+    request.project = object_folder();
+    Json now = state();
+    now["mode"] = "reconstructing";
+    publish(now);
+    try {
+      session.reconstruct(request, progress);
+    } catch (const Error&) {
+      session.close();
+      now["mode"] = "capture";
+      now["resume"] = Project::is_project(request.project);
+      publish(now);
+      throw;
+    }
+    open_project(session, request.project);
+    return HttpResponse{200, "application/json", state().dump()};
+  });
+}
+
+}  // namespace cei3d

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: Apache-2.0
+// Requests of the page: from JSON to one call of the Session and back.
+#include "apps/server/edit_json.h"
+#include "apps/server/editor.h"
+#include "apps/server/guarded.h"
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "engine/io/jpeg_file.h"
+#include "engine/io/png_file.h"
+#include "engine/session/edit_plan.h"
+
+namespace cei3d {
+namespace {
+
+HttpResponse json_response(const Json& j) {
+  return {200, "application/json", j.dump(-1, ' ', false, Json::error_handler_t::replace)};
+}
+
+bool is_number(const std::string& text) {
+  return !text.empty() && text.size() < 6 && text.find_first_not_of("0123456789") == std::string::npos;
+}
+
+}  // namespace
+
+const std::map<std::string, Editor::Route>& Editor::routes() {
+  static const std::map<std::string, Route> all = {
+      {"edit", &Editor::edit},          {"preview", &Editor::preview},
+      {"commit", &Editor::commit},      {"pick", &Editor::pick},
+      {"mask", &Editor::mask},          {"undo", &Editor::undo},
+      {"redo", &Editor::redo},          {"toggle", &Editor::toggle},
+      {"goto", &Editor::go_to},         {"rename", &Editor::rename},
+      {"restore", &Editor::restore},    {"forget", &Editor::forget},
+      {"export", &Editor::export_file}, {"open", &Editor::open},
+      {"close", &Editor::close},        {"reconstruct", &Editor::reconstruct},
+      {"cancel", &Editor::cancel}};
+  return all;
+}
+
+void Editor::get(const HttpRequest& request, Reply reply) {
+  if (request.path == "/api/state") return reply(json_response(state()));
+  if (request.path == "/api/object") {
+    const std::lock_guard lock(mutex_);
+    return reply(json_response(object_));
+  }
+  if (request.path.starts_with("/api/photo/")) return photo(request, std::move(reply));
+  if (request.path.starts_with("/api/pack/")) return pack(request, std::move(reply));
+  if (request.path.starts_with("/api/download/")) return download(request, std::move(reply));
+  reply(error_response(404, "There is no such request."));
+}
+
+void Editor::photo(const HttpRequest& request, Reply reply) {
+  constexpr int kLeast = 16, kMost = 4096, kQuality = 88;
+  const auto view = decoded(request.path.substr(std::string("/api/photo/").size()));
+  const std::string width = request.parameter("width").value_or("1024");
+  if (!view || !is_number(width) || std::stoi(width) < kLeast || std::stoi(width) > kMost)
+    return reply(error_response(400, "There is no such photograph."));
+  worker_->background([reply, view = *view, width = std::stoi(width)](Session& session) {
+    reply(guarded_response([&] {
+      return HttpResponse{200,
+                          "image/jpeg",
+                          encode_jpeg(session.photograph(view, width), kQuality),
+                          {{"Cache-Control", "private, max-age=3600"}}};
+    }));
+    return false;
+  });
+}
+
+void Editor::pack(const HttpRequest& request, Reply reply) {
+  const std::string kind = request.path.substr(std::string("/api/pack/").size());
+  const auto token = request.parameter("preview");
+  const bool keyed = request.parameter("key").has_value() && !token;
+  on_worker("pack", std::move(reply),
+            [kind, keyed, made = token ? kept(*token) : nullptr](Session& session, Progress&) {
+              HttpResponse r{200, "application/octet-stream", session.view_pack(kind, made.get())};
+              if (keyed) r.headers.emplace_back("Cache-Control", "private, max-age=86400");
+              return r;
+            });
+}
+
+void Editor::upload(const HttpRequest& request, Reply reply) {
+  if (request.body.empty()) return reply(error_response(400, "The file is empty."));
+  reply(guarded_response([&] {
+    return json_response({{"id", uploads_.add(request.parameter("name").value_or("file"), request.body)}});
+  }));
+}
+
+void Editor::edit(JsonReader& j, const HttpRequest& request, Reply reply) {
+  const EditCommand command = edit_command(j.require<std::string>("op"), j.member("params"), uploads_);
+  const bool amend = j.optional("amend", false);
+  j.finish();
+  change(request, std::move(reply), [command, amend](Session& session, Progress& progress) {
+    return session.edit(command, progress, amend).json();
+  });
+}
+
+void Editor::preview(JsonReader& j, const HttpRequest&, Reply reply) {
+  const EditCommand command = edit_command(j.require<std::string>("op"), j.member("params"), uploads_);
+  const bool amend = j.optional("amend", false);
+  j.finish();
+  on_worker("preview", std::move(reply), [this, command, amend](Session& session, Progress& progress) {
+    const auto made = session.preview(command, progress, amend);
+    const std::string token = fmt::format("preview{}", ++tokens_);
+    keep(token, made);
+    return json_response({{"token", token}, {"report", made->record.report}, {"part", made->layer.part}});
+  });
+}
+
+void Editor::commit(JsonReader& j, const HttpRequest& request, Reply reply) {
+  const auto made = kept(j.require<std::string>("token"));
+  j.finish();
+  change(request, std::move(reply),
+         [made](Session& session, Progress&) { return session.commit(*made).json(); });
+}
+
+void Editor::pick(JsonReader& j, const HttpRequest&, Reply reply) {
+  const Camera camera = camera_member(j, "camera");
+  const auto [x, y] = j.numbers<2>("pixel");
+  j.finish();
+  on_worker("pick", std::move(reply), [camera, pixel = Vec2<double>{x, y}](Session& session, Progress&) {
+    const auto point = session.pick(camera, pixel);
+    return json_response(point ? point->json() : Json());
+  });
+}
+
+void Editor::mask(JsonReader& j, const HttpRequest&, Reply reply) {
+  const FrameRequest frame = frame_request(j, uploads_);
+  const auto token = j.optional<std::string>("token");
+  auto part = j.optional<std::string>("part");
+  j.finish();
+  const auto made = token ? kept(*token) : nullptr;
+  if (made) part = made->layer.part;
+  if (!part) fail_usage("Name a part or a preview.");
+  on_worker("mask", std::move(reply), [frame, made, part = *part](Session& session, Progress&) {
+    const Image mask = session.part_picture(frame.camera, part, made.get());
+    return HttpResponse{200, "image/png", encode_png(mask, 8)};
+  });
+}
+
+void Editor::undo(JsonReader& j, const HttpRequest& request, Reply reply) {
+  j.finish();
+  change(request, std::move(reply), [](Session& session, Progress& p) { return Json(session.undo(p)); });
+}
+
+void Editor::redo(JsonReader& j, const HttpRequest& request, Reply reply) {
+  j.finish();
+  change(request, std::move(reply), [](Session& session, Progress& p) { return Json(session.redo(p)); });
+}
+
+void Editor::toggle(JsonReader& j, const HttpRequest& request, Reply reply) {
+  const auto id = j.require<std::string>("id");
+  j.finish();
+  change(request, std::move(reply),
+         [id](Session& session, Progress& p) { return Json(session.toggle(id, p)); });
+}
+
+void Editor::go_to(JsonReader& j, const HttpRequest& request, Reply reply) {
+  const auto done = j.require<size_t>("done");
+  j.finish();
+  change(request, std::move(reply), [done](Session& session, Progress& p) {
+    session.go_to(done, p);
+    return Json(done);
+  });
+}
+
+void Editor::rename(JsonReader& j, const HttpRequest& request, Reply reply) {
+  const auto id = j.require<std::string>("id"), name = j.require<std::string>("name");
+  j.finish();
+  change(request, std::move(reply), [id, name](Session& session, Progress&) {
+    session.rename(id, name);
+    return Json(name);
+  });
+}
+
+void Editor::restore(JsonReader& j, const HttpRequest& request, Reply reply) {
+  const auto id = j.require<std::string>("id");
+  j.finish();
+  change(request, std::move(reply), [id](Session& session, Progress& p) {
+    session.restore(id, p);
+    return Json(id);
+  });
+}
+
+void Editor::forget(JsonReader& j, const HttpRequest& request, Reply reply) {
+  j.finish();
+  change(request, std::move(reply), [](Session& session, Progress&) {
+    session.forget_set_aside();
+    return Json();
+  });
+}
+
+void Editor::export_file(JsonReader& j, const HttpRequest&, Reply reply) {
+  ExportRequest request;
+  const std::string name = plain_file_name(j.require<std::string>("file"));
+  if (const auto purpose = j.optional<std::string>("for")) {
+    const auto known = export_for_from_name(*purpose);
+    if (!known) fail_usage("There is no purpose '{}'.", *purpose);
+    request.purpose = *known;
+  }
+  request.faces = j.optional<int>("faces");
+  request.texture = j.optional<int>("texture");
+  request.points = j.optional("points", false);
+  request.light = j.optional("light", false);
+  j.finish();
+  if (read_only_) fail_usage("This object is open for looking only.");
+  on_worker("export", std::move(reply), [this, request, name](Session& session, Progress& p) mutable {
+    request.out = exports_folder_ / name;
+    const ExportReport report = session.export_to(request, p);
+    Json files = Json::array();
+    for (const std::filesystem::path& f : report.files) {
+      const std::lock_guard lock(mutex_);
+      exports_.insert(f.filename().string());
+      std::error_code error;
+      files.push_back({{"name", f.filename().string()}, {"bytes", std::filesystem::file_size(f, error)}});
+    }
+    return json_response({{"files", files}, {"folder", exports_folder_.string()}, {"report", report.json()}});
+  });
+}
+
+void Editor::download(const HttpRequest& request, Reply reply) {
+  const auto name = decoded(request.path.substr(std::string("/api/download/").size()));
+  std::filesystem::path file;
+  {
+    const std::lock_guard lock(mutex_);
+    if (name && exports_.contains(*name)) file = exports_folder_ / *name;
+  }
+  if (file.empty()) return reply(error_response(404, "There is no such export."));
+  reply(guarded_response([&] {
+    return HttpResponse{200,
+                        "application/octet-stream",
+                        read_file(file),
+                        {{"Content-Disposition", "attachment; filename=\"" + *name + "\""}}};
+  }));
+}
+
+void Editor::open(JsonReader& j, const HttpRequest&, Reply reply) {
+  const auto id = j.require<std::string>("id");
+  j.finish();
+  on_worker("open", std::move(reply), [this, id](Session& session, Progress&) {
+    if (id == "sample" && sample_capture()) {
+      open_path(session, *sample_capture());
+      return json_response(state());
+    }
+    for (const LibraryEntry& e : home_.empty() ? std::vector<LibraryEntry>() : entries_below(home_))
+      if (e.name == id) {
+        open_path(session, e.path);
+        return json_response(state());
+      }
+    fail_usage("There is no '{}' here.", id);
+  });
+}
+
+void Editor::close(JsonReader& j, const HttpRequest&, Reply reply) {
+  j.finish();
+  on_worker("close", std::move(reply), [this](Session& session, Progress&) {
+    if (home_.empty()) fail_usage("There is no folder to go back to.");
+    session.close();
+    show_library();
+    return json_response(state());
+  });
+}
+
+void Editor::cancel(JsonReader& j, const HttpRequest&, Reply reply) {
+  j.finish();
+  for (const char* job : {"edit", "preview", "export", "reconstruct"}) worker_->cancel(job);
+  reply(json_response(Json::object()));
+}
+
+}  // namespace cei3d

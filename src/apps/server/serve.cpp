@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "apps/server/serve.h"
+
+#include "core/base/error.h"
+#include "core/base/system.h"
+
+namespace cei3d {
+namespace {
+
+bool is_loopback(const std::string& host) { return host == "127.0.0.1" || host == "::1"; }
+
+std::string host_of_url(const ServeOptions& o) {
+  if (!is_loopback(o.http.host)) return o.allowed_hosts.front();
+  return o.http.host == "::1" ? "[::1]" : "localhost";
+}
+
+}  // namespace
+
+void serve(const ServeOptions& options, const std::function<void(const Address&)>& announce,
+           const std::function<bool()>& stop) {
+  if (!is_loopback(options.http.host) && options.allowed_hosts.empty())
+    fail_usage(
+        "--host {} can be reached from other machines, and what is sent is not encrypted. An ssh tunnel to "
+        "this "
+        "machine's own address is safer; if you mean it, name this machine with --allow-host, too.",
+        options.http.host);
+  Guard guard(new_token(), options.allowed_hosts);
+  const std::string token = guard.token();
+  Editor editor(options.editor, std::move(guard));
+  HttpServer server(editor, options.http);
+  announce({fmt::format("http://{}:{}/#k={}", host_of_url(options), server.port(), token),
+            fmt::format("ssh -L {0}:localhost:{0} {1}", server.port(), machine_name())});
+  server.run(stop);
+  editor.stop();
+}
+
+}  // namespace cei3d

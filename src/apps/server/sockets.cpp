@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+// The WebSocket of a window. In, as JSON: {"type": "hello", "token"}, first; {"type": "view", "seq",
+// "camera", "samples", "channel", "light", "as_photographed", "preview"}, which asks for a frame in place of
+// the one before; {"type": "rest"}, which asks for none. Out, as JSON: "welcome", "state", "progress",
+// "frame" when one is complete, "error"; and tiles, as bytes: length of the head (4 bytes, little-endian),
+// head (JSON, filled with spaces to a multiple of 4), RGBA.
+#include "apps/server/edit_json.h"
+#include "apps/server/editor.h"
+#include "apps/server/guarded.h"
+#include "core/base/clock.h"
+#include "core/base/error.h"
+#include "engine/session/tiled_frame.h"
+
+namespace cei3d {
+namespace {
+
+std::string tile_message(const FrameTile& tile, uint64_t seq, const Camera& camera, int samples) {
+  std::string head = Json{
+      {"seq", seq},
+      {"x", tile.box.x0},
+      {"y", tile.box.y0},
+      {"width", tile.box.width},
+      {"height", tile.box.height},
+      {"frame", {camera.width, camera.height}},
+      {"samples",
+       samples}}.dump();
+  head.resize((head.size() + 3) / 4 * 4, ' ');
+  std::string bytes;
+  for (int i = 0; i < 4; ++i) bytes += char(head.size() >> (8 * i) & 255);
+  bytes += head;
+  bytes.append(reinterpret_cast<const char*>(tile.rgba.data()), tile.rgba.size());
+  return bytes;
+}
+
+// A frame for a window, which the worker computes tile by tile.
+class FrameJob {
+ public:
+  FrameJob(SocketPtr socket, FrameRequest request, std::shared_ptr<const EditPreview> preview, uint64_t seq)
+      : socket_(std::move(socket)), request_(std::move(request)), preview_(std::move(preview)), seq_(seq) {}
+
+  bool step(Session& session) {
+    try {
+      if (!frame_) frame_ = session.frame(request_, preview_.get());
+      if (const auto tile = frame_->next())
+        socket_->send_picture(tile_message(*tile, seq_, request_.camera, request_.samples), seq_);
+      if (frame_->tiles_left() > 0) return true;
+      socket_->send(Json{{"type", "frame"}, {"seq", seq_}, {"seconds", steady_seconds() - start_}}.dump());
+    } catch (const std::exception& e) {
+      socket_->send(Json{{"type", "error"}, {"seq", seq_}, {"error", e.what()}}.dump());
+    }
+    return false;
+  }
+
+ private:
+  SocketPtr socket_;
+  FrameRequest request_;
+  std::shared_ptr<const EditPreview> preview_;
+  uint64_t seq_;
+  std::shared_ptr<TiledFrame> frame_;
+  double start_ = steady_seconds();
+};
+
+}  // namespace
+
+void Editor::opened(const SocketPtr& socket) {
+  const std::lock_guard lock(mutex_);
+  tabs_[socket].name = fmt::format("tab{}", ++tokens_);
+}
+
+void Editor::closed(const SocketPtr& socket) {
+  std::string name;
+  {
+    const std::lock_guard lock(mutex_);
+    name = tabs_[socket].name;
+    tabs_.erase(socket);
+  }
+  worker_->drop_frame(name);
+}
+
+void Editor::received(const SocketPtr& socket, const std::string& text) {
+  Tab tab;
+  {
+    const std::lock_guard lock(mutex_);
+    tab = tabs_[socket];
+  }
+  const Json j = Json::parse(text, nullptr, false);
+  const std::string type =
+      j.is_object() && j.contains("type") && j["type"].is_string() ? j["type"].get<std::string>() : "";
+  if (!tab.trusted) {
+    if (type != "hello" || !j.contains("token") || !j["token"].is_string() ||
+        !guard_.knows(j["token"].get<std::string>()))
+      return socket->close();
+    {
+      const std::lock_guard lock(mutex_);
+      tabs_[socket].trusted = true;
+    }
+    return socket->send(Json{{"type", "welcome"}}.dump());
+  }
+  if (type == "rest") return worker_->drop_frame(tab.name);
+  try {
+    if (type != "view") fail_usage("There is no message '{}'.", type);
+    show_view(socket, tab.name, j);
+  } catch (const std::exception& e) {
+    socket->send(Json{{"type", "error"}, {"error", e.what()}}.dump());
+  }
+}
+
+void Editor::show_view(const SocketPtr& socket, const std::string& tab, const Json& message) {
+  JsonReader reader(message, "The view");
+  reader.has("type");
+  const auto seq = reader.require<uint64_t>("seq");
+  FrameRequest request = frame_request(reader, uploads_);
+  const auto token = reader.optional<std::string>("preview");
+  reader.finish();
+  auto job = std::make_shared<FrameJob>(socket, std::move(request), token ? kept(*token) : nullptr, seq);
+  worker_->frame(tab, [job](Session& session) { return job->step(session); });
+}
+
+void Editor::on_progress(const std::string& job, const ProgressReport& r) {
+  if (job == "open" || job == "pick" || job == "mask") return;
+  broadcast({{"type", "progress"},
+             {"job", job},
+             {"stage", r.stage},
+             {"fraction", r.fraction},
+             {"seconds_left", r.seconds_left},
+             {"message", r.message}});
+}
+
+void Editor::broadcast(const Json& message) {
+  const std::string text = message.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::lock_guard lock(mutex_);
+  for (const auto& [socket, tab] : tabs_)
+    if (tab.trusted) socket->send(text);
+}
+
+}  // namespace cei3d

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that the browser sent: scribbles, masks, environments. Named by their content; gone with the program.
+#pragma once
+
+#include <deque>
+#include <filesystem>
+#include <mutex>
+#include <string>
+
+#include "core/base/temp_folder.h"
+
+namespace cei3d {
+
+class Uploads {
+ public:
+  // name: of the user's file; only its last part and plain letters of it are kept. Returns the id.
+  std::string add(const std::string& name, const std::string& bytes);
+  // Usage error: there is no such upload (any more).
+  std::filesystem::path path(const std::string& id) const;
+  std::string bytes(const std::string& id) const;
+
+ private:
+  static constexpr size_t kMost = 200;  // files; the oldest go first
+  TempFolder folder_;
+  mutable std::mutex mutex_;
+  std::deque<std::pair<std::string, std::string>> files_;  // id, name
+};
+
+// Letters, digits and . _ - of the last part of a name, at most 80; "file" if none is left.
+std::string plain_file_name(const std::string& name);
+
+}  // namespace cei3d

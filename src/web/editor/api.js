@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/** Talks to the program: requests by fetch, frames and news by one WebSocket. */
+
+const KEY = 'cei3d-key';
+
+/** The key comes behind the # of the address and leaves it, so that it is in no history and no picture. */
+function takeKey() {
+  const match = /[#&]k=([0-9a-f]+)/.exec(location.hash);
+  if (match) {
+    sessionStorage.setItem(KEY, match[1]);
+    history.replaceState(null, '', location.pathname + location.search);
+  }
+  return sessionStorage.getItem(KEY) ?? '';
+}
+let key = takeKey();
+export const hasKey = () => key !== '';
+
+export class ApiError extends Error {
+  /** @param {number} status @param {string} message @param {string} hint */
+  constructor(status, message, hint) {
+    super(message);
+    this.status = status;
+    this.hint = hint;
+  }
+}
+
+/** @param {string} path @param {RequestInit & {headers?: Record<string, string>}} [options] @returns {Promise<Response>} */
+async function request(path, options = {}) {
+  let response;
+  try {
+    response = await fetch(path, { ...options, headers: { Authorization: `Bearer ${key}`, ...options.headers } });
+  } catch {
+    throw new ApiError(0, 'The program does not answer.', 'Is cei3d still running?');
+  }
+  if (response.ok) return response;
+  const text = await response.text();
+  let answer = { error: text || `The program refused (${response.status}).`, hint: '' };
+  try { answer = JSON.parse(text); } catch { /* plain text */ }
+  throw new ApiError(response.status, answer.error, answer.hint ?? '');
+}
+
+/** @param {string} path @returns {Promise<any>} */
+export const getJson = async (path) => (await request(path)).json();
+/** @param {string} path @returns {Promise<Blob>} */
+export const getBlob = async (path) => (await request(path)).blob();
+/** @param {string} path @returns {Promise<ArrayBuffer>} */
+export const getBytes = async (path) => (await request(path)).arrayBuffer();
+
+/** @param {string} route @param {object} [body] @param {string} [revision] @returns {Promise<Response>} */
+const post = (route, body = {}, revision = '') => request(`/api/${route}`, {
+  method: 'POST',
+  body: JSON.stringify(body),
+  headers: { 'Content-Type': 'application/json', ...(revision ? { 'If-Match': revision } : {}) },
+});
+/** @param {string} route @param {object} [body] @param {string} [revision] @returns {Promise<any>} */
+export const postJson = async (route, body, revision) => (await post(route, body, revision)).json();
+/** @param {string} route @param {object} [body] @returns {Promise<Blob>} */
+export const postForBlob = async (route, body) => (await post(route, body)).blob();
+
+/** @param {Blob} file @param {string} name @returns {Promise<string>} id of the upload */
+export async function upload(file, name) {
+  const response = await request(`/api/upload?name=${encodeURIComponent(name)}`, {
+    method: 'POST', body: file, headers: { 'Content-Type': 'application/octet-stream' },
+  });
+  return (await response.json()).id;
+}
+
+/** @typedef {{seq: number, x: number, y: number, width: number, height: number, frame: [number, number], samples: number, pixels: Uint8ClampedArray<ArrayBuffer>}} Tile */
+
+/** @param {ArrayBuffer} bytes @returns {Tile} */
+function readTile(bytes) {
+  const length = new DataView(bytes).getUint32(0, true);
+  const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
+  return { ...head, pixels: new Uint8ClampedArray(bytes, 4 + length, 4 * head.width * head.height) };
+}
+
+/** The WebSocket; opens itself again after 1, 2, 4 seconds. */
+export class Line extends EventTarget {
+  constructor() {
+    super();
+    this.wait = 1000;
+    /** @type {WebSocket | null} */
+    this.socket = null;
+    this.ready = false;
+    this.timer = 0;
+    this.open();
+    // The address of a program that was started anew, pasted into the same window.
+    window.addEventListener('hashchange', () => {
+      key = takeKey();
+      this.wait = 1000;
+      this.socket?.close();
+    });
+  }
+
+  open() {
+    const socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`);
+    socket.binaryType = 'arraybuffer';
+    let opened = false;
+    socket.onopen = () => {
+      opened = true;
+      socket.send(JSON.stringify({ type: 'hello', token: key }));
+    };
+    socket.onmessage = ({ data }) => this.take(data);
+    socket.onclose = () => {
+      if (this.ready) this.emit('lost', null);
+      else if (opened) this.emit('stranger', null);
+      this.ready = false;
+      clearTimeout(this.timer);
+      this.timer = window.setTimeout(() => this.open(), this.wait);
+      this.wait = Math.min(2 * this.wait, 4000);
+    };
+    this.socket = socket;
+  }
+
+  /** @param {string | ArrayBuffer} data */
+  take(data) {
+    if (typeof data !== 'string') return this.emit('tile', readTile(data));
+    const message = JSON.parse(data);
+    if (message.type === 'welcome') {
+      this.ready = true;
+      this.wait = 1000;
+    }
+    this.emit(message.type, message);
+  }
+
+  /** @param {string} type @param {any} detail */
+  emit(type, detail) { this.dispatchEvent(new CustomEvent(type, { detail })); }
+  /** @param {string} type @param {(detail: any) => void} listener */
+  on(type, listener) { this.addEventListener(type, (e) => listener(/** @type {CustomEvent} */ (e).detail)); }
+  /** @param {object} message */
+  send(message) { if (this.ready) this.socket?.send(JSON.stringify(message)); }
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/**
+ * The camera of the view, in the capture's frame. Axes are OpenCV's: x right, y down, z into the scene; pixels
+ * have their centers at +0.5. It keeps the lens of a photograph, fitted into the canvas.
+ */
+
+/** @typedef {[number, number, number]} Vec */
+/** @typedef {{width: number, height: number, fx: number, fy: number, cx: number, cy: number, skew: number, world_from_cam: Vec[], center: Vec}} CameraJson */
+
+/** @param {Vec} a @param {Vec} b @returns {Vec} */
+export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+/** @param {Vec} a @param {Vec} b @returns {Vec} */
+export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+/** @param {Vec} a @param {number} s @returns {Vec} */
+export const mul = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+/** @param {Vec} a @param {Vec} b */
+export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+/** @param {Vec} a @param {Vec} b @returns {Vec} */
+export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+/** @param {Vec} a */
+export const length = (a) => Math.hypot(...a);
+/** @param {Vec} a @returns {Vec} */
+export const unit = (a) => mul(a, 1 / (length(a) || 1));
+
+/** Turns v about a unit axis, counter-clockwise seen from its tip. @param {Vec} v @param {Vec} axis @param {number} angle @returns {Vec} */
+export function turned(v, axis, angle) {
+  const c = Math.cos(angle), s = Math.sin(angle);
+  return add(add(mul(v, c), mul(cross(axis, v), s)), mul(axis, dot(axis, v) * (1 - c)));
+}
+
+export class ViewCamera {
+  /** @param {CameraJson} lens a photograph's camera @param {Vec} target what the view turns about @param {Vec} up unit @param {number} radius of the object */
+  constructor(lens, target, up, radius) {
+    this.home = { lens, target };
+    /** @type {Vec} */
+    this.target = target;
+    /** @type {CameraJson} */
+    this.lens = lens;
+    /** @type {Vec} */
+    this.center = lens.center;
+    /** @type {[Vec, Vec, Vec]} right, down, forward */
+    this.axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
+    this.up = up;
+    this.radius = radius;
+    this.goHome();
+  }
+
+  goHome() {
+    this.take(this.home.lens);
+    this.target = this.home.target;
+  }
+
+  /** Stands where a photograph was taken. @param {CameraJson} c */
+  take(c) {
+    this.lens = c;
+    this.center = c.center;
+    const r = c.world_from_cam;
+    this.axes = [[r[0][0], r[1][0], r[2][0]], [r[0][1], r[1][1], r[2][1]], [r[0][2], r[1][2], r[2][2]]];
+    const ahead = dot(sub(this.target, this.center), this.axes[2]);
+    if (ahead > 0) this.target = add(this.center, mul(this.axes[2], ahead));  // the point in front nearest to the old one
+  }
+
+  distance() { return length(sub(this.target, this.center)); }
+
+  /** Angles in radians: about the up axis, and up or down. @param {number} around @param {number} over */
+  orbit(around, over) {
+    const tilt = Math.asin(Math.max(-1, Math.min(1, dot(this.axes[2], this.up))));
+    const limit = 1.5;
+    const allowed = Math.max(-limit, Math.min(limit, tilt - over)) - tilt;
+    const move = (/** @type {Vec} */ v) => turned(turned(v, this.axes[0], -allowed), this.up, around);
+    const arm = move(sub(this.center, this.target));
+    this.axes = /** @type {[Vec, Vec, Vec]} */ (this.axes.map(move));
+    this.center = add(this.target, arm);
+  }
+
+  /** By pixels of a canvas. @param {number} dx @param {number} dy @param {number} width @param {number} height */
+  pan(dx, dy, width, height) {
+    const c = this.json(width, height);
+    const s = this.distance() / c.fx;
+    const shift = add(mul(this.axes[0], -dx * s), mul(this.axes[1], -dy * s));
+    this.center = add(this.center, shift);
+    this.target = add(this.target, shift);
+  }
+
+  /** Nearer (factor < 1) or farther, towards a pixel. @param {number} factor @param {number} x @param {number} y @param {number} width @param {number} height */
+  zoom(factor, x, y, width, height) {
+    const near = 0.05 * this.radius, far = 60 * this.radius, d = this.distance();
+    const s = Math.max(near, Math.min(far, d * factor)) / d;
+    const c = this.json(width, height);
+    const at = add(this.center, add(mul(this.axes[2], d), add(mul(this.axes[0], d * (x - c.cx) / c.fx), mul(this.axes[1], d * (y - c.cy) / c.fy))));
+    this.center = add(at, mul(sub(this.center, at), s));
+    this.target = add(at, mul(sub(this.target, at), s));
+  }
+
+  /** Shows a ball whole. @param {Vec} center @param {number} radius */
+  frame(center, radius) {
+    const c = this.lens, half = Math.min(c.width / c.fx, c.height / c.fy) / 2;
+    const d = 1.15 * radius / Math.sin(Math.atan(half));
+    this.target = center;
+    this.center = sub(center, mul(this.axes[2], d));
+    this.lens = { ...c, cx: c.width / 2, cy: c.height / 2 };
+  }
+
+  /** Where the photograph's picture lies in a canvas. @param {number} width @param {number} height */
+  rectangle(width, height) {
+    const s = Math.min(width / this.lens.width, height / this.lens.height);
+    const w = s * this.lens.width, h = s * this.lens.height;
+    return { x: (width - w) / 2, y: (height - h) / 2, width: w, height: h, scale: s };
+  }
+
+  /** The camera of a canvas. @param {number} width @param {number} height @returns {CameraJson} */
+  json(width, height) {
+    const r = this.rectangle(width, height), l = this.lens, [x, y, z] = this.axes;
+    return {
+      width, height,
+      fx: l.fx * r.scale, fy: l.fy * r.scale, cx: l.cx * r.scale + r.x, cy: l.cy * r.scale + r.y, skew: l.skew * r.scale,
+      world_from_cam: [[x[0], y[0], z[0]], [x[1], y[1], z[1]], [x[2], y[2], z[2]]],
+      center: this.center,
+    };
+  }
+}

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/** Grab and bend: a point of the surface is dragged in the plane of the picture, its surroundings follow. */
+import { complain, el } from './dom.js';
+import { postJson } from './api.js';
+import { ring } from './paint.js';
+
+export class GrabTool {
+  /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store */
+  constructor(stage, store) {
+    this.stage = stage;
+    this.store = store;
+    this.name = 'grab';
+    this.label = 'Grab';
+    this.hint = 'Drag a point of the object; what lies within the circle follows. [ ] change the circle.';
+    this.reach = 0.25;  // of the object's radius
+    /** @type {any} */
+    this.start = null;
+    /** @type {any} */
+    this.at = null;
+    this.number = 0;
+    this.waiting = false;
+  }
+
+  options() {
+    const part = this.store.part;
+    return [
+      el('label', {}, 'Reach', el('input', { type: 'range', min: '0.03', max: '1', step: 'any', value: String(this.reach), id: 'grab-reach',
+        oninput: (/** @type {any} */ e) => { this.reach = Number(e.target.value); this.stage.redraw(); } })),
+      el('span', {}, part ? `Only the part ${part} moves.` : 'The whole object can move.'),
+    ];
+  }
+
+  leave() { this.cancel(); this.at = null; }
+
+  /** @param {any} p */
+  hover(p) { this.at = p; this.stage.redraw(); }
+  /** @param {any} p */
+  down(p) {
+    this.start = p;
+    this.camera = this.stage.json();
+    this.moved = false;
+  }
+  /** @param {any} p */
+  move(p) {
+    this.at = p;
+    if (!this.start) return;
+    this.moved ||= Math.hypot(p.x - this.start.x, p.y - this.start.y) > 4;
+    this.stage.redraw();
+    if (this.moved) this.preview();
+  }
+
+  params() {
+    return { camera: this.camera, pixel: [this.start.x, this.start.y], drag: [this.at.x - this.start.x, this.at.y - this.start.y],
+      radius: this.reach * this.store.object.radius, ...(this.store.part ? { part: this.store.part } : {}) };
+  }
+
+  /** One at a time: the newest position when the program is ready for it. */
+  async preview() {
+    if (this.waiting) {
+      this.again = true;
+      return;
+    }
+    this.waiting = true;
+    this.again = false;
+    const number = this.number;
+    try {
+      const made = await postJson('preview', { op: 'deform', params: this.params() });
+      if (number === this.number && this.start) {
+        await this.stage.tryEdit(made.token);
+      }
+    } catch (error) {
+      if (number === this.number) complain(error);
+    }
+    this.waiting = false;
+    if (this.again && this.start) this.preview();
+  }
+
+  /** @param {any} p */
+  async up(p) {
+    if (!this.start) return;
+    this.at = p;
+    ++this.number;
+    const params = this.params(), moved = this.moved;
+    this.start = null;
+    if (moved) await this.store.change('edit', { op: 'deform', params });
+    await this.stage.tryEdit(null);
+  }
+
+  cancel() {
+    ++this.number;
+    if (!this.start) return;
+    this.start = null;
+    this.stage.tryEdit(null);
+  }
+  drop() { this.cancel(); }
+
+  /** @param {number} factor */
+  size(factor) {
+    this.reach = Math.max(0.03, Math.min(1, this.reach * factor));
+    const input = /** @type {HTMLInputElement | null} */ (document.getElementById('grab-reach'));
+    if (input) input.value = String(this.reach);
+    this.stage.redraw();
+  }
+
+  /** @param {CanvasRenderingContext2D} c */
+  draw(c) {
+    const p = this.start ?? this.at;
+    if (!p) return;
+    const camera = this.stage.json(), r = this.reach * (this.store.object?.radius ?? 1) * camera.fx / this.stage.camera.distance();
+    ring(c, p.x, p.y, r);
+    if (!this.start || !this.at) return;
+    ring(c, this.start.x, this.start.y, 5);
+    c.strokeStyle = '#ffb454';
+    c.lineWidth = 2.5;
+    c.beginPath();
+    c.moveTo(this.start.x, this.start.y);
+    c.lineTo(this.at.x, this.at.y);
+    c.stroke();
+    ring(c, this.at.x, this.at.y, 7);
+  }
+}

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/** Pointers on the view: navigation here, the rest to the tool. */
+
+/**
+ * @typedef {{x: number, y: number, pressure: number, shift: boolean, alt: boolean, ctrl: boolean, onObject: boolean, erase: boolean}} Point
+ * Pixels of the exact frame.
+ */
+
+const kTap = 6;  // pixels that a click may move
+const kTurn = 0.0065;  // radians a pixel
+
+export class Input {
+  /** @param {import('./stage.js').Stage} stage @param {() => any} tool @param {{undo: () => void, redo: () => void, turnLight: (degrees: number, done: boolean) => void, size: (factor: number) => void}} actions */
+  constructor(stage, tool, actions) {
+    this.stage = stage;
+    this.tool = tool;
+    this.actions = actions;
+    /** @type {Map<number, {x: number, y: number}>} */
+    this.down = new Map();
+    /** @type {string | null} what the pressed pointer does */
+    this.doing = null;
+    this.space = false;
+    /** @type {{x: number, y: number} | null} pointer by keys, pixels of the frame */
+    this.reticle = null;
+    this.touches = { most: 0, moved: 0 };
+    const view = stage.view;
+    view.addEventListener('pointerdown', (/** @type {PointerEvent} */ e) => this.press(e));
+    view.addEventListener('pointermove', (/** @type {PointerEvent} */ e) => this.move(e));
+    view.addEventListener('pointerup', (/** @type {PointerEvent} */ e) => this.release(e));
+    view.addEventListener('pointercancel', (/** @type {PointerEvent} */ e) => this.release(e));
+    view.addEventListener('pointerleave', () => { if (!this.doing) this.tool().hover?.(null); });
+    view.addEventListener('contextmenu', (/** @type {Event} */ e) => e.preventDefault());
+    view.addEventListener('wheel', (/** @type {WheelEvent} */ e) => this.wheel(e), { passive: false });
+    window.addEventListener('keyup', (e) => { if (e.key === ' ') this.space = false; });
+  }
+
+  /** @param {PointerEvent} e @returns {Point} */
+  point(e) {
+    const r = this.stage.view.getBoundingClientRect(), { scale } = this.stage.size();
+    const x = (e.clientX - r.left) * scale, y = (e.clientY - r.top) * scale;
+    return {
+      x, y, pressure: e.pointerType === 'pen' ? e.pressure : 1, shift: e.shiftKey, alt: e.altKey, ctrl: e.ctrlKey || e.metaKey,
+      onObject: this.stage.onObject(x, y), erase: e.pointerType === 'pen' && (e.buttons & 32) !== 0,
+    };
+  }
+
+  /** @param {PointerEvent} e */
+  press(e) {
+    if (/** @type {Element} */ (e.target).closest('input, button, select, label, .options')) return;
+    e.preventDefault();
+    this.stage.view.focus({ preventScroll: true });
+    this.stage.view.setPointerCapture(e.pointerId);
+    this.down.set(e.pointerId, { x: e.clientX, y: e.clientY });
+    if (this.down.size === 1) this.touches = { most: 1, moved: 0 };
+    if (this.down.size > 1) {
+      this.touches.most = Math.max(this.touches.most, this.down.size);
+      if (this.doing === 'tool') this.tool().cancel?.();
+      this.doing = 'pinch';
+      return;
+    }
+    this.start = { x: e.clientX, y: e.clientY, moved: false };
+    this.doing = this.choose(e, this.point(e));
+    if (this.doing === 'tool') this.tool().down?.(this.point(e));
+  }
+
+  /** @param {PointerEvent} e @param {Point} p */
+  choose(e, p) {
+    if (e.button === 1) return e.shiftKey ? 'pan' : 'orbit';
+    if (e.button === 2) return e.shiftKey ? 'light' : e.ctrlKey ? 'size' : 'pan';
+    if (e.altKey || this.space) return 'orbit';
+    const tool = this.tool();
+    return tool.down && (p.onObject || tool.anywhere) ? 'tool' : 'orbit';
+  }
+
+  /** @param {PointerEvent} e */
+  move(e) {
+    const last = this.down.get(e.pointerId);
+    if (!last) {
+      this.tool().hover?.(this.point(e));
+      return;
+    }
+    const dx = e.clientX - last.x, dy = e.clientY - last.y;
+    if (this.doing === 'pinch') return this.pinch(e);
+    this.down.set(e.pointerId, { x: e.clientX, y: e.clientY });
+    if (this.start && Math.hypot(e.clientX - this.start.x, e.clientY - this.start.y) > kTap) this.start.moved = true;
+    const { scale, width, height } = this.stage.size(), camera = this.stage.camera;
+    if (this.doing === 'tool') {
+      const events = e.getCoalescedEvents?.() ?? [];
+      for (const c of events.length ? events : [e]) this.tool().move?.(this.point(c));
+      return;
+    }
+    if (this.doing === 'orbit') camera.orbit(-dx * kTurn, -dy * kTurn);
+    if (this.doing === 'pan') camera.pan(dx * scale, dy * scale, width, height);
+    if (this.doing === 'light') return this.actions.turnLight(dx * 0.5, false);
+    if (this.doing === 'size') return this.actions.size(Math.exp(dx * 0.01));
+    this.leavePhoto();
+    this.stage.moved();
+  }
+
+  /** @param {PointerEvent} e */
+  pinch(e) {
+    const [a, b] = [...this.down.values()];
+    this.down.set(e.pointerId, { x: e.clientX, y: e.clientY });
+    const [c, d] = [...this.down.values()];
+    if (!b || !d) return;
+    const { scale, width, height } = this.stage.size(), r = this.stage.view.getBoundingClientRect();
+    const before = Math.hypot(a.x - b.x, a.y - b.y), after = Math.hypot(c.x - d.x, c.y - d.y);
+    const mx = (c.x + d.x) / 2, my = (c.y + d.y) / 2;
+    this.touches.moved += Math.abs(after - before) + Math.hypot(mx - (a.x + b.x) / 2, my - (a.y + b.y) / 2);
+    this.stage.camera.pan((mx - (a.x + b.x) / 2) * scale, (my - (a.y + b.y) / 2) * scale, width, height);
+    this.stage.camera.zoom(before / Math.max(after, 1), (mx - r.left) * scale, (my - r.top) * scale, width, height);
+    this.leavePhoto();
+    this.stage.moved();
+  }
+
+  /** @param {PointerEvent} e */
+  release(e) {
+    if (!this.down.delete(e.pointerId)) return;
+    const doing = this.doing, p = this.point(e);
+    if (this.down.size > 0) return;
+    this.doing = null;
+    if (doing === 'pinch') {
+      if (this.touches.moved < 2 * kTap) this.touches.most > 2 ? this.actions.redo() : this.actions.undo();
+      return;
+    }
+    if (doing === 'tool') return this.tool().up?.(p);
+    if (doing === 'light') return this.actions.turnLight(0, true);
+    if (this.start && !this.start.moved && e.type === 'pointerup') this.tool().click?.({ ...p, alt: p.alt || e.button === 2 });
+  }
+
+  /** @param {WheelEvent} e */
+  wheel(e) {
+    e.preventDefault();
+    const p = this.point(/** @type {any} */ (e)), { width, height } = this.stage.size();
+    const step = e.deltaMode === 1 ? 30 * e.deltaY : e.deltaY;
+    this.stage.camera.zoom(Math.exp(Math.max(-200, Math.min(200, step)) * (e.ctrlKey ? 0.008 : 0.0015)), p.x, p.y, width, height);
+    this.leavePhoto();
+    this.stage.moved();
+  }
+
+  leavePhoto() {
+    if (this.stage.photo === null) return;
+    this.stage.photo = null;
+    this.stage.emit('photo');
+  }
+
+  /** Arrow keys: the pointer by keys, or the camera. @param {KeyboardEvent} e */
+  arrows(e) {
+    const dx = { ArrowLeft: -1, ArrowRight: 1 }[e.key] ?? 0, dy = { ArrowUp: -1, ArrowDown: 1 }[e.key] ?? 0;
+    const { width, height } = this.stage.size();
+    if (this.reticle) {
+      const step = e.shiftKey ? 2 : 12;
+      this.reticle = { x: Math.max(0, Math.min(width - 1, this.reticle.x + step * dx)), y: Math.max(0, Math.min(height - 1, this.reticle.y + step * dy)) };
+      this.tool().hover?.(this.keyPoint(false));
+      this.stage.redraw();
+      return;
+    }
+    if (e.shiftKey) this.stage.camera.pan(-30 * dx, -30 * dy, width, height);
+    else this.stage.camera.orbit(dx * Math.PI / 36, dy * Math.PI / 36);
+    this.leavePhoto();
+    this.stage.moved();
+  }
+
+  /** @param {boolean} alt @returns {Point} */
+  keyPoint(alt) {
+    const { x, y } = this.reticle ?? { x: 0, y: 0 };
+    return { x, y, pressure: 1, shift: false, alt, ctrl: false, onObject: this.stage.onObject(x, y), erase: false };
+  }
+
+  toggleReticle() {
+    const { width, height } = this.stage.size();
+    this.reticle = this.reticle ? null : { x: width / 2, y: height / 2 };
+    this.stage.redraw();
+  }
+
+  /** A click of the pointer by keys. @param {boolean} alt */
+  clickReticle(alt) {
+    if (!this.reticle) return false;
+    const p = this.keyPoint(alt), tool = this.tool();
+    if (tool.down && p.onObject) {
+      tool.down(p);
+      tool.up?.(p);
+    } else tool.click?.(p);
+    return true;
+  }
+
+  /** @param {CanvasRenderingContext2D} c */
+  drawReticle(c) {
+    if (!this.reticle) return;
+    const { x, y } = this.reticle;
+    for (const [color, width] of /** @type {[string, number][]} */ ([['#000c', 4], ['#fff', 1.5]])) {
+      c.strokeStyle = color;
+      c.lineWidth = width;
+      c.beginPath();
+      for (const [a, b] of [[-14, -4], [4, 14]]) {
+        c.moveTo(x + a, y); c.lineTo(x + b, y);
+        c.moveTo(x, y + a); c.lineTo(x, y + b);
+      }
+      c.stroke();
+    }
+  }
+}

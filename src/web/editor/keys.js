@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/**
+ * Every key and gesture, once: the editor's keys, the help and docs/editor.md are made from this table.
+ * "Mod" is Ctrl, or Cmd on a Mac.
+ */
+
+/** @typedef {{keys: string[], action: string, text: string}} Key */
+
+/** @type {{title: string, keys: Key[]}[]} */
+export const keyTable = [
+  { title: 'Tools', keys: [
+    { keys: ['V'], action: 'tool:look', text: 'Look' },
+    { keys: ['B'], action: 'tool:paint', text: 'Paint' },
+    { keys: ['E'], action: 'tool:erase', text: 'Erase paint' },
+    { keys: ['P'], action: 'tool:part', text: 'Select a part' },
+    { keys: ['G'], action: 'tool:grab', text: 'Grab and bend' },
+    { keys: ['M'], action: 'tool:material', text: 'Material' },
+    { keys: ['L'], action: 'tool:light', text: 'Light' },
+    { keys: ['I'], action: 'pick-color', text: 'Take the color under the pointer' },
+    { keys: ['X'], action: 'swap-colors', text: 'Swap the two colors' },
+    { keys: ['['], action: 'smaller', text: 'Smaller brush or reach' },
+    { keys: [']'], action: 'larger', text: 'Larger brush or reach' },
+    { keys: ['Shift+['], action: 'softer', text: 'Softer brush' },
+    { keys: ['Shift+]'], action: 'harder', text: 'Harder brush' },
+    { keys: ['Enter'], action: 'keep', text: 'Keep what is previewed' },
+    { keys: ['Escape'], action: 'drop', text: 'Drop what is previewed' },
+  ] },
+  { title: 'History', keys: [
+    { keys: ['Mod+Z'], action: 'undo', text: 'Undo' },
+    { keys: ['Shift+Mod+Z', 'Mod+Y'], action: 'redo', text: 'Redo' },
+    { keys: ['Delete'], action: 'remove', text: 'Remove the selected part' },
+  ] },
+  { title: 'View', keys: [
+    { keys: ['F'], action: 'frame', text: 'Show the whole object' },
+    { keys: ['Home'], action: 'home', text: 'Start view' },
+    { keys: ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'], action: 'arrows', text: 'Turn by 5°; with Shift, move' },
+    { keys: ['+', '-'], action: 'zoom', text: 'Nearer, farther' },
+    { keys: ['N'], action: 'next-photo', text: 'Next photograph' },
+    { keys: ['Shift+N'], action: 'previous-photo', text: 'Previous photograph' },
+    { keys: ['\\'], action: 'hold-photo', text: 'Show the photograph while held' },
+    { keys: ['C'], action: 'compare', text: 'Compare with the photograph' },
+    { keys: ['T'], action: 'channel', text: 'Next channel: lit, albedo, diffuse, shine, normals, roughness' },
+    { keys: ['.'], action: 'reticle', text: 'Pointer by keys: arrows move it, Space clicks' },
+    { keys: ['Tab'], action: 'bare', text: 'Hide the panels (from the canvas)' },
+    { keys: ['Mod+S'], action: 'export', text: 'Export' },
+    { keys: ['?'], action: 'help', text: 'This help' },
+  ] },
+];
+
+/** Gestures, for the help. @type {[string, string][]} */
+export const gestures = [
+  ['Left button on the object', 'the tool'],
+  ['Left button beside it, Alt and left, or the middle button', 'turn'],
+  ['Right button, or Shift and the middle button', 'move'],
+  ['Wheel, or pinch', 'zoom at the pointer'],
+  ['Shift and the right button', 'turn the light'],
+  ['Ctrl and the right button', 'size of the brush'],
+  ['Shift and a click, painting', 'a straight line'],
+  ['Alt or the right button, selecting a part', 'a click that is not on the part'],
+  ['Two fingers', 'move and zoom; a tap of two undoes, of three redoes'],
+];
+
+/** @param {KeyboardEvent} e @returns {string} "Shift+Mod+Z" */
+function nameOf(e) {
+  const name = e.key.length === 1 ? e.key.toUpperCase() : e.key;
+  const bracket = { '{': '[', '}': ']' }[name];
+  if (bracket) return `Shift+${bracket}`;
+  const letter = /^[A-Z]$/.test(name) || e.key.length > 1;
+  return (e.shiftKey && letter ? 'Shift+' : '') + (e.ctrlKey || e.metaKey ? 'Mod+' : '') + (name === '=' ? '+' : name);
+}
+
+/** @param {KeyboardEvent} e @returns {string | undefined} the action of a key */
+export function actionOf(e) {
+  if (e.altKey) return undefined;
+  const name = nameOf(e), plain = name.replace(/^Shift\+(Arrow)/, '$1');
+  for (const group of keyTable)
+    for (const k of group.keys) if (k.keys.includes(name) || (k.action === 'arrows' && k.keys.includes(plain))) return k.action;
+  return undefined;
+}
+
+/** @param {string} action @returns {string} its first key, as written */
+export function keyOf(action) {
+  for (const group of keyTable) for (const k of group.keys) if (k.action === action) return written(k.keys[0]);
+  return '';
+}
+
+/** @param {string} key */
+export function written(key) {
+  const mac = typeof navigator !== 'undefined' && /Mac|iP(hone|ad)/.test(navigator.platform ?? '');
+  return key.replace('Mod', mac ? 'Cmd' : 'Ctrl').replace('ArrowLeft', '←').replace('ArrowRight', '→').replace('ArrowUp', '↑').replace('ArrowDown', '↓').replace('Escape', 'Esc');
+}

@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/** The editor: puts its pieces together. */
+import { hasKey, postJson } from './api.js';
+import { byId, complain, el, glyph, toast } from './dom.js';
+import { exportDialog, helpDialog } from './dialogs.js';
+import { GrabTool } from './grab.js';
+import { Input } from './input.js';
+import { actionOf, keyOf } from './keys.js';
+import { PaintTool } from './paint.js';
+import { HistoryPanel, PartsPanel, PhotoStrip } from './panels.js';
+import { Places } from './places.js';
+import { LightTool, MaterialTool, objectPanel } from './properties.js';
+import { PartOverlay, PartTool } from './select.js';
+import { channels, Stage } from './stage.js';
+import { Store } from './store.js';
+
+const store = new Store();
+const stage = new Stage(store);
+const overlay = new PartOverlay(stage, store);
+const look = { name: 'look', label: 'Look', hint: 'Drag to turn, right button to move, wheel to zoom. B paints, P selects a part, ? shows all keys.' };
+const paint = new PaintTool(stage, store, false), erase = new PaintTool(stage, store, true);
+const light = new LightTool(stage, store, () => drawProperties());
+/** @type {any[]} */
+const tools = [look, paint, erase, new PartTool(stage, store, overlay), new GrabTool(stage, store), new MaterialTool(stage, store), light];
+/** @type {any} */
+let tool = look;
+
+/** @param {string} name */
+function choose(name) {
+  const next = tools.find((t) => t.name === name);
+  if (!next || (store.state.read_only && !['look', 'light'].includes(name))) return;
+  if (next !== tool) tool.leave?.();
+  tool = next;
+  drawTools();
+  drawOptions();
+  drawProperties();
+  byId('hint').textContent = tool.hint;
+  tool.enter?.();
+  stage.redraw();
+}
+
+const input = new Input(stage, () => tool, {
+  undo, redo,
+  turnLight: (degrees, done) => { light.turn(degrees); if (done) choose('light'); },
+  size: (factor) => tool.size?.(factor),
+});
+stage.drawTool = (/** @type {CanvasRenderingContext2D} */ context) => {
+  overlay.draw(context);
+  tool.draw?.(context);
+  input.drawReticle(context);
+};
+
+function drawTools() {
+  byId('tools').replaceChildren(...tools.map((t) => el('button', {
+    role: 'radio', 'aria-checked': String(t === tool), title: `${t.label} (${keyOf(`tool:${t.name}`)})`, 'data-tool': t.name,
+    disabled: store.state.read_only && !['look', 'light'].includes(t.name), onclick: () => choose(t.name),
+  }, glyph(t.name), el('span', {}, t.label))));
+}
+
+function drawOptions() { byId('options').replaceChildren(...(tool.options?.() ?? [])); tool.enter?.(); }
+
+function drawProperties() {
+  if (document.activeElement?.closest('#properties') && /** @type {any} */ (document.activeElement).type === 'range' && tool !== light) return;
+  const focused = document.activeElement?.id;
+  byId('properties').replaceChildren(el('h2', { id: 'properties-title' }, tool.panel ? tool.label : 'Object'), ...(tool.panel?.() ?? objectPanel(store)));
+  if (focused && byId('properties').querySelector(`#${CSS.escape(focused)}`)) byId(focused).focus();
+  light.update();
+}
+
+function undo() {
+  if (tool.undo?.()) return;
+  if (store.canUndo() && !store.state.read_only) store.change('undo');
+}
+function redo() { if (store.canRedo() && !store.state.read_only) store.change('redo'); }
+
+async function remove() {
+  const part = store.part;
+  if (!part) return toast('Select a part first; Delete removes it.');
+  const done = await store.change('edit', { op: 'remove', params: { part } });
+  if (done) toast(`${part} is removed; ${keyOf('undo')} brings it back.`);
+}
+
+/** @param {string} name */
+function goToPhoto(name) {
+  const view = store.object.views.find((/** @type {any} */ v) => v.name === name);
+  if (!view) return;
+  stage.camera.take(view.camera);
+  stage.photo = name;
+  stage.emit('photo');
+  stage.moved();
+}
+
+const strip = new PhotoStrip(store, stage, goToPhoto);
+let comparing = false, holding = false;
+
+async function drawPhoto() {
+  const photo = byId('photo'), wipe = byId('wipe');
+  const shown = stage.photo !== null && (comparing || holding);
+  photo.hidden = !shown;
+  wipe.hidden = !shown || !comparing;
+  if (!shown || !stage.photo) return;
+  const { width, height, scale } = stage.size(), r = stage.camera.rectangle(width, height);
+  Object.assign(photo.style, { left: `${r.x / scale}px`, top: `${r.y / scale}px`, width: `${r.width / scale}px`, height: `${r.height / scale}px` });
+  photo.style.clipPath = comparing && !holding ? `inset(0 ${100 - wipe.value}% 0 0)` : 'none';
+  try {
+    photo.src = await strip.url(stage.photo, Math.ceil(r.width));
+  } catch (error) { complain(error); }
+}
+byId('wipe').addEventListener('input', drawPhoto);
+stage.addEventListener('photo', drawPhoto);
+stage.addEventListener('resized', drawPhoto);
+
+function compare() {
+  if (!stage.photo && strip.views.length) strip.next(1);
+  comparing = !comparing;
+  drawActions();
+  drawPhoto();
+}
+
+function nextChannel() {
+  const at = channels.findIndex(([name]) => name === stage.channel);
+  setChannel(channels[(at + 1) % channels.length][0]);
+}
+/** @param {string} name */
+function setChannel(name) {
+  stage.channel = name;
+  drawActions();
+  stage.moved();
+}
+
+function drawActions() {
+  const locked = store.state.read_only;
+  byId('actions').replaceChildren(
+    el('button', { class: 'icon', id: 'undo', 'aria-label': 'Undo', title: `Undo (${keyOf('undo')})`, disabled: locked || !(store.canUndo() || tool.unsaved?.()), onclick: undo }, glyph('undo')),
+    el('button', { class: 'icon', id: 'redo', 'aria-label': 'Redo', title: `Redo (${keyOf('redo')})`, disabled: locked || !store.canRedo(), onclick: redo }, glyph('redo')),
+    el('select', { 'aria-label': 'Channel', title: `What the picture shows (${keyOf('channel')})`, id: 'channel', onchange: (/** @type {any} */ e) => setChannel(e.target.value) },
+      ...channels.map(([value, text]) => el('option', { value, selected: value === stage.channel }, text))),
+    el('button', { id: 'compare', 'aria-pressed': String(comparing), title: `Compare with a photograph (${keyOf('compare')})`, onclick: compare }, 'Compare'),
+    el('button', { class: 'primary', id: 'export', title: `Export (${keyOf('export')})`, onclick: () => exportDialog(store, stage) }, 'Export'));
+}
+
+function drawSaved() {
+  const node = byId('saved'), unsaved = tools.some((t) => t.unsaved?.()) || store.saving > 0;
+  const editing = store.state.mode === 'project';
+  node.className = `saved ${store.lost ? 'lost' : unsaved ? 'busy' : ''}`;
+  node.textContent = !editing ? '' : store.lost ? 'Not connected' : store.state.read_only ? 'Looking only' : unsaved ? 'Saving…' : 'All changes saved';
+  byId('banner').hidden = !store.lost;
+  byId('banner').textContent = store.stranger ? 'The program was started anew: paste the address that it printed into this window. What you did meanwhile is kept here.'
+    : 'The program does not answer; trying again. What you do meanwhile is kept here.';
+}
+
+/** @type {Record<string, (e: KeyboardEvent) => void>} */
+const actions = {
+  undo, redo, remove, compare,
+  'pick-color': () => paint.pickColor(),
+  'swap-colors': () => paint.swap(),
+  smaller: () => tool.size?.(1 / 1.15), larger: () => tool.size?.(1.15),
+  softer: () => tool.hardness?.(-0.1), harder: () => tool.hardness?.(0.1),
+  keep: () => (tool.keep ?? (() => {})).call(tool), drop: () => tool.drop ? tool.drop() : tool.cancel?.(),
+  frame: () => { stage.camera.frame(store.object.center, store.object.radius); input.leavePhoto(); stage.moved(); },
+  home: () => { stage.camera.goHome(); input.leavePhoto(); stage.moved(); },
+  arrows: (e) => input.arrows(e),
+  zoom: (e) => { const { width, height } = stage.size(); stage.camera.zoom(e.key === '-' ? 1.1 : 1 / 1.1, width / 2, height / 2, width, height); input.leavePhoto(); stage.moved(); },
+  'next-photo': () => strip.next(1), 'previous-photo': () => strip.next(-1),
+  'hold-photo': () => { if (!stage.photo && strip.views.length) strip.next(1); holding = true; drawPhoto(); },
+  channel: nextChannel, reticle: () => input.toggleReticle(), bare: () => { document.body.classList.toggle('bare'); },
+  export: () => exportDialog(store, stage), help: helpDialog,
+};
+
+window.addEventListener('keydown', (e) => {
+  const target = /** @type {HTMLElement} */ (e.target), onView = target === stage.view || target === document.body;
+  if (byId('dialog').open) return;
+  if (e.key === ' ' && onView) {
+    e.preventDefault();
+    if (!input.clickReticle(e.altKey)) input.space = true;
+    return;
+  }
+  const action = actionOf(e);
+  if (!action) return;
+  const typing = target.matches('input[type="text"], input[type="number"], select');
+  if (typing || (!onView && ['arrows', 'bare', 'keep', 'home', 'zoom'].includes(action)) || (action === 'bare' && target !== stage.view)) return;
+  if (store.state.mode !== 'project' && action !== 'help') return;
+  e.preventDefault();
+  if (action.startsWith('tool:')) choose(action.slice(5));
+  else actions[action]?.(e);
+});
+window.addEventListener('keyup', (e) => { if (e.key === '\\') { holding = false; drawPhoto(); } });
+window.addEventListener('beforeunload', (e) => { if (tools.some((t) => t.unsaved?.()) || store.saving > 0) e.preventDefault(); });
+for (const type of ['dragover', 'drop']) window.addEventListener(type, (e) => e.preventDefault());
+stage.view.addEventListener('drop', (/** @type {DragEvent} */ e) => { const file = e.dataTransfer?.files[0]; if (file && store.state.mode === 'project') { choose('light'); light.take(file); } });
+
+new Places(store);
+new PartsPanel(store, { newPart: () => choose('part'), remove });
+new HistoryPanel(store, stage);
+byId('help').addEventListener('click', helpDialog);
+byId('back').addEventListener('click', async () => { try { await store.take(await postJson('close')); } catch (error) { complain(error); } });
+byId('job-stop').addEventListener('click', () => postJson('cancel').catch(complain));
+
+let jobTimer = 0;
+store.line.on('progress', (p) => {
+  if (p.job === 'reconstruct') return;
+  const job = byId('job');
+  clearTimeout(jobTimer);
+  job.hidden = p.fraction >= 1;
+  byId('job-bar').value = p.fraction;
+  byId('job-text').textContent = `${p.stage}${p.message ? ` · ${p.message}` : ''}`;
+  jobTimer = window.setTimeout(() => { job.hidden = true; }, 8000);
+});
+store.on('saving', () => { drawSaved(); drawActions(); if (store.saving === 0) byId('job').hidden = true; });
+store.on('state', (state) => {
+  document.body.dataset.mode = state.mode;
+  document.title = state.name ? `${state.name} · CEI-3D` : 'CEI-3D';
+  byId('name').textContent = state.name ?? '';
+  byId('back').hidden = !state.can_close;
+  if (state.mode !== 'project') byId('hint').textContent = '';
+  drawActions();
+  drawSaved();
+  drawTools();
+  drawProperties();
+});
+store.on('mode', (state) => { if (state.mode === 'project') { choose('look'); if (state.note) toast(state.note, { bad: true }); } });
+store.on('part', () => { drawOptions(); drawProperties(); });
+if (!hasKey()) {
+  byId('place').replaceChildren(el('div', { class: 'column' }, el('h2', {}, 'The key is missing'), el('p', {}, 'Open the whole address that cei3d printed, with what follows the #.')));
+}
+
+/** For tests: the pieces, and whether the picture is complete. */
+Object.assign(window, { cei3d: { store, stage, keepPaint: () => paint.keep(), settled: () => stage.settled() && store.saving === 0 && !tools.some((t) => t.unsaved?.()) } });

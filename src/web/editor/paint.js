@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/**
+ * Paint and erase. Strokes are dabs in the plane of the picture; the program projects them onto what the camera sees.
+ * Strokes that follow each other closely become one edit; until then each is undone by itself.
+ */
+import { complain, el } from './dom.js';
+import { postJson, upload } from './api.js';
+
+const kIdle = 900;  // milliseconds after the last stroke until they are kept
+
+/** What the brush is; shared by paint and eraser. */
+export const brush = { size: 26, hardness: 0.8, opacity: 1, color: '#d8342c', other: '#f2f2f2', target: 'albedo', material: '' };
+
+export class PaintTool {
+  /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store @param {boolean} erase */
+  constructor(stage, store, erase) {
+    this.stage = stage;
+    this.store = store;
+    this.erase = erase;
+    this.name = erase ? 'erase' : 'paint';
+    this.label = erase ? 'Erase' : 'Paint';
+    this.hint = erase ? 'Drag on the object: its own color and material come back.'
+      : 'Drag on the object. [ ] size, I takes a color, Shift and a click: a straight line. Beside the object, drag to turn it.';
+    /** @type {{camera: any, canvas: HTMLCanvasElement, strokes: HTMLCanvasElement[]} | null} what is not kept yet */
+    this.pending = null;
+    /** @type {HTMLCanvasElement[]} what is being kept */
+    this.saving = [];
+    /** @type {HTMLCanvasElement | null} */
+    this.stroke = null;
+    /** @type {any} */
+    this.last = null;
+    /** @type {any} */
+    this.at = null;
+    this.timer = 0;
+    stage.addEventListener('moved', () => { this.at = null; this.keep(); this.saving = []; });
+    stage.addEventListener('exact', () => { if (!this.busy) { this.saving = []; stage.redraw(); } });
+    this.busy = 0;
+  }
+
+  leave() { this.keep(); this.at = null; }
+
+  options() {
+    const change = () => this.stage.redraw();
+    const slider = (/** @type {string} */ label, /** @type {'size' | 'hardness' | 'opacity'} */ key, /** @type {number} */ min, /** @type {number} */ max) =>
+      el('label', {}, label, el('input', { type: 'range', min: String(min), max: String(max), step: 'any', value: String(brush[key]), id: `brush-${key}`,
+        oninput: (/** @type {any} */ e) => { brush[key] = Number(e.target.value); change(); } }));
+    const sliders = [slider('Size', 'size', 2, 160), slider('Hardness', 'hardness', 0, 1)];
+    if (this.erase) return sliders;
+    return [
+      el('label', {}, 'Color', el('input', { type: 'color', id: 'brush-color', value: brush.color, oninput: (/** @type {any} */ e) => this.setColor(e.target.value) })),
+      el('button', { class: 'small', title: 'Swap the two colors (X)', onclick: () => this.swap() }, el('span', { class: 'swatch', id: 'other-color' }), ' Swap'),
+      ...sliders, slider('Opacity', 'opacity', 0.05, 1),
+      el('label', {}, 'As', el('select', { id: 'brush-target', onchange: (/** @type {any} */ e) => { this.keep(); brush.target = e.target.value; } },
+        ...[['albedo', 'its own color'], ['appearance', 'seen color'], ['radiance', 'glow']].map(([v, t]) => el('option', { value: v, selected: brush.target === v }, t)))),
+      el('label', {}, 'Material', el('select', { id: 'brush-material', onchange: (/** @type {any} */ e) => { this.keep(); brush.material = e.target.value; } },
+        el('option', { value: '' }, 'as it is'), ...(this.store.object?.presets ?? []).map((/** @type {string} */ n) => el('option', { value: n, selected: brush.material === n }, n)))),
+    ];
+  }
+
+  enter() {
+    const other = document.getElementById('other-color');
+    if (other) other.style.background = brush.other;
+  }
+
+  /** @param {string} color */
+  setColor(color) {
+    if (this.pending) this.keep();
+    brush.color = color;
+    const input = /** @type {HTMLInputElement | null} */ (document.getElementById('brush-color'));
+    if (input) input.value = color;
+    this.stage.redraw();
+  }
+
+  swap() {
+    const color = brush.color;
+    this.setColor(brush.other);
+    brush.other = color;
+    this.enter();
+  }
+
+  /** The albedo under the pointer becomes the color. */
+  async pickColor() {
+    if (!this.at) return;
+    try {
+      const point = await postJson('pick', { camera: this.stage.json(), pixel: [this.at.x, this.at.y] });
+      if (point) this.setColor(point.albedo);
+    } catch (error) { complain(error); }
+  }
+
+  /** @param {any} p */
+  hover(p) {
+    this.at = p;
+    this.stage.redraw();
+  }
+
+  /** @param {any} p */
+  down(p) {
+    clearTimeout(this.timer);
+    const from = p.shift && this.last ? this.last : p;
+    this.stroke = document.createElement('canvas');
+    this.stroke.width = this.stage.picture.width;
+    this.stroke.height = this.stage.picture.height;
+    this.left = 0;
+    this.last = from;
+    this.dab(p);
+    this.move(p);
+  }
+
+  /** @param {any} p */
+  move(p) {
+    this.at = p;
+    if (!this.stroke || !this.last) return;
+    const radius = this.radius(p), step = Math.max(0.5, radius * 0.18);
+    const dx = p.x - this.last.x, dy = p.y - this.last.y, d = Math.hypot(dx, dy);
+    for (let at = step; at <= d; at += step) this.dab({ ...p, x: this.last.x + dx * at / d, y: this.last.y + dy * at / d });
+    if (d >= step || d === 0) this.last = p;
+    this.stage.redraw();
+  }
+
+  /** @param {any} p */
+  radius(p) { return Math.max(0.5, brush.size * this.stage.size().scale * (0.35 + 0.65 * p.pressure)); }
+
+  /** @param {any} p */
+  dab(p) {
+    const c = /** @type {CanvasRenderingContext2D} */ (this.stroke?.getContext('2d')), r = this.radius(p);
+    const color = this.erase ? '#ffffff' : brush.color;
+    if (brush.hardness >= 0.98) c.fillStyle = color;
+    else {
+      const g = c.createRadialGradient(p.x, p.y, r * brush.hardness, p.x, p.y, r);
+      g.addColorStop(0, color);
+      g.addColorStop(1, `${color}00`);
+      c.fillStyle = g;
+    }
+    c.beginPath();
+    c.arc(p.x, p.y, r, 0, 2 * Math.PI);
+    c.fill();
+  }
+
+  cancel() {
+    this.stroke = null;
+    this.stage.redraw();
+  }
+
+  up() {
+    if (!this.stroke) return;
+    if (!this.pending) {
+      const canvas = document.createElement('canvas');
+      canvas.width = this.stroke.width;
+      canvas.height = this.stroke.height;
+      this.pending = { camera: this.stage.json(), canvas, strokes: [] };
+    }
+    this.pending.strokes.push(this.stroke);
+    this.stroke = null;
+    this.flatten();
+    clearTimeout(this.timer);
+    this.timer = window.setTimeout(() => this.keep(), kIdle);
+    this.store.emit('saving');
+  }
+
+  flatten() {
+    const pending = this.pending, c = pending?.canvas.getContext('2d');
+    if (!pending || !c) return;
+    c.clearRect(0, 0, pending.canvas.width, pending.canvas.height);
+    c.globalAlpha = this.erase ? 1 : brush.opacity;
+    for (const s of pending.strokes) c.drawImage(s, 0, 0);
+    this.stage.redraw();
+  }
+
+  /** Takes back the last stroke that is not kept. @returns {boolean} whether there was one */
+  undo() {
+    if (!this.pending) return false;
+    clearTimeout(this.timer);
+    this.pending.strokes.pop();
+    if (this.pending.strokes.length === 0) this.pending = null;
+    this.flatten();
+    this.stage.redraw();
+    if (this.pending) this.timer = window.setTimeout(() => this.keep(), kIdle);
+    return true;
+  }
+
+  /** Keeps what is painted. @returns {Promise<void>} */
+  async keep() {
+    clearTimeout(this.timer);
+    const pending = this.pending;
+    if (!pending) return;
+    this.pending = null;
+    this.saving.push(pending.canvas);
+    const look = this.erase ? { erase: true } : { target: brush.target, ...(brush.material ? { material: brush.material } : {}) };
+    ++this.busy;
+    try {
+      const png = await new Promise((resolve) => pending.canvas.toBlob(resolve, 'image/png'));
+      for (;;) {
+        try {
+          const scribble = await upload(png, 'scribble.png');
+          const done = await this.store.change('edit', { op: 'paint', params: { strokes: [{ camera: pending.camera, scribble }], ...look } });
+          if (!done) this.saving = this.saving.filter((s) => s !== pending.canvas);
+          break;
+        } catch (error) {
+          if (/** @type {any} */ (error).status !== 0) throw error;
+          this.store.setLost(true);
+          await new Promise((resolve) => this.store.line.addEventListener('welcome', resolve, { once: true }));
+        }
+      }
+    } catch (error) {
+      this.saving = this.saving.filter((s) => s !== pending.canvas);
+      complain(error);
+    } finally {
+      --this.busy;
+      this.stage.redraw();
+    }
+  }
+
+  unsaved() { return this.pending !== null || this.stroke !== null || this.busy > 0; }
+
+  /** @param {CanvasRenderingContext2D} c */
+  draw(c) {
+    c.save();
+    for (const s of this.saving) c.drawImage(s, 0, 0);
+    if (this.pending) c.drawImage(this.pending.canvas, 0, 0);
+    if (this.stroke) {
+      c.globalAlpha = this.erase ? 0.6 : brush.opacity;
+      c.drawImage(this.stroke, 0, 0);
+    }
+    // Only the object can be painted.
+    if (this.stage.picture.style.opacity !== '0') {
+      c.globalAlpha = 1;
+      c.globalCompositeOperation = 'destination-in';
+      c.drawImage(this.stage.picture, 0, 0);
+    }
+    c.restore();
+    if (this.at) ring(c, this.at.x, this.at.y, this.radius(this.at));
+  }
+
+  /** @param {number} factor */
+  size(factor) { this.set('size', Math.max(2, Math.min(160, brush.size * factor))); }
+  /** @param {number} step */
+  hardness(step) { this.set('hardness', Math.max(0, Math.min(1, brush.hardness + step))); }
+
+  /** @param {'size' | 'hardness'} key @param {number} value */
+  set(key, value) {
+    brush[key] = value;
+    const input = /** @type {HTMLInputElement | null} */ (document.getElementById(`brush-${key}`));
+    if (input) input.value = String(value);
+    this.stage.redraw();
+  }
+}
+
+/** A circle that is seen on any ground. @param {CanvasRenderingContext2D} c @param {number} x @param {number} y @param {number} r */
+export function ring(c, x, y, r) {
+  for (const [color, width] of /** @type {[string, number][]} */ ([['#000a', 3], ['#fff', 1.25]])) {
+    c.strokeStyle = color;
+    c.lineWidth = width;
+    c.beginPath();
+    c.arc(x, y, r, 0, 2 * Math.PI);
+    c.stroke();
+  }
+}

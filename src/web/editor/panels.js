@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/** Lists beside the view: parts, history, photographs. */
+import { byId, el, glyph } from './dom.js';
+import { getBlob } from './api.js';
+import { partColors } from './select.js';
+
+/** @type {Record<string, string>} */
+const opNames = { paint: 'Paint', material: 'Material', light: 'Light', deform: 'Bend', remove: 'Remove', part: 'Part' };
+/** @type {Record<string, string>} */
+const opGlyphs = { paint: 'paint', material: 'material', light: 'light', deform: 'grab', remove: 'trash', part: 'part' };
+
+/** "roughness 0.40, gold" @param {any} e @returns {string} */
+export function describe(e) {
+  const p = e.params, words = [];
+  if (e.op === 'paint') words.push(p.erase ? 'erased' : p.target === 'albedo' ? '' : p.target, e.strokes > 1 ? `${e.strokes} views` : '');
+  if (p.name) words.push(p.name);
+  if (p.part) words.push(p.part);
+  if (p.material) words.push(p.material);
+  for (const key of ['roughness', 'specular', 'metalness']) if (p[key] !== undefined) words.push(`${key} ${Number(p[key]).toFixed(2)}`);
+  if (p.color) words.push(p.color);
+  if (p.env) words.push(String(p.env).split('/').at(-1));
+  if (p.rotate_degrees) words.push(`${Math.round(p.rotate_degrees)}°`);
+  if (p.scale) words.push(`× ${Number(p.scale).toFixed(2)}`);
+  return words.filter(Boolean).join(', ');
+}
+
+export class PartsPanel {
+  /** @param {import('./store.js').Store} store @param {{newPart: () => void, remove: () => void}} actions */
+  constructor(store, actions) {
+    this.store = store;
+    this.actions = actions;
+    store.on('state', () => this.draw());
+    store.on('part', () => this.draw());
+  }
+
+  draw() {
+    const { store } = this;
+    const rows = store.state.parts.map((/** @type {any} */ p, /** @type {number} */ i) => {
+      const on = store.part === p.name;
+      const swatch = el('span', { class: 'swatch' });
+      swatch.style.background = partColors[i % partColors.length];
+      return el('li', { class: on ? 'on' : '' }, el('div', { class: 'row' }, swatch,
+        el('button', { class: 'label', 'aria-pressed': String(on), title: on ? 'Selected; click again for the whole object' : `Select ${p.name}`,
+          onclick: () => store.select(on ? null : p.name) }, p.name),
+        el('span', { class: 'quiet' }, `${(100 * p.share).toFixed(1)} %`),
+        el('button', { title: `Remove ${p.name} (Delete)`, 'aria-label': `Remove ${p.name}`, disabled: store.state.read_only,
+          onclick: () => { store.select(p.name); this.actions.remove(); } }, glyph('trash'))));
+    });
+    byId('parts').replaceChildren(
+      el('h2', { id: 'parts-title' }, 'Parts', el('button', { class: 'small', disabled: store.state.read_only, onclick: this.actions.newPart }, 'New')),
+      rows.length ? el('ul', { class: 'list' }, ...rows) : el('p', {}, 'None yet. With P, click on the object.'));
+  }
+}
+
+export class HistoryPanel {
+  /** @param {import('./store.js').Store} store @param {import('./stage.js').Stage} stage */
+  constructor(store, stage) {
+    this.store = store;
+    /** @type {Map<string, string>} pictures of what edits did, by id */
+    this.thumbs = new Map();
+    store.on('state', () => this.draw());
+    stage.addEventListener('exact', () => this.keepThumb(stage));
+  }
+
+  /** @param {import('./stage.js').Stage} stage */
+  keepThumb(stage) {
+    const last = this.store.last();
+    if (!last || this.thumbs.has(last.id) || stage.preview) return;
+    const small = document.createElement('canvas'), c = small.getContext('2d');
+    small.width = 80;
+    small.height = 60;
+    const { width: w, height: h } = stage.picture, s = Math.max(80 / w, 60 / h);
+    c?.drawImage(stage.picture, (80 - w * s) / 2, (60 - h * s) / 2, w * s, h * s);
+    this.thumbs.set(last.id, small.toDataURL('image/webp', 0.8));
+    small.toBlob((blob) => {
+      if (!blob) return;
+      this.thumbs.set(last.id, URL.createObjectURL(blob));
+      this.draw();
+    });
+  }
+
+  /** @param {any} e @param {number} index */
+  row(e, index) {
+    const { store } = this, text = describe(e), locked = store.state.read_only;
+    const url = this.thumbs.get(e.id);
+    const now = index === store.state.done - 1 && e.done;
+    return el('li', { class: [now ? 'on' : '', e.enabled ? '' : 'off', e.done ? '' : 'undone'].join(' ') }, el('div', { class: 'row' },
+      url?.startsWith('blob:') ? el('img', { class: 'thumb', src: url, alt: '' }) : el('span', { class: 'thumb' }, glyph(opGlyphs[e.op] ?? 'paint')),
+      el('button', { class: 'label', disabled: locked, title: e.done ? 'Go back to this step' : 'Go forward to this step', 'aria-current': now ? 'step' : undefined,
+        onclick: () => store.change('goto', { done: index + 1 }) }, e.name || `${opNames[e.op] ?? e.op}`, ' ', el('span', { class: 'quiet' }, text)),
+      el('button', { 'aria-label': `Rename ${e.id}`, title: 'Rename', disabled: locked, onclick: () => this.rename(e) }, glyph('pencil')),
+      el('button', { 'aria-label': e.enabled ? `Switch ${e.id} off` : `Switch ${e.id} on`, title: e.enabled ? 'Switch off' : 'Switch on', 'aria-pressed': String(!e.enabled), disabled: locked,
+        onclick: () => store.change('toggle', { id: e.id }) }, glyph(e.enabled ? 'eye' : 'hidden'))));
+  }
+
+  /** @param {any} e */
+  rename(e) {
+    const input = el('input', { type: 'text', value: e.name ?? '', maxlength: '80', 'aria-label': `Name of ${e.id}` });
+    const rows = [...byId('history').querySelectorAll('.label')];
+    const label = rows.find((r) => r.dataset.id === e.id) ?? null;
+    const finish = (/** @type {boolean} */ keep) => { if (keep && input.value !== (e.name ?? '')) this.store.change('rename', { id: e.id, name: input.value.trim() }); else this.draw(); };
+    input.onkeydown = (/** @type {KeyboardEvent} */ k) => {
+      k.stopPropagation();
+      if (k.key === 'Enter') { input.onblur = null; finish(true); }
+      if (k.key === 'Escape') { input.onblur = null; finish(false); }
+    };
+    input.onblur = () => finish(true);
+    (label ?? rows[0])?.replaceWith(input);
+    input.focus();
+  }
+
+  draw() {
+    const { store } = this, all = store.state.history;
+    const steps = all.filter((/** @type {any} */ e) => !e.set_aside), aside = all.filter((/** @type {any} */ e) => e.set_aside);
+    const rows = steps.map((/** @type {any} */ e, /** @type {number} */ i) => this.row(e, i)).reverse();
+    const start = el('li', { class: store.state.done === 0 ? 'on' : '' }, el('div', { class: 'row' }, el('span', { class: 'thumb' }),
+      el('button', { class: 'label', disabled: store.state.read_only, onclick: () => store.change('goto', { done: 0 }) }, 'As reconstructed')));
+    byId('history').replaceChildren(el('h2', { id: 'history-title' }, 'History'),
+      el('ul', { class: 'list tall' }, ...rows, start, ...(aside.length ? [this.aside(aside)] : [])));
+    [...byId('history').querySelectorAll('li .label')].forEach((node, i) => { if (i < steps.length) node.dataset.id = steps[steps.length - 1 - i].id; });
+  }
+
+  /** @param {any[]} aside */
+  aside(aside) {
+    return el('li', {}, el('details', {}, el('summary', {}, `${aside.length} set aside by later edits`),
+      el('ul', { class: 'list' }, ...aside.map((e) => el('li', { class: 'undone' }, el('div', { class: 'row' },
+        el('span', { class: 'label' }, e.name || opNames[e.op], ' ', el('span', { class: 'quiet' }, describe(e))),
+        el('button', { class: 'small', onclick: () => this.store.change('restore', { id: e.id }) }, 'Restore'))))),
+      el('button', { class: 'small danger', onclick: () => this.store.change('forget') }, 'Forget these')));
+  }
+}
+
+export class PhotoStrip {
+  /** @param {import('./store.js').Store} store @param {import('./stage.js').Stage} stage @param {(name: string) => void} go */
+  constructor(store, stage, go) {
+    this.store = store;
+    this.stage = stage;
+    this.go = go;
+    /** @type {Map<string, string>} */
+    this.urls = new Map();
+    /** @type {any[]} */
+    this.views = [];
+    store.on('mode', ({ mode }) => { if (mode === 'project') this.begin(); });
+    stage.addEventListener('photo', () => this.mark());
+  }
+
+  begin() {
+    for (const url of this.urls.values()) URL.revokeObjectURL(url);
+    this.urls.clear();
+    this.views = this.store.object.views.filter((/** @type {any} */ v) => v.photo);
+    const strip = byId('strip');
+    if (this.views.length === 0) {
+      strip.replaceChildren(el('p', {}, 'The photographs are not where they were when the object was made.'));
+      return;
+    }
+    const seen = new IntersectionObserver((entries) => {
+      for (const e of entries) if (e.isIntersecting) {
+        seen.unobserve(e.target);
+        this.load(/** @type {HTMLElement} */ (e.target));
+      }
+    }, { root: strip, rootMargin: '0px 400px' });
+    strip.replaceChildren(...this.views.map((v) => el('button', { 'aria-label': `Photograph ${v.name}`, title: v.name, 'aria-pressed': 'false', 'data-view': v.name, onclick: () => this.go(v.name) })));
+    for (const b of strip.children) seen.observe(b);
+  }
+
+  /** @param {HTMLElement} button */
+  async load(button) {
+    try {
+      button.replaceChildren(el('img', { src: await this.url(button.dataset.view ?? '', 96), alt: '', draggable: false }));
+    } catch { /* the button stays without a picture */ }
+  }
+
+  /** @param {string} view @param {number} width @returns {Promise<string>} */
+  async url(view, width) {
+    const key = `${view} ${width}`, known = this.urls.get(key);
+    if (known) return known;
+    const url = URL.createObjectURL(await getBlob(`/api/photo/${view.split('/').map(encodeURIComponent).join('/')}?width=${width}`));
+    this.urls.set(key, url);
+    return url;
+  }
+
+  mark() {
+    for (const b of byId('strip').children) {
+      const on = b.dataset.view === this.stage.photo;
+      b.setAttribute('aria-pressed', String(on));
+      if (on) b.scrollIntoView({ block: 'nearest', inline: 'nearest' });
+    }
+  }
+
+  /** @param {number} step */
+  next(step) {
+    if (!this.views.length) return;
+    const at = this.views.findIndex((v) => v.name === this.stage.photo);
+    this.go(this.views[(at + step + this.views.length) % this.views.length].name);
+  }
+}

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/** Material and light: tools whose controls are in the panel. What is tried is shown at once; letting go keeps it. */
+import { complain, el, toast } from './dom.js';
+import { postJson, upload } from './api.js';
+
+/** @type {[string, string, string][]} key, label, what it means */
+const sliders = [
+  ['roughness', 'Roughness', '0: mirror, 1: chalk'],
+  ['specular', 'Specular', 'strength of the reflection of what is no metal'],
+  ['metalness', 'Metalness', '0: no metal, 1: metal'],
+];
+
+export class MaterialTool {
+  /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store */
+  constructor(stage, store) {
+    this.stage = stage;
+    this.store = store;
+    this.name = 'material';
+    this.label = 'Material';
+    this.hint = 'Move a slider: the picture follows. Letting go keeps it, as one step. Double-click a slider: as it was.';
+    this.number = 0;
+    this.waiting = false;
+  }
+
+  /** The last edit, if it is one of the material of what is selected now. */
+  own() {
+    const last = this.store.last();
+    return last?.op === 'material' && last.enabled && (last.params.part ?? '') === (this.store.part ?? '') ? last : null;
+  }
+
+  values() {
+    const base = this.store.object?.material ?? {};
+    /** @type {any} */
+    const values = { roughness: base.roughness, specular: base.specular, metalness: base.metalness };
+    for (const e of this.store.done())
+      if (e.op === 'material' && e.enabled && (!e.params.part || e.params.part === this.store.part))
+        for (const [key] of sliders) if (e.params[key] !== undefined) values[key] = e.params[key];
+    return values;
+  }
+
+  panel() {
+    const values = this.values(), params = this.own()?.params ?? {};
+    const row = (/** @type {[string, string, string]} */ [key, label, help]) => {
+      const output = el('output', {}, values[key]?.toFixed(2) ?? '');
+      return el('label', { class: 'field', title: help }, label, el('input', {
+        type: 'range', min: '0', max: '1', step: '0.01', value: String(values[key] ?? 0.5), 'data-key': key,
+        oninput: (/** @type {any} */ e) => { output.textContent = Number(e.target.value).toFixed(2); this.try({ [key]: Number(e.target.value) }); },
+        onchange: (/** @type {any} */ e) => this.keep({ [key]: Number(e.target.value) }),
+        ondblclick: () => this.keep({ [key]: this.store.object.material[key] }),
+      }), output);
+    };
+    const tint = params.color ?? '#b0b0b0';
+    return [
+      el('p', {}, this.store.part ? `Of the part ${this.store.part}.` : 'Of the whole object; select a part to change only that.'),
+      ...sliders.map(row),
+      el('label', { class: 'field wide' }, 'Color', el('span', { class: 'inline' }, el('input', { type: 'color', value: tint, id: 'material-color',
+        oninput: (/** @type {any} */ e) => this.try({ color: e.target.value, ...this.replaced() }), onchange: (/** @type {any} */ e) => this.keep({ color: e.target.value, ...this.replaced() }) }),
+        el('label', {}, el('input', { type: 'checkbox', id: 'material-replace', checked: params.replace === true }), ' plain'))),
+      el('label', { class: 'field' }, 'Preset', el('select', { id: 'material-preset', onchange: (/** @type {any} */ e) => { if (e.target.value) this.keep({ material: e.target.value }, true); } },
+        el('option', { value: '' }, 'choose'), ...(this.store.object?.presets ?? []).map((/** @type {string} */ n) => el('option', { value: n, selected: params.material === n }, n)))),
+    ];
+  }
+
+  replaced() { return /** @type {any} */ (document.getElementById('material-replace'))?.checked ? { replace: true } : {}; }
+
+  /** What the edit says: of the last edit what this change leaves. @param {object} change @param {boolean} fresh */
+  params(change, fresh = false) {
+    const own = fresh ? {} : { ...(this.own()?.params ?? {}) };
+    delete (/** @type {any} */ (own).part);
+    return { ...own, ...change, ...(this.store.part ? { part: this.store.part } : {}) };
+  }
+
+  /** @param {object} change */
+  async try(change) {
+    this.wanted = change;
+    if (this.waiting) return;
+    this.waiting = true;
+    const number = this.number;
+    while (this.wanted && number === this.number) {
+      const params = this.params(this.wanted);
+      this.wanted = null;
+      try {
+        const made = await postJson('preview', { op: 'material', params, amend: this.own() !== null });
+        if (number !== this.number) break;
+        await this.stage.tryEdit(made.token, true);
+      } catch (error) { complain(error); }
+    }
+    this.waiting = false;
+  }
+
+  /** @param {object} change @param {boolean} [fresh] */
+  async keep(change, fresh = false) {
+    ++this.number;
+    this.wanted = null;
+    await this.store.change('edit', { op: 'material', params: this.params(change, fresh), amend: this.own() !== null });
+    await this.stage.tryEdit(null);
+  }
+
+  leave() {
+    ++this.number;
+    if (this.stage.preview) this.stage.tryEdit(null);
+  }
+}
+
+export class LightTool {
+  /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store @param {() => void} changed */
+  constructor(stage, store, changed) {
+    this.stage = stage;
+    this.store = store;
+    this.changed = changed;
+    this.name = 'light';
+    this.label = 'Light';
+    this.hint = 'Turn the dial, or Shift and the right button; drop an .hdr or .exr on the view. Nothing is changed before Keep.';
+    this.file = '';
+  }
+
+  differs() { const l = this.stage.light; return l.rotate !== 0 || l.scale !== 1 || l.env !== undefined; }
+
+  panel() {
+    const l = this.stage.light, out = el('output', {}, `${Math.round(l.rotate)}°`), bright = el('output', {}, l.scale.toFixed(2));
+    return [
+      el('p', {}, this.file && l.env ? `Looking under ${this.file}.` : 'The object’s light, as edited so far.'),
+      el('label', { class: 'field' }, 'Turned', el('input', { type: 'range', min: '-180', max: '180', step: '1', value: String(l.rotate), id: 'light-rotate',
+        oninput: (/** @type {any} */ e) => { this.stage.light.rotate = Number(e.target.value); out.textContent = `${e.target.value}°`; this.stage.moved(); this.update(); },
+        ondblclick: () => this.set({ rotate: 0 }) }), out),
+      el('label', { class: 'field' }, 'Strength', el('input', { type: 'range', min: '-2', max: '2', step: '0.05', value: String(Math.log2(l.scale)), id: 'light-scale',
+        oninput: (/** @type {any} */ e) => { this.stage.light.scale = 2 ** Number(e.target.value); bright.textContent = this.stage.light.scale.toFixed(2); this.stage.moved(); this.update(); },
+        ondblclick: () => this.set({ scale: 1 }) }), bright),
+      el('div', { class: 'buttons' },
+        el('button', { onclick: () => this.choose() }, 'Environment…'),
+        el('button', { class: 'primary', id: 'light-keep', onclick: () => this.keep() }, 'Keep'),
+        el('button', { id: 'light-drop', onclick: () => this.drop() }, 'Drop')),
+    ];
+  }
+
+  update() { for (const id of ['light-keep', 'light-drop']) { const b = /** @type {any} */ (document.getElementById(id)); if (b) b.disabled = !this.differs(); } }
+
+  enter() { this.update(); }
+
+  /** @param {object} values */
+  set(values) {
+    Object.assign(this.stage.light, values);
+    this.stage.moved();
+    this.changed();
+    this.update();
+  }
+
+  /** @param {number} degrees */
+  turn(degrees) {
+    let rotate = this.stage.light.rotate + degrees;
+    if (rotate > 180) rotate -= 360;
+    if (rotate < -180) rotate += 360;
+    this.set({ rotate });
+  }
+
+  choose() {
+    const input = el('input', { type: 'file', accept: '.hdr,.exr,.npy,image/*' });
+    input.onchange = () => { if (input.files[0]) this.take(input.files[0]); };
+    input.click();
+  }
+
+  /** @param {File} file */
+  async take(file) {
+    try {
+      const env = await upload(file, file.name);
+      this.file = file.name;
+      this.set({ env });
+      toast(`Looking under ${file.name}; Keep makes it the object’s light.`);
+    } catch (error) { complain(error); }
+  }
+
+  async keep() {
+    if (!this.differs()) return;
+    const l = this.stage.light;
+    const done = await this.store.change('edit', { op: 'light', params: { rotate: l.rotate, scale: l.scale, ...(l.env ? { env: l.env } : {}) } });
+    if (done) this.drop();
+  }
+
+  drop() {
+    this.stage.light = { rotate: 0, scale: 1 };
+    this.file = '';
+    this.stage.moved();
+    this.changed();
+    this.update();
+  }
+}
+
+/** What the object is, when no other tool needs the panel. @param {import('./store.js').Store} store */
+export function objectPanel(store) {
+  const o = store.object;
+  if (!o) return [];
+  return [el('p', {}, o.summary), ...(o.warning ? [el('p', {}, o.warning)] : [])];
+}

@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/** Parts by clicks, and the overlay that shows a part. */
+import { complain, el, toast } from './dom.js';
+import { postForBlob, postJson } from './api.js';
+import { ring } from './paint.js';
+
+/** Colors of parts, by their place in the list; names and outlines tell them apart, too. */
+export const partColors = ['#ffb454', '#6ea8ff', '#6fd08c', '#e58cff', '#ff8080', '#5fd7d7', '#d7c75f', '#b0a0ff'];
+
+/** @param {Blob} png grey @param {string} color @returns {Promise<HTMLCanvasElement>} the mask in that color, with a rim */
+async function tinted(png, color) {
+  const picture = await createImageBitmap(png);
+  const canvas = document.createElement('canvas');
+  canvas.width = picture.width;
+  canvas.height = picture.height;
+  const c = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
+  c.drawImage(picture, 0, 0);
+  const image = c.getImageData(0, 0, canvas.width, canvas.height), d = image.data, w = canvas.width;
+  const [r, g, b] = [1, 3, 5].map((i) => parseInt(color.slice(i, i + 2), 16));
+  const inside = new Uint8Array(d.length / 4);
+  for (let i = 0; i < inside.length; ++i) inside[i] = d[4 * i] > 127 ? 1 : 0;
+  for (let i = 0; i < inside.length; ++i) {
+    const rim = inside[i] && !(inside[i - 1] && inside[i + 1] && inside[i - w] && inside[i + w] && inside[i - 2 * w] && inside[i + 2 * w]);
+    d.set([r, g, b, inside[i] ? (rim ? 255 : 92) : 0], 4 * i);
+  }
+  c.putImageData(image, 0, 0);
+  return canvas;
+}
+
+/** Shows the selected part, or the one that is previewed, over the picture. */
+export class PartOverlay {
+  /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store */
+  constructor(stage, store) {
+    this.stage = stage;
+    this.store = store;
+    /** @type {HTMLCanvasElement | null} */
+    this.mask = null;
+    this.asked = 0;
+    /** @type {string | null} */
+    this.token = null;
+    stage.addEventListener('moved', () => { this.mask = null; });
+    stage.addEventListener('exact', () => { if (!this.mask) this.refresh(); });
+    store.on('part', () => this.refresh());
+    store.on('revision', () => this.refresh());
+  }
+
+  /** @param {string | null} token of a preview */
+  show(token) {
+    this.token = token;
+    return this.refresh();
+  }
+
+  async refresh() {
+    const asked = ++this.asked, part = this.store.part;
+    if (!this.token && !part) {
+      this.mask = null;
+      this.stage.redraw();
+      return;
+    }
+    const index = this.store.state.parts.findIndex((/** @type {any} */ p) => p.name === part);
+    const color = partColors[Math.max(0, this.token ? this.store.state.parts.length : index) % partColors.length];
+    try {
+      const what = this.token ? { token: this.token } : { part };
+      const mask = await tinted(await postForBlob('mask', { camera: this.stage.json(), ...what }), color);
+      if (asked === this.asked) this.mask = mask;
+    } catch (error) {
+      if (asked === this.asked) this.mask = null;
+    }
+    this.stage.redraw();
+  }
+
+  /** @param {CanvasRenderingContext2D} c */
+  draw(c) { if (this.mask) c.drawImage(this.mask, 0, 0, c.canvas.width, c.canvas.height); }
+}
+
+export class PartTool {
+  /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store @param {PartOverlay} overlay */
+  constructor(stage, store, overlay) {
+    this.stage = stage;
+    this.store = store;
+    this.overlay = overlay;
+    this.name = 'part';
+    this.label = 'Part';
+    this.hint = 'Click on the part; Alt or the right button: not this. Enter keeps it, Esc drops it.';
+    this.segmenter = 'grow';
+    this.how = 'new';
+    this.number = 0;
+    /** @type {{x: number, y: number, out: boolean}[]} */
+    this.clicks = [];
+    /** @type {any} camera of the clicks */
+    this.camera = null;
+    /** @type {string | null} */
+    this.token = null;
+    /** @type {any} */
+    this.report = null;
+    /** @type {any} */
+    this.pressed = null;
+    /** @type {any} */
+    this.at = null;
+    stage.addEventListener('moved', () => { if (this.clicks.length) this.camera ??= null; });
+  }
+
+  clear() {
+    this.clicks = [];
+    this.camera = null;
+    this.token = null;
+    ++this.number;
+    this.overlay.show(null);
+  }
+
+  leave() { this.clear(); }
+
+  options() {
+    const selected = this.store.part;
+    const modes = [['new', 'New part'], ...(selected ? [['add', `Add to ${selected}`], ['subtract', `Take from ${selected}`], ['intersect', `Cut with ${selected}`]] : [])];
+    return [
+      el('label', {}, 'Makes', el('select', { id: 'part-how', onchange: (/** @type {any} */ e) => { this.how = e.target.value; this.preview(); } },
+        ...modes.map(([v, t]) => el('option', { value: v, selected: this.how === v }, t)))),
+      ...(this.store.object?.segment ? [el('label', {}, 'Found by', el('select', { onchange: (/** @type {any} */ e) => { this.segmenter = e.target.value; this.preview(); } },
+        el('option', { value: 'grow' }, 'color and creases'), el('option', { value: 'sam' }, 'network')))] : []),
+      el('label', {}, 'Name', el('input', { type: 'text', id: 'part-name', placeholder: 'part', maxlength: '60', autocomplete: 'off' })),
+      el('button', { class: 'primary', id: 'part-keep', onclick: () => this.keep() }, 'Keep'),
+      el('button', { onclick: () => this.drop() }, 'Drop'),
+    ];
+  }
+
+  /** @param {any} p */
+  down(p) { this.pressed = p; }
+  /** @param {any} p */
+  up(p) { this.click(this.pressed ?? p); }
+  /** @param {any} p */
+  click(p) {
+    if (!p.onObject) return;
+    if (!this.camera) this.camera = this.stage.json();
+    else if (JSON.stringify(this.camera) !== JSON.stringify(this.stage.json())) {
+      toast('These clicks are for the view in which they began; keep the part, then add to it from here.');
+      return;
+    }
+    this.clicks.push({ x: p.x, y: p.y, out: p.alt });
+    this.stage.redraw();
+    this.preview();
+  }
+
+  /** @param {any} p */
+  hover(p) { this.at = p; }
+
+  undo() {
+    if (!this.clicks.length) return false;
+    this.clicks.pop();
+    if (this.clicks.length) this.preview();
+    else this.clear();
+    this.stage.redraw();
+    return true;
+  }
+
+  async preview() {
+    const number = ++this.number;
+    if (!this.clicks.some((c) => !c.out)) return;
+    const of = (/** @type {boolean} */ out) => this.clicks.filter((c) => c.out === out).map((c) => [c.x, c.y]);
+    const part = this.store.part, combine = this.how !== 'new' && part ? { [this.how]: part } : {};
+    const name = /** @type {HTMLInputElement | null} */ (document.getElementById('part-name'))?.value.trim() ?? '';
+    try {
+      const made = await postJson('preview', { op: 'part', params: {
+        camera: this.camera, positive: of(false), negative: of(true), segmenter: this.segmenter, ...combine, ...(name ? { name } : {}) } });
+      if (number !== this.number) return;
+      this.token = made.token;
+      this.report = made.report;
+      await this.overlay.show(made.token);
+      toast(`${made.part}: ${(100 * made.report.share).toFixed(1)} % of the surface. Enter keeps it.`);
+    } catch (error) {
+      if (number === this.number) complain(error);
+    }
+  }
+
+  async keep() {
+    if (!this.clicks.length) return;
+    await this.preview();  // with the name as it is now
+    const token = this.token;
+    if (!token) return;
+    const done = await this.store.change('commit', { token });
+    if (!done) return;
+    this.clear();
+    this.store.select(done.part);
+    toast(`Part ${done.part} is kept.`);
+  }
+
+  drop() {
+    this.clear();
+    this.stage.redraw();
+  }
+
+  /** @param {CanvasRenderingContext2D} c */
+  draw(c) {
+    for (const k of this.clicks) {
+      const r = 8;
+      ring(c, k.x, k.y, r);
+      c.fillStyle = k.out ? '#c62828' : '#1b7f3b';
+      c.beginPath();
+      c.arc(k.x, k.y, r - 1, 0, 2 * Math.PI);
+      c.fill();
+      c.strokeStyle = '#fff';
+      c.lineWidth = 2;
+      c.beginPath();
+      c.moveTo(k.x - 4, k.y); c.lineTo(k.x + 4, k.y);
+      if (!k.out) { c.moveTo(k.x, k.y - 4); c.lineTo(k.x, k.y + 4); }
+      c.stroke();
+    }
+  }
+}

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/** What the page knows of the program: its state, and how to change it. One change at a time, in order. */
+import { ApiError, getJson, Line, postJson } from './api.js';
+import { complain } from './dom.js';
+
+export class Store extends EventTarget {
+  constructor() {
+    super();
+    /** @type {any} */
+    this.state = { mode: 'opening', history: [], parts: [] };
+    /** @type {any} */
+    this.object = null;
+    /** @type {string | null} name of the selected part */
+    this.part = null;
+    this.saving = 0;
+    this.lost = false;
+    this.line = new Line();
+    this.stranger = false;  // a program answers that does not know this page's key
+    this.line.on('welcome', () => { this.stranger = false; this.setLost(false); });
+    this.line.on('stranger', () => { this.stranger = true; this.setLost(true); });
+    this.line.on('lost', () => this.setLost(true));
+    this.line.on('state', () => this.refresh());
+    /** @type {Promise<any>} */
+    this.queue = Promise.resolve();
+  }
+
+  /** @param {string} type @param {(detail: any) => void} listener */
+  on(type, listener) { this.addEventListener(type, (e) => listener(/** @type {CustomEvent} */ (e).detail)); }
+  /** @param {string} type @param {any} [detail] */
+  emit(type, detail) { this.dispatchEvent(new CustomEvent(type, { detail })); }
+
+  /** @param {boolean} lost */
+  setLost(lost) {
+    this.lost = lost;
+    this.emit('saving');
+    if (!lost) this.refresh();
+  }
+
+  async refresh() {
+    try {
+      await this.take(await getJson('/api/state'));
+    } catch (error) {
+      if (/** @type {any} */ (error).status !== 0) complain(error);
+    }
+  }
+
+  /** @param {any} state */
+  async take(state) {
+    const before = this.state;
+    if (state.mode === 'project' && (before.mode !== 'project' || before.folder !== state.folder)) {
+      this.object = await getJson('/api/object');
+      this.part = null;
+    }
+    state.history ??= [];
+    state.parts ??= [];
+    this.state = state;
+    if (this.part && !state.parts.some((/** @type {any} */ p) => p.name === this.part)) this.part = null;
+    if (before.mode !== state.mode || before.folder !== state.folder) this.emit('mode', state);
+    this.emit('state', state);
+    if (before.revision !== state.revision) this.emit('revision', { before, state });
+  }
+
+  /** @param {string | null} name */
+  select(name) {
+    this.part = name;
+    this.emit('part', name);
+  }
+
+  /**
+   * Changes the object. Waits for the changes before it; where the connection is lost it tries again when it is back.
+   * @param {string} route @param {object} [body] @returns {Promise<any>} the result; undefined: it failed and the user knows
+   */
+  change(route, body = {}) {
+    ++this.saving;
+    this.emit('saving');
+    const done = this.queue.then(() => this.send(route, body)).catch(complain);
+    this.queue = done.finally(() => {
+      --this.saving;
+      this.emit('saving');
+    });
+    return done;
+  }
+
+  /** @param {string} route @param {any} body @returns {Promise<any>} */
+  async send(route, body) {
+    const before = this.state;
+    for (;;) {
+      try {
+        const answer = await postJson(route, body, before.revision);
+        await this.take(answer.state);
+        return answer.result;
+      } catch (error) {
+        if (!(error instanceof ApiError)) throw error;
+        if (error.status === 409) {
+          await this.refresh();
+          // It arrived before the connection was lost: the history has grown by it.
+          const last = this.done().at(-1);
+          if (route === 'edit' && this.retried && last?.op === body.op && this.state.done === before.done + 1) return last;
+          throw error;
+        }
+        if (error.status !== 0) throw error;
+        this.retried = true;
+        this.setLost(true);
+        await new Promise((resolve) => this.line.addEventListener('welcome', resolve, { once: true }));
+      }
+    }
+  }
+
+  /** Edits that are done, in order. @returns {any[]} */
+  done() { return this.state.history.slice(0, this.state.done); }
+  /** The last edit that is done. @returns {any} */
+  last() { return this.done().at(-1); }
+  canUndo() { return this.state.done > 0; }
+  canRedo() { return this.state.history.some((/** @type {any} */ e) => !e.done && !e.set_aside); }
+}

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: Apache-2.0
+// editor.cjs PROGRAM PROJECT PICTURES CHROMIUM: a first session in the live editor, in a browser, with what can go wrong.
+const fs = require('node:fs');
+const path = require('node:path');
+const { chromium } = require('playwright-core');
+const { serve, settled } = require('./serve.cjs');
+const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+
+const [program, project, pictures, executablePath] = process.argv.slice(2);
+fs.mkdirSync(pictures, { recursive: true });
+const began = Date.now();
+const say = (text) => console.log(`${((Date.now() - began) / 1000).toFixed(1)} s  ${text}`);
+
+function check(what, condition) {
+  if (!condition) throw new Error(`FAILED: ${what}`);
+  say(what);
+}
+
+const state = (page) => page.evaluate(() => globalThis.cei3d.store.state);
+const picture = async (page, name) => page.screenshot({ path: path.join(pictures, `${name}.png`) });
+
+async function accessible(page, name) {
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => window.axe.run(document, { runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa'] }));
+  for (const v of violations) console.log(v.id, v.help, v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160)));
+  check(`no violation of WCAG 2.2 AA: ${name}`, violations.length === 0);
+}
+
+/** No two of the page's areas overlap, and nothing is cut off. */
+async function tidy(page, name) {
+  const problems = await page.evaluate(() => {
+    const areas = ['.bar', '#tools', '#stage', '#panels', '#strip', '.status'].map((s) => [s, document.querySelector(s)]).filter(([, n]) => n && n.offsetParent !== null || n?.getBoundingClientRect().width > 0);
+    const out = [];
+    for (const [a, x] of areas) for (const [b, y] of areas) {
+      const p = x.getBoundingClientRect(), q = y.getBoundingClientRect();
+      if (a < b && p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 1 && q.top < p.bottom - 1) out.push(`${a} ${b}`);
+    }
+    if (document.documentElement.scrollWidth > innerWidth || document.documentElement.scrollHeight > innerHeight) out.push('the page scrolls');
+    return out;
+  });
+  check(`the page is tidy: ${name} ${problems}`, problems.length === 0);
+}
+
+/** Pixels of the picture: object or not, and colors. */
+const pixels = (page, list) => page.evaluate((at) => {
+  const c = document.getElementById('picture').getContext('2d');
+  return at.map(([x, y]) => [...c.getImageData(Math.round(x), Math.round(y), 1, 1).data]);
+}, list);
+
+/** The middle of the object's pixels, in pixels of the window. */
+const middle = (page) => page.evaluate(() => {
+  const canvas = document.getElementById('picture'), { width, height } = canvas;
+  const d = canvas.getContext('2d').getImageData(0, 0, width, height).data;
+  let n = 0, sx = 0, sy = 0;
+  for (let y = 0; y < height; y += 2) for (let x = 0; x < width; x += 2) if (d[4 * (y * width + x) + 3] > 200) { n += 1; sx += x; sy += y; }
+  const r = canvas.getBoundingClientRect(), s = r.width / width;
+  return { n, fx: sx / n, fy: sy / n, x: r.left + (sx / n) * s, y: r.top + (sy / n) * s };
+});
+
+async function drag(page, from, to, options = {}) {
+  await page.mouse.move(...from);
+  await page.mouse.down(options);
+  await page.mouse.move((from[0] + to[0]) / 2, (from[1] + to[1]) / 2, { steps: 4 });
+  await page.mouse.move(...to, { steps: 4 });
+  await page.mouse.up(options);
+}
+
+async function firstSession(page, url) {
+  await page.goto(url);
+  await page.waitForFunction(() => document.getElementById('cover').classList.contains('done'), null, { timeout: 30000 });
+  say('first picture');
+  await settled(page);
+  check('the key left the address', !page.url().includes('k='));
+  await picture(page, '1-open');
+  await tidy(page, '1280 x 720');
+  await accessible(page, 'open');
+
+  const at = await middle(page);
+  check('the object is in the picture', at.n > 2000);
+  await drawsItself(page);
+  const box = await page.locator('#view').boundingBox();
+  const before = await page.evaluate(() => globalThis.cei3d.stage.json().center.join());
+  await drag(page, [box.x + 30, box.y + box.height - 40], [box.x + 150, box.y + box.height - 60]);
+  check('dragging beside the object turns it', before !== await page.evaluate(() => globalThis.cei3d.stage.json().center.join()));
+  await settled(page);
+  await page.keyboard.press('Home');
+  await settled(page);
+}
+
+/** What the page draws while something moves is nearly the program's own frame. */
+async function drawsItself(page) {
+  await page.waitForFunction(() => globalThis.cei3d.stage.live.current(), null, { timeout: 30000 });
+  const psnr = await page.evaluate(() => {
+    const { stage } = globalThis.cei3d, { width, height } = stage.picture;
+    stage.live.draw(stage.json(), stage.channel, stage.light);
+    const pixels = (source) => {
+      const copy = document.createElement('canvas');
+      copy.width = width;
+      copy.height = height;
+      const c = copy.getContext('2d');
+      c.fillStyle = '#fff';
+      c.fillRect(0, 0, width, height);
+      c.drawImage(source, 0, 0);
+      return c.getImageData(0, 0, width, height).data;
+    };
+    const a = pixels(stage.live.canvas), b = pixels(stage.picture);
+    let sum = 0;
+    for (let i = 0; i < a.length; ++i) if (i % 4 !== 3) sum += (a[i] - b[i]) ** 2;
+    return 10 * Math.log10(255 ** 2 / (sum / (0.75 * a.length)));
+  });
+  check(`the page draws what the program does: ${psnr.toFixed(1)} dB`, psnr > 34);
+}
+
+async function paints(page) {
+  const at = await middle(page);
+  await page.keyboard.press('b');
+  await page.fill('#brush-color', '#10c040');
+  const [was] = await pixels(page, [[at.fx, at.fy]]);
+  await drag(page, [at.x - 20, at.y], [at.x + 20, at.y]);
+  await page.waitForTimeout(100);
+  await picture(page, '2-stroke');
+  await settled(page);
+  check('a stroke is an edit', (await state(page)).done === 1);
+  const [is] = await pixels(page, [[at.fx, at.fy]]);
+  check(`the paint is green: ${was} to ${is}`, is[1] > is[0] + 40 && is[1] > is[2] + 20);
+  await picture(page, '3-painted');
+  await page.keyboard.press('Control+z');
+  await settled(page);
+  const [back] = await pixels(page, [[at.fx, at.fy]]);
+  check('undo gives the same picture', back.join() === was.join() && (await state(page)).done === 0);
+  await page.keyboard.press('Control+y');
+  await settled(page);
+  check('redo gives the same picture', (await pixels(page, [[at.fx, at.fy]]))[0].join() === is.join());
+  await page.fill('#brush-color', '#0000ff');
+  await page.focus('#view');
+  await page.keyboard.press('i');
+  await page.waitForFunction(() => document.getElementById('brush-color').value !== '#0000ff');
+  const taken = await page.inputValue('#brush-color');
+  const [r, g, b] = [1, 3, 5].map((i) => parseInt(taken.slice(i, i + 2), 16));
+  check(`the eyedropper takes the paint's albedo: ${taken}`, g > 150 && r < 60 && b < 110);
+}
+
+async function selects(page) {
+  const at = await middle(page);
+  await page.keyboard.press('p');
+  await page.fill('#part-name', 'side');
+  await page.mouse.click(at.x, at.y);
+  await page.waitForFunction(() => globalThis.cei3d.store.state.mode === 'project' && document.querySelector('.toast')?.textContent.includes('% of the surface'), null, { timeout: 30000 });
+  await picture(page, '4-part');
+  await page.focus('#view');
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => globalThis.cei3d.store.part === 'side', null, { timeout: 30000 });
+  await settled(page);
+  check('a part by a click', (await state(page)).parts[0].name === 'side');
+  await picture(page, '5-part-kept');
+  await accessible(page, 'a part is selected');
+}
+
+async function polishes(page) {
+  await page.keyboard.press('v');
+  await page.keyboard.press('m');
+  const slider = page.locator('#properties input[data-key="roughness"]');
+  const done = (await state(page)).done;
+  for (const value of ['0.35', '0.15']) {
+    await slider.evaluate((node, v) => { node.value = v; node.dispatchEvent(new Event('input')); }, value);
+    await page.waitForTimeout(150);
+    await slider.evaluate((node) => node.dispatchEvent(new Event('change')));
+    await settled(page);
+  }
+  const now = await state(page);
+  check('two drags of a slider are one step', now.done === done + 1);
+  check('with the last value', now.history[now.done - 1].params.roughness === 0.15 && now.history[now.done - 1].params.part === 'side');
+  await picture(page, '6-material');
+  await accessible(page, 'material');
+}
+
+async function lights(page) {
+  await page.keyboard.press('l');
+  const slider = page.locator('#light-rotate');
+  await slider.evaluate((node) => { node.value = '70'; node.dispatchEvent(new Event('input')); });
+  await settled(page);
+  const done = (await state(page)).done;
+  await picture(page, '7-light');
+  await page.click('#light-keep');
+  await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n + 1, done, { timeout: 30000 });
+  await settled(page);
+  check('light is kept', (await state(page)).history.at(-1).params.rotate_degrees === 70);
+}
+
+async function compares(page) {
+  await page.keyboard.press('v');
+  await page.focus('#view');
+  await page.keyboard.press('n');
+  await settled(page);
+  await page.keyboard.press('c');
+  await page.waitForFunction(() => document.getElementById('photo').complete && !document.getElementById('photo').hidden);
+  await page.waitForTimeout(400);
+  await picture(page, '8-compare');
+  await accessible(page, 'compare');
+  await page.focus('#view');
+  await page.keyboard.press('c');
+  await page.keyboard.press('Home');
+  await settled(page);
+}
+
+async function exports(page) {
+  await page.click('#export');
+  await accessible(page, 'export');
+  await picture(page, '9-export');
+  const [download] = await Promise.all([page.waitForEvent('download'), page.click('[data-export="PLY"]')]);
+  check('an export arrives', fs.readFileSync(await download.path()).subarray(0, 3).toString() === 'ply');
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('?');
+  await picture(page, '10-help');
+  await accessible(page, 'help');
+  await page.keyboard.press('Escape');
+}
+
+async function twoWindows(context, page, url) {
+  const other = await context.newPage();
+  await other.goto(url);
+  await settled(other);
+  const before = (await state(page)).done;
+  check('a second window shows the same history', (await state(other)).done === before);
+  await other.keyboard.press('Control+z');
+  await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n - 1, before, { timeout: 20000 });
+  check('undo in one window is seen in the other', (await state(other)).revision === (await state(page)).revision);
+  await page.evaluate(() => globalThis.cei3d.store.change('redo'));
+  await settled(page);
+  await other.close();
+}
+
+/** kill -9 while a stroke is being drawn: what was acknowledged is there, and the stroke is sent when the program is back. */
+async function dies(page, server) {
+  const before = await state(page);
+  const at = await middle(page);
+  await page.keyboard.press('b');
+  await page.mouse.move(at.x - 15, at.y + 12);
+  await page.mouse.down();
+  await page.mouse.move(at.x, at.y + 12, { steps: 3 });
+  const gone = new Promise((resolve) => server.process.on('exit', resolve));
+  server.process.removeAllListeners('exit');
+  server.process.on('exit', () => {});
+  process.kill(server.process.pid, 'SIGKILL');
+  await Promise.race([gone, page.waitForTimeout(300)]);
+  await page.mouse.move(at.x + 15, at.y + 12, { steps: 3 });
+  await page.mouse.up();
+  await page.waitForFunction(() => !document.getElementById('banner').hidden, null, { timeout: 10000 });
+  check('the page says that the program is gone', true);
+  await picture(page, '11-lost');
+  const log = JSON.parse(require('node:child_process').execFileSync(program, ['log', project, '--json']));
+  check('every acknowledged edit is there', log.edits.length === before.history.length);
+}
+
+async function keyboardOnly(page) {
+  await page.focus('#view');
+  const before = (await state(page)).done;
+  await page.keyboard.press('ArrowLeft');
+  await settled(page);
+  await page.keyboard.press('b');
+  await page.keyboard.press('.');
+  await page.keyboard.press('ArrowUp');
+  await page.keyboard.press(' ');
+  await settled(page);
+  check('painting by keys alone', (await state(page)).done === before + 1);
+  await page.keyboard.press('.');
+  await page.keyboard.press('Control+z');
+  await settled(page);
+}
+
+async function main() {
+  let server = await serve(program, project);
+  const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
+  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, acceptDownloads: true, colorScheme: 'dark', reducedMotion: 'reduce' });
+  const page = await context.newPage();
+  const errors = [];
+  page.on('pageerror', (error) => errors.push(String(error)));
+  page.on('console', (m) => { if (m.type() === 'error' && !/Failed to load resource|WebSocket connection/.test(m.text())) errors.push(m.text()); });
+  try {
+    await firstSession(page, server.url);
+    await paints(page);
+    await selects(page);
+    await polishes(page);
+    await lights(page);
+    await compares(page);
+    await exports(page);
+    await keyboardOnly(page);
+    await twoWindows(context, page, server.url);
+    const revision = (await state(page)).revision;
+    await page.reload();
+    await settled(page);
+    check('a reload shows the same', (await state(page)).revision === revision);
+    const { done } = await state(page);
+    await dies(page, server);
+    server = await serve(program, project, server.port);
+    await page.goto(server.url);
+    await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n + 1, done, { timeout: 20000 });
+    await settled(page);
+    check('what was drawn meanwhile is saved when the program is back', true);
+    await page.setViewportSize({ width: 820, height: 1180 });
+    await settled(page);
+    await tidy(page, 'tablet');
+    await picture(page, '12-tablet');
+    check(`no errors in the page ${errors.join('\n')}`, errors.length === 0);
+  } catch (error) {
+    await picture(page, 'failed').catch(() => {});
+    console.log(errors.join('\n'));
+    throw error;
+  } finally {
+    server.process.removeAllListeners('exit');
+    server.process.kill('SIGKILL');
+    await browser.close();
+  }
+}
+
+main().catch((error) => { console.error(error.message); process.exit(1); });

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// measure.cjs PROGRAM PROJECT CHROMIUM: how fast and how true the live editor is; prints a table. PROJECT is copied before
+// it is changed. Times of the page are with software rendering, as everything headless.
+const { execFileSync } = require('node:child_process');
+const fs = require('node:fs');
+const os = require('node:os');
+const path = require('node:path');
+const zlib = require('node:zlib');
+const { chromium } = require('playwright-core');
+const { serve, settled } = require('./serve.cjs');
+
+const [program, original, executablePath] = process.argv.slice(2);
+const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'cei3d-measure-'));
+const project = path.join(folder, 'object');
+fs.cpSync(original, project, { recursive: true });
+
+const row = (what, value) => console.log(`| ${what} | ${value} |`);
+const ms = (t) => `${Math.round(t)} ms`;
+const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length / 2)];
+const megabytes = (pid) => Number(/VmRSS:\s*(\d+)/.exec(fs.readFileSync(`/proc/${pid}/status`, 'utf8'))[1]) / 1024;
+
+function bundle() {
+  let raw = 0, packed = 0;
+  const visit = (at) => {
+    for (const e of fs.readdirSync(at, { withFileTypes: true })) {
+      if (e.isDirectory()) visit(path.join(at, e.name));
+      else if (/\.(js|css|html|svg)$/.test(e.name)) {
+        const bytes = fs.readFileSync(path.join(at, e.name));
+        raw += bytes.length;
+        packed += zlib.gzipSync(bytes).length;
+      }
+    }
+  };
+  visit(path.join(__dirname, '../../src/web'));
+  row('size of the page, raw and gzipped', `${Math.round(raw / 1000)} kB, ${Math.round(packed / 1000)} kB`);
+}
+
+/** PSNR of what the page draws against the program's refined frame of the same camera, on white, 8 bits. */
+const likeness = (page) => page.evaluate(() => {
+  const { stage } = globalThis.cei3d, { width, height } = stage.picture;
+  stage.live.draw(stage.json(), stage.channel, stage.light);
+  const copy = document.createElement('canvas');
+  const pixels = (source) => {
+    copy.width = width;
+    copy.height = height;
+    const c = copy.getContext('2d');
+    c.fillStyle = '#fff';
+    c.fillRect(0, 0, width, height);
+    c.drawImage(source, 0, 0);
+    return c.getImageData(0, 0, width, height).data;
+  };
+  const a = pixels(stage.live.canvas), b = pixels(stage.picture);
+  let sum = 0;
+  for (let i = 0; i < a.length; ++i) if (i % 4 !== 3) sum += (a[i] - b[i]) ** 2;
+  return 10 * Math.log10(255 ** 2 / (sum / (3 * a.length / 4)));
+});
+
+async function look(page) {
+  const views = await page.evaluate(() => globalThis.cei3d.store.object.views.map((v) => v.name));
+  const chosen = [0, 1, 2, 3].map((i) => views[Math.floor((i + 0.5) * views.length / 4)]);
+  const still = [], turned = [];
+  for (const name of chosen) {
+    await page.evaluate((n) => {
+      const { stage, store } = globalThis.cei3d;
+      stage.light = { rotate: 0, scale: 1 };
+      stage.camera.take(store.object.views.find((v) => v.name === n).camera);
+      stage.moved();
+    }, name);
+    await settled(page);
+    still.push(await likeness(page));
+    await page.evaluate(() => {
+      const { stage } = globalThis.cei3d;
+      stage.light = { rotate: 60, scale: 1 };
+      stage.moved();
+    });
+    await settled(page);
+    turned.push(await likeness(page));
+  }
+  await page.evaluate(() => { globalThis.cei3d.stage.light = { rotate: 0, scale: 1 }; globalThis.cei3d.stage.moved(); });
+  await settled(page);
+  const text = (list) => `${(list.reduce((a, b) => a + b) / list.length).toFixed(1)} dB (${list.map((v) => v.toFixed(1)).join(', ')})`;
+  row('page against the exact frame, on white, 4 views', text(still));
+  row('the same, light turned by 60 degrees', text(turned));
+}
+
+async function frames(page) {
+  const times = await page.evaluate(() => {
+    const { stage } = globalThis.cei3d, gl = stage.live.renderer.gl, out = [];
+    for (let i = 0; i < 12; ++i) {
+      const t = performance.now();
+      stage.live.draw(stage.json(), 'rgb', stage.light);
+      gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+      out.push(performance.now() - t);
+    }
+    return { out, size: `${stage.picture.width} x ${stage.picture.height}` };
+  });
+  row(`one frame of the page, ${times.size}, in software`, ms(median(times.out)));
+}
+
+/** Time of an action until something holds, both in the page. */
+const timed = (page, action, holds) => page.evaluate(async ([a, h]) => {
+  const wait = (f) => new Promise((resolve) => { const step = () => (f() ? resolve() : setTimeout(step, 2)); step(); });
+  const t = performance.now();
+  new Function('cei3d', a)(globalThis.cei3d);
+  await wait(new Function('cei3d', `return ${h}`).bind(null, globalThis.cei3d));
+  return performance.now() - t;
+}, [action, holds]);
+
+async function edits(page) {
+  const rough = (v) => `cei3d.stage.exact = null; cei3d.store.change('edit', { op: 'material', params: { roughness: ${v} }, amend: ${v !== 0.3} })`;
+  await timed(page, rough(0.3), 'cei3d.settled()');
+  const release = [], undo = [], picture = [];
+  for (const v of [0.4, 0.5, 0.6]) release.push(await timed(page, rough(v), 'cei3d.store.saving === 0 && cei3d.stage.exact !== null'));
+  await settled(page);
+  for (const step of ['undo', 'redo', 'undo', 'redo', 'undo']) {
+    undo.push(await timed(page, `cei3d.stage.exact = null; cei3d.store.change('${step}')`, 'cei3d.store.saving === 0 && cei3d.stage.live.current()'));
+    picture.push(await timed(page, '', 'cei3d.stage.exact !== null'));
+    await settled(page);
+  }
+  row('slider let go to exact frame', ms(median(release)));
+  row('undo to right picture of the page; to exact frame', `${ms(median(undo))}; ${ms(median(undo) + median(picture))}`);
+}
+
+async function paints(page) {
+  await page.keyboard.press('b');
+  const box = await page.locator('#view').boundingBox();
+  const times = [];
+  for (let i = 0; i < 3; ++i) {
+    const x = box.x + box.width / 2, y = box.y + box.height / 2 + 12 * i;
+    await page.mouse.move(x - 20, y);
+    await page.mouse.down();
+    await page.mouse.move(x + 20, y, { steps: 4 });
+    await page.mouse.up();
+    const n = await page.evaluate(() => globalThis.cei3d.store.state.done);
+    times.push(await timed(page, "document.getElementById('view').dispatchEvent(new Event('x')); cei3d.keepPaint()", `cei3d.store.state.done > ${n}`));
+    await settled(page);
+  }
+  row('paint kept, from the last dab', ms(median(times)));
+  const id = fs.readdirSync(path.join(project, 'edits')).find((n) => n.endsWith('-paint'));
+  const stroke = JSON.parse(fs.readFileSync(path.join(project, 'edits', id, 'edit.json'))).params.strokes[0];
+  const camera = path.join(folder, 'camera.json'), copy = path.join(folder, 'copy');
+  fs.writeFileSync(camera, JSON.stringify({ cameras: [{ ...stroke.camera, name: 'own' }] }));
+  fs.cpSync(original, copy, { recursive: true });
+  const t = Date.now();
+  execFileSync(program, ['edit', copy, 'paint', '--camera', camera, '--scribble', path.join(project, 'edits', id, 'scribble.png'), '--quiet']);
+  row('the same by the command line', ms(Date.now() - t));
+}
+
+async function main() {
+  const t = Date.now();
+  const server = await serve(program, project);
+  const up = Date.now() - t;
+  const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
+  try {
+    const page = await browser.newPage({ viewport: { width: 868, height: 674 } });
+    const start = Date.now();
+    await page.goto(server.url);
+    await page.waitForFunction(() => document.getElementById('cover').classList.contains('done'), null, { polling: 10 });
+    const first = Date.now() - start;
+    await page.waitForFunction(() => globalThis.cei3d.stage.live.current(), null, { polling: 10 });
+    const lit = Date.now() - start;
+    await page.waitForFunction(() => globalThis.cei3d.stage.exact !== null, null, { polling: 10 });
+    const exact = Date.now() - start;
+    await settled(page);
+    console.log('| | |\n|---|---|');
+    row('`open` to address', ms(up));
+    row('page to first picture; to its own lit picture; to exact frame; refined', [first, lit, exact, Date.now() - start].map(ms).join('; '));
+    await look(page);
+    await frames(page);
+    await edits(page);
+    await paints(page);
+    row('memory of the program; of the page’s scripts', `${Math.round(megabytes(server.process.pid))} MB; ${Math.round((await page.evaluate(() => performance.memory.usedJSHeapSize)) / 1e6)} MB`);
+    bundle();
+  } finally {
+    server.process.removeAllListeners('exit');
+    server.process.kill('SIGKILL');
+    await browser.close();
+    fs.rmSync(folder, { recursive: true });
+  }
+}
+
+main().catch((error) => { console.error(error); process.exit(1); });

@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""refusals.py PROGRAM OBJECT FOLDER: what `cei3d open` must not do, asked by a client that is not a browser."""
+import http.client
+import json
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+
+
+def start(program, project):
+    process = subprocess.Popen([program, 'open', project, '--no-browser', '--port', '0', '--json'],
+                               stdout=subprocess.PIPE, text=True)
+    text = ''
+    while not text.rstrip().endswith('}'):
+        line = process.stdout.readline()
+        if not line:
+            raise SystemExit('FAILED: cei3d open ended')
+        text += line
+    url = json.loads(text)['url']
+    return process, int(url.split(':')[2].split('/')[0]), url.split('k=')[1]
+
+
+class Client:
+    def __init__(self, port, token):
+        self.port, self.token = port, token
+
+    def ask(self, method, path, body=None, **headers):
+        connection = http.client.HTTPConnection('127.0.0.1', self.port, timeout=30)
+        defaults = {'Host': f'localhost:{self.port}', 'Authorization': f'Bearer {self.token}'}
+        if method == 'POST':
+            defaults['Content-Type'] = 'application/json'
+        defaults.update({k.replace('_', '-'): v for k, v in headers.items()})
+        connection.putrequest(method, path, skip_host=True)
+        for k, v in defaults.items():
+            if v is not None:
+                connection.putheader(k, v)
+        if body is not None:
+            connection.putheader('Content-Length', str(len(body)))
+        connection.endheaders(body)
+        response = connection.getresponse()
+        data = response.read()
+        connection.close()
+        return response.status, data, response.headers
+
+
+def contents(folder):
+    found = {}
+    for root, _, files in os.walk(folder):
+        for f in files:
+            path = os.path.join(root, f)
+            found[path] = open(path, 'rb').read()
+    return found
+
+
+def check(what, got, *wanted):
+    if got not in wanted:
+        raise SystemExit(f'FAILED: {what}: {got}, expected {wanted}')
+
+
+POSTS = ['edit', 'preview', 'commit', 'pick', 'mask', 'undo', 'redo', 'toggle', 'goto', 'rename', 'restore', 'forget',
+         'export', 'open', 'close', 'reconstruct', 'cancel', 'upload?name=x']
+GETS = ['state', 'object', 'photo/train/r_000', 'download/x', 'pack/shape']
+
+
+def refused_everywhere(client):
+    foreign = f'http://evil.example:{client.port}'
+    cases = [({'Authorization': None}, 403), ({'Authorization': 'Bearer ' + '0' * 64}, 403),
+             ({'Host': 'evil.example'}, 403), ({'Origin': foreign}, 403), ({'Origin': 'null'}, 403),
+             ({'Sec_Fetch_Site': 'cross-site'}, 403)]
+    for method, paths in (('GET', GETS), ('POST', POSTS)):
+        for path in paths:
+            for headers, status in cases:
+                check(f'{method} {path} with {headers}', client.ask(method, '/api/' + path, b'{}', **headers)[0], status)
+    for path in POSTS:
+        check(f'form to {path}', client.ask('POST', '/api/' + path, b'a=1', Content_Type='text/plain')[0], 415)
+    for method in ('PUT', 'DELETE', 'OPTIONS', 'PATCH'):
+        check(method, client.ask(method, '/api/state')[0], 405)
+
+
+def odd_paths(client):
+    for path in ('/app/..%2f..%2fCMakeLists.txt', '/app/../../etc/passwd', '/app/editor/../../../x', '//etc/passwd',
+                 '/api/download/..%2f..%2fproject.json', '/api/download/project.json', '/api/photo/..%2f..%2fx',
+                 '/api/photo/%ff%fe', '/api/' + 'a' * 4000, '/api/nothing'):
+        check(path[:60], client.ask('GET', path)[0], 400, 404, 422)
+
+
+def too_much(client):
+    check('long headers', client.ask('GET', '/', None, X_Long='a' * 100000)[0], 431)
+    check('long body', client.ask('POST', '/api/edit', b'{' + b' ' * (5 << 20) + b'}')[0], 413)
+    check('broken JSON', client.ask('POST', '/api/edit', b'{"op"')[0], 400)
+    many = [socket.create_connection(('127.0.0.1', client.port)) for _ in range(100)]  # says nothing
+    for s in many:
+        s.close()
+    check('after 100 silent connections', client.ask('GET', '/api/state')[0], 200)
+
+
+def bad_sockets(client):
+    upgrade = {'Connection': 'Upgrade', 'Upgrade': 'websocket', 'Sec-WebSocket-Key': 'AAAAAAAAAAAAAAAAAAAAAA==',
+               'Sec-WebSocket-Version': '13'}
+    headers = {k.replace('-', '_'): v for k, v in upgrade.items()}
+    check('socket from another page', client.ask('GET', '/socket', None, Origin='http://evil.example', **headers)[0], 403)
+    check('socket of another host', client.ask('GET', '/socket', None, Host='evil.example', **headers)[0], 403)
+
+
+def main(program, object_folder, folder):
+    project = os.path.join(folder, 'object')
+    shutil.copytree(object_folder, project)
+    process, port, token = start(program, project)
+    try:
+        client = Client(port, token)
+        status, page, headers = client.ask('GET', '/', None, Authorization=None)
+        check('page', status, 200)
+        assert b'<script type="module"' in page and token.encode() not in page
+        assert "default-src 'none'" in headers['Content-Security-Policy'] and headers['X-Content-Type-Options'] == 'nosniff'
+        assert not any(k.lower().startswith('access-control') for k in headers)
+        check('same file again', client.ask('GET', '/', None, If_None_Match=headers['ETag'])[0], 304)
+        while json.loads(client.ask('GET', '/api/state')[1])['mode'] == 'opening':
+            pass
+        before = contents(project)
+        refused_everywhere(client)
+        odd_paths(client)
+        too_much(client)
+        bad_sockets(client)
+        assert contents(project) == before, 'something was changed'
+        second = subprocess.run([program, 'undo', project], capture_output=True, text=True)
+        check('a second writer', second.returncode, 1)
+        assert 'in use by another' in second.stderr
+        refusal = subprocess.run([program, 'open', project, '--host', '0.0.0.0'], capture_output=True, text=True)
+        check('an open address', refusal.returncode, 2)
+        process.send_signal(signal.SIGINT)
+        check('Ctrl-C', process.wait(20), 0)
+    finally:
+        process.kill()
+
+
+main(*sys.argv[1:])
