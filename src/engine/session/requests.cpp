@@ -194,6 +194,13 @@ std::optional<ExportFor> export_for_from_name(const std::string& name) {
   return std::nullopt;
 }
 
+std::optional<ExportImage> export_image_from_name(const std::string& name) {
+  if (name == "png") return ExportImage::png;
+  if (name == "jpeg") return ExportImage::jpeg;
+  if (name == "webp") return ExportImage::webp;
+  return std::nullopt;
+}
+
 Json ExportReport::json() const {
   Json j{{"file", out.string()}, {"vertices", vertices}, {"triangles", triangles}, {"lobes", lobes}};
   for (const auto& f : files) j["files"].push_back(f.string());

@@ -269,19 +269,23 @@ struct PartMasksReport {
 enum class ExportFor { any, web, ar, dcc };
 std::optional<ExportFor> export_for_from_name(const std::string&);  // "web", "ar", "dcc"
 
+// How the pictures of an asset are stored.
+enum class ExportImage { png, jpeg, webp };
+std::optional<ExportImage> export_image_from_name(const std::string&);  // "png", "jpeg", "webp"
+
 struct ExportRequest {
-  // The suffix says what is written: .glb .gltf .obj .usdz .ply (the object), .hdr .exr .npy .json (the
-  // light).
+  // The suffix says what is written: .glb .gltf .obj .usdz .ply (the object), .html (a page that shows
+  // it), .hdr .exr .npy .json (the light).
   std::filesystem::path out;
   bool points = false;  // .ply: the handler points instead of the mesh
   ExportFor purpose = ExportFor::any;
-  std::optional<int> faces;     // at most; none: as the purpose says; a mesh without texture: all
-  std::optional<int> texture;   // texels of a side; none: as the purpose says; 0: albedo by vertex
-  std::optional<bool> jpeg;     // base color and material as JPEG, not PNG; none: as the purpose says
-  std::optional<bool> at_base;  // the object stands in the origin; none: as the purpose says
-  double unit_scale = 1;        // meters per capture unit
-  double size = 0;              // meters of the longest side, instead of unit_scale; 0: no wish
-  bool light = false;           // the light beside the object, as NAME.env.hdr
+  std::optional<int> faces;          // at most; none: as the purpose says; a mesh without texture: all
+  std::optional<int> texture;        // texels of a side; none: as the purpose says; 0: albedo by vertex
+  std::optional<ExportImage> image;  // of base color and material; none: as the purpose says
+  std::optional<bool> at_base;       // the object stands in the origin; none: as the purpose says
+  double unit_scale = 1;             // meters per capture unit
+  double size = 0;                   // meters of the longest side, instead of unit_scale; 0: no wish
+  bool light = false;                // the light beside the object, as NAME.env.hdr
 };
 struct ExportReport {
   std::filesystem::path out;
