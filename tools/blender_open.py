@@ -13,7 +13,12 @@ import os
 import sys
 
 import bpy
+import numpy
 from mathutils import Matrix, Vector
+
+# The glTF importer of Blender 3.4 uses a name that NumPy 1.24, which Debian 12 has, no longer knows.
+if not hasattr(numpy, 'bool'):
+    numpy.bool = bool
 
 # Importing glTF turns y-up into Blender's z-up.
 BLENDER_FROM_GLTF = Matrix(((1, 0, 0), (0, 0, -1), (0, 1, 0)))
