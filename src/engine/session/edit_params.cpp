@@ -102,10 +102,12 @@ EditPlace place_from(const Capture& capture, JsonReader& params) {
     const Camera camera = camera_from_json(reader);
     reader.finish();
     check_camera(camera, reader.what());
-    return {"of the edit's own camera", false, camera};
+    EditPlace own;
+    own.name = "of the edit's own camera";
+    own.camera = camera;
+    return own;
   }
-  const View& view = find_view(capture, params.require<std::string>("view"));
-  return {view.name, true, view.camera};
+  return {find_view(capture, params.require<std::string>("view")), true};
 }
 
 void put_place(const Capture& capture, const std::string& view, const std::optional<Camera>& camera,

@@ -29,10 +29,8 @@ void put_effects(const MaterialEffects&, Json& params);
 
 // Where an edit was made: a view of the capture, or a camera of its own. Key "view", a name, or "camera", as
 // camera_json() writes it.
-struct EditPlace {
-  std::string name;  // for messages; of the view, if it is one
-  bool is_view = false;
-  Camera camera;  // capture frame
+struct EditPlace : View {  // of an own camera, the name is for messages
+  bool is_view = false;    // of the capture
 };
 // Errors: neither or both of the keys, an unknown view.
 EditPlace place_from(const Capture&, JsonReader& params);
