@@ -27,7 +27,9 @@ refused_by_check() {
 refused 2 '50' reconstruct "$sample" -o "$out/project" --views 51
 absent "$out/project"
 fresh; rm "$out/capture/train/r_011.png"
-spoiled 1 'missing.*r_011'
+refused 1 'missing.*r_011' reconstruct "$out/capture" -o "$out/project" --iterations 1 --strict
+absent "$out/project"
+cei3d check "$out/capture" | grep -q 'warning: 1 of .* images are missing.*r_011' || fail 'no warning of r_011'
 fresh; head -c 900 "$sample/train/r_013.png" >"$out/capture/train/r_013.png"
 spoiled 1 'r_013'
 fresh; sed -i 's/0.712988874/NaN/' "$out/capture/transforms_train.json"
@@ -36,8 +38,8 @@ fresh; echo '{"frames": []}' >"$out/capture/transforms_train.json"
 spoiled 1 'frames|views|field of view|focal'
 fresh; echo 'not json' >"$out/capture/transforms_train.json"
 spoiled 1 'JSON'
-fresh; cp tests/e2e/data/other_size.png "$out/capture/train/r_015.png"
-spoiled 1 'r_015|size'
+fresh; sed -i 's/"h": 192/"h": 150/' "$out/capture/transforms_train.json"
+spoiled 1 'should have 192 x 150'
 fresh; for f in "$out"/capture/train/*.png; do cp tests/e2e/data/empty_192.png "$f"; done
 spoiled 1 'mask|empty|alpha'
 rm -rf "$out/capture"

@@ -86,13 +86,14 @@ void add_reconstruct(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add("reconstruct", "Make an editable object (a project) from posed photographs");
   verb->add_option("capture", o->capture,
-                   "Folder of posed photographs, or its .json or .npz; not needed with --resume");
+                   "Folder of posed photographs, or its file of cameras; not needed with --resume");
   verb->add_option("-o,--output", o->project, "Project folder to create")->required();
   add_schedule_options(verb, *o);
   add_view_options(verb, o->request.options);
   add_light_options(verb, *o);
   verb->add_option("--format", o->request.format,
                    capture_format_names() + " (default: detected from the files)");
+  verb->add_flag("--strict", o->request.strict, "Refuse a capture of which images are missing");
   CLI::Option* resume = verb->add_flag("--resume", o->request.resume,
                                        "Continue an interrupted reconstruction, with its own options");
   verb->add_flag("--force", o->request.replace, "Replace the project in that folder, including its edits")

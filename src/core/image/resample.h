@@ -7,7 +7,14 @@
 namespace cei3d {
 
 // Mean over n x n blocks of linear values. Columns and rows that do not fill a block are cut off, as in
-// scaled(Camera, n). With 4 channels, color is weighted by alpha (straight alpha in and out).
+// scaled(Camera, n). With 4 channels, color is weighted by alpha (straight alpha in and out);
+// a block with a pixel of negative alpha, which is unknown, gets the alpha -1.
 Image downscale(const Image& image, int n);
+
+// Bilinear, at the centers of the new pixels.
+Image scaled_to(const Image& image, int width, int height);
+
+// The image as it should be shown by its EXIF orientation, 5 to 8, which swaps its sides; others: as it is.
+Image turned(Image image, int orientation);
 
 }  // namespace cei3d

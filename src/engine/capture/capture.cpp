@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/name_distance.h"
 #include "engine/capture/capture_format.h"
+#include "engine/capture/photographs.h"
 #include "engine/capture/spread.h"
 #include "engine/io/image_file.h"
 
@@ -18,14 +19,20 @@ namespace {
 
 constexpr Split kSplits[] = {Split::train, Split::val, Split::test};
 
-const CaptureFormat& format_of(const fs::path& path, const std::string& wanted) {
+const CaptureFormat& format_named(const std::string& name) {
   for (const CaptureFormat& f : capture_formats())
-    if (wanted.empty() ? f.detect(path) : f.name == wanted) {
-      if (!f.detect(path)) fail("{} is not a {} capture.", path.string(), wanted);
-      return f;
-    }
-  if (!wanted.empty())
-    fail_usage("There is no capture format '{}'. Known: {}.", wanted, capture_format_names());
+    if (f.name == name) return f;
+  fail_usage("There is no capture format '{}'. Known: {}.", name, capture_format_names());
+}
+
+const CaptureFormat& format_of(const fs::path& path, const std::string& wanted) {
+  if (!wanted.empty()) {
+    const CaptureFormat& f = format_named(wanted);
+    if (!f.detect(path)) fail("{} is not a {} capture ({}).", path.string(), wanted, f.layout);
+    return f;
+  }
+  for (const CaptureFormat& f : capture_formats())
+    if (f.detect(path)) return f;
   fail("{} is not a capture of a known format ({}).", path.string(), capture_format_layouts("; "));
 }
 
@@ -61,11 +68,11 @@ Vec3d across_horizontals(const std::vector<Vec3d>& horizontals, Vec3d near) {
 }
 
 // Most photographs are taken upright, so the mean of the cameras' own up axes points up. It is snapped to the
-// nearest axis; without a clear mean the format's convention is used. The world frame of IDR captures is
-// arbitrary (often that of the first camera), so there the estimate is used as it is.
+// nearest axis; without a clear mean the format's convention is used. Where the format's world frame is
+// arbitrary (often that of the first camera), the estimate is used as it is.
 Vec3d up_axis(const Capture& capture) {
-  const bool any_world = capture.format == "idr";
-  const Vec3d convention = capture.format == "physg" ? Vec3d{0, 1, 0} : Vec3d{0, 0, 1};
+  const std::optional<Vec3d> stated = format_named(capture.format).up;
+  const Vec3d convention = stated.value_or(Vec3d{0, 0, 1});
   Vec3d sum{0, 0, 0};
   std::vector<Vec3d> horizontals;
   for (const View& v : capture.views) {
@@ -77,7 +84,7 @@ Vec3d up_axis(const Capture& capture) {
   const size_t n = horizontals.size();
   if (n < 5 || length(sum) < 0.3 * double(n)) return convention;
   const Vec3d mean = normalize(sum);
-  if (!any_world) return near_axis(mean, 0.9).value_or(convention);
+  if (stated) return near_axis(mean, 0.9).value_or(convention);
   const Vec3d up = across_horizontals(horizontals, mean);
   return near_axis(up, 0.995).value_or(up);
 }
@@ -147,9 +154,16 @@ std::string capture_format_names() {
   return text;
 }
 
+std::string capture_format_programs() {
+  std::string text;
+  for (const CaptureFormat& f : capture_formats()) text += (text.empty() ? "" : ", ") + f.programs;
+  return text;
+}
+
 std::string capture_format_layouts(const std::string& separator) {
   std::string text;
-  for (const CaptureFormat& f : capture_formats()) text += (text.empty() ? "" : separator) + f.layout;
+  for (const CaptureFormat& f : capture_formats())
+    text += (text.empty() ? "" : separator) + f.programs + ": " + f.layout;
   return text;
 }
 
@@ -157,6 +171,7 @@ Capture load_capture(const fs::path& path, const CaptureOptions& options) {
   if (!fs::exists(path)) fail("There is no capture at {}; check the path.", path.string());
   Capture capture = format_of(path, options.format).load(path);
   if (capture.views.empty()) fail("{} lists no views.", path.string());
+  fit_to_photographs(capture, options.strict);
   hold_out(capture, options.test_every);
   keep_training_views(capture, options.views);
   std::stable_sort(capture.views.begin(), capture.views.end(),

@@ -13,18 +13,21 @@
 namespace cei3d {
 
 struct CaptureOptions {
-  std::string format;  // one of capture_format_names(); empty: detected from the files
-  int test_every = 0;  // every Nth training view becomes a test view when the capture has none; 0: never
-  int views = 0;       // number of training views to use, by keep_training_views(); 0: all
+  std::string format;   // one of capture_format_names(); empty: detected from the files
+  int test_every = 0;   // every Nth training view becomes a test view when the capture has none; 0: never
+  int views = 0;        // number of training views to use, by keep_training_views(); 0: all
+  bool strict = false;  // keep views whose images are missing; check() then reports them as errors
 };
 
-// Loads cameras and file names, not images (but the size of one per split). path: a folder, or its .json or
-// .npz. Missing images are no error here; check() lists them. Errors: unknown format, malformed cameras, no
-// views.
+// Loads cameras and file names, and of the images only sizes and masks (fit_to_photographs()). path: a
+// folder, or its file of cameras. Views whose images are missing are left out, with a warning. Errors:
+// unknown format, malformed cameras, no views.
 Capture load_capture(const std::filesystem::path& path, const CaptureOptions& options = {});
 
 // "nerf-synthetic, physg, ...": the formats that load_capture() reads.
 std::string capture_format_names();
+// "NeRF-synthetic, nerfstudio, ...": the programs and data sets that they come from.
+std::string capture_format_programs();
 // One line per format: name, programs and files.
 std::string capture_format_layouts(const std::string& separator);
 

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "engine/capture/capture.h"
 #include "engine/io/image_file.h"
 
 namespace cei3d {
@@ -39,20 +40,23 @@ std::string without_nan(const std::string& text) {
 }  // namespace
 
 const std::vector<CaptureFormat>& capture_formats() {
+  constexpr Vec3d kY{0, 1, 0}, kZ{0, 0, 1};
   static const std::vector<CaptureFormat> formats{
-      {.name = "nerf-synthetic",
-       .layout = "NeRF-synthetic, nerfstudio: transforms_{train,val,test}.json or transforms.json; RGBA or "
-                 "mask_path",
-       .detect = detect_nerf,
-       .load = load_nerf},
-      {.name = "physg",
-       .layout = "PhySG: cam_dict_norm.json, image/, mask/",
-       .detect = detect_physg,
-       .load = load_physg},
-      {.name = "idr",
-       .layout = "IDR, NeuS: cameras_sphere.npz or cameras.npz, image/, mask/",
-       .detect = detect_idr,
-       .load = load_idr}};
+      {"nerf-synthetic", "NeRF-synthetic, nerfstudio, instant-ngp",
+       "transforms_{train,val,test}.json or transforms.json", kZ, detect_nerf, load_nerf},
+      {"physg", "PhySG", "cam_dict_norm.json, image/, mask/", kY, detect_physg, load_physg},
+      {"idr", "IDR, NeuS", "cameras_sphere.npz or cameras.npz, image/, mask/", {}, detect_idr, load_idr},
+      {"colmap",
+       "COLMAP",
+       "sparse/0/{cameras,images,points3D}.bin or .txt, images/",
+       {},
+       detect_colmap,
+       load_colmap},
+      {"metashape", "Metashape", "cameras.xml, images/", {}, detect_metashape, load_metashape},
+      {"realitycapture", "RealityCapture", "a .csv of internal and external camera parameters, images/", kZ,
+       detect_realitycapture, load_realitycapture},
+      {"llff", "LLFF", "poses_bounds.npy, images/", {}, detect_llff, load_llff},
+      {"meshroom", "Meshroom", "cameras.sfm or sfm.json, images/", {}, detect_meshroom, load_meshroom}};
   return formats;
 }
 
@@ -85,6 +89,18 @@ Matrix34 matrix_of(const Json& j, const std::string& where) {
     for (size_t c = 0; c < 4; ++c) m.m[r][c] = number_of(nested ? j[r][c] : j[4 * r + c], where);
   }
   return m;
+}
+
+std::string with_slashes(std::string path) {
+  std::replace(path.begin(), path.end(), '\\', '/');
+  return path;
+}
+
+std::string view_name(const std::string& file_path, Split split) {
+  std::filesystem::path name = std::filesystem::path(file_path).lexically_normal();
+  if (has_image_suffix(name)) name.replace_extension();
+  const bool inside = name.is_relative() && !name.empty() && *name.begin() != "..";
+  return inside ? name.generic_string() : fmt::format("{}/{}", split_name(split), name.filename().string());
 }
 
 std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder) {

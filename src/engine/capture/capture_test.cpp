@@ -130,9 +130,9 @@ TEST(Capture, NerfstudioListsOfFilesAreSplits) {
   EXPECT_EQ(views_of(capture, Split::train).size(), 4u);
   ASSERT_EQ(views_of(capture, Split::test).size(), 2u);
   EXPECT_EQ(views_of(capture, Split::test)[1].name, "train/r_004");
-  j["camera_model"] = "OPENCV_FISHEYE";
+  j["camera_model"] = "EQUIRECTANGULAR";
   write_file_atomic(temp.path() / "transforms.json", j.dump());
-  EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr("OPENCV_FISHEYE"));
+  EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr("EQUIRECTANGULAR"));
   j["camera_model"] = "OPENCV";
   j["test_filenames"] = 3;
   write_file_atomic(temp.path() / "transforms.json", j.dump());
@@ -246,9 +246,13 @@ TEST(Capture, BadCameraFilesAreErrors) {
        "\"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
        "field of view"},
       {"transforms_train.json",
-       "{\"w\":8,\"h\":8,\"fl_x\":4,\"k1\":0.1,\"frames\": [{\"file_path\": \"a\", "
+       "{\"w\":8,\"h\":8,\"fl_x\":4,\"k1\":\"x\",\"frames\": [{\"file_path\": \"a\", "
        "\"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "distortion"},
+       "number"},
+      {"transforms_train.json",
+       "{\"w\":8,\"h\":8,\"fl_x\":4,\"k1\":-9,\"frames\": [{\"file_path\": \"a\", "
+       "\"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+       "coefficients"},
       {"cam_dict_norm.json", "[]", "not a list of cameras"},
       {"cam_dict_norm.json", "{}", "no views"},
       {"cam_dict_norm.json", "{\"a.png\": {\"K\": []}}", "lacks"},
@@ -263,7 +267,7 @@ TEST(Capture, BadCameraFilesAreErrors) {
   EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr("not a capture"));
   EXPECT_THAT(message([&] { load_capture(temp.path() / "none"); }), HasSubstr("no capture at"));
   EXPECT_THAT(message([&] {
-                load_capture(temp.path(), {"colmap", 0});
+                load_capture(temp.path(), {"olmap", 0});
               }),
               HasSubstr("Known: nerf-synthetic, physg, idr"));
 }
@@ -302,7 +306,7 @@ TEST(CaptureImages, BadPicturesAreErrorsThatNameTheFile) {
   write_png(v.image_path, Image(4, 4, 4, 0.5f));
   v.mask_path = temp.path() / "m.png";
   EXPECT_THAT(message([&] { load_linear_rgba(v); }), HasSubstr("m.png"));
-  write_png(v.mask_path, Image(4, 5, 1, 1.0f));
+  write_png(v.mask_path, Image(4, 8, 1, 1.0f));
   EXPECT_THAT(message([&] { load_mask(v); }), HasSubstr("m.png"));
   v.mask_path.clear();
   Image nan(4, 4, 3, 0.5f);

@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_images.h"
+#include "engine/capture/doctor.h"
 #include "engine/capture/normalize.h"
 
 namespace cei3d {
@@ -25,8 +26,7 @@ struct ProblemText {
 constexpr std::array<ProblemText, kProblems> kTexts{{
     {Severity::error, "images are missing",
      "Copy them to where the cameras say they are, or remove these views from the camera file."},
-    {Severity::error, "images or masks cannot be used",
-     "Copy or render them again; all images of a split need one size."},
+    {Severity::error, "images or masks cannot be used", "Copy or render them again."},
     {Severity::error, "poses are not a rotation and a finite position",
      "Estimate the poses again, or remove these views."},
     {Severity::error, "masks are empty", "Remove these views, or correct their masks or alpha."},
@@ -45,6 +45,7 @@ struct ViewResult {
   ImageSize size;
   double coverage = 0;
   Mask mask;
+  PhotoLook look;
 };
 
 bool pose_is_sound(const Camera& c) {
@@ -56,25 +57,31 @@ bool pose_is_sound(const Camera& c) {
   return std::isfinite(dot(c.center, c.center)) && std::isfinite(det) && worst < 2e-3 && det > 0;
 }
 
+// Object pixels at the border of the image, or beside what it does not show.
 int border_pixels(const Mask& m) {
+  const auto at = [&](int x, int y) {
+    return x < 0 || y < 0 || x >= m.width || y >= m.height ? kUnknown : m.object[size_t(y) * m.width + x];
+  };
   int n = 0;
-  for (int x = 0; x < m.width; ++x) n += m.object[x] + m.object[size_t(m.height - 1) * m.width + x];
   for (int y = 0; y < m.height; ++y)
-    n += m.object[size_t(y) * m.width] + m.object[size_t(y) * m.width + m.width - 1];
+    for (int x = 0; x < m.width; ++x)
+      n += at(x, y) == kObject && (at(x - 1, y) == kUnknown || at(x + 1, y) == kUnknown ||
+                                   at(x, y - 1) == kUnknown || at(x, y + 1) == kUnknown);
   return n;
 }
 
 void look_at_picture(const View& view, ViewResult& out) {
-  load_linear_rgba(view);  // decodes the whole file and rejects NaN
+  out.look = look_at_photo(view, load_linear_rgba(view));  // decodes the whole file and rejects NaN
   out.mask = load_mask(view);
-  const size_t n = out.mask.object.size(),
-               set = size_t(std::count(out.mask.object.begin(), out.mask.object.end(), 1));
+  const auto& object = out.mask.object;
+  const bool full = std::count(object.begin(), object.end(), kBackground) == 0;
+  const size_t set = size_t(std::count(out.mask.object.begin(), out.mask.object.end(), kObject));
   out.size = {out.mask.width, out.mask.height};
-  out.coverage = double(set) / double(n);
+  out.coverage = double(set) / (double(view.file_camera().width) * view.file_camera().height);
   out.has[kNoMask] = !out.mask.stated;
   out.has[kEmptyMask] = out.mask.stated && set == 0;
-  out.has[kFullMask] = out.mask.stated && set == n;
-  out.has[kCut] = out.mask.stated && set < n && border_pixels(out.mask) >= 2;
+  out.has[kFullMask] = out.mask.stated && full;
+  out.has[kCut] = out.mask.stated && !full && border_pixels(out.mask) >= 2;
 }
 
 ViewResult look_at(const View& view) {
@@ -106,39 +113,49 @@ struct Checked {
   ViewResult result;
 };
 
+// Views that cannot be used at all are left out; what remains is checked again.
+std::function<void(Capture&)> removal_for(Problem problem, const std::vector<std::string>& names) {
+  if (problem != kNoFile && problem != kBroken && problem != kBadPose && problem != kEmptyMask &&
+      problem != kAway)
+    return {};
+  return [names](Capture& c) {
+    std::erase_if(
+        c.views, [&](const View& v) { return std::find(names.begin(), names.end(), v.name) != names.end(); });
+  };
+}
+
 void report_problems(const std::vector<Checked>& all, CaptureReport& report) {
   for (int problem = 0; problem < kProblems; ++problem) {
-    std::string names, detail;
-    int n = 0;
+    std::vector<std::string> names;
+    std::string detail;
     for (const Checked& c : all) {
       if (!c.result.has[problem]) continue;
-      if (n < 5) names += (n ? ", " : "") + c.view->name;
       if (problem == kBroken && detail.empty()) detail = " First: " + c.result.detail;
-      ++n;
+      names.push_back(c.view->name);
     }
-    if (n == 0) continue;
-    if (n > 5) names += fmt::format(" and {} more", n - 5);
+    if (names.empty()) continue;
     const ProblemText& text = kTexts[problem];
-    report.findings.push_back({text.severity,
-                               fmt::format("{} of {} {}: {}.{}", n, all.size(), text.what, names, detail),
-                               text.fix});
+    report.findings.push_back(
+        {text.severity,
+         fmt::format("{} of {} {}: {}.{}", names.size(), all.size(), text.what, some_names(names), detail),
+         text.fix, removal_for(Problem(problem), names)});
   }
+}
+
+ImageSize file_size(const View& view) {
+  const Camera& c = view.file_camera();
+  return {c.width, c.height};
 }
 
 void report_splits(const std::vector<Checked>& all, CaptureReport& report) {
   for (const Split split : {Split::train, Split::val, Split::test}) {
-    SplitReport s{split, 0, {}, 0, 1, 0};
+    SplitReport s{split, 0, {}, false, 0, 1, 0};
     int with_mask = 0;
     for (const auto& [view, result] : all) {
       if (view->split != split) continue;
       ++s.views;
-      if (s.size.width == 0) s.size = {view->camera.width, view->camera.height};
-      if (!(s.size == ImageSize{view->camera.width, view->camera.height}))
-        report.findings.push_back(
-            {Severity::error,
-             fmt::format("View {} is {} x {} pixels, others of its split {} x {}.", view->name,
-                         view->camera.width, view->camera.height, s.size.width, s.size.height),
-             "Give all images of a split one size."});
+      if (s.size.width == 0) s.size = file_size(*view);
+      s.sizes_vary |= !(s.size == file_size(*view));
       if (result.mask.object.empty()) continue;
       ++with_mask;
       s.coverage += result.coverage;
@@ -188,6 +205,52 @@ void report_distances(const Capture& capture, CaptureReport& report) {
                                "Check the poses, or photograph from farther away."});
 }
 
+// Alpha that means the background. Mask files are read the right way round by the loader.
+void check_polarity(const std::vector<Checked>& all, CaptureReport& report) {
+  size_t stated = 0, inside_out = 0;
+  for (const auto& [view, result] : all) {
+    if (result.mask.object.empty() || !result.mask.stated) continue;
+    ++stated;
+    const int around = 2 * (result.mask.width + result.mask.height);
+    inside_out += border_pixels(result.mask) > 0.8 * around && !result.has[kFullMask];
+  }
+  if (stated < 2 || double(inside_out) < 0.8 * double(stated)) return;
+  report.findings.push_back(
+      {Severity::error,
+       fmt::format("The masks cover the borders of {} of {} images: they seem to mean the "
+                   "background, not the object.",
+                   inside_out, stated),
+       "Invert them: `cei3d check --fix -o CAPTURE2` does.", [](Capture& c) {
+         for (View& v : c.views) v.dark_object = !v.dark_object;
+       }});
+}
+
+void diagnose(const Capture& capture, const std::vector<Checked>& all, CaptureReport& report) {
+  check_polarity(all, report);
+  check_intrinsics(capture, report.findings);
+  check_tracks(capture, report.findings);
+  std::vector<JudgedMask> masks;
+  std::vector<JudgedPhoto> photos;
+  for (const auto& [view, result] : all) {
+    if (result.mask.object.empty() || result.has[kBadPose] || !result.mask.stated || result.has[kEmptyMask])
+      continue;
+    masks.push_back({view, result.mask.object, &result.look.small});
+    photos.push_back({view, &result.look});
+  }
+  // Where most views show only a part of the object, what the others see of it does not say what a mask
+  // should hold.
+  const auto cut = [](const Checked& c) { return c.result.has[kCut]; };
+  if (report.normalization && 2 * size_t(std::count_if(all.begin(), all.end(), cut)) > all.size())
+    masks.clear();
+  const std::vector<MaskDoubt> doubts = check_silhouettes(masks, report.normalization, report.findings);
+  for (size_t i = 0; i < doubts.size(); ++i)
+    if (doubts[i].stands_out) {
+      const Camera& c = masks[i].view->camera;
+      report.doubts.push_back({masks[i].view->name, doubtful_area(doubts[i], c.width, c.height)});
+    }
+  if (report.normalization) check_photographs(photos, report.normalization->center, report.findings);
+}
+
 void report_counts(const Capture& capture, CaptureReport& report) {
   const size_t train = views_of(capture, Split::train).size();
   if (train < 3)
@@ -202,6 +265,12 @@ void report_counts(const Capture& capture, CaptureReport& report) {
 }
 
 }  // namespace
+
+std::string some_names(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t i = 0; i < names.size() && i < 5; ++i) text += (i ? ", " : "") + names[i];
+  return names.size() > 5 ? fmt::format("{} and {} more", text, names.size() - 5) : text;
+}
 
 bool CaptureReport::usable() const {
   return std::none_of(findings.begin(), findings.end(),
@@ -225,6 +294,7 @@ CaptureReport check(const Capture& capture, std::optional<Split> only) {
     report_distances(capture, report);
   }
   report_problems(all, report);
+  diagnose(capture, all, report);
   report_counts(capture, report);
   for (const std::string& w : capture.warnings) report.findings.push_back({Severity::warning, w, ""});
   std::stable_sort(report.findings.begin(), report.findings.end(),

@@ -2,10 +2,12 @@
 // Check of a capture: what the loader understood, and every problem with its fix.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/image/area.h"
 #include "core/image/image.h"
 #include "engine/io/image_size.h"
 #include "model/scene/normalization.h"
@@ -18,12 +20,15 @@ enum class Severity { note, warning, error };  // error: reconstruct refuses the
 struct Finding {
   Severity severity = Severity::error;
   std::string what, fix;  // sentences
+  std::function<void(Capture&)> repair =
+      {};  // a safe change of the capture that removes the cause; empty: none
 };
 
 struct SplitReport {
   Split split = Split::train;
   int views = 0;
-  ImageSize size;
+  ImageSize size;  // of the first image
+  bool sizes_vary = false;
   // Object pixels / all pixels: mean, minimum, maximum
   double coverage = 0, coverage_min = 0, coverage_max = 0;
 };
@@ -35,6 +40,12 @@ struct CaptureReport {
   std::optional<Normalization> normalization;  // none: it could not be determined
   // Training cameras to the object's center, input units.
   double distance_min = 0, distance = 0, distance_max = 0;
+  // Where the mask of a view contradicts the other views so much that it is not believed.
+  struct Doubt {
+    std::string view;
+    Area area;  // [camera.height][camera.width]
+  };
+  std::vector<Doubt> doubts;
   std::vector<Finding> findings;  // errors first
 
   bool usable() const;

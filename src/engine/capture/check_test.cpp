@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/temp_folder.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/test_capture.h"
@@ -63,8 +63,17 @@ TEST_F(Check, GoodCaptureIsUnderstood) {
 TEST_F(Check, MissingPicturesAreListed) {
   fs::remove(picture(3));
   fs::remove(picture(5));
-  EXPECT_THAT(complaint(), AllOf(HasSubstr("2 of 20 images are missing"), HasSubstr("train/r_003"),
-                                 HasSubstr("train/r_005")));
+  Capture capture = load_capture(folder());
+  EXPECT_EQ(capture.views.size(), 18u);
+  EXPECT_TRUE(check(capture).usable());
+  EXPECT_THAT(capture.warnings.at(0), AllOf(HasSubstr("2 of 20 images are missing"), HasSubstr("train/r_003"),
+                                            HasSubstr("train/r_005")));
+  CaptureOptions strict;
+  strict.strict = true;
+  EXPECT_THAT(message([&] { require_usable(load_capture(folder(), strict)); }),
+              AllOf(HasSubstr("2 of 20 images are missing"), HasSubstr("train/r_003")));
+  for (int i = 0; i < 12; ++i) fs::remove(picture(i));  // more than half: something else is wrong
+  EXPECT_THAT(complaint(), HasSubstr("12 of 20 images are missing"));
 }
 
 TEST_F(Check, TruncatedPicture) {
@@ -75,9 +84,12 @@ TEST_F(Check, TruncatedPicture) {
   EXPECT_THAT(complaint(), AllOf(HasSubstr("2 of 20"), HasSubstr("r_000.png")));
 }
 
-TEST_F(Check, UnequalSizes) {
-  write_png(picture(4), Image(32, 24, 4, 1.0f));
-  EXPECT_THAT(complaint(), AllOf(HasSubstr("r_004.png"), HasSubstr("32 x 24"), HasSubstr("one size")));
+TEST_F(Check, AnImageOfOtherProportionsThanItsCamera) {
+  Json j = Json::parse(read_file(folder() / "transforms_train.json"));
+  j["w"] = 64, j["h"] = 48;
+  write_file_atomic(folder() / "transforms_train.json", j.dump());
+  write_png(picture(4), Image(32, 30, 4, 1.0f));
+  EXPECT_THAT(complaint(), AllOf(HasSubstr("r_004.png"), HasSubstr("32 x 30"), HasSubstr("belong together")));
 }
 
 TEST_F(Check, EmptyMask) {

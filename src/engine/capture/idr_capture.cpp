@@ -177,8 +177,9 @@ Capture load_idr(const fs::path& path) {
     view.camera = camera_from_projection(read_matrix(entries.at(name + ".npy"), where), where);
     view.camera.cx += 0.5;  // the format's pixel centers are at whole numbers
     view.camera.cy += 0.5;
-    view.camera.width = size.width;
-    view.camera.height = size.height;
+    const ImageSize own = size_of_image(images[i]);
+    view.camera.width = own.width > 0 ? own.width : size.width;
+    view.camera.height = own.width > 0 ? own.height : size.height;
     capture.views.push_back(std::move(view));
   }
   const std::string scale = fmt::format("scale_mat_{} of {}", cameras[0], file.string());

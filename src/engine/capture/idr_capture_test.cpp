@@ -113,7 +113,9 @@ TEST(Idr, FilesAreMatchedByNumberThenByOrder) {
   EXPECT_EQ(c.views[3].image_path.filename(), "000003.png");
   fs::remove(images / "000007.png");
   fs::remove(images / "000001.png");  // a camera without a picture: check() says which
-  c = load_capture(temp.path());
+  CaptureOptions strict;
+  strict.strict = true;
+  c = load_capture(temp.path(), strict);
   EXPECT_EQ(c.views[1].image_path.filename(), "000001.png");
   EXPECT_EQ(c.views[2].image_path.filename(), "000002.png");
   EXPECT_FALSE(check(c).usable());

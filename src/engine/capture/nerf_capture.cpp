@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -44,14 +45,6 @@ fs::path picture_path(const fs::path& folder, const std::string& file_path) {
   return base.string() + ".png";
 }
 
-// View names become paths below an output folder and must not lead out of it.
-std::string view_name(const std::string& file_path, Split split) {
-  fs::path name = fs::path(file_path).lexically_normal();
-  if (has_image_suffix(name)) name.replace_extension();
-  const bool inside = name.is_relative() && !name.empty() && *name.begin() != "..";
-  return inside ? name.generic_string() : fmt::format("{}/{}", split_name(split), name.filename().string());
-}
-
 // A value of the frame, else of the file, under any of these keys.
 std::optional<double> lookup(const Json& frame, const Json& file, std::initializer_list<const char*> keys,
                              const std::string& where) {
@@ -82,31 +75,43 @@ std::map<std::string, Split> listed_splits(const Json& file, const std::string& 
   return splits;
 }
 
-void require_pinhole(const Json& frame, const Json& file, const std::string& where) {
+LensKind lens_kind(const Json& frame, const Json& file, const std::string& where) {
   for (const Json* j : {&frame, &file}) {
+    if (j->contains("is_fisheye") && (*j)["is_fisheye"] == true) return LensKind::fisheye;
     if (!j->contains("camera_model")) continue;
     const Json& model = (*j)["camera_model"];
-    for (const char* pinhole :
+    if (model == "OPENCV_FISHEYE") return LensKind::fisheye;
+    for (const char* known :
          {"OPENCV", "PINHOLE", "SIMPLE_PINHOLE", "SIMPLE_RADIAL", "RADIAL", "perspective"})
-      if (model == pinhole) return;
+      if (model == known) return LensKind::perspective;
     fail(
-        "{} has the camera model {}, but only pinhole cameras are supported. Undistort the "
-        "photographs and give their cameras without distortion (as transforms.json; COLMAP models are not "
-        "read yet).",
+        "{} has the camera model {}, which is not supported. Undistort the photographs with the program that "
+        "made the cameras, and give the cameras of the undistorted ones.",
         where, model.dump());
   }
+  return LensKind::perspective;
 }
 
-void require_no_distortion(const Json& frame, const Json& file, const std::string& where) {
-  for (const char* key : {"k1", "k2", "k3", "k4", "p1", "p2"}) {
-    const auto value = lookup(frame, file, {key}, where);
-    if (value && std::abs(*value) > 1e-9)
-      fail(
-          "{} has lens distortion ({} = {:g}), which is not supported yet. Undistort the photographs and "
-          "give "
-          "their cameras without distortion (as transforms.json; COLMAP models are not read yet).",
-          where, key, *value);
+// k1, k2, k3, k4, p1, p2, each a number of its own or all as distortion_params, in this order.
+LensDistortion read_lens(const Json& frame, const Json& file, const std::string& where) {
+  LensDistortion lens;
+  lens.kind = lens_kind(frame, file, where);
+  double* const terms[] = {&lens.radial[0], &lens.radial[1], &lens.radial[2],
+                           &lens.radial[3], &lens.p1,        &lens.p2};
+  const char* const keys[] = {"k1", "k2", "k3", "k4", "p1", "p2"};
+  const Json* list = nullptr;
+  for (const Json* j : {&file, &frame})
+    if (j->contains("distortion_params")) list = &(*j)["distortion_params"];
+  if (list && (!list->is_array() || list->size() > 6))
+    fail("'distortion_params' of {} should be [k1, k2, k3, k4, p1, p2].", where);
+  for (size_t i = 0; i < 6; ++i) {
+    double value = lookup(frame, file, {keys[i]}, where).value_or(0);
+    if (list && i < list->size())
+      value = number_of((*list)[i], fmt::format("'distortion_params' of {}", where));
+    if (!std::isfinite(value)) fail("'{}' of {} should be a finite number.", keys[i], where);
+    *terms[i] = std::abs(value) > 1e-9 ? value : 0;
   }
+  return lens;
 }
 
 void set_pose(Camera& camera, const Matrix34& opengl) {
@@ -132,9 +137,11 @@ void set_intrinsics(Camera& c, const Json& frame, const Json& file, ImageSize kn
          where);
   const auto focal = lookup(frame, file, {"fl_x", "focal"}, where);
   const auto angle = lookup(frame, file, {"camera_angle_x"}, where);
+  const auto angle_y = lookup(frame, file, {"camera_angle_y"}, where);
   if (!focal && !angle) fail("{} has no focal length: neither fl_x nor camera_angle_x.", where);
   c.fx = focal ? *focal : focal_from_angle(*angle, c.width, where);
-  c.fy = lookup(frame, file, {"fl_y"}, where).value_or(c.fx);
+  c.fy = lookup(frame, file, {"fl_y"}, where)
+             .value_or(!focal && angle_y ? focal_from_angle(*angle_y, c.height, where) : c.fx);
   c.cx = lookup(frame, file, {"cx"}, where).value_or(c.width / 2.0);
   c.cy = lookup(frame, file, {"cy"}, where).value_or(c.height / 2.0);
   if (!(c.fx > 0 && c.fy > 0) || !std::isfinite(c.fx * c.fy * c.cx * c.cy))
@@ -145,7 +152,7 @@ View read_frame(const Json& frame, Split split, const fs::path& folder, const st
   if (!frame.is_object() || !frame.contains("file_path") || !frame["file_path"].is_string() ||
       !frame.contains("transform_matrix"))
     fail("{} lacks file_path or transform_matrix.", where);
-  const std::string file_path = frame["file_path"];
+  const std::string file_path = with_slashes(frame["file_path"]);
   if (fs::path(file_path).lexically_normal().stem().empty() || fs::path(file_path).filename() == "..")
     fail("The file_path of {} names no image.", where);
   View view;
@@ -153,7 +160,7 @@ View read_frame(const Json& frame, Split split, const fs::path& folder, const st
   view.name = view_name(file_path, split);
   view.image_path = picture_path(folder, file_path);
   if (frame.contains("mask_path") && frame["mask_path"].is_string())
-    view.mask_path = folder / fs::path(frame["mask_path"].get<std::string>()).lexically_normal();
+    view.mask_path = folder / fs::path(with_slashes(frame["mask_path"])).lexically_normal();
   set_pose(view.camera, matrix_of(frame["transform_matrix"], fmt::format("transform_matrix of {}", where)));
   return view;
 }
@@ -170,14 +177,17 @@ std::vector<View> read_split(const CameraFile& file) {
     const auto it = listed.find(frame["file_path"].get<std::string>());
     if (it != listed.end()) views.back().split = it->second;
   }
+  const bool sized = j.contains("w") && j.contains("h");
   ImageSize known;
-  if (!j.contains("w") || !j.contains("h"))
-    for (size_t i = 0; i < views.size() && known.width == 0; ++i) known = size_of_image(views[i].image_path);
+  for (size_t i = 0; i < views.size() && known.width == 0 && !sized; ++i)
+    known = size_of_image(views[i].image_path);
   for (size_t i = 0; i < views.size(); ++i) {
     const std::string where = fmt::format("frame {} of {}", i, file.path.string());
-    require_pinhole(j["frames"][i], j, where);
-    require_no_distortion(j["frames"][i], j, where);
-    set_intrinsics(views[i].camera, j["frames"][i], j, known, where);
+    const Json& frame = j["frames"][i];
+    const ImageSize own = sized ? ImageSize() : size_of_image(views[i].image_path);
+    set_intrinsics(views[i].camera, frame, j, own.width > 0 ? own : known, where);
+    const LensDistortion lens = read_lens(frame, j, where);
+    if (distorts(lens)) views[i].photo = PhotoCamera(views[i].camera, lens);
   }
   return views;
 }

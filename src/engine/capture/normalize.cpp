@@ -40,7 +40,7 @@ bool find_silhouette(const HullMask& view, Silhouette& out) {
   double x0 = w, x1 = 0, y0 = h, y1 = 0;
   for (int y = 0; y < h; ++y) {
     const auto row = view.mask.subspan(size_t(y) * w, size_t(w));
-    const auto is_set = [](uint8_t m) { return m != 0; };
+    const auto is_set = [](uint8_t m) { return m == kObject; };
     const auto first = std::find_if(row.begin(), row.end(), is_set);
     if (first == row.end()) continue;
     const auto last = std::find_if(row.rbegin(), row.rend(), is_set).base() - 1;

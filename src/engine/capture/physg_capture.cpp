@@ -98,7 +98,11 @@ void read_part(const Part& part, Capture& capture) {
     view.name = fmt::format("{}/{}", split_name(part.split), fs::path(keys[i]).stem().string());
     view.split = part.split;
     view.camera = read_camera(j[keys[i]], where);
-    if (size.width > 0) view.camera.width = size.width, view.camera.height = size.height;
+    if (view.camera.width == 0) {
+      const ImageSize own = size_of_image(image_of[i]);
+      view.camera.width = own.width > 0 ? own.width : size.width;
+      view.camera.height = own.width > 0 ? own.height : size.height;
+    }
     if (view.camera.width == 0) fail("{}: neither img_size nor an image tells the image size.", where);
     view.image_path = image_of[i];
     view.mask_path = mask_of[i];

@@ -4,17 +4,22 @@
 #include <array>
 #include <cctype>
 #include <cstdint>
+#include <fstream>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/math/color.h"
+#include "engine/io/color_profile.h"
 #include "engine/io/exr_file.h"
 #include "engine/io/hdr_file.h"
 #include "engine/io/jpeg_file.h"
 #include "engine/io/png_file.h"
+#include "engine/io/tiff_file.h"
 
 namespace cei3d {
 namespace {
+
+constexpr size_t kHeaderBytes = size_t(1) << 20;  // that hold the size of nearly every file
 
 ImageSize png_size(const std::string& bytes, const std::string& name) {
   if (bytes.size() < 24 || bytes.compare(12, 4, "IHDR") != 0)
@@ -54,10 +59,54 @@ Image decode(const std::string& bytes, const std::string& name, ImageFormat form
       return decode_png(bytes, name);
     case ImageFormat::jpeg:
       return decode_jpeg(bytes, name);
+    case ImageFormat::tiff:
+      return decode_tiff(bytes, name).image;
     case ImageFormat::exr:
       return decode_exr(bytes, name);
     case ImageFormat::hdr:
       return decode_hdr(bytes, name);
+  }
+  fail("{}: unknown image format.", name);
+}
+
+struct Stored {
+  Image image;
+  bool linear = false;
+  std::string profile;  // ICC; empty: none
+};
+
+Stored decode_with_profile(const std::string& bytes, const std::string& name, ImageFormat format) {
+  if (format == ImageFormat::tiff) {
+    TiffImage tiff = decode_tiff(bytes, name);
+    return {std::move(tiff.image), tiff.linear, std::move(tiff.profile)};
+  }
+  const bool linear = format == ImageFormat::exr || format == ImageFormat::hdr;
+  Stored stored{decode(bytes, name, format), linear, {}};
+  if (format == ImageFormat::jpeg) stored.profile = jpeg_profile(bytes);
+  if (format == ImageFormat::png) stored.profile = png_profile(bytes, name);
+  return stored;
+}
+
+std::string start_of(const std::filesystem::path& path) {
+  std::string bytes(kHeaderBytes, '\0');
+  std::ifstream file(path, std::ios::binary);
+  file.read(bytes.data(), std::streamsize(bytes.size()));
+  bytes.resize(size_t(file.gcount()));
+  return bytes;
+}
+
+ImageSize size_of(const std::string& bytes, const std::string& name) {
+  switch (image_format(bytes, name)) {
+    case ImageFormat::png:
+      return png_size(bytes, name);
+    case ImageFormat::jpeg:
+      return jpeg_size(bytes, name);
+    case ImageFormat::tiff:
+      return tiff_size(bytes, name);
+    case ImageFormat::exr:
+      return exr_size(bytes, name);
+    case ImageFormat::hdr:
+      return hdr_size(bytes, name);
   }
   fail("{}: unknown image format.", name);
 }
@@ -68,9 +117,11 @@ ImageFormat image_format(const std::string& bytes, const std::string& name) {
   if (bytes.empty()) fail("{} is empty. Copy or render it again.", name);
   if (bytes.rfind("\x89PNG\r\n\x1a\n", 0) == 0) return ImageFormat::png;
   if (bytes.rfind("\xff\xd8", 0) == 0) return ImageFormat::jpeg;
+  if (bytes.rfind(std::string("II*\0", 4), 0) == 0 || bytes.rfind(std::string("MM\0*", 4), 0) == 0)
+    return ImageFormat::tiff;
   if (bytes.rfind("\x76\x2f\x31\x01", 0) == 0) return ImageFormat::exr;
   if (bytes.rfind("#?", 0) == 0) return ImageFormat::hdr;
-  fail("{} is not a PNG, JPEG, EXR or Radiance HDR image. Convert it to PNG.", name);
+  fail("{} is not a PNG, JPEG, TIFF, EXR or Radiance HDR image. Convert it to PNG.", name);
 }
 
 Image read_image(const std::filesystem::path& path) {
@@ -81,30 +132,34 @@ Image read_image(const std::filesystem::path& path) {
 Image read_linear_image(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
   const ImageFormat format = image_format(bytes, path.string());
-  Image image = decode(bytes, path.string(), format);
-  if (format == ImageFormat::exr || format == ImageFormat::hdr) return image;
-  return map_colors(std::move(image), linear_of_stored);
+  Stored stored = decode_with_profile(bytes, path.string(), format);
+  if (stored.linear) return stored.image;
+  if (stored.image.channels >= 3 && !stored.profile.empty() && !is_srgb_profile(stored.profile))
+    return linear_by_profile(std::move(stored.image), stored.profile);
+  return map_colors(std::move(stored.image), linear_of_stored);
 }
 
 ImageSize read_image_size(const std::filesystem::path& path) {
-  const std::string bytes = read_file(path), name = path.string();
-  switch (image_format(bytes, name)) {
-    case ImageFormat::png:
-      return png_size(bytes, name);
-    case ImageFormat::jpeg:
-      return jpeg_size(bytes, name);
-    case ImageFormat::exr:
-      return exr_size(bytes, name);
-    case ImageFormat::hdr:
-      return hdr_size(bytes, name);
+  const std::string start = start_of(path);
+  if (start.size() < kHeaderBytes)
+    return size_of(read_file(path), path.string());  // says why it cannot be read
+  try {
+    return size_of(start, path.string());
+  } catch (const Error&) {
+    return size_of(read_file(path), path.string());  // notes of megabytes before the size
   }
-  fail("{}: unknown image format.", name);
+}
+
+ExifNotes read_image_exif(const std::filesystem::path& path) {
+  const std::string start = start_of(path);
+  return start.rfind("\xff\xd8", 0) == 0 ? read_exif(start) : ExifNotes();
 }
 
 bool has_image_suffix(const std::filesystem::path& path) {
   std::string suffix = path.extension().string();
   for (char& c : suffix) c = char(std::tolower(static_cast<unsigned char>(c)));
-  return suffix == ".png" || suffix == ".jpg" || suffix == ".jpeg" || suffix == ".exr" || suffix == ".hdr";
+  return suffix == ".png" || suffix == ".jpg" || suffix == ".jpeg" || suffix == ".tif" || suffix == ".tiff" ||
+         suffix == ".exr" || suffix == ".hdr";
 }
 
 void write_png(const std::filesystem::path& path, const Image& image, int bits) {

@@ -6,19 +6,23 @@
 #include <string>
 
 #include "core/image/image.h"
+#include "engine/io/exif.h"
 #include "engine/io/image_size.h"
 
 namespace cei3d {
 
-enum class ImageFormat { png, jpeg, exr, hdr };
+enum class ImageFormat { png, jpeg, tiff, exr, hdr };
 
-// Values as stored, /255 or /65535: display-encoded for PNG and JPEG, linear for EXR and HDR. 1, 3 or 4
+// Values as stored, /255 or /65535: display-encoded for PNG, JPEG and TIFF, linear for EXR and HDR. 1, 3 or 4
 // channels. Errors name the file: missing, truncated, corrupt, unknown format.
 Image read_image(const std::filesystem::path& path);
-Image read_linear_image(const std::filesystem::path& path);    // PNG and JPEG decoded from sRGB, alpha kept
-ImageSize read_image_size(const std::filesystem::path& path);  // without decoding pixels
+// Linear, sRGB primaries, alpha kept: by the image's color profile, else from sRGB. EXR, HDR and TIFF of
+// floating-point numbers are linear as stored.
+Image read_linear_image(const std::filesystem::path& path);
+ImageSize read_image_size(const std::filesystem::path& path);  // without decoding pixels, as stored
+ExifNotes read_image_exif(const std::filesystem::path& path);  // defaults for a file without
 ImageFormat image_format(const std::string& bytes, const std::string& name);
-bool has_image_suffix(const std::filesystem::path& path);  // .png .jpg .jpeg .exr .hdr, any case
+bool has_image_suffix(const std::filesystem::path& path);  // .png .jpg .jpeg .tif .tiff .exr .hdr, any case
 
 // Writes atomically and makes parent folders. Values are written as they are (see encode_png, encode_exr,
 // encode_hdr).

@@ -49,6 +49,12 @@ struct Header {
   int channels, bits;
 };
 
+// Owned by libpng.
+struct Profile {
+  png_bytep data;
+  png_uint_32 size;
+};
+
 void read_header(png_structp png, png_infop info, Header* h) {
   png_set_user_limits(png, 65535, 65535);
   png_read_info(png, info);
@@ -63,6 +69,14 @@ void read_header(png_structp png, png_infop info, Header* h) {
   h->height = png_get_image_height(png, info);
   h->channels = png_get_channels(png, info);
   h->bits = png_get_bit_depth(png, info);
+}
+
+void read_profile(png_structp png, png_infop info, Profile* out) {
+  png_set_user_limits(png, 65535, 65535);
+  png_read_info(png, info);
+  png_charp name = nullptr;
+  int compression = 0;
+  png_get_iCCP(png, info, &name, &compression, &out->data, &out->size);
 }
 
 void read_rows(png_structp png, png_infop, png_bytepp rows) {
@@ -90,6 +104,11 @@ class Reader {
     Header h{};
     require(guarded(png_, info_, read_header, &h));
     return h;
+  }
+  std::string profile() {
+    Profile p{};
+    if (!guarded(png_, info_, read_profile, &p) || !p.data) return "";
+    return {reinterpret_cast<const char*>(p.data), p.size};
   }
   void rows(png_bytepp rows) { require(guarded(png_, info_, read_rows, rows)); }
   void require(bool ok) {
@@ -170,6 +189,10 @@ Image decode_png(const std::string& bytes, const std::string& name) {
       image.data[i] = float(v) / 65535.0f;
     }
   return image;
+}
+
+std::string png_profile(const std::string& bytes, const std::string& name) {
+  return Reader(bytes, name).profile();
 }
 
 std::string encode_png(const Image& image, int bits) {

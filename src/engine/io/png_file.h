@@ -12,6 +12,9 @@ namespace cei3d {
 // expanded. Errors name `name`: truncated, corrupt, larger than 65,535 pixels per side.
 Image decode_png(const std::string& bytes, const std::string& name);
 
+// The ICC profile in the file; empty if there is none.
+std::string png_profile(const std::string& bytes, const std::string& name);
+
 // image: 1, 3 or 4 channels, values as they are stored in the file (display-encoded for color), clamped to
 // [0, 1] and rounded; NaN becomes 0. bits: 8 or 16.
 std::string encode_png(const Image& image, int bits);

@@ -38,14 +38,6 @@ fs::path find_root(JsonReader& reader, const fs::path& project) {
   return fs::exists(moved, error) ? moved : root;
 }
 
-Json view_json(const View& v, const fs::path& root) {
-  return {{"name", v.name},
-          {"split", split_name(v.split)},
-          {"image", relative_to(v.image_path, root)},
-          {"mask", relative_to(v.mask_path, root)},
-          {"camera", camera_json(v.camera)}};
-}
-
 Split split_of(const std::string& name) {
   const std::optional<Split> split = split_from_name(name);
   if (!split) fail("dataset.json of the project names the unknown split '{}'; restore it from a copy.", name);
@@ -89,11 +81,54 @@ Camera camera_from_json(JsonReader& reader) {
   return c;
 }
 
+namespace {
+
+Json photo_json(const PhotoCamera& photo) {
+  const LensDistortion& lens = photo.lens();
+  return {{"camera", camera_json(photo.camera())},
+          {"lens", lens.kind == LensKind::fisheye ? "fisheye" : "perspective"},
+          {"radial", lens.radial},
+          {"divisor", lens.divisor},
+          {"tangential", {lens.p1, lens.p2}}};
+}
+
+PhotoCamera photo_from_json(JsonReader reader) {
+  JsonReader camera = reader.object("camera");
+  const Camera k = camera_from_json(camera);
+  camera.finish();
+  LensDistortion lens;
+  const auto kind = reader.require<std::string>("lens");
+  if (kind != "fisheye" && kind != "perspective")
+    fail("{} has the unknown lens '{}'; restore it from a copy.", reader.what(), kind);
+  lens.kind = kind == "fisheye" ? LensKind::fisheye : LensKind::perspective;
+  lens.radial = reader.numbers<4>("radial");
+  lens.divisor = reader.numbers<3>("divisor");
+  const auto [p1, p2] = reader.numbers<2>("tangential");
+  lens.p1 = p1, lens.p2 = p2;
+  reader.finish();
+  return {k, lens};
+}
+
+// What only some views have is left out where they do not.
+Json view_json(const View& v, const fs::path& root, const fs::path& project) {
+  Json j{{"name", v.name},
+         {"split", split_name(v.split)},
+         {"image", relative_to(v.image_path, root)},
+         {"mask", relative_to(v.mask_path, root)},
+         {"camera", camera_json(v.camera)}};
+  if (v.dark_object) j["dark_object"] = true;
+  if (!v.doubtful_path.empty()) j["doubtful"] = relative_to(v.doubtful_path, project);
+  if (v.photo) j["photo"] = photo_json(*v.photo);
+  return j;
+}
+
+}  // namespace
+
 Json dataset_json(const Capture& capture, const fs::path& project) {
   const fs::path root = fs::absolute(capture.root).lexically_normal();
   const fs::path home = fs::absolute(project).lexically_normal();
   Json views = Json::array();
-  for (const View& v : capture.views) views.push_back(view_json(v, root));
+  for (const View& v : capture.views) views.push_back(view_json(v, root, home));
   return {{"format", capture.format},
           {"root", root.generic_string()},
           {"root_from_project", root.lexically_proximate(home).generic_string()},
@@ -104,7 +139,7 @@ Json dataset_json(const Capture& capture, const fs::path& project) {
 
 namespace {
 
-View view_from_json(JsonReader reader, const fs::path& root) {
+View view_from_json(JsonReader reader, const fs::path& root, const fs::path& project) {
   View view;
   view.name = reader.require<std::string>("name");
   view.split = split_of(reader.require<std::string>("split"));
@@ -113,6 +148,9 @@ View view_from_json(JsonReader reader, const fs::path& root) {
   camera.finish();
   view.image_path = below(root, reader.require<std::string>("image"));
   view.mask_path = below(root, reader.require<std::string>("mask"));
+  view.dark_object = reader.optional("dark_object", false);
+  view.doubtful_path = below(project, reader.optional<std::string>("doubtful", ""));
+  if (reader.has("photo")) view.photo = photo_from_json(reader.object("photo"));
   reader.finish();
   return view;
 }
@@ -128,7 +166,7 @@ Dataset dataset_from_json(const Json& j, const fs::path& project) {
   c.format = reader.require<std::string>("format");
   c.up = vector_from(reader, "up");
   for (const Json& v : reader.array("views"))
-    c.views.push_back(view_from_json({v, "A view in " + file}, c.root));
+    c.views.push_back(view_from_json({v, "A view in " + file}, c.root, project));
   d.fingerprint = reader.require<std::string>("fingerprint");
   reader.finish();
   return d;
@@ -136,9 +174,12 @@ Dataset dataset_from_json(const Json& j, const fs::path& project) {
 
 std::string capture_fingerprint(const Capture& capture) {
   std::string text = capture.format;
-  for (const View& v : capture.views)
+  for (const View& v : capture.views) {
     text += fmt::format("\n{} {} {} {} {}", v.name, split_name(v.split), size_of(v.image_path),
                         size_of(v.mask_path), camera_json(v.camera).dump());
+    if (v.dark_object) text += " dark";
+    if (v.photo) text += fmt::format(" {}", photo_json(*v.photo).dump());
+  }
   return content_hash(text);
 }
 

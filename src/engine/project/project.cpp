@@ -130,8 +130,8 @@ void Project::discard_if_empty() {
   if (has_base() || !checkpoint_files().empty()) return;
   std::error_code error;
   // project.json first: a half-removed folder is then not a project.
-  for (const char* name :
-       {"project.json", "dataset.json", "stack.json", "history.jsonl", "base", "objects", "runs", ".lock"})
+  for (const char* name : {"project.json", "dataset.json", "stack.json", "history.jsonl", "base", "objects",
+                           "runs", "doubtful", ".lock"})
     fs::remove_all(file(name), error);
   fs::remove(folder_, error);
 }
@@ -154,7 +154,7 @@ Project Project::create(const fs::path& folder, const ProjectHead& head, const C
   if (is_project(folder)) {
     const ProjectLock lock(folder);
     // base/ first: so that the old object is never shown with the new cameras.
-    for (const char* name : {"base", "stack.json", "edits", "objects", "cache", "runs"})
+    for (const char* name : {"base", "stack.json", "edits", "objects", "cache", "runs", "doubtful"})
       fs::remove_all(folder / name);
     write_json_file(folder / "stack.json", Stack().to_json());
     write_json_file(folder / "dataset.json", dataset_json(capture, folder));

@@ -6,6 +6,7 @@
 
 #include "core/image/area.h"
 #include "core/math/color.h"
+#include "model/geometry/shape/visual_hull.h"
 
 namespace cei3d {
 
@@ -21,12 +22,13 @@ void PixelStore::add_view(const Camera& unit_camera, const Image& image, int rim
   Area touched(size_t(image.width) * image.height), mask(touched.size());
   for (size_t i = 0; i < touched.size(); ++i) {
     touched[i] = image.data[4 * i + 3] > 0;
-    mask[i] = image.data[4 * i + 3] > 0.5f;
+    const float alpha = image.data[4 * i + 3];
+    mask[i] = alpha < 0 ? kUnknown : alpha > 0.5f ? kObject : kBackground;
   }
   const Area keep = dilated(touched, image.width, image.height, rim);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
-      if (!keep[size_t(y) * image.width + x]) continue;
+      if (!keep[size_t(y) * image.width + x] || image.at(x, y)[3] < 0) continue;
       const float* p = image.at(x, y);
       pixels_.push_back({view,
                          uint16_t(x),

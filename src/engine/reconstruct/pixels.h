@@ -20,12 +20,13 @@ struct Pixel {
 
 class PixelStore {
  public:
-  // image: RGBA, linear, straight alpha. Keeps pixels whose alpha is above zero within `rim` pixels.
+  // image: RGBA, linear, straight alpha, below 0 where unknown. Keeps known pixels with an alpha above zero
+  // within `rim` pixels.
   void add_view(const Camera& unit_camera, const Image& image, int rim);
 
   const std::vector<Camera>& cameras() const { return cameras_; }
   const std::vector<Pixel>& pixels() const { return pixels_; }
-  // The view's alpha > 0.5, row-major.
+  // Of each view, row-major: kObject where alpha > 0.5, kUnknown where alpha < 0 (visual_hull.h).
   const std::vector<std::vector<uint8_t>>& masks() const { return masks_; }
   // Ray through the center of a pixel plus `away` (pixels), unit frame.
   Ray ray(const Pixel& p, Vec2f away = {0, 0}) const {

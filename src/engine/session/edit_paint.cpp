@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "engine/capture/capture.h"
+#include "engine/capture/undistort.h"
 #include "engine/edit/paint.h"
 #include "engine/edit/stroke.h"
 #include "engine/io/image_file.h"
@@ -29,10 +30,10 @@ Image decode_scribble(const std::string& bytes, const std::string& name) {
 }
 
 void require_size(const Image& scribble, const View& view, const std::string& name) {
-  const Camera& c = view.camera;
+  const Camera &c = view.camera, &photo = view.file_camera();
   if (scribble.width != c.width || scribble.height != c.height)
     fail("{} is {}x{} pixels, view {} is {}x{}; paint on an image of the view's size.", name, scribble.width,
-         scribble.height, view.name, c.width, c.height);
+         scribble.height, view.name, photo.width, photo.height);
 }
 
 void require_paint(const Image& scribble, const std::string& name) {
@@ -47,7 +48,8 @@ Scribble scribble_of(const EditContext& context, const EditJob& job, const Json&
   const View& view = find_view(context.capture, stroke.require<std::string>("view"));
   const std::string name = stroke.optional<std::string>("file", "the scribble");
   Scribble s;
-  s.image = decode_scribble(job.input(stroke.optional<std::string>("input", "scribble.png")), name);
+  const std::string& file = job.input(stroke.optional<std::string>("input", "scribble.png"));
+  s.image = drawn_on_view(view, decode_scribble(file, name));
   stroke.finish();
   require_size(s.image, view, name);
   require_paint(s.image, name);

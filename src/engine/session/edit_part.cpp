@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
 #include "engine/capture/capture.h"
+#include "engine/capture/undistort.h"
 #include "engine/edit/part.h"
 #include "engine/edit/sam_part.h"
 #include "engine/io/image_file.h"
@@ -76,7 +77,7 @@ PartRequest request_of(const EditContext& context, const EditJob& job) {
   r.camera = context.scene.normalization.unit_from_capture(view.camera);
   r.clicks = {pixels_from(params, "positive"), pixels_from(params, "negative")};
   if (const auto mask = params.optional<std::string>("mask"))
-    r.mask = decode_mask(job.input("mask.png"), *mask);
+    r.mask = drawn_on_view(view, decode_mask(job.input("mask.png"), *mask));
   if (params.optional<std::string>("segmenter", "grow") == "sam")
     r.network = [&context, name = view.name](const Scene& scene, const PartRequest& request,
                                              Progress& progress) {

@@ -64,6 +64,7 @@ Json CheckReport::json() const {
     splits[split_name(r.split)] = {
         {"views", r.views},
         {"size", {r.size.width, r.size.height}},
+        {"sizes_vary", r.sizes_vary},
         {"coverage", {{"mean", r.coverage}, {"least", r.coverage_min}, {"most", r.coverage_max}}}};
   for (const Finding& f : report.findings)
     findings.push_back({{"severity", kSeverities[size_t(f.severity)]}, {"what", f.what}, {"fix", f.fix}});
@@ -76,6 +77,7 @@ Json CheckReport::json() const {
           {"camera_distance",
            {{"least", report.distance_min}, {"mean", report.distance}, {"most", report.distance_max}}},
           {"findings", findings},
+          {"repaired", repaired},
           {"usable", report.usable()}};
 }
 

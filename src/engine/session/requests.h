@@ -28,10 +28,15 @@ struct MachineInfo {
 struct CheckRequest {
   std::filesystem::path capture;
   CaptureOptions options{"", ReconstructOptions().test_every};  // as `reconstruct` would load it
-  std::filesystem::path picture;  // PNG of cameras and bounding sphere to write; empty: none
+  // Files to write; empty: none.
+  std::filesystem::path picture;          // PNG of cameras and bounding sphere, or HTML page of everything
+  std::filesystem::path contact_sheet{};  // PNG of all views
+  std::filesystem::path fixed{};          // folder of a capture without what can be repaired safely
 };
 struct CheckReport {
   Capture capture;
+  std::vector<std::string>
+      repaired;  // findings that were repaired; capture and report are those of the new capture
   CaptureReport report;
   double object_radius = 0;  // of its bounding sphere, when the report has a normalization
   Json json() const;
@@ -43,6 +48,7 @@ struct ReconstructRequest {
   std::string format;          // of the capture; empty: detected from the files
   ReconstructOptions options;  // not read with `resume`: those of the project are used
   bool resume = false, replace = false;
+  bool strict = false;  // refuse a capture of which images are missing
 };
 // Material and light of the object, and how well they explain the photographs.
 struct ObjectSummary {

@@ -4,10 +4,13 @@
 #include <thread>
 
 #include "core/base/error.h"
+#include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/base/system.h"
 #include "core/compute/device.h"
+#include "engine/capture/check_page.h"
 #include "engine/capture/normalize.h"
+#include "engine/capture/write_capture.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
 #include "engine/render/render_cache.h"
@@ -39,6 +42,25 @@ void describe_scene(const Device& device, const Scene& scene, ProjectInfo& info)
   }
 }
 
+// Repairs what can be, until nothing more can: one mistake may hide another. What is written is read again,
+// as the next command would.
+void write_repaired(const CheckRequest& request, CheckReport& r) {
+  for (int round = 0; round < 4; ++round) {
+    bool changed = false;
+    for (const Finding& f : r.report.findings) {
+      if (!f.repair) continue;
+      f.repair(r.capture);
+      r.repaired.push_back(f.what);
+      changed = true;
+    }
+    if (!changed) break;
+    r.report = cei3d::check(r.capture);
+  }
+  write_capture(r.capture, request.fixed);
+  r.capture = load_capture(request.fixed, request.options);
+  r.report = cei3d::check(r.capture);
+}
+
 }  // namespace
 
 Session::Session(const std::string& device, int threads)
@@ -62,9 +84,13 @@ CheckReport Session::check(const CheckRequest& request) {
     CheckReport r;
     r.capture = load_capture(request.capture, request.options);
     r.report = cei3d::check(r.capture);
+    if (!request.fixed.empty()) write_repaired(request, r);
     if (r.report.normalization) r.object_radius = kObjectRadius / r.report.normalization->scale;
-    if (!request.picture.empty() && r.report.normalization)
+    if (request.picture.extension() == ".html")
+      write_file_atomic(request.picture, check_page(r.capture, r.report));
+    else if (!request.picture.empty() && r.report.normalization)
       write_png(request.picture, draw_cameras(r.capture, *r.report.normalization));
+    if (!request.contact_sheet.empty()) write_png(request.contact_sheet, contact_sheet(r.capture, r.report));
     return r;
   });
 }

@@ -38,6 +38,13 @@ std::vector<uint8_t> mask_of(const Image& rgba) {
   return mask;
 }
 
+// Pixels that the photograph says nothing about are background in every picture, so that they do not count.
+Image where_known(const Image& photo, Image picture) {
+  for (size_t i = 3; i < photo.data.size(); i += 4)
+    if (photo.data[i] < 0) picture.data[i] = 0;
+  return picture;
+}
+
 // Both sets of images, for the distance between them.
 struct Sets {
   FeatureSet rendered, photos;
@@ -120,15 +127,16 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
     for (size_t i = 0; i < views.size(); ++i) {
       if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Evaluation was interrupted.");
       progress.report({"eval", double(i) / double(views.size()), -1, views[i].name});
+      const Image photo = load_linear_rgba(views[i]);
       EditImages p;
-      p.after = picture(scene, views[i]);
-      p.before = edit ? picture(without, views[i]) : p.after;
-      p.photo = rounded_srgb(load_linear_rgba(views[i]));
+      p.after = where_known(photo, picture(scene, views[i]));
+      p.before = edit ? where_known(photo, picture(without, views[i])) : p.after;
+      p.photo = where_known(photo, rounded_srgb(photo));
       if (without.residual) {
         Scene physical = without;
         physical.residual = nullptr;
         report.alone = report.alone.value_or(EvalReport::Alone{});
-        add_mean(picture(physical, views[i]), p.photo, views.size(), *report.alone);
+        add_mean(where_known(photo, picture(physical, views[i])), p.photo, views.size(), *report.alone);
       }
       report.views.push_back(score_view(views[i], p.before, p.photo, perceptual, sets));
       if (edit) scorer.add(views[i], p, edited_area(scene, *edit, trace(scene, views[i])->buffer, p));

@@ -7,6 +7,7 @@
 #include "core/base/file.h"
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
+#include "engine/capture/undistort.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
 #include "engine/render/render.h"
@@ -20,9 +21,13 @@
 namespace cei3d {
 namespace {
 
-Json pixels_json(const std::vector<Vec2<double>>& pixels) {
+// Clicks on the photograph, as positions on the view.
+Json pixels_json(const View& view, const std::vector<Vec2d>& clicks) {
   Json list = Json::array();
-  for (const auto& p : pixels) list.push_back({p.x, p.y});
+  for (const Vec2d click : clicks) {
+    const Vec2d p = position_on_view(view, click);
+    list.push_back({p.x, p.y});
+  }
   return list;
 }
 
@@ -69,17 +74,17 @@ Image part_mask(const Scene& scene, const EditLayer& part, const GBuffer& g) {
 
 EditSummary Session::select_part(const PartCommand& command, Progress& progress) {
   check_place(command);
-  Json params = {{"view", find_view(project().capture(), command.view).name},
-                 {"segmenter", command.segmenter}};
+  const View& view = find_view(project().capture(), command.view);
+  Json params = {{"view", view.name}, {"segmenter", command.segmenter}};
   if (command.in_view) params["in_view"] = true;
   put_combination(command, params);
   std::string name = command.name;
   for (const std::string& other : {command.add, command.subtract, command.intersect})
     if (name.empty()) name = other;
   params["name"] = name.empty() ? unused_name(project().scene()) : name;
-  if (!command.positive.empty()) params["positive"] = pixels_json(command.positive);
-  if (!command.negative.empty()) params["negative"] = pixels_json(command.negative);
-  if (command.like) params["like"] = {command.like->x, command.like->y};
+  if (!command.positive.empty()) params["positive"] = pixels_json(view, command.positive);
+  if (!command.negative.empty()) params["negative"] = pixels_json(view, command.negative);
+  if (command.like) params["like"] = pixels_json(view, {*command.like})[0];
   if (command.like_color) params["like_color"] = true;
   EditInputs inputs;
   if (!command.mask.empty()) {

@@ -5,6 +5,7 @@
 #include "core/compute/device.h"
 #include "engine/capture/capture_images.h"
 #include "engine/capture/check.h"
+#include "engine/io/image_file.h"
 #include "engine/project/dataset.h"
 #include "engine/project/project.h"
 #include "engine/session/object_summary.h"
@@ -63,8 +64,22 @@ ReconstructOptions options_from_json(const Json& j) {
 // The same checks as in `check`, so that nothing is written for an unusable capture.
 Project create_project(const ReconstructRequest& request, const CheckReport& checked) {
   require_usable(checked.report);
-  return Project::create(request.project, {*checked.report.normalization, options_json(request)},
-                         checked.capture, request.replace);
+  Capture capture = checked.capture;
+  const auto file_of = [&](const std::string& view) {
+    return request.project / "doubtful" / (view + ".png");
+  };
+  for (const CaptureReport::Doubt& d : checked.report.doubts)
+    for (View& v : capture.views)
+      if (v.name == d.view) v.doubtful_path = file_of(d.view);
+  Project project = Project::create(request.project, {*checked.report.normalization, options_json(request)},
+                                    capture, request.replace);
+  for (const CaptureReport::Doubt& d : checked.report.doubts) {
+    const Camera& c = find_view(capture, d.view).camera;
+    Image picture(c.width, c.height, 1);
+    for (size_t i = 0; i < d.area.size(); ++i) picture.data[i] = d.area[i];
+    write_png(file_of(d.view), picture);
+  }
+  return project;
 }
 
 // Error: the capture has changed since the reconstruction began.
@@ -103,7 +118,8 @@ ReconstructReport Session::run_reconstruction(const ReconstructRequest& request,
   } else {
     Project::check_place(request.project, request.replace);
     const ReconstructOptions& o = request.options;
-    const CheckReport checked = check({request.capture, {request.format, o.test_every, o.views}, {}});
+    const CheckReport checked =
+        check({request.capture, {request.format, o.test_every, o.views, request.strict}, {}});
     project_.reset();
     project_ = std::make_unique<Project>(create_project(request, checked));
   }

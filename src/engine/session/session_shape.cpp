@@ -2,6 +2,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "engine/capture/capture.h"
+#include "engine/capture/undistort.h"
 #include "engine/project/project.h"
 #include "engine/render/render.h"
 #include "engine/session/session.h"
@@ -13,10 +14,12 @@ namespace {
 PointDrag drag_of(const Device& device, const Scene& scene, const Capture& capture, const PixelDrag& d) {
   const View& view = find_view(capture, d.view);
   const Camera camera = scene.normalization.unit_from_capture(view.camera);
-  if (!(d.pixel.x >= 0 && d.pixel.y >= 0 && d.pixel.x <= camera.width && d.pixel.y <= camera.height))
+  const Camera& photo = view.file_camera();
+  if (!(d.pixel.x >= 0 && d.pixel.y >= 0 && d.pixel.x <= photo.width && d.pixel.y <= photo.height))
     fail_usage("Pixel {:.6g},{:.6g} is not in view {}, which is {}x{}.", d.pixel.x, d.pixel.y, view.name,
-               camera.width, camera.height);
-  const Ray rays[] = {camera.ray(d.pixel.x, d.pixel.y)};
+               photo.width, photo.height);
+  const Vec2d begin = position_on_view(view, d.pixel), end = position_on_view(view, d.pixel + d.drag);
+  const Ray rays[] = {camera.ray(begin.x, begin.y)};
   std::vector<uint32_t> ray_of_hit;
   const std::vector<Hit> hits = trace_rays(device, scene, rays, ray_of_hit);
   if (hits.empty())
@@ -24,7 +27,7 @@ PointDrag drag_of(const Device& device, const Scene& scene, const Capture& captu
          d.pixel.x, d.pixel.y);
   const Vec3d from = to_double(hits[0].position);
   const Vec3d forward = to_double(camera.forward());
-  const Vec3d towards = to_double(camera.ray(d.pixel.x + d.drag.x, d.pixel.y + d.drag.y).direction);
+  const Vec3d towards = to_double(camera.ray(end.x, end.y).direction);
   const Vec3d to = camera.center + towards * (dot(from - camera.center, forward) / dot(towards, forward));
   return {scene.normalization.capture_from_unit(from), scene.normalization.capture_from_unit(to)};
 }

@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture: cameras, files and splits, in the capture frame .
+// A capture: cameras, files and splits, in the capture frame.
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/image/image.h"
 #include "core/math/camera.h"
+#include "core/math/lens.h"
 
 namespace cei3d {
 
 enum class Split { train, val, test };
+
+// A point of the object or its surroundings, and where the photograph shows it, as the capture says.
+struct Sighting {
+  Vec3d point;  // capture frame
+  Vec2d pixel;  // of the photograph; pixel centers at +0.5
+};
 
 struct View {
   std::string name;  // "train/r_055": split folder and stem, unique in the capture
@@ -20,6 +28,18 @@ struct View {
   Camera camera;                     // capture frame; pixel centers at +0.5
   std::filesystem::path image_path;  // empty: a camera without a photograph
   std::filesystem::path mask_path;   // empty: the mask is the alpha of the image
+  bool dark_object = false;          // mask or alpha mean the background, not the object
+  // PNG of the size of `camera`, white where the mask contradicts the other views: nothing is known there.
+  // Empty: nowhere.
+  std::filesystem::path doubtful_path;
+  // The camera that took the photograph, where its pixels are not those of `camera`: it has a lens, and
+  // `camera` is a pinhole camera of the same pose that frames the object. Images are resampled when they are
+  // loaded.
+  std::optional<PhotoCamera> photo;
+  std::shared_ptr<const std::vector<Sighting>> sightings;  // null: the capture has none
+
+  // The camera of the files: of the photograph, its mask, and what a user draws or clicks on it.
+  const Camera& file_camera() const { return photo ? photo->camera() : camera; }
 };
 
 // A ball that contains the object, as some formats state it.
@@ -42,7 +62,11 @@ struct Capture {
 class ImageSource {
  public:
   virtual ~ImageSource() = default;
-  virtual Image load(const View&) const = 0;  // RGBA, linear, straight alpha; alpha is the object mask
+  // RGBA, linear, straight alpha; alpha is the object mask, below 0 where it is not known what the view shows
+  virtual Image load(const View&) const = 0;
 };
+
+// Alpha of pixels that show nothing known: neither object nor background.
+inline constexpr float kUnknownAlpha = -1;
 
 }  // namespace cei3d

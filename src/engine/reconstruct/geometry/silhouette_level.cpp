@@ -10,6 +10,7 @@
 #include "core/math/quantile.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/geometry/occupancy.h"
+#include "model/geometry/shape/visual_hull.h"
 
 namespace cei3d {
 namespace {
@@ -32,8 +33,8 @@ std::vector<Pixel> silhouette_pixels(const PixelStore& store) {
                   std::clamp(x, 0, camera.width - 1)];
     };
     const auto here = object(p.x, p.y);
-    if (object(p.x - 1, p.y) != here || object(p.x + 1, p.y) != here || object(p.x, p.y - 1) != here ||
-        object(p.x, p.y + 1) != here)
+    const auto other = [&](int x, int y) { return object(x, y) != here && object(x, y) != kUnknown; };
+    if (other(p.x - 1, p.y) || other(p.x + 1, p.y) || other(p.x, p.y - 1) || other(p.x, p.y + 1))
       border.push_back(p);
   }
   return half.size() >= kMinPixels ? half : border;

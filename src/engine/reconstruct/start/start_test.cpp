@@ -57,5 +57,19 @@ TEST(Start, NoMatterWhereTooFewViewsLook) {
   EXPECT_LT(three.distance.at(ball), -0.2f);
 }
 
+TEST(PixelStore, UnknownPixelsAreNeitherObjectNorBackground) {
+  Image image(5, 1, 4);
+  image.at(1, 0)[3] = 1;
+  image.at(2, 0)[3] = -1;
+  Camera camera;
+  camera.width = 5, camera.height = 1;
+  PixelStore store;
+  store.add_view(camera, image, 2);
+  std::vector<int> columns;
+  for (const Pixel& p : store.pixels()) columns.push_back(p.x);
+  EXPECT_EQ(columns, (std::vector<int>{0, 1, 3}));
+  EXPECT_EQ(store.masks()[0], (std::vector<uint8_t>{kBackground, kObject, kUnknown, kBackground, kBackground}));
+}
+
 }  // namespace
 }  // namespace cei3d

@@ -36,7 +36,8 @@ Vote look(const Projection& view, Vec3d p) {
   if (!(z > 0)) return Vote::unseen;
   const double x = (dot(view.row[0], p) + view.offset[0]) / z, y = (dot(view.row[1], p) + view.offset[1]) / z;
   if (!(x >= 0 && y >= 0 && x < view.width && y < view.height)) return Vote::unseen;
-  return view.mask[size_t(y) * size_t(view.width) + size_t(x)] ? Vote::object : Vote::background;
+  const uint8_t pixel = view.mask[size_t(y) * size_t(view.width) + size_t(x)];
+  return pixel == kUnknown ? Vote::unseen : pixel == kBackground ? Vote::background : Vote::object;
 }
 
 bool is_inside(const std::vector<Projection>& views, Vec3d p, int tolerated, int min_seen) {

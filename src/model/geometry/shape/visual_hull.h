@@ -10,9 +10,12 @@
 
 namespace cei3d {
 
+// What a pixel of a mask says. Unknown pixels have no vote.
+inline constexpr uint8_t kBackground = 0, kObject = 1, kUnknown = 2;
+
 struct HullMask {
   Camera camera;
-  std::span<const uint8_t> mask;  // [camera.height][camera.width], object = nonzero
+  std::span<const uint8_t> mask;  // [camera.height][camera.width]: kBackground, kObject or kUnknown
 };
 
 struct VisualHull {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/error.h"
@@ -79,6 +80,15 @@ TEST(VisualHull, MaskOfAnotherSizeIsAnError) {
   Ball ball;
   ball.views[3].camera.width = 99;
   EXPECT_THROW(visual_hull(ball.views, 8), Error);
+}
+
+TEST(VisualHull, UnknownPixelsHaveNoVote) {
+  Ball ball;
+  const VisualHull whole = visual_hull(ball.views, 32, {-1, -1, -1}, {1, 1, 1}, 0, 20);
+  std::fill(ball.masks[30].begin(), ball.masks[30].end(), kUnknown);
+  const VisualHull without = visual_hull(ball.views, 32, {-1, -1, -1}, {1, 1, 1}, 0, 20);
+  for (size_t i = 0; i < whole.inside.size(); ++i) EXPECT_LE(whole.inside[i], without.inside[i]);
+  EXPECT_NEAR(volume(without), volume(whole), 0.02);
 }
 
 }  // namespace

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of check() that compare what a capture says in several ways: its sparse points with its cameras,
+// its masks with each other, its photographs with their neighbors.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/image/image.h"
+#include "engine/capture/check.h"
+#include "engine/capture/mask_votes.h"
+#include "model/scene/view.h"
+
+namespace cei3d {
+
+// "a, b, c", of more than five names the first five and the number of the others.
+std::string some_names(const std::vector<std::string>& names);
+
+// Sparse points projected into the photographs that show them: names swapped or misplaced lens coefficients,
+// principal points that are half a pixel off, K of another image size, views of another pose. Captures
+// without points: nothing.
+void check_tracks(const Capture& capture, std::vector<Finding>& findings);
+
+// Intrinsics that no camera has: a focal length in millimeters, a principal point of another image size.
+void check_intrinsics(const Capture& capture, std::vector<Finding>& findings);
+
+struct JudgedMask {
+  const View* view = nullptr;
+  std::span<const uint8_t> mask;   // of view->camera
+  const Image* picture = nullptr;  // PhotoLook::small of the view; null: none
+};
+
+// Views whose mask disagrees with the others. normalization: none if the masks have no volume in common;
+// then, or when most disagree, the usual mistakes that concern all cameras are tried. A mask that leaves out
+// what the others show is right where the photograph has the colors of the background there. Returns the
+// votes, one for each mask.
+std::vector<MaskDoubt> check_silhouettes(std::span<const JudgedMask> masks,
+                                         const std::optional<Normalization>& normalization,
+                                         std::vector<Finding>& findings);
+
+// What is compared between photographs.
+struct PhotoLook {
+  bool seen = false;
+  double brightness = 0;  // mean logarithm of the object's luminance
+  double sharpness = 0;   // mean second difference of the object's luminance, relative to the luminance
+  Image small;            // RGB, linear, of the size of the small masks
+  std::vector<float> thumbnail;     // [kThumbnail][kThumbnail][3], linear
+  std::vector<uint8_t> background;  // [kThumbnail][kThumbnail], 1: nothing of the object
+  std::optional<double> exposure;   // by the camera's notes (ExifNotes)
+};
+inline constexpr int kThumbnail = 24;
+// rgba: load_linear_rgba() of the view.
+PhotoLook look_at_photo(const View& view, const Image& rgba);
+
+struct JudgedPhoto {
+  const View* view = nullptr;
+  const PhotoLook* look = nullptr;
+};
+// Jumps of exposure, blur, the same photograph twice, a background that does not move with the cameras.
+// center: of the object, capture frame.
+void check_photographs(std::span<const JudgedPhoto> photos, Vec3d center, std::vector<Finding>& findings);
+
+}  // namespace cei3d

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/capture/mask_votes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "core/base/parallel.h"
+#include "core/math/quantile.h"
+
+namespace cei3d {
+namespace {
+
+constexpr int kCells = 96;         // per axis of [-1, 1]^3
+constexpr double kAgainst = 0.15;  // share of the other views that may see background in a cell of the object
+constexpr size_t kNear =
+    8;  // views nearest in direction; a hole that is really there is seen by most of them
+constexpr double kNearCosine = 0.64;  // 50 degrees
+constexpr size_t kFewest = 3;         // near views without which nothing is decided
+constexpr int kOpening = 2;           // pixels: doubts about the outline alone do not count
+constexpr double kShare = 0.01,
+                 kOutlier = 3;  // stands out: share of doubtful pixels > kShare + kOutlier x median
+
+enum class Seen { nothing, background, object };
+
+Seen look(const HullMask& view, Vec3d p) {
+  const Vec3d at = view.camera.project(p);
+  if (!(at.z > 0 && at.x >= 0 && at.y >= 0 && at.x < view.camera.width && at.y < view.camera.height))
+    return Seen::nothing;
+  const uint8_t pixel = view.mask[size_t(at.y) * size_t(view.camera.width) + size_t(at.x)];
+  return pixel == kUnknown ? Seen::nothing : pixel == kObject ? Seen::object : Seen::background;
+}
+
+Vec3d cell_center(int x, int y, int z) {
+  return Vec3d{x + 0.5, y + 0.5, z + 0.5} * (2.0 / kCells) - Vec3d{1, 1, 1};
+}
+
+class Votes {
+ public:
+  explicit Votes(const std::vector<HullMask>& views)
+      : views_(views), seen_(size_t(kCells) * kCells * kCells), against_(seen_.size()) {
+    parallel_for(kCells, [&](int z) {
+      for (int y = 0; y < kCells; ++y)
+        for (int x = 0; x < kCells; ++x) count(x, y, z);
+    });
+    for (size_t v = 0; v < views.size(); ++v) near_.push_back(near_views(v));
+  }
+
+  // Whether the other views take the place for the object. own: what this view itself says there.
+  bool supported(Vec3d p, Seen own) const {
+    const int cell = cell_of(p);
+    if (cell < 0) return false;
+    const int seen = seen_[size_t(cell)] - (own != Seen::nothing),
+              against = against_[size_t(cell)] - (own == Seen::background);
+    return seen >= std::max(2, int(views_.size()) / 3) && against <= kAgainst * seen;
+  }
+  // Whether most of the views from nearly the same direction do.
+  bool supported_nearby(size_t view, Vec3d p) const {
+    size_t for_it = 0, against = 0;
+    for (const size_t v : near_[view]) {
+      const Seen s = look(views_[v], p);
+      for_it += s == Seen::object, against += s == Seen::background;
+    }
+    return for_it + against >= kFewest && for_it > against;
+  }
+
+ private:
+  void count(int x, int y, int z) {
+    const Vec3d p = cell_center(x, y, z);
+    const size_t i = (size_t(z) * kCells + y) * kCells + x;
+    for (const HullMask& view : views_) {
+      const Seen s = look(view, p);
+      seen_[i] = uint16_t(seen_[i] + (s != Seen::nothing));
+      against_[i] = uint16_t(against_[i] + (s == Seen::background));
+    }
+  }
+  static int cell_of(Vec3d p) {
+    const auto at = [](double v) { return int(std::floor((v + 1) / 2 * kCells)); };
+    const int x = at(p.x), y = at(p.y), z = at(p.z);
+    const bool inside = x >= 0 && y >= 0 && z >= 0 && x < kCells && y < kCells && z < kCells;
+    return inside ? (z * kCells + y) * kCells + x : -1;
+  }
+  std::vector<size_t> near_views(size_t view) const {
+    const auto direction = [&](size_t v) { return normalize(views_[v].camera.center); };
+    std::vector<std::pair<double, size_t>> others;
+    for (size_t v = 0; v < views_.size(); ++v)
+      if (const double cosine = dot(direction(v), direction(view)); v != view && cosine > kNearCosine)
+        others.push_back({-cosine, v});
+    const size_t n = std::min(kNear, others.size());
+    std::partial_sort(others.begin(), others.begin() + std::ptrdiff_t(n), others.end());
+    std::vector<size_t> out;
+    for (size_t i = 0; i < n; ++i) out.push_back(others[i].second);
+    return out;
+  }
+
+  const std::vector<HullMask>& views_;
+  std::vector<uint16_t> seen_, against_;
+  std::vector<std::vector<size_t>> near_;
+};
+
+// Depths between which a ray is inside the unit sphere; none: first > last.
+std::pair<double, double> span_in_sphere(Vec3d origin, Vec3d direction) {
+  const double b = dot(origin, direction), c = dot(origin, origin) - 1, d = b * b - c;
+  if (d <= 0) return {1, 0};
+  return {std::max(0.0, -b - std::sqrt(d)), -b + std::sqrt(d)};
+}
+
+Area opened(const Area& area, int width, int height, int radius) {
+  Area rest(area.size());
+  for (size_t i = 0; i < area.size(); ++i) rest[i] = !area[i];
+  const Area grown = dilated(rest, width, height, radius);
+  Area core(area.size());
+  for (size_t i = 0; i < area.size(); ++i) core[i] = !grown[i];
+  return dilated(core, width, height, radius);
+}
+
+// What the other views say about a pixel: whether its ray meets the object.
+bool meets_object(const Votes& votes, const HullMask& view, size_t index, int x, int y, Seen own) {
+  const Ray ray = view.camera.ray(x + 0.5, y + 0.5);
+  const Vec3d origin = to_double(ray.origin), direction = to_double(ray.direction);
+  const auto [first, last] = span_in_sphere(origin, direction);
+  for (double t = first; t < last; t += 1.0 / kCells) {
+    const Vec3d p = origin + direction * t;
+    if (votes.supported(p, own) && (own == Seen::object || votes.supported_nearby(index, p))) return true;
+  }
+  return false;
+}
+
+MaskDoubt judge(const Votes& votes, const HullMask& view, size_t index) {
+  MaskDoubt doubt;
+  const int w = doubt.width = view.camera.width, h = doubt.height = view.camera.height;
+  Area missing(view.mask.size()), extra(view.mask.size());
+  size_t object = 0;
+  for (int y = 0; y < h; ++y)
+    for (int x = 0; x < w; ++x) {
+      const size_t i = size_t(y) * w + x;
+      const uint8_t pixel = view.mask[i];
+      object += pixel == kObject;
+      if (pixel == kBackground) missing[i] = meets_object(votes, view, index, x, y, Seen::background);
+      if (pixel == kObject) extra[i] = !meets_object(votes, view, index, x, y, Seen::object);
+    }
+  doubt.consensus = missing;
+  for (size_t i = 0; i < extra.size(); ++i) doubt.consensus[i] |= view.mask[i] == kObject && !extra[i];
+  missing = opened(missing, w, h, kOpening);
+  extra = opened(extra, w, h, kOpening);
+  const double per_object = 1.0 / double(std::max<size_t>(object, 1));
+  doubt.missing = double(pixels_in(missing)) * per_object;
+  doubt.extra = double(pixels_in(extra)) * per_object;
+  doubt.missing_area = missing;
+  doubt.doubtful = std::move(missing);
+  for (size_t i = 0; i < extra.size(); ++i) doubt.doubtful[i] |= extra[i];
+  return doubt;
+}
+
+// More than half of the block; unknown where any of it is.
+uint8_t block_of(const HullMask& m, int x0, int y0, int n) {
+  int object = 0;
+  for (int y = y0; y < y0 + n; ++y)
+    for (int x = x0; x < x0 + n; ++x) {
+      const uint8_t pixel = m.mask[size_t(y) * size_t(m.camera.width) + size_t(x)];
+      if (pixel == kUnknown) return kUnknown;
+      object += pixel == kObject;
+    }
+  return 2 * object > n * n ? kObject : kBackground;
+}
+
+void mark_outliers(std::vector<MaskDoubt>& doubts) {
+  std::vector<double> missing, extra;
+  for (const MaskDoubt& d : doubts) missing.push_back(d.missing), extra.push_back(d.extra);
+  if (doubts.empty()) return;
+  const double usual_missing = median(missing), usual_extra = median(extra);
+  for (MaskDoubt& d : doubts)
+    d.stands_out = d.missing > kShare + kOutlier * usual_missing || d.extra > kShare + kOutlier * usual_extra;
+}
+
+}  // namespace
+
+std::vector<HullMask> SmallMasks::views() const {
+  std::vector<HullMask> out;
+  for (size_t i = 0; i < masks.size(); ++i) out.push_back({cameras[i], masks[i]});
+  return out;
+}
+
+int reduction_of(int width, int height, int most) {
+  return std::max(1, (std::max(width, height) + most - 1) / most);
+}
+
+SmallMasks small_masks(std::span<const HullMask> masks, const Normalization& normalization, int most) {
+  SmallMasks out;
+  out.cameras.resize(masks.size());
+  out.masks.resize(masks.size());
+  parallel_for(int(masks.size()), [&](int i) {
+    const HullMask& m = masks[size_t(i)];
+    const int n = reduction_of(m.camera.width, m.camera.height, most);
+    const Camera small = scaled(normalization.unit_from_capture(m.camera), n);
+    for (int y = 0; y < small.height; ++y)
+      for (int x = 0; x < small.width; ++x) out.masks[size_t(i)].push_back(block_of(m, x * n, y * n, n));
+    out.cameras[size_t(i)] = small;
+  });
+  return out;
+}
+
+std::vector<MaskDoubt> vote_on_masks(const SmallMasks& masks) {
+  const std::vector<HullMask> views = masks.views();
+  const Votes votes(views);
+  std::vector<MaskDoubt> doubts(views.size());
+  parallel_for(int(views.size()),
+               [&](int i) { doubts[size_t(i)] = judge(votes, views[size_t(i)], size_t(i)); });
+  mark_outliers(doubts);
+  return doubts;
+}
+
+Area doubtful_area(const MaskDoubt& doubt, int width, int height) {
+  // Two pixels of the small mask more: its outline is coarse.
+  const Area grown = dilated(doubt.doubtful, doubt.width, doubt.height, 1);
+  const int n = std::max(1, width / std::max(doubt.width, 1));
+  Area out(size_t(width) * height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      out[size_t(y) * width + x] =
+          grown[size_t(std::min(y / n, doubt.height - 1)) * doubt.width + std::min(x / n, doubt.width - 1)];
+  return out;
+}
+
+}  // namespace cei3d

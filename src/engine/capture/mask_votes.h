@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// Masks judged by each other: what one mask says against nearly all other views is not believed.
+// docs/method.md#masks-that-are-a-little-wrong
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/image/area.h"
+#include "model/geometry/shape/visual_hull.h"
+#include "model/scene/normalization.h"
+
+namespace cei3d {
+
+// Masks at a size that is enough to compare them.
+struct SmallMasks {
+  std::vector<Camera> cameras;  // unit frame
+  std::vector<std::vector<uint8_t>> masks;
+  std::vector<HullMask> views() const;
+};
+inline constexpr int kSmallMask = 160;  // pixels of the longer side, at most
+// By how much a mask of this size is reduced.
+int reduction_of(int width, int height, int most = kSmallMask);
+// masks: cameras in the capture frame.
+SmallMasks small_masks(std::span<const HullMask> masks, const Normalization&, int most = kSmallMask);
+
+struct MaskDoubt {
+  int width = 0, height = 0;  // of the small mask
+  Area consensus;             // what the other views take for the object
+  Area missing_area;          // the part of `doubtful` where this mask has background
+  Area doubtful;              // pixels about which the other views do not agree with this mask
+  // As shares of the mask's object pixels: background that the other views take for the object, and the
+  // reverse.
+  double missing = 0, extra = 0;
+  bool stands_out = false;  // disagrees far more than most masks do; only then it is overruled
+};
+
+// One for each mask.
+std::vector<MaskDoubt> vote_on_masks(const SmallMasks& masks);
+
+// The doubtful pixels at the size of the view.
+Area doubtful_area(const MaskDoubt&, int width, int height);
+
+}  // namespace cei3d

@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// libFuzzer target: files of cameras of every format. The first byte of the input chooses the file, the rest
+// is its content. Anything but a capture or an Error is a finding.
+#include <unistd.h>
+
+#include <filesystem>
+#include <string>
+
+#include "core/base/error.h"
+#include "core/base/file.h"
+#include "engine/capture/capture.h"
+
+namespace {
+namespace fs = std::filesystem;
+
+struct Target {
+  const char* format;
+  const char* file;
+  // What the format needs besides.
+  const char *other_file = "", *other = "";
+};
+constexpr Target kTargets[] = {
+    {"nerf-synthetic", "transforms.json"},
+    {"physg", "cam_dict_norm.json"},
+    {"idr", "cameras.npz"},
+    {"colmap", "cameras.txt", "images.txt", "1 1 0 0 0 0 0 0 1 a.png\n1 2 1\n"},
+    {"colmap", "images.txt", "cameras.txt", "1 PINHOLE 8 8 9 9 4 4\n"},
+    {"colmap", "points3D.txt", "cameras.txt", "1 PINHOLE 8 8 9 9 4 4\n"},
+    {"colmap", "cameras.bin", "images.bin", ""},
+    {"colmap", "images.bin", "cameras.txt", "1 PINHOLE 8 8 9 9 4 4\n"},
+    {"metashape", "cameras.xml"},
+    {"realitycapture", "cameras.csv"},
+    {"llff", "poses_bounds.npy"},
+    {"meshroom", "cameras.sfm"},
+};
+
+void write_plainly(const fs::path& path, const std::string& bytes) {
+  if (FILE* file = std::fopen(path.c_str(), "wb")) {
+    std::fwrite(bytes.data(), 1, bytes.size(), file);
+    std::fclose(file);
+  }
+}
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  if (size < 1) return 0;
+  const Target& target = kTargets[data[0] % std::size(kTargets)];
+  const fs::path folder = fs::temp_directory_path() / ("cei3d_fuzz_" + std::to_string(::getpid()));
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  write_plainly(folder / target.file, {reinterpret_cast<const char*>(data) + 1, size - 1});
+  if (*target.other_file) write_plainly(folder / target.other_file, target.other);
+  try {
+    cei3d::load_capture(folder, {target.format});
+  } catch (const cei3d::Error&) {
+  }
+  fs::remove_all(folder);
+  return 0;
+}

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// libFuzzer target: image files, and what photographs carry besides pixels. The format is told from the
+// content.
+#include <string>
+
+#include "core/base/error.h"
+#include "engine/io/color_profile.h"
+#include "engine/io/exif.h"
+#include "engine/io/exr_file.h"
+#include "engine/io/hdr_file.h"
+#include "engine/io/image_file.h"
+#include "engine/io/jpeg_file.h"
+#include "engine/io/png_file.h"
+#include "engine/io/tiff_file.h"
+
+namespace {
+void decode(const std::string& bytes) {
+  using cei3d::ImageFormat;
+  switch (cei3d::image_format(bytes, "input")) {
+    case ImageFormat::png:
+      cei3d::png_profile(bytes, "input");
+      cei3d::decode_png(bytes, "input");
+      break;
+    case ImageFormat::jpeg:
+      cei3d::read_exif(bytes);
+      cei3d::jpeg_profile(bytes);
+      cei3d::decode_jpeg(bytes, "input");
+      break;
+    case ImageFormat::tiff:
+      cei3d::decode_tiff(bytes, "input");
+      break;
+    case ImageFormat::exr:
+      cei3d::decode_exr(bytes, "input");
+      break;
+    case ImageFormat::hdr:
+      cei3d::decode_hdr(bytes, "input");
+      break;
+  }
+}
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  try {
+    decode({reinterpret_cast<const char*>(data), size});
+  } catch (const cei3d::Error&) {
+  }
+  return 0;
+}
