@@ -68,7 +68,8 @@ TEST(PixelStore, UnknownPixelsAreNeitherObjectNorBackground) {
   std::vector<int> columns;
   for (const Pixel& p : store.pixels()) columns.push_back(p.x);
   EXPECT_EQ(columns, (std::vector<int>{0, 1, 3}));
-  EXPECT_EQ(store.masks()[0], (std::vector<uint8_t>{kBackground, kObject, kUnknown, kBackground, kBackground}));
+  EXPECT_EQ(store.masks()[0],
+            (std::vector<uint8_t>{kBackground, kObject, kUnknown, kBackground, kBackground}));
 }
 
 }  // namespace
