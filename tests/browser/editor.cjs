@@ -77,6 +77,7 @@ async function firstSession(page, url) {
 
   const at = await middle(page);
   check('the object is in the picture', at.n > 2000);
+  await drawsItself(page);
   const box = await page.locator('#view').boundingBox();
   const before = await page.evaluate(() => globalThis.cei3d.stage.json().center.join());
   await drag(page, [box.x + 30, box.y + box.height - 40], [box.x + 150, box.y + box.height - 60]);
@@ -84,6 +85,30 @@ async function firstSession(page, url) {
   await settled(page);
   await page.keyboard.press('Home');
   await settled(page);
+}
+
+/** What the page draws while something moves is nearly the program's own frame. */
+async function drawsItself(page) {
+  await page.waitForFunction(() => globalThis.cei3d.stage.live.current(), null, { timeout: 30000 });
+  const psnr = await page.evaluate(() => {
+    const { stage } = globalThis.cei3d, { width, height } = stage.picture;
+    stage.live.draw(stage.json(), stage.channel, stage.light);
+    const pixels = (source) => {
+      const copy = document.createElement('canvas');
+      copy.width = width;
+      copy.height = height;
+      const c = copy.getContext('2d');
+      c.fillStyle = '#fff';
+      c.fillRect(0, 0, width, height);
+      c.drawImage(source, 0, 0);
+      return c.getImageData(0, 0, width, height).data;
+    };
+    const a = pixels(stage.live.canvas), b = pixels(stage.picture);
+    let sum = 0;
+    for (let i = 0; i < a.length; ++i) if (i % 4 !== 3) sum += (a[i] - b[i]) ** 2;
+    return 10 * Math.log10(255 ** 2 / (sum / (0.75 * a.length)));
+  });
+  check(`the page draws what the program does: ${psnr.toFixed(1)} dB`, psnr > 34);
 }
 
 async function paints(page) {

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# The live editor: what the server refuses, and a first session in a browser. The latter needs node, a Chromium and, once,
-# npm to fetch playwright-core and axe-core.
+# The live editor: what the server refuses, and a first session in a browser. The latter needs what `./run web` installs.
 source "$(dirname "$0")/lib.sh"
 
 python3 tests/browser/refusals.py "$program" "$object" "$out/refusals"
@@ -10,13 +9,12 @@ skip() { printf 'SKIP: the editor in a browser: %s\n' "$1"; exit 77; }
 command -v node >/dev/null || skip "no node"
 node tools/editor_keys.mjs docs/editor.md
 [[ -n $browser ]] || skip "no Chromium (chromium-headless-shell)"
-modules=build/browser
-[[ -d $modules/node_modules/playwright-core && -d $modules/node_modules/axe-core ]] ||
-  npm install --silent --no-audit --no-fund --ignore-scripts --prefix "$modules" playwright-core@1.60 axe-core@4 >/dev/null 2>&1 ||
-  skip "npm cannot fetch playwright-core and axe-core"
+modules=build/web/node_modules
+[[ -d $modules/playwright-core && -d $modules/axe-core ]] || tools/install_web.sh 2>/dev/null ||
+  skip "no playwright-core and axe-core (./run web)"
 
 cp -r "$object" "$out/spot"
-NODE_PATH=$modules/node_modules node tests/browser/editor.cjs "$program" "$out/spot" "$out/pictures" "$browser"
+NODE_PATH=$modules node tests/browser/editor.cjs "$program" "$out/spot" "$out/pictures" "$browser"
 
 # The same strokes by the command line, with the camera and the scribble that the browser sent, are the same object.
 cp -r "$object" "$out/again"

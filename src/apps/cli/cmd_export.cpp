@@ -32,7 +32,7 @@ ExportRequest request_of(const Options& o) {
   ExportRequest r = o.request;
   if (!o.purpose.empty()) r.purpose = export_for_from_name(o.purpose).value_or(ExportFor::any);
   if (!o.origin.empty()) r.at_base = o.origin == "base";
-  if (!o.image.empty()) r.jpeg = o.image == "jpeg";
+  if (!o.image.empty()) r.image = export_image_from_name(o.image);
   if (!o.size.empty()) r.size = parse_length(o.size, "--size");
   r.light = o.light == "fit";
   return r;
@@ -48,7 +48,8 @@ void export_object(const Options& o, Session& session, Console& console) {
 void add_asset_options(CLI::App* verb, Options& o) {
   verb->add_option(
       "--faces", o.request.faces,
-      "Triangles, at most: simplified by quadric errors (default: 50000; without a texture: all)");
+      "Triangles, at most: simplified by quadric errors (default: 50000; a page: 100000; else without a "
+      "texture: all)");
   verb->add_option(
       "--texture", o.request.texture,
       "Texels of the textures' sides: base color, occlusion-roughness-metalness, normals (default: "
@@ -59,8 +60,10 @@ void add_asset_options(CLI::App* verb, Options& o) {
           "base; dcc: 200000, 4096, PNG. Other options change single ones")
       ->check(CLI::IsMember({"web", "ar", "dcc"}));
   verb->add_option("--image", o.image,
-                   "How base color and material are stored (default: png); normals are PNG")
-      ->check(CLI::IsMember({"png", "jpeg"}));
+                   "How base color and material are stored (default: png); normals are not lossy. webp: .glb "
+                   "and .gltf "
+                   "only, for readers with EXT_texture_webp")
+      ->check(CLI::IsMember({"png", "jpeg", "webp"}));
   verb->add_option(
           "--origin", o.origin,
           "input: the capture's own coordinates (default). base: the object stands upright in the origin")
@@ -83,7 +86,8 @@ void add_export(Commands& commands) {
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option(
           "-o,--output", o->request.out,
-          "By its ending. .glb, .gltf, .obj, .usdz: textured mesh; .ply: mesh with albedo per vertex. "
+          "By its ending. .glb, .gltf, .obj, .usdz: textured mesh; .ply: mesh with albedo per vertex; "
+          ".html: a page in one file that shows object and light in any browser, without network. "
           ".hdr, .exr: the light as latitude-longitude picture; .npy, .json: its lobes ([M,7]: axis, "
           "sharpness, RGB peak radiance)")
       ->required();

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "engine/page/page_files.h"
 
 namespace cei3d {
 
@@ -32,6 +33,8 @@ std::optional<std::string> asset(const std::string& name, const std::filesystem:
   }
   for (const Asset& a : embedded_assets())
     if (a.name == name) return std::string(a.bytes);
+  for (const PageFile& f : page_files())
+    if (f.name == name) return std::string(f.bytes);
   return std::nullopt;
 }
 

@@ -6,7 +6,7 @@
 
 #include "apps/server/uploads.h"
 #include "core/base/json_reader.h"
-#include "engine/session/requests.h"
+#include "engine/session/look_requests.h"
 
 namespace cei3d {
 

@@ -5,6 +5,7 @@
 //   GET  /api/state             what is open: history, parts, findings, jobs
 //   GET  /api/object            what does not change while it is open: views, cameras, frame
 //   GET  /api/photo/VIEW?width= a photograph, JPEG
+//   GET  /api/pack/KIND?key=    what the page draws, by a key of the state; or ?preview=TOKEN
 //   POST /api/upload?name=      bytes in, {"id"} out
 //   POST /api/edit              {"op", "params", "amend"}
 //   POST /api/preview           the same, not stored: {"token", "report"}; then /api/commit {"token"}
@@ -75,6 +76,7 @@ class Editor : public HttpApp, private JobListener {
   static const std::map<std::string, Route>& routes();
   void get(const HttpRequest&, Reply);
   void photo(const HttpRequest&, Reply);
+  void pack(const HttpRequest&, Reply);
   void download(const HttpRequest&, Reply);
   void upload(const HttpRequest&, Reply);
   void edit(JsonReader&, const HttpRequest&, Reply);

@@ -164,6 +164,7 @@ void Editor::publish(Session& session) {
   for (const PartInfo& p : session.parts()) parts.push_back(p.json());
   state["revision"] = content_hash(history.dump()).substr(0, 12);
   state["done"] = done;
+  state["packs"] = session.view_keys();
   state["history"] = std::move(history);
   state["parts"] = std::move(parts);
   publish(std::move(state));

@@ -43,6 +43,7 @@ void Editor::get(const HttpRequest& request, Reply reply) {
     return reply(json_response(object_));
   }
   if (request.path.starts_with("/api/photo/")) return photo(request, std::move(reply));
+  if (request.path.starts_with("/api/pack/")) return pack(request, std::move(reply));
   if (request.path.starts_with("/api/download/")) return download(request, std::move(reply));
   reply(error_response(404, "There is no such request."));
 }
@@ -62,6 +63,18 @@ void Editor::photo(const HttpRequest& request, Reply reply) {
     }));
     return false;
   });
+}
+
+void Editor::pack(const HttpRequest& request, Reply reply) {
+  const std::string kind = request.path.substr(std::string("/api/pack/").size());
+  const auto token = request.parameter("preview");
+  const bool keyed = request.parameter("key").has_value() && !token;
+  on_worker("pack", std::move(reply),
+            [kind, keyed, made = token ? kept(*token) : nullptr](Session& session, Progress&) {
+              HttpResponse r{200, "application/octet-stream", session.view_pack(kind, made.get())};
+              if (keyed) r.headers.emplace_back("Cache-Control", "private, max-age=86400");
+              return r;
+            });
 }
 
 void Editor::upload(const HttpRequest& request, Reply reply) {

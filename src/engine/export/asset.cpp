@@ -8,15 +8,22 @@
 #include "core/math/color.h"
 #include "engine/io/jpeg_file.h"
 #include "engine/io/png_file.h"
+#include "engine/io/webp_file.h"
 
 namespace cei3d {
 namespace {
 
-constexpr int kQuality = 92;  // of JPEG
+constexpr int kQuality = 92;  // of lossy pictures
 
 Picture encoded(const Image& image, const std::string& name, PictureKind kind) {
   if (kind == PictureKind::jpeg) return {name + ".jpg", encode_jpeg(image, kQuality), kind};
+  if (kind == PictureKind::webp) return {name + ".webp", encode_webp(image, kQuality), kind};
   return {name + ".png", encode_png(image, 8), kind};
+}
+
+Picture exact(const Image& image, const std::string& name, PictureKind kind) {
+  if (kind == PictureKind::webp) return {name + ".webp", encode_webp(image, kLossless), kind};
+  return encoded(image, name, PictureKind::png);
 }
 
 Image srgb(const Image& linear) {
@@ -34,11 +41,23 @@ Image srgb(const Image& linear) {
 
 }  // namespace
 
+const char* Picture::mime() const {
+  switch (kind) {
+    case PictureKind::jpeg:
+      return "image/jpeg";
+    case PictureKind::webp:
+      return "image/webp";
+    case PictureKind::png:
+      break;
+  }
+  return "image/png";
+}
+
 AssetPictures encode(const Textures& t, PictureKind kind) {
   AssetPictures out;
   out.middle_specular = t.middle_specular;
   const std::function<void()> jobs[] = {
-      [&] { out.normal = encoded(t.normal, "normal", PictureKind::png); },
+      [&] { out.normal = exact(t.normal, "normal", kind); },
       [&] { out.base_color = encoded(srgb(t.base_color), "base_color", kind); },
       [&] { out.orm = encoded(t.orm, "occlusion_roughness_metalness", kind); },
       [&] {

@@ -11,7 +11,7 @@
 
 namespace cei3d {
 
-enum class PictureKind { png, jpeg };
+enum class PictureKind { png, jpeg, webp };
 
 // An encoded picture.
 struct Picture {
@@ -19,7 +19,7 @@ struct Picture {
   std::string bytes;
   PictureKind kind = PictureKind::png;
 
-  const char* mime() const { return kind == PictureKind::png ? "image/png" : "image/jpeg"; }
+  const char* mime() const;
 };
 
 struct AssetPictures {
@@ -30,12 +30,20 @@ struct AssetPictures {
   float middle_specular = 0.5f;
 };
 
-// kind: of all but the normals, which JPEG would spoil.
+// kind: of all but the normals, which a lossy picture would spoil: PNG, or lossless WebP.
 AssetPictures encode(const Textures& textures, PictureKind kind);
+
+// Some triangles of an object.
+struct NamedTriangles {
+  std::string name;
+  std::vector<std::array<uint32_t, 3>> triangles;
+};
 
 struct Asset {
   std::string name;   // of the object in the file
   TexturedMesh mesh;  // capture frame
+  // The mesh's triangles by part, those in no part under the object's own name; none of them is empty.
+  std::vector<NamedTriangles> parts;
   AssetPictures pictures;
   Placement placement;
 };

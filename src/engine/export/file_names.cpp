@@ -5,11 +5,14 @@
 
 namespace cei3d {
 
-std::filesystem::path beside(const std::filesystem::path& file, const std::string& ending) {
-  std::string name = file.stem().string();
+std::string plain_name(std::string name) {
   for (char& c : name)
     if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-') c = '_';
-  return file.parent_path() / (name + ending);
+  return name;
+}
+
+std::filesystem::path beside(const std::filesystem::path& file, const std::string& ending) {
+  return file.parent_path() / (plain_name(file.stem().string()) + ending);
 }
 
 std::string uri_of(const std::filesystem::path& file) { return file.filename().string(); }

@@ -7,9 +7,11 @@
 
 namespace cei3d {
 
-// "folder/object.obj" and "_normal.png": "folder/object_normal.png". Characters other than letters, digits,
-// '.',
-// '-' and '_' become '_', for the formats in which names end at spaces.
+// Characters other than letters, digits, '.', '-' and '_' become '_', for the formats in which names end at
+// spaces.
+std::string plain_name(std::string name);
+
+// "folder/object.obj" and "_normal.png": "folder/object_normal.png", as a plain_name().
 std::filesystem::path beside(const std::filesystem::path& file, const std::string& ending);
 
 // The name alone, for use in a file in the same folder.

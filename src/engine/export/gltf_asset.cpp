@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/export/gltf_asset.h"
 
+#include <algorithm>
 #include <functional>
 
 #include "engine/export/file_names.h"
@@ -18,8 +19,8 @@ class Description {
       : asset_(asset), image_(image), json_(gltf_head(asset.name, asset.placement)) {}
 
   Json make(GltfBuffer& buffer) {
-    const Json primitives = Json::array({primitive(buffer)}), materials = Json::array({material()});
-    json_["meshes"] = Json::array({{{"name", asset_.name}, {"primitives", primitives}}});
+    add_meshes(buffer);
+    const Json materials = Json::array({material()});
     json_["materials"] = materials;
     constexpr int kLinear = 9729, kTrilinear = 9987, kClamp = 33071;  // OpenGL's names for them
     json_["samplers"] = Json::array(
@@ -28,7 +29,22 @@ class Description {
   }
 
  private:
-  Json primitive(GltfBuffer& buffer) const {
+  // A mesh for every part, which share their vertices, at nodes below that of the object.
+  void add_meshes(GltfBuffer& buffer) {
+    const Json attributes = attributes_of(buffer);
+    const bool single = asset_.parts.size() == 1;
+    if (!single) json_["nodes"][0].erase("mesh");
+    for (const NamedTriangles& part : asset_.parts) {
+      const Json primitive{
+          {"attributes", attributes}, {"indices", buffer.add_triangles(part.triangles)}, {"material", 0}};
+      json_["meshes"].push_back({{"name", part.name}, {"primitives", Json::array({primitive})}});
+      if (single) break;
+      json_["nodes"][0]["children"].push_back(json_["nodes"].size());
+      json_["nodes"].push_back({{"mesh", json_["meshes"].size() - 1}, {"name", part.name}});
+    }
+  }
+
+  Json attributes_of(GltfBuffer& buffer) const {
     const TexturedMesh& m = asset_.mesh;
     std::vector<std::array<float, 4>> tangents;
     for (const Vec3f& t : m.tangents) tangents.push_back({t.x, t.y, t.z, 1});  // no chart is mirrored
@@ -37,13 +53,29 @@ class Description {
     attributes["NORMAL"] = buffer.add_vertices(m.normals.data(), m.normals.size(), 3, "VEC3");
     attributes["TANGENT"] = buffer.add_vertices(tangents.data(), tangents.size(), 4, "VEC4");
     attributes["TEXCOORD_0"] = buffer.add_vertices(m.uv.data(), m.uv.size(), 2, "VEC2");
-    return {{"attributes", attributes}, {"indices", buffer.add_triangles(m.triangles)}, {"material", 0}};
+    return attributes;
   }
 
   Json texture(const Picture& picture) {
     json_["images"].push_back(image_(picture));
-    json_["textures"].push_back({{"sampler", 0}, {"source", json_["images"].size() - 1}});
+    const size_t source = json_["images"].size() - 1;
+    Json texture{{"sampler", 0}};
+    if (picture.kind == PictureKind::webp) {  // not one of the core format's
+      texture["extensions"]["EXT_texture_webp"] = {{"source", source}};
+      require("EXT_texture_webp");
+    } else {
+      texture["source"] = source;
+    }
+    json_["textures"].push_back(texture);
     return {{"index", json_["textures"].size() - 1}};
+  }
+
+  // Readers that lack the extension refuse the file.
+  void require(const char* extension) {
+    for (const char* key : {"extensionsUsed", "extensionsRequired"}) {
+      Json& list = json_[key];
+      if (std::find(list.begin(), list.end(), extension) == list.end()) list.push_back(extension);
+    }
   }
 
   Json material() {
@@ -55,7 +87,7 @@ class Description {
     m["occlusionTexture"] = orm;
     // The extension's F0 is 0.04 specularColorFactor; its specularFactor would dim grazing reflections too.
     if (!p.specular && p.middle_specular == 0.5f) return m;
-    json_["extensionsUsed"] = Json::array({"KHR_materials_specular"});
+    json_["extensionsUsed"].push_back("KHR_materials_specular");
     const float s = p.specular ? 2 : 2 * p.middle_specular;
     Json& extension = m["extensions"]["KHR_materials_specular"];
     extension["specularColorFactor"] = {s, s, s};

@@ -9,9 +9,10 @@
 
 namespace cei3d {
 
-// Everything in one file. One material: base color, metallic-roughness with occlusion, tangent-space normals;
-// a specular strength other than 0.5 as KHR_materials_specular, F0 = 0.08 specular. Vertices stay in the
-// capture frame; the node holds the placement.
+// Everything in one file. Named parts are nodes of their own below the object's. One material: base color,
+// metallic-roughness with occlusion, tangent-space normals; a specular strength other than 0.5 as
+// KHR_materials_specular, F0 = 0.08 specular; WebP pictures by EXT_texture_webp. Vertices stay in the capture
+// frame; the node holds the placement.
 std::string encode_glb(const Asset& asset);
 
 // NAME.gltf with NAME.bin and NAME_<picture> beside it.

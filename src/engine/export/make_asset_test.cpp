@@ -12,6 +12,7 @@
 #include "engine/export/obj.h"
 #include "engine/export/tangents.h"
 #include "engine/io/png_file.h"
+#include "engine/io/webp_file.h"
 #include "model/geometry/mesh/test_meshes.h"
 #include "model/geometry/unwrap/raster.h"
 
@@ -51,6 +52,7 @@ Scene ball() {
   s.material = Material{.roughness = 0.4f};
   EditLayer layer;
   layer.id = "0001-material";
+  layer.part = "the top";
   Region::Points points;
   for (const Vec3f p : s.surface->mesh().positions)
     if (p.z > 0.1f) {
@@ -164,6 +166,35 @@ TEST_F(MakeAsset, GltfNamesItsFilesAndTheBufferHoldsTheArrays) {
   EXPECT_EQ(decode_png(files[0].bytes, "base color").width, kTexels);
 }
 
+TEST_F(MakeAsset, PartsAreNodesThatShareVertices) {
+  const Json j = Json::parse(gltf_files(made_->asset, "ball.gltf").back().bytes);
+  EXPECT_EQ(j["nodes"][0]["children"], (Json{1, 2}));
+  EXPECT_FALSE(j["nodes"][0].contains("mesh"));
+  size_t indices = 0;
+  for (size_t part = 0; part < 2; ++part) {
+    const Json& node = j["nodes"][part + 1];
+    EXPECT_EQ(node["name"], part == 0 ? "ball" : "the top");
+    const Json& primitive = j["meshes"][node["mesh"].get<size_t>()]["primitives"][0];
+    indices += j["accessors"][primitive["indices"].get<size_t>()]["count"].get<size_t>();
+    EXPECT_EQ(primitive["attributes"], j["meshes"][0]["primitives"][0]["attributes"]);
+  }
+  EXPECT_EQ(indices, 3 * made_->asset.mesh.triangles.size());
+  const std::vector<Vec3f>& at = made_->asset.mesh.positions;
+  for (const auto& t : made_->asset.parts[1].triangles)
+    EXPECT_GT((at[t[0]].z + at[t[1]].z + at[t[2]].z) / 3, 3);  // the middle of the ball
+}
+
+TEST_F(MakeAsset, WebpPicturesNeedTheirExtension) {
+  Asset asset = made_->asset;
+  asset.pictures = encode(made_->textures, PictureKind::webp);
+  const std::vector<FileBytes> files = gltf_files(asset, "ball.gltf");
+  const Json j = Json::parse(files.back().bytes);
+  EXPECT_EQ(j["extensionsRequired"], Json::array({"EXT_texture_webp"}));
+  for (const Json& texture : j["textures"])
+    EXPECT_TRUE(texture["extensions"]["EXT_texture_webp"].contains("source") && !texture.contains("source"));
+  EXPECT_EQ(decode_webp(files[0].bytes, "base color").width, kTexels);
+}
+
 TEST_F(MakeAsset, ObjHasEveryVertexAndFace) {
   const std::vector<FileBytes> files = obj_files(made_->asset, made_->textures, "ball.obj", true);
   const std::string& text = files.back().bytes;
@@ -174,6 +205,8 @@ TEST_F(MakeAsset, ObjHasEveryVertexAndFace) {
   }
   EXPECT_EQ(vertices, made_->asset.mesh.positions.size());
   EXPECT_EQ(faces, made_->asset.mesh.triangles.size());
+  EXPECT_NE(text.find("\ng ball\nf "), std::string::npos);
+  EXPECT_NE(text.find("\ng the_top\nf "), std::string::npos);
   EXPECT_NE(text.find("mtllib ball.mtl"), std::string::npos);
 }
 

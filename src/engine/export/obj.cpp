@@ -10,7 +10,8 @@
 namespace cei3d {
 namespace {
 
-std::string geometry_text(const TexturedMesh& mesh, const Placement& placement, const std::string& library) {
+std::string geometry_text(const Asset& asset, const Placement& placement, const std::string& library) {
+  const TexturedMesh& mesh = asset.mesh;
   std::string out = fmt::format("mtllib {}\no object\nusemtl object\n", library);
   auto at = std::back_inserter(out);
   for (const Vec3f& point : mesh.positions) {
@@ -22,8 +23,11 @@ std::string geometry_text(const TexturedMesh& mesh, const Placement& placement, 
     const Vec3f n = to_float(placement.turned(to_double(normal)));
     fmt::format_to(at, "vn {} {} {}\n", n.x, n.y, n.z);
   }
-  for (const auto& t : mesh.triangles)
-    fmt::format_to(at, "f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  for (const NamedTriangles& part : asset.parts) {
+    fmt::format_to(at, "g {}\n", plain_name(part.name));
+    for (const auto& t : part.triangles)
+      fmt::format_to(at, "f {0}/{0}/{0} {1}/{1}/{1} {2}/{2}/{2}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  }
   return out;
 }
 
@@ -47,7 +51,7 @@ std::vector<FileBytes> obj_files(const Asset& asset, const Textures& textures,
   add("norm", asset.pictures.normal);
   out.push_back({library, text});
   const Placement placement = in_capture_frame ? Placement() : asset.placement;
-  out.push_back({path, geometry_text(asset.mesh, placement, uri_of(library))});
+  out.push_back({path, geometry_text(asset, placement, uri_of(library))});
   return out;
 }
 

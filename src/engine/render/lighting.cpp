@@ -8,6 +8,7 @@
 #include "core/compute/kernels/shade.h"
 #include "engine/render/hit_reflection.h"
 #include "engine/render/lobe_frames.h"
+#include "engine/render/lobe_planes.h"
 
 namespace cei3d {
 namespace {
@@ -116,13 +117,7 @@ Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface,
 void Lighting::set_lobes(const SgMixture& light) {
   n_lobes_ = int(light.lobes.size());
   padded_ = padded_to_panels(n_lobes_);
-  lobe_planes_.assign(size_t(7) * padded_, 0);
-  for (int k = 0; k < n_lobes_; ++k) {
-    const SgLobe& l = light.lobes[k];
-    const float row[] = {l.axis.x, l.axis.y, l.axis.z, clamp(l.lambda, kBroadestLobe, kSharpestLobe),
-                         l.mu.x,   l.mu.y,   l.mu.z};
-    for (int j = 0; j < 7; ++j) lobe_planes_[size_t(j) * padded_ + k] = row[j];
-  }
+  lobe_planes_ = lobe_planes(light);
   irradiance_ = IrradianceMap(device_, lobes());
 }
 

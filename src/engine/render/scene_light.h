@@ -67,6 +67,9 @@ class SceneLight {
   // must outlive this.
   SceneLight(const Device&, const Scene&, VersionLights lights, SeenMaterialsCache* seen);
 
+  // At the vertices of the scene's present surface.
+  const VertexLight& vertices() const { return lights_.back()->vertices; }
+
   Shading shade(std::span<const Hit> hits, const Appearance&) const;
   // The radiance of every hit as a linear function of its albedo.
   std::vector<ShadingTerms<float>> terms(std::span<const Hit> hits, const Appearance&) const;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "engine/project/project.h"
-#include "engine/session/requests.h"
+#include "engine/session/look_requests.h"
 
 namespace cei3d {
 

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <map>
+
 #include "core/base/error_of.h"
 #include "engine/project/dataset.h"
 #include "engine/session/edit_plan.h"
@@ -154,6 +157,41 @@ TEST_F(LookTest, TilesAreThePictureThatRenderWrites) {
     const std::vector<uint8_t> got = picture(*frame, kSize, kSize);
     for (size_t i = 0; i < got.size(); ++i) ASSERT_EQ(float(got[i]) / 255, want.data[i]) << i;
   }
+}
+
+// A page fetches only what an edit has changed.
+TEST_F(LookTest, KeysOfPacksChangeWithThePacks) {
+  const char* const kinds[] = {"tables", "shape", "look", "light", "vertex_light"};
+  const auto packs = [&] {
+    std::map<std::string, std::string> all;
+    for (const char* kind : kinds) all[kind] = session_.view_pack(kind);
+    return all;
+  };
+  const auto changed_by = [&](const std::function<void()>& edit) {
+    const Json keys = session_.view_keys();
+    const auto before = packs();
+    edit();
+    const Json new_keys = session_.view_keys();
+    const auto after = packs();
+    std::string changed;
+    for (const char* kind : kinds) {
+      if (before.at(kind) != after.at(kind)) {
+        EXPECT_NE(keys[kind], new_keys[kind]) << kind;
+      }
+      if (keys[kind] != new_keys[kind]) changed += std::string(kind) + ' ';
+    }
+    return changed;
+  };
+  EXPECT_EQ(changed_by([&] { session_.paint(scribble(0, {0.8f, 0.1f, 0.1f}, 6), quiet_); }), "look ");
+  const Json painted = session_.view_keys();
+  session_.change_light({"", 30, EnvConvention::by_up_axis, 1}, quiet_);
+  EXPECT_EQ(changed_by([&] { session_.undo(quiet_); }), "light vertex_light ");
+  EXPECT_EQ(session_.view_keys(), painted);
+  EXPECT_EQ(changed_by([&] {
+              session_.deform({PointDrag{{0, -0.7, 0}, {0, -0.85, 0}}, 0.35, ""}, quiet_);
+            }),
+            "shape look vertex_light ");
+  EXPECT_THAT(message([&] { session_.view_pack("color"); }), HasSubstr("no pack"));
 }
 
 TEST_F(LookTest, TellsWhatIsUnderThePointer) {

@@ -179,17 +179,6 @@ Json ReplayReport::json() const {
   return {{"edits", list}, {"notes", notes}};
 }
 
-Json PickedPoint::json() const {
-  return {{"position", vector_json(position)},
-          {"normal", vector_json(normal)},
-          {"depth", depth},
-          {"albedo", albedo},
-          {"roughness", roughness},
-          {"specular", specular},
-          {"metalness", metalness},
-          {"parts", parts}};
-}
-
 Json RenderReport::json() const {
   Json list = Json::array();
   for (const auto& f : folders) list.push_back(f.string());
@@ -208,6 +197,13 @@ std::optional<ExportFor> export_for_from_name(const std::string& name) {
   if (name == "web") return ExportFor::web;
   if (name == "ar") return ExportFor::ar;
   if (name == "dcc") return ExportFor::dcc;
+  return std::nullopt;
+}
+
+std::optional<ExportImage> export_image_from_name(const std::string& name) {
+  if (name == "png") return ExportImage::png;
+  if (name == "jpeg") return ExportImage::jpeg;
+  if (name == "webp") return ExportImage::webp;
   return std::nullopt;
 }
 

@@ -268,28 +268,6 @@ struct RenderRequest {
   int samples = 2;       // per pixel and axis
   bool residual = true;  // with the correction network, which is never used under another light
 };
-struct FrameRequest {
-  Camera camera;  // capture frame
-  Channel channel = Channel::rgb;
-  int samples = 1;               // per pixel and axis
-  LightChoice light;             // to look under another light, which is no edit
-  bool as_photographed = false;  // under the light that a photograph by this camera was taken in
-};
-// Surface seen at a pixel; positions in the capture frame.
-struct PickedPoint {
-  Vec3d position, normal;
-  double depth = 0;    // along the camera's axis
-  std::string albedo;  // "#RRGGBB", sRGB
-  double roughness = 0, specular = 0, metalness = 0;
-  std::vector<std::string> parts;  // that it belongs to
-  Json json() const;
-};
-struct NamedCamera {
-  std::string name;  // "test/r_000"
-  std::string file;  // "r_000", or the whole name where two views share the last part
-  Camera camera;
-};
-
 struct RenderReport {
   size_t views = 0;
   double seconds = 0, trace_seconds = 0, shade_seconds = 0;
@@ -314,19 +292,23 @@ struct PartMasksReport {
 enum class ExportFor { any, web, ar, dcc };
 std::optional<ExportFor> export_for_from_name(const std::string&);  // "web", "ar", "dcc"
 
+// How the pictures of an asset are stored.
+enum class ExportImage { png, jpeg, webp };
+std::optional<ExportImage> export_image_from_name(const std::string&);  // "png", "jpeg", "webp"
+
 struct ExportRequest {
-  // The suffix says what is written: .glb .gltf .obj .usdz .ply (the object), .hdr .exr .npy .json (the
-  // light).
+  // The suffix says what is written: .glb .gltf .obj .usdz .ply (the object), .html (a page that shows
+  // it), .hdr .exr .npy .json (the light).
   std::filesystem::path out;
   bool points = false;  // .ply: the handler points instead of the mesh
   ExportFor purpose = ExportFor::any;
-  std::optional<int> faces;     // at most; none: as the purpose says; a mesh without texture: all
-  std::optional<int> texture;   // texels of a side; none: as the purpose says; 0: albedo by vertex
-  std::optional<bool> jpeg;     // base color and material as JPEG, not PNG; none: as the purpose says
-  std::optional<bool> at_base;  // the object stands in the origin; none: as the purpose says
-  double unit_scale = 1;        // meters per capture unit
-  double size = 0;              // meters of the longest side, instead of unit_scale; 0: no wish
-  bool light = false;           // the light beside the object, as NAME.env.hdr
+  std::optional<int> faces;          // at most; none: as the purpose says; a mesh without texture: all
+  std::optional<int> texture;        // texels of a side; none: as the purpose says; 0: albedo by vertex
+  std::optional<ExportImage> image;  // of base color and material; none: as the purpose says
+  std::optional<bool> at_base;       // the object stands in the origin; none: as the purpose says
+  double unit_scale = 1;             // meters per capture unit
+  double size = 0;                   // meters of the longest side, instead of unit_scale; 0: no wish
+  bool light = false;                // the light beside the object, as NAME.env.hdr
 };
 struct ExportReport {
   std::filesystem::path out;

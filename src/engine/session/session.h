@@ -13,6 +13,7 @@
 #include "core/base/progress.h"
 #include "engine/capture/capture.h"
 #include "engine/reconstruct/reconstruct.h"
+#include "engine/session/look_requests.h"
 #include "engine/session/requests.h"
 
 namespace cei3d {
@@ -94,6 +95,10 @@ class Session {
   // Where the camera sees the part: 1 channel, share of the pixel. preview: a part that is not stored.
   Image part_picture(const Camera&, const std::string& part, const EditPreview* preview = nullptr);
   std::vector<View> views() const;  // of the capture
+  // The object as a page draws it: packs of engine/view by kind, "shape", "look", "vertex_light", "light" or
+  // "tables". view_keys(): a key for each kind, which changes when the pack does.
+  std::string view_pack(const std::string& kind, const EditPreview* on_top = nullptr);
+  Json view_keys() const;
   // The photograph of a view on white, sRGB, 3 channels, at 1/n of its size so that it is at least `width`
   // wide where it was. Error: the view has none, or it cannot be read.
   Image photograph(const std::string& view, int width) const;

@@ -18,8 +18,13 @@
 #include "engine/io/hdr_file.h"
 #include "engine/io/npy.h"
 #include "engine/io/ply.h"
+#include "engine/page/object_page.h"
 #include "engine/project/project.h"
+#include "engine/render/render_cache.h"
+#include "engine/render/scene_light.h"
 #include "engine/session/session.h"
+#include "engine/view/view_light.h"
+#include "engine/view/view_mesh.h"
 #include "model/light/envmap.h"
 
 namespace cei3d {
@@ -28,21 +33,35 @@ namespace {
 
 struct Preset {
   int faces = 50000, texture = 2048;
-  bool jpeg = false, at_base = false;
+  ExportImage image = ExportImage::png;
+  bool at_base = false;
+  int page_faces = 100000;
 };
 
 Preset preset_of(ExportFor purpose) {
   switch (purpose) {
     case ExportFor::web:
-      return {30000, 1024, true, false};
+      return {30000, 1024, ExportImage::jpeg, false, 60000};
     case ExportFor::ar:
-      return {50000, 2048, true, true};
+      return {50000, 2048, ExportImage::jpeg, true};
     case ExportFor::dcc:
-      return {200000, 4096, false, false};
+      return {200000, 4096, ExportImage::png, false, 400000};
     case ExportFor::any:
       break;
   }
   return {};
+}
+
+PictureKind picture_kind(ExportImage image) {
+  switch (image) {
+    case ExportImage::jpeg:
+      return PictureKind::jpeg;
+    case ExportImage::webp:
+      return PictureKind::webp;
+    case ExportImage::png:
+      break;
+  }
+  return PictureKind::png;
 }
 
 bool has(const std::string& kind, std::initializer_list<const char*> kinds) {
@@ -62,17 +81,19 @@ void check_sizes(const ExportRequest& r) {
 }
 
 void check_request(const ExportRequest& r, const std::string& kind) {
-  if (!has(kind, {".glb", ".gltf", ".obj", ".usdz", ".ply", ".hdr", ".exr", ".npy", ".json"}))
+  if (!has(kind, {".glb", ".gltf", ".obj", ".usdz", ".ply", ".html", ".hdr", ".exr", ".npy", ".json"}))
     fail_usage(
-        "{}: the ending says what to write: .glb, .gltf, .obj, .usdz or .ply for the object, .hdr, .exr, "
-        ".npy or "
-        ".json for its light.",
+        "{}: the ending says what to write: .glb, .gltf, .obj, .usdz or .ply for the object, .html for a "
+        "page "
+        "that shows it, .hdr, .exr, .npy or .json for its light.",
         r.out.string());
   if (r.points && kind != ".ply") fail_usage("--points are written as .ply, not {}.", kind);
-  if (kind == ".ply" && r.texture.value_or(0) > 0)
-    fail_usage("A .ply has its colors at the vertices; for a texture write .glb, .gltf, .obj or .usdz.");
+  if (has(kind, {".ply", ".html"}) && r.texture.value_or(0) > 0)
+    fail_usage("A {} has its colors at the vertices; for a texture write .glb, .gltf, .obj or .usdz.", kind);
   if (has(kind, {".gltf", ".obj", ".usdz"}) && r.texture == 0)
     fail_usage("A {} is written with a texture; without one write .glb or .ply.", kind);
+  if (r.image == ExportImage::webp && !has(kind, {".glb", ".gltf"}))
+    fail_usage("--image webp: of the formats only .glb and .gltf have WebP pictures, not {}.", kind);
   check_sizes(r);
 }
 
@@ -114,9 +135,13 @@ std::vector<FileBytes> asset_files(const MadeAsset& made, const fs::path& out, c
 // One export: scene in, files and report out.
 class Exporter {
  public:
-  Exporter(const Device& device, const Scene& scene, const ExportRequest& request, Progress& progress)
+  // seen_from: where the first photograph was taken, capture frame.
+  Exporter(const Device& device, const Scene& scene, RenderCache& frames, Vec3d seen_from,
+           const ExportRequest& request, Progress& progress)
       : device_(device),
         scene_(scene),
+        frames_(frames),
+        seen_from_(seen_from),
         request_(request),
         progress_(progress),
         kind_(request.out.extension().string()),
@@ -129,6 +154,7 @@ class Exporter {
       report_.lobes = scene_.light.lobes.size();
       return {light_file(scene_, request_.out, kind_)};
     }
+    if (kind_ == ".html") return {{request_.out, page()}};
     std::vector<FileBytes> out = kind_ == ".ply" || request_.texture == 0 ? plain() : textured();
     if (request_.light) out.push_back(light_file(scene_, beside(request_.out, ".env.hdr"), ".hdr"));
     return out;
@@ -139,6 +165,23 @@ class Exporter {
   PlacementOptions placement() const {
     return {request_.at_base.value_or(preset_.at_base) ? Origin::base : Origin::input, request_.unit_scale,
             request_.size};
+  }
+
+  std::string page() {
+    const ViewMesh mesh = view_mesh(scene_, size_t(request_.faces.value_or(preset_.page_faces)));
+    report_.vertices = mesh.vertices.size();
+    report_.triangles = mesh.triangles.size();
+    progress_.report({"light", 0.2, -1, ""});
+    const SceneLight light = frames_.light(scene_);
+    progress_.report({"page", 0.6, -1, ""});
+    const Vec3d from = seen_from_ - scene_.normalization.center;
+    return object_page(request_.out.stem().string(),
+                       {{"up", {scene_.up.x, scene_.up.y, scene_.up.z}}, {"from", {from.x, from.y, from.z}}},
+                       {{"tables", view_tables()},
+                        {"light", view_light(device_, scene_.light)},
+                        {"shape", view_shape(scene_, mesh)},
+                        {"look", view_look(device_, scene_, mesh)},
+                        {"vertex_light", view_vertex_light(light.vertices(), mesh)}});
   }
 
   // Colors at the vertices.
@@ -155,10 +198,9 @@ class Exporter {
   }
 
   std::vector<FileBytes> textured() {
-    const bool jpeg = request_.jpeg.value_or(preset_.jpeg);
     const AssetOptions options{.faces = size_t(request_.faces.value_or(preset_.faces)),
                                .texture = request_.texture.value_or(preset_.texture),
-                               .pictures = jpeg ? PictureKind::jpeg : PictureKind::png,
+                               .pictures = picture_kind(request_.image.value_or(preset_.image)),
                                .placement = placement()};
     const std::string name = beside(request_.out, "").filename().string();
     const MadeAsset made = make_asset(device_, scene_, name, options, progress_);
@@ -179,6 +221,8 @@ class Exporter {
 
   const Device& device_;
   const Scene& scene_;
+  RenderCache& frames_;
+  Vec3d seen_from_;
   const ExportRequest& request_;
   Progress& progress_;
   std::string kind_;
@@ -193,7 +237,11 @@ ExportReport Session::export_to(const ExportRequest& request, Progress& progress
     check_request(request, request.out.extension().string());
     require_writable(request.out);
     const Scene scene = project().scene();
-    Exporter exporter(*device_, scene, request, progress);
+    const std::vector<View>& views = project().capture().views;
+    const Vec3d seen_from = views.empty()
+                                ? scene.normalization.center + Vec3d{1, 1, 1} / scene.normalization.scale
+                                : views.front().camera.center;
+    Exporter exporter(*device_, scene, *frames_, seen_from, request, progress);
     const std::vector<FileBytes> files = exporter.files();
     write_files_atomic(files);
     progress.report({"export", 1, 0, ""});

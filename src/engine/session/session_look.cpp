@@ -41,6 +41,13 @@ std::vector<std::string> parts_at(const Scene& scene, const Hit& hit) {
 
 }  // namespace
 
+Json PickedPoint::json() const {
+  const auto list = [](Vec3d v) { return Json::array({v.x, v.y, v.z}); };
+  return {{"position", list(position)}, {"normal", list(normal)}, {"depth", depth},
+          {"albedo", albedo},           {"roughness", roughness}, {"specular", specular},
+          {"metalness", metalness},     {"parts", parts}};
+}
+
 std::unique_ptr<TiledFrame> Session::frame(const FrameRequest& request, const EditPreview* on_top) {
   return threads_->run([&]() -> std::unique_ptr<TiledFrame> {
     check_camera(request.camera, "The camera of the frame");

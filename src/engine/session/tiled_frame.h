@@ -8,7 +8,7 @@
 
 #include "core/compute/device.h"
 #include "engine/render/tiles.h"
-#include "engine/session/requests.h"
+#include "engine/session/look_requests.h"
 
 namespace cei3d {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/scene/parts.h"
 
+#include <algorithm>
 #include <set>
 
 #include "core/base/error.h"
@@ -37,6 +38,23 @@ std::vector<uint8_t> inside_layer(const Scene& scene, const EditLayer& layer, st
     }
   });
   return inside;
+}
+
+PartsOfHits parts_of(const Scene& scene, std::span<const Hit> hits) {
+  constexpr size_t kMost = 256;
+  std::vector<const EditLayer*> layers;
+  for (const std::string& name : part_names(scene)) layers.push_back(&part_layer(scene, name));
+  std::sort(layers.begin(), layers.end());  // in the order of the scene's
+  PartsOfHits out;
+  out.of.resize(hits.size(), 0);
+  for (const EditLayer* layer : layers) {
+    if (out.names.size() == kMost) break;
+    const std::vector<uint8_t> inside = inside_layer(scene, *layer, hits);
+    for (size_t i = 0; i < hits.size(); ++i)
+      if (inside[i]) out.of[i] = uint8_t(out.names.size());
+    out.names.push_back(layer->part);
+  }
+  return out;
 }
 
 }  // namespace cei3d

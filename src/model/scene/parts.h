@@ -15,6 +15,14 @@ const EditLayer& part_layer(const Scene&, const std::string& part);
 
 std::vector<std::string> part_names(const Scene&);  // sorted
 
+// Of hits of the present surface, the part that each is in. Where parts overlap, the one that was made later
+// counts.
+struct PartsOfHits {
+  std::vector<std::string> names{""};  // at most 256; the first stands for no part
+  std::vector<uint8_t> of;             // #hits, index in `names`
+};
+PartsOfHits parts_of(const Scene&, std::span<const Hit> hits);
+
 // #hits, 1 where a hit of the present surface is in the layer's region; surface that was added later gets 0.
 std::vector<uint8_t> inside_layer(const Scene&, const EditLayer&, std::span<const Hit> hits);
 

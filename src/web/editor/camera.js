@@ -39,6 +39,8 @@ export class ViewCamera {
     this.lens = lens;
     /** @type {Vec} */
     this.center = lens.center;
+    /** @type {[Vec, Vec, Vec]} right, down, forward */
+    this.axes = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
     this.up = up;
     this.radius = radius;
     this.goHome();
@@ -54,7 +56,6 @@ export class ViewCamera {
     this.lens = c;
     this.center = c.center;
     const r = c.world_from_cam;
-    /** @type {[Vec, Vec, Vec]} right, down, forward */
     this.axes = [[r[0][0], r[1][0], r[2][0]], [r[0][1], r[1][1], r[2][1]], [r[0][2], r[1][2], r[2][2]]];
     const ahead = dot(sub(this.target, this.center), this.axes[2]);
     if (ahead > 0) this.target = add(this.center, mul(this.axes[2], ahead));  // the point in front nearest to the old one

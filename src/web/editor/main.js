@@ -45,7 +45,7 @@ const input = new Input(stage, () => tool, {
   turnLight: (degrees, done) => { light.turn(degrees); if (done) choose('light'); },
   size: (factor) => tool.size?.(factor),
 });
-stage.drawTool = (context) => {
+stage.drawTool = (/** @type {CanvasRenderingContext2D} */ context) => {
   overlay.draw(context);
   tool.draw?.(context);
   input.drawReticle(context);

@@ -85,18 +85,27 @@ export class PartTool {
     this.hint = 'Click on the part; Alt or the right button: not this. Enter keeps it, Esc drops it.';
     this.segmenter = 'grow';
     this.how = 'new';
-    this.clear();
-    stage.addEventListener('moved', () => { if (this.clicks.length) this.camera ??= null; });
-  }
-
-  clear() {
+    this.number = 0;
     /** @type {{x: number, y: number, out: boolean}[]} */
     this.clicks = [];
     /** @type {any} camera of the clicks */
     this.camera = null;
     /** @type {string | null} */
     this.token = null;
-    this.number = (this.number ?? 0) + 1;
+    /** @type {any} */
+    this.report = null;
+    /** @type {any} */
+    this.pressed = null;
+    /** @type {any} */
+    this.at = null;
+    stage.addEventListener('moved', () => { if (this.clicks.length) this.camera ??= null; });
+  }
+
+  clear() {
+    this.clicks = [];
+    this.camera = null;
+    this.token = null;
+    ++this.number;
     this.overlay.show(null);
   }
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/math/reflection.h"
+#include "core/math/lobe_triple.h"
 
 namespace cei3d {
 namespace {
@@ -40,20 +40,16 @@ ReflectedSky round_sky(const ReflectionAxis<float>& lobe, int height) {
   return sky;
 }
 
-// Three round lobes as wide as the stretched one is across the plane of incidence; the variance of their
-// angles is what it has more along that plane. The variance of a lobe grows with roughness^4.
 ReflectedSky stretched_sky(const LobeFrame<float>& lobe, int height) {
-  constexpr float kMaxAngle = 1.2f, kOuter = 1.0f / 6;  // Gauss-Hermite: at +- sqrt(3) standard deviations
-  const float variance = reflection_width(lobe.roughness) * (lobe.stretch - 1 / lobe.stretch),
-              angle = min(std::sqrt(3 * variance), kMaxAngle);
-  const Vec3f along = normalize(cross(lobe.across, lobe.axis)) * std::sin(angle);
-  ReflectedSky sky = round_sky({lobe.axis, lobe.roughness / std::sqrt(std::sqrt(lobe.stretch))}, height);
+  const LobeTriple three = lobe_triple(lobe.roughness, lobe.stretch);
+  const Vec3f along = normalize(cross(lobe.across, lobe.axis)) * std::sin(three.angle);
+  ReflectedSky sky = round_sky({lobe.axis, three.roughness}, height);
   sky.count = 3;
-  sky.weight[0] = 1 - 2 * kOuter;
+  sky.weight[0] = kMiddleShare;
   for (const int side : {1, 2}) {
-    const Vec3f axis = lobe.axis * std::cos(angle) + (side == 1 ? along : along * -1.0f);
+    const Vec3f axis = lobe.axis * std::cos(three.angle) + (side == 1 ? along : along * -1.0f);
     sky.taps[side] = env_taps(axis, 2 * height, height);
-    sky.weight[side] = kOuter;
+    sky.weight[side] = (1 - kMiddleShare) / 2;
   }
   return sky;
 }

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// The object as the page draws it.
+#include "core/base/error.h"
+#include "core/base/hash.h"
+#include "core/base/parallel.h"
+#include "engine/project/project.h"
+#include "engine/render/render_cache.h"
+#include "engine/session/edit_plan.h"
+#include "engine/session/session.h"
+#include "engine/view/view_light.h"
+#include "engine/view/view_mesh.h"
+#include "model/scene/aspects.h"
+
+namespace cei3d {
+namespace {
+
+std::string key_of(const SgMixture& light) {
+  const std::vector<float> numbers = to_array(light);
+  return content_hash({reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float)});
+}
+
+}  // namespace
+
+std::string Session::view_pack(const std::string& kind, const EditPreview* on_top) {
+  return threads_->run([&]() -> std::string {
+    if (kind == "tables") return view_tables();
+    const Scene scene = on_top ? on_top->scene() : project().scene();
+    if (kind == "light") return view_light(*device_, scene.light);
+    const ViewMesh mesh = view_mesh(scene);
+    if (kind == "shape") return view_shape(scene, mesh);
+    if (kind == "look") return view_look(*device_, scene, mesh);
+    if (kind == "vertex_light") return view_vertex_light(frames_->light(scene).vertices(), mesh);
+    fail_usage("There is no pack '{}'.", kind);
+  });
+}
+
+Json Session::view_keys() const {
+  return threads_->run([&]() -> Json {
+    const Scene scene = project().scene();
+    std::string shape, look;
+    for (const EditLayer& layer : scene.layers) {
+      const Aspects changes = changed_by(layer);
+      if (changes.shape) shape += layer.content;
+      if (changes.look || changes.parts) look += layer.content;
+    }
+    shape = content_hash(shape);
+    const std::string light = key_of(scene.light);
+    return {{"tables", "1"},
+            {"shape", shape},
+            {"look", content_hash(shape + look)},
+            {"vertex_light", content_hash(shape + light)},
+            {"light", light}};
+  });
+}
+
+}  // namespace cei3d

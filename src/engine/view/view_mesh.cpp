@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/view/view_mesh.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/base/error.h"
+#include "engine/view/pack.h"
+#include "engine/view/quantize.h"
+#include "engine/view/visibility_harmonics.h"
+#include "model/geometry/mesh/simplify.h"
+#include "model/scene/appearance.h"
+#include "model/scene/parts.h"
+
+namespace cei3d {
+namespace {
+
+constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
+
+// The vertices that the triangles use, in their order.
+ViewMesh compacted(const std::vector<std::array<uint32_t, 3>>& triangles, size_t vertices) {
+  ViewMesh out;
+  std::vector<uint32_t> id(vertices, kUnused);
+  for (const auto& t : triangles)
+    for (const uint32_t v : t) id[v] = 0;
+  for (uint32_t v = 0; v < vertices; ++v)
+    if (id[v] != kUnused) {
+      id[v] = uint32_t(out.vertices.size());
+      out.vertices.push_back(v);
+    }
+  for (const auto& t : triangles) out.triangles.push_back({id[t[0]], id[t[1]], id[t[2]]});
+  return out;
+}
+
+struct Box {
+  Vec3d min{0, 0, 0}, size{0, 0, 0};
+};
+
+Box box_of(const std::vector<Vec3d>& points) {
+  Vec3d low = points.front(), high = low;
+  for (const Vec3d& p : points)
+    for (int c = 0; c < 3; ++c) {
+      low[c] = std::min(low[c], p[c]);
+      high[c] = std::max(high[c], p[c]);
+    }
+  return {low, high - low};
+}
+
+std::vector<uint16_t> quantized(const std::vector<Vec3d>& points, const Box& box) {
+  std::vector<uint16_t> out;
+  for (const Vec3d& p : points) {
+    for (int c = 0; c < 3; ++c)
+      out.push_back(unorm16(box.size[c] > 0 ? float((p[c] - box.min[c]) / box.size[c]) : 0));
+    out.push_back(0);
+  }
+  return out;
+}
+
+std::vector<int16_t> octahedral(const std::vector<Vec3f>& normals, const ViewMesh& view) {
+  std::vector<int16_t> out;
+  for (const uint32_t v : view.vertices) {
+    const Vec2f p = octahedron_from_direction(normals[v]);
+    out.push_back(snorm16(p.x));
+    out.push_back(snorm16(p.y));
+  }
+  return out;
+}
+
+void add_visibility(const Surface& surface, const ViewMesh& view, Pack& pack) {
+  constexpr size_t kColumns = 12;  // hardware likes multiples of 4
+  const std::vector<VisibilityTerms> terms = visibility_harmonics(surface);
+  float most = 1e-6f;
+  for (const uint32_t v : view.vertices)
+    for (const float t : terms[v]) most = std::max(most, std::abs(t));
+  std::vector<int8_t> out;
+  for (const uint32_t v : view.vertices) {
+    for (const float t : terms[v]) out.push_back(snorm8(t / most));
+    out.resize(out.size() + kColumns - kVisibilityTerms, 0);
+  }
+  pack["visibility_scale"] = most;
+  pack.add("visibility", out, kColumns);
+}
+
+}  // namespace
+
+ViewMesh view_mesh(const Scene& scene, size_t faces) {
+  if (!scene.surface || scene.surface->mesh().triangles.empty())
+    fail("The object has no surface to show; reconstruct it again.");
+  const Mesh& mesh = scene.surface->mesh();
+  if (faces == 0) return compacted(mesh.triangles, mesh.positions.size());
+  const Simplified simple = simplified(mesh, faces);
+  ViewMesh out = compacted(simple.mesh.triangles, simple.vertex.size());
+  for (uint32_t& v : out.vertices) v = simple.vertex[v];
+  return out;
+}
+
+std::string view_shape(const Scene& scene, const ViewMesh& view) {
+  const Mesh& mesh = scene.surface->mesh();
+  std::vector<Vec3d> points;
+  for (const uint32_t v : view.vertices)
+    points.push_back(scene.normalization.capture_from_unit(to_double(mesh.positions[v])));
+  const Box box = box_of(points);
+  Pack pack("shape");
+  pack["min"] = {box.min.x, box.min.y, box.min.z};
+  pack["size"] = {box.size.x, box.size.y, box.size.z};
+  pack.add("positions", quantized(points, box), 4);
+  pack.add("normals", octahedral(mesh.normals, view), 2);
+  add_visibility(*scene.surface, view, pack);
+  std::vector<uint32_t> indices;
+  for (const auto& t : view.triangles) indices.insert(indices.end(), t.begin(), t.end());
+  pack.add("triangles", indices, 3);
+  return pack.bytes();
+}
+
+std::string view_look(const Device& device, const Scene& scene, const ViewMesh& view) {
+  const std::vector<Hit> hits = vertex_hits(scene.surface->mesh());
+  const Appearance look = appearance_at(device, scene, hits);
+  Pack pack("look");
+  const PartsOfHits parts = parts_of(scene, hits);
+  pack["parts"] = parts.names;
+  std::vector<uint16_t> albedo;
+  std::vector<uint8_t> material;
+  for (const uint32_t v : view.vertices) {
+    const Material& m = look.material[v];
+    for (int c = 0; c < 3; ++c) albedo.push_back(unorm16(std::sqrt(max(look.albedo[v][c], 0.0f))));
+    albedo.push_back(look.unlit.empty() ? uint16_t(0) : unorm16(look.unlit[v]));
+    for (const float x : {m.roughness, m.specular, m.metalness}) material.push_back(unorm8(x));
+    material.push_back(parts.of[v]);
+  }
+  pack.add("albedo", albedo, 4);
+  pack.add("material", material, 4);
+  return pack.bytes();
+}
+
+std::string view_vertex_light(const VertexLight& light, const ViewMesh& view) {
+  std::vector<uint8_t> openness;
+  std::vector<uint32_t> bounce;
+  for (const uint32_t v : view.vertices) {
+    for (int c = 0; c < 3; ++c) openness.push_back(unorm8(light.visibility[v][c]));
+    openness.push_back(255);
+    bounce.push_back(shared_exponent(light.bounce[v]));
+  }
+  Pack pack("vertex_light");
+  pack.add("openness", openness, 4);
+  pack.add("bounce", bounce, 1);
+  return pack.bytes();
+}
+
+}  // namespace cei3d

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+// The program's shading (docs/method.md#shading) as far as arrays by vertex and maps of the light can say it. Formulas
+// that depend on material and angle alone come as tables (src/engine/view/view_light.h).
+
+export const vertexShader = `#version 300 es
+precision highp float;
+layout(location = 0) in vec4 aPosition;
+layout(location = 1) in vec2 aNormal;
+layout(location = 2) in vec4 aAlbedo;
+layout(location = 3) in vec4 aMaterial;
+layout(location = 4) in vec4 aOpenness;
+layout(location = 5) in uint aBounce;
+layout(location = 6) in vec4 aVisibility0;
+layout(location = 7) in vec4 aVisibility1;
+layout(location = 8) in vec4 aVisibility2;
+uniform mat4 uClip;
+uniform vec3 uBoxMin, uBoxSize;  // relative to the camera
+uniform float uVisibilityScale;
+out vec3 vPosition, vNormal, vOpenness, vBounce, vMaterial;
+out vec4 vAlbedo, vVisibility1, vVisibility2;
+out float vVisibility0;
+flat out int vPart;
+
+vec3 fromOctahedron(vec2 p) {
+  vec3 d = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+  if (d.z < 0.0) d.xy = (1.0 - abs(p.yx)) * vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
+  return normalize(d);
+}
+
+vec3 fromSharedExponent(uint bits) {
+  return vec3(uvec3(bits, bits >> 9, bits >> 18) & 511u) * exp2(float(bits >> 27) - 24.0);
+}
+
+void main() {
+  vPosition = uBoxMin + aPosition.xyz * uBoxSize;
+  vNormal = fromOctahedron(aNormal);
+  vAlbedo = vec4(aAlbedo.rgb * aAlbedo.rgb, aAlbedo.a);
+  vMaterial = aMaterial.xyz;
+  vOpenness = aOpenness.rgb;
+  vBounce = fromSharedExponent(aBounce);
+  vVisibility0 = aVisibility0.x * uVisibilityScale;
+  vVisibility1 = vec4(aVisibility0.yzw, aVisibility1.x) * uVisibilityScale;
+  vVisibility2 = vec4(aVisibility1.yzw, aVisibility2.x) * uVisibilityScale;
+  vPart = int(aMaterial.w * 255.0 + 0.5);
+  gl_Position = uClip * vec4(vPosition, 1.0);
+}`;
+
+export const surfaceShader = `#version 300 es
+precision highp float;
+precision highp int;
+precision highp sampler3D;
+in vec3 vPosition, vNormal, vOpenness, vBounce, vMaterial;
+in vec4 vAlbedo, vVisibility1, vVisibility2;
+in float vVisibility0;
+flat in int vPart;
+uniform int uChannel, uHighlight;
+uniform vec3 uHighlightColor;
+uniform mat3 uRoom;  // directions of the light from those of the object
+uniform sampler2D uIrradiance, uSurface, uBase, uFresnel, uLobe;
+uniform sampler3D uReflection;
+uniform float uIrradianceSide, uReflectionSide, uReflectionLevels;
+uniform vec2 uTableSize;
+uniform float uLeastRoughness, uMiddleShare, uDielectricF0, uMetalF0;
+out vec4 outColor;
+const float kPi = 3.14159265;
+
+vec2 octahedral(vec3 d, float side) {
+  vec2 p = d.xy / (abs(d.x) + abs(d.y) + abs(d.z));
+  if (d.z < 0.0) p = (1.0 - abs(p.yx)) * vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
+  return ((p * 0.5 + 0.5) * (side - 1.0) + 0.5) / side;
+}
+
+// Mean visibility over a lobe: bands 1 and 2 are smoothed. docs: src/engine/view/visibility_harmonics.h
+float visibility(vec3 d, vec2 smoothed) {
+  float first = dot(vVisibility1.xyz, d.yzx);
+  float second = vVisibility1.w * d.x * d.y + vVisibility2.x * d.y * d.z + vVisibility2.y * (3.0 * d.z * d.z - 1.0) +
+                 vVisibility2.z * d.x * d.z + vVisibility2.w * (d.x * d.x - d.y * d.y);
+  return clamp(vVisibility0 + smoothed.x * first + smoothed.y * second, 0.0, 1.0);
+}
+
+vec3 reflection(vec3 d, float level) {
+  return texture(uReflection, vec3(octahedral(uRoom * d, uReflectionSide),
+                                   (level * (uReflectionLevels - 1.0) + 0.5) / uReflectionLevels)).rgb;
+}
+
+// Light over one of the two reflection lobes, as over three round ones. axis: written.
+vec3 alongLobe(vec4 lobe, vec3 n, vec3 mirror, vec3 across, out vec3 axis) {
+  axis = normalize(mix(mirror, n, lobe.x));
+  vec3 side = cross(across, axis) * sin(lobe.z), middle = axis * cos(lobe.z);
+  return reflection(axis, lobe.y) * uMiddleShare +
+         (reflection(middle + side, lobe.y) + reflection(middle - side, lobe.y)) * (0.5 - 0.5 * uMiddleShare);
+}
+
+vec3 lit(vec3 n, vec3 v, float roughness, float specular, float metalness) {
+  vec3 albedo = vAlbedo.rgb;
+  float nv = dot(n, v);
+  vec2 at = vec2(sqrt(clamp(nv, 0.0, 1.0)), clamp((roughness - uLeastRoughness) / (1.0 - uLeastRoughness), 0.0, 1.0));
+  vec2 uv = (at * (uTableSize - 1.0) + 0.5) / uTableSize;
+  vec4 surface = texture(uSurface, uv);
+  vec2 smoothed = texture(uLobe, vec2(0.5, uv.y)).xy;
+  float dielectric = (1.0 - metalness) * uDielectricF0 * specular;
+  float f0 = dielectric + metalness * uMetalF0;
+  float share = f0 * surface.x / max(f0 * surface.x + surface.y, 1e-6);
+  vec3 mirror = normalize(2.0 * nv * n - v), across = cross(n, v);
+  across /= max(length(across), 1e-4);
+  vec3 baseAxis, fresnelAxis;
+  vec3 sky = alongLobe(texture(uBase, uv), n, mirror, across, baseAxis) * share;
+  sky += alongLobe(texture(uFresnel, uv), n, mirror, across, fresnelAxis) * (1.0 - share);
+  float free = visibility(normalize(mix(fresnelAxis, baseAxis, share)), smoothed);
+  // The mean radiance of what blocks the sky: the bounce over the blocked share of the cosine.
+  float blocked = 1.0 - visibility(n, vec2(2.0 / 3.0, 0.25));
+  vec3 object = vBounce / (kPi * max(blocked, 0.05));
+  vec3 reflected = sky * free + object * (1.0 - free);
+  vec3 irradiance = texture(uIrradiance, octahedral(uRoom * n, uIrradianceSide)).rgb * vOpenness + vBounce;
+  vec3 color = albedo * irradiance * ((1.0 - metalness) / kPi * surface.z) +
+               ((albedo * metalness + dielectric) * surface.x + surface.y) * reflected;
+  return mix(max(color, 0.0), albedo, vAlbedo.a);
+}
+
+void main() {
+  vec3 n = normalize(vNormal), v = normalize(-vPosition);
+  float roughness = vMaterial.x, specular = vMaterial.y, metalness = vMaterial.z;
+  vec3 color;
+  if (uChannel == 0) color = lit(n, v, roughness, specular, metalness);
+  else if (uChannel == 1) color = vAlbedo.rgb;
+  else if (uChannel == 2) color = n * 0.5 + 0.5;
+  else if (uChannel == 3) color = vec3(roughness);
+  else color = vec3(metalness);
+  if (vPart > 0 && vPart == uHighlight) color = mix(color, uHighlightColor, 0.4);
+  outColor = vec4(color, 1.0);
+}`;
+
+export const partShader = `#version 300 es
+precision highp float;
+flat in int vPart;
+out vec4 outColor;
+void main() { outColor = vec4(float(vPart) / 255.0, 0.0, 0.0, 1.0); }`;
+
+// The whole picture.
+export const screenShader = `#version 300 es
+void main() {
+  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1);
+  gl_Position = vec4(corner * 4.0 - 1.0, 0.0, 1.0);
+}`;
+
+// Of 2 x 2 samples a pixel, the mean with the weights of a tent of two pixels' width, as the program's own pictures;
+// of one sample, that. From linear to display-encoded color.
+export const filterShader = `#version 300 es
+precision highp float;
+uniform sampler2D uSamples;
+uniform int uPerPixel;
+uniform bool uEncode;
+out vec4 outColor;
+
+vec4 filtered(vec2 pixel) {
+  vec2 size = vec2(textureSize(uSamples, 0));
+  if (uPerPixel == 1) return texture(uSamples, (pixel + 0.5) / size);
+  vec2 low = 2.0 * pixel + 0.25, high = 2.0 * pixel + 1.75;  // between a far sample and a near one
+  return 0.25 * (texture(uSamples, low / size) + texture(uSamples, vec2(low.x, high.y) / size) +
+                 texture(uSamples, vec2(high.x, low.y) / size) + texture(uSamples, high / size));
+}
+
+vec3 encoded(vec3 c) {
+  c = clamp(c, 0.0, 1.0);
+  return mix(c * 12.92, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+}
+
+void main() {
+  vec4 sum = filtered(floor(gl_FragCoord.xy));
+  vec3 color = sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);
+  outColor = vec4((uEncode ? encoded(color) : clamp(color, 0.0, 1.0)) * sum.a, sum.a);
+}`;

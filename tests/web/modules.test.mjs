@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// The modules of src/web that need no browser: node --test tests/web
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { clipFromRelative, cross, dot, ofPixel, plus, resized, rotation, unit } from '../../src/web/camera.js';
+import { Orbit } from '../../src/web/orbit.js';
+import { readPack } from '../../src/web/pack.js';
+
+const near = (a, b, most = 1e-5) => assert.ok(Math.abs(a - b) < most, `${a} is not ${b}`);
+
+// Pixel of a world point by the pinhole equation.
+function pixelOf(camera, p) {
+  const local = [0, 1, 2].map((k) => dot(camera.world_from_cam.map((row) => row[k]), plus(p, camera.center, -1)));
+  return [camera.fx * local[0] / local[2] + (camera.skew ?? 0) * local[1] / local[2] + camera.cx,
+    camera.fy * local[1] / local[2] + camera.cy, local[2]];
+}
+
+function pixelOfClip(camera, p) {
+  const m = clipFromRelative(camera, 0.5, 50), r = [...plus(p, camera.center, -1), 1];
+  const clip = [0, 1, 2, 3].map((row) => [0, 1, 2, 3].reduce((sum, k) => sum + m[4 * k + row] * r[k], 0));
+  return [(clip[0] / clip[3] + 1) / 2 * camera.width, (1 - clip[1] / clip[3]) / 2 * camera.height, clip[2] / clip[3]];
+}
+
+const someCamera = () => {
+  const z = unit([1, 2, -0.5]), x = unit(cross(z, [0, 0, 1])), y = cross(z, x);
+  return {width: 300, height: 200, fx: 280, fy: 250, cx: 140, cy: 110, skew: 3, center: [-3, -5, 2],
+    world_from_cam: [0, 1, 2].map((k) => [x[k], y[k], z[k]])};
+};
+
+test('clip coordinates are those of the pinhole camera', () => {
+  const camera = someCamera();
+  for (const p of [[0, 0, 0], [0.5, -0.3, 0.8], [-1, 1, 0]]) {
+    const want = pixelOf(camera, p), got = pixelOfClip(camera, p);
+    near(got[0], want[0], 1e-3);
+    near(got[1], want[1], 1e-3);
+    assert.ok(got[2] > -1 && got[2] < 1);
+  }
+});
+
+test('a pixel keeps its place in its own camera and in other sizes', () => {
+  const camera = someCamera(), p = [0.2, 0.1, -0.4], [x, y] = pixelOf(camera, p);
+  const [u, v] = pixelOf(ofPixel(camera, Math.floor(x), Math.floor(y)), p);
+  assert.ok(u >= 0 && u < 1 && v >= 0 && v < 1);
+  const half = pixelOf(resized(camera, 150, 100), p);
+  near(half[0], x / 2);
+  near(half[1], y / 2);
+});
+
+test('rotations are counter-clockwise', () => {
+  const r = rotation([0, 0, 1], Math.PI / 2).map((row) => dot(row, [1, 0, 0]));
+  [0, 1, 0].forEach((v, k) => near(r[k], v));
+});
+
+test('an orbit looks at its target, upright', () => {
+  const orbit = new Orbit([1, 2, 3], 2, [0, 0, 1], [1, 1, 0.5]);
+  orbit.turn(0.7, -0.2);
+  orbit.pan(0.1, 0.05);
+  const camera = orbit.camera(400, 300);
+  const [x, y] = pixelOf(camera, orbit.target);
+  near(x, 200);
+  near(y, 150);
+  assert.ok(pixelOf(camera, plus(orbit.target, [0, 0, 1], 0.1))[1] < 150);  // up is up
+  near(Math.hypot(...plus(camera.center, orbit.target, -1)), orbit.distance);
+  const [right, down, forward] = orbit.axes();
+  cross(right, down).forEach((v, k) => near(v, forward[k]));
+});
+
+test('an orbit starts where it is told, shows all of the object, and comes home', () => {
+  for (const [up, from] of [[[0, 0, 1], [3, -4, 2]], [[0, 1, 0], [0, 5, 0.001]], [[0, 1, 0], [0, 5, 0]]]) {
+    const orbit = new Orbit([0, 0, 0], 1, up, from);
+    const away = unit(orbit.camera(100, 100).center);
+    assert.ok(dot(away, unit(from)) > 0.99);
+    const before = orbit.camera(100, 100);
+    orbit.turn(1, 0.3);
+    orbit.zoom(2);
+    orbit.pan(0.2, 0.2);
+    orbit.home();
+    assert.deepEqual(orbit.camera(100, 100), before);
+    const side = orbit.axes()[0];
+    const edge = pixelOf(before, side)[0];
+    assert.ok(edge > 70 && edge < 100);
+  }
+});
+
+test('an orbit stays within its limits', () => {
+  const orbit = new Orbit([0, 0, 0], 1, [0, 0, 1], [1, 0, 0]);
+  for (let k = 0; k < 100; ++k) {
+    orbit.turn(0.1, 1);
+    orbit.zoom(0.5);
+    orbit.pan(1, 1);
+  }
+  assert.ok(orbit.elevation < Math.PI / 2 && orbit.distance >= 1 && Math.hypot(...orbit.target) <= 2.001);
+  assert.ok(orbit.camera(10, 10).world_from_cam.flat().every(Number.isFinite));
+});
+
+function packBytes(head, data) {
+  const text = new TextEncoder().encode(JSON.stringify(head).padEnd(Math.ceil(JSON.stringify(head).length / 4) * 4));
+  const out = new Uint8Array(4 + text.length + data.length);
+  new DataView(out.buffer).setUint32(0, text.length, true);
+  out.set(text, 4);
+  out.set(data, 4 + text.length);
+  return out.buffer;
+}
+
+test('packs have arrays of their types', () => {
+  const head = {kind: 'look', parts: ['', 'a'], arrays: {a: {at: 0, type: 'u8', shape: [3, 1]}, b: {at: 4, type: 'i16', shape: [1, 2]}}};
+  const bytes = packBytes(head, [1, 2, 3, 0, 255, 255, 2, 0]);
+  const pack = readPack(bytes, 'look');
+  assert.deepEqual([...pack.arrays.a], [1, 2, 3]);
+  assert.deepEqual([...pack.arrays.b], [-1, 2]);
+  assert.deepEqual(pack.head.parts, ['', 'a']);
+  assert.throws(() => readPack(bytes, 'shape'));
+});
