@@ -1,8 +1,8 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: Apache-2.0
 // check_page.cjs PAGE.html RENDERED... [--least DB]: an exported page in a headless browser. Its pictures by the cameras of
-// RENDERED/render.json, under that light turned as there, must be those in RENDERED (PSNR on white, of rgb and what other
-// channels there are); it must ask the network for nothing, write nothing to the console, and obey the keyboard. Exit code 1
+// RENDERED/render.json, under that light turned as there, must be those in RENDERED (PSNR on white, of rgb and albedo if it
+// is there); it must ask the network for nothing, write nothing to the console, and obey the keyboard. Exit code 1
 // if not; 77 where Chromium or the npm package playwright-core is not installed (./run web).
 'use strict';
 const fs = require('fs');
@@ -42,7 +42,7 @@ async function psnr([a, b]) {
   return 10 * Math.log10(1 / Math.max((sum * 4) / 3 / p.length, 1e-10));
 }
 
-const channelNames = {rgb: 'lit', albedo: 'albedo', roughness: 'roughness', metalness: 'metalness'};
+const channelNames = {rgb: 'lit', albedo: 'albedo'};  // those whose pictures have an alpha channel
 
 async function compare(page, judge, folder) {
   const record = JSON.parse(fs.readFileSync(path.join(folder, 'render.json'), 'utf8'));
