@@ -73,8 +73,17 @@ refused 2 'texture' export "$project" -o "$out/spot.glb" --texture 1000000
 refused 2 'faces' export "$project" -o "$out/spot.glb" --faces 0
 refused 2 'size' export "$project" -o "$out/spot.glb" --size 3km
 refused 2 'glb|ply' export "$project" -o "$out/spot.obj" --texture 0
+refused 2 'texture' export "$project" -o "$out/spot.html" --texture 512
+refused 2 'webp' export "$project" -o "$out/spot.usdz" --image webp
 refused 1 'not a folder' export "$project" -o "$out/truncated.png/spot.glb"
 absent "$out/spot.glb"
+# A limit on the size of files stands in for a full disk: nothing half-written stays.
+for kind in html glb obj; do
+  mkdir "$out/full"
+  (trap '' XFSZ; ulimit -f 16; refused 1 'too large|space' export "$project" -o "$out/full/spot.$kind" --faces 2000)
+  [[ -z $(ls -A "$out/full") ]] || fail "left behind by a failed export: $(ls -A "$out/full")"
+  rmdir "$out/full"
+done
 refused 2 'smell' smell
 
 # A project of a newer format, a damaged one.
