@@ -35,7 +35,7 @@ PYTHON
 
 # The page has no correction network, and under a turned light the occlusion of the light that it was made for.
 readonly views=(--turntable 3 --size 160x160 --no-residual)
-cei3d render "$project" -o "$out/lit" "${views[@]}" --channels rgb,albedo,roughness,metalness
+cei3d render "$project" -o "$out/lit" "${views[@]}" --channels rgb,albedo
 cei3d render "$project" -o "$out/turned" "${views[@]}" --env-rotate 45
 
 command -v node >/dev/null || { echo "SKIP: the page in a browser: no node"; exit 77; }
