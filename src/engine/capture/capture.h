@@ -16,6 +16,9 @@ struct CaptureOptions {
   std::string format;  // one of capture_format_names(); empty: detected from the files
   int test_every = 0;  // every Nth training view becomes a test view when the capture has none; 0: never
   int views = 0;       // number of training views to use, by keep_training_views(); 0: all
+  // Instead of every Nth: this share of the training views, chosen at random by the seed; 0: none.
+  double test_share = 0;
+  uint64_t seed = 1;
 };
 
 // Loads cameras and file names, not images (but the size of one per split). path: a folder, or its .json or

@@ -17,7 +17,7 @@ namespace cei3d {
 namespace {
 
 ImageSize png_size(const std::string& bytes, const std::string& name) {
-  if (bytes.size() < 24 || bytes.compare(12, 4, "IHDR") != 0)
+  if (bytes.size() < 25 || bytes.compare(12, 4, "IHDR") != 0)
     fail("{} is a broken PNG: it ends too early.", name);
   const auto number = [&](size_t i) {
     uint32_t v = 0;
@@ -97,6 +97,21 @@ ImageSize read_image_size(const std::filesystem::path& path) {
       return exr_size(bytes, name);
     case ImageFormat::hdr:
       return hdr_size(bytes, name);
+  }
+  fail("{}: unknown image format.", name);
+}
+
+int read_image_bits(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path), name = path.string();
+  switch (image_format(bytes, name)) {
+    case ImageFormat::png:
+      png_size(bytes, name);
+      return uint8_t(bytes[24]) == 16 ? 16 : 8;
+    case ImageFormat::jpeg:
+      return 8;
+    case ImageFormat::exr:
+    case ImageFormat::hdr:
+      return 32;
   }
   fail("{}: unknown image format.", name);
 }

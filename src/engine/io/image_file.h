@@ -17,6 +17,9 @@ enum class ImageFormat { png, jpeg, exr, hdr };
 Image read_image(const std::filesystem::path& path);
 Image read_linear_image(const std::filesystem::path& path);    // PNG and JPEG decoded from sRGB, alpha kept
 ImageSize read_image_size(const std::filesystem::path& path);  // without decoding pixels
+// Bits of a channel: 8 or 16 of display-encoded values up to 1; 32: linear values without an upper limit
+// (EXR, HDR).
+int read_image_bits(const std::filesystem::path& path);
 ImageFormat image_format(const std::string& bytes, const std::string& name);
 bool has_image_suffix(const std::filesystem::path& path);  // .png .jpg .jpeg .exr .hdr, any case
 

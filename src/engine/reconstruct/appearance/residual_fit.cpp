@@ -168,8 +168,8 @@ class Trainer {
   double squared_error(uint32_t sample, Vec3f got) const {
     double sum = 0;
     for (int c = 0; c < 3; ++c)
-      sum +=
-          square(srgb_from_linear(clamp(got[c], 0.0f, 1.0f)) - srgb_from_linear(samples_.colors[sample][c]));
+      sum += square(srgb_from_linear(clamp(got[c], 0.0f, 1.0f)) -
+                    srgb_from_linear(min(samples_.colors[sample][c], 1.0f)));
     return sum;
   }
 
