@@ -22,6 +22,7 @@ class EvaluationObjects {
   // Errors: no such capture, view or finished object, an object of another capture, OUT is a project.
   EvaluationObjects(Session&, const EvaluationRequest&);
 
+  const Capture& capture() const { return loaded_; }
   int training_views() const { return training_views_; }
   EvaluationObject whole() const;                          // from all photographs
   EvaluationObject with(const ReconstructOptions&) const;  // objects with equal options are one
@@ -37,6 +38,7 @@ class EvaluationObjects {
   Session& session_;
   const EvaluationRequest& r_;
   KeptValues kept_;
+  Capture loaded_;
   std::string capture_, fingerprint_;
   int training_views_ = 0;
   Json given_;

@@ -87,7 +87,7 @@ EditLayer small_layer(const std::string& id, uint64_t seed) {
   EditLayer layer;
   layer.id = id;
   Rng rng(seed, 0, 0);
-  layer.region = Region({{{rng.uniform(), 0, 0.5f}}, {{0, 0, 1}}, {0.1f}});
+  layer.region = Region({{{rng.uniform(), 0, 0.5f}}, {{0, 0, 1}}, {0.1f}, {}});
   layer.albedo = small_field(3, seed);
   return layer;
 }

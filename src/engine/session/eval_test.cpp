@@ -81,6 +81,7 @@ TEST_F(EvalTest, OwnRendersAreMatchedExactly) {
   const EvalReport r = session_.evaluate({}, quiet_);
   EXPECT_EQ(r.views.size(), 3u);
   EXPECT_TRUE(std::isinf(r.psnr));
+  EXPECT_DOUBLE_EQ(*r.flip, 0);
   EXPECT_TRUE(std::isinf(r.psnr_masked));
   EXPECT_DOUBLE_EQ(r.ssim, 1);
   EXPECT_FALSE(r.lpips || r.fid || r.edit);

@@ -142,9 +142,11 @@ TEST_F(PartsTest, WrongCommandsChangeNothing) {
   c.view = "r_0";
   c.like = {32, 32};
   EXPECT_THAT(error_of([&] { session_.select_part(c, quiet_); }).what(), HasSubstr("has one material"));
-  c = columns(10, 30);
   c.segmenter = "sam";
-  EXPECT_EQ(code(c), ErrorCode::usage);
+  EXPECT_EQ(code(c), ErrorCode::usage);  // a network needs prompts
+  c = columns(10, 30);
+  c.keep_color = true;
+  EXPECT_EQ(code(c), ErrorCode::usage);  // of which scribble?
   EXPECT_EQ(error_of([&] { mask_of("ear"); }).code(), ErrorCode::usage);
   EXPECT_TRUE(session_.log().empty());
 }

@@ -52,7 +52,7 @@ void add_small_paint(const fs::path& folder) {
   Project project = Project::open(folder, Project::Mode::write);
   EditLayer layer;
   layer.id = project.stack().next_id("paint");
-  layer.region = Region({{{0, 0, -0.4f}}, {{0, 0, -1}}, {0.3f}});
+  layer.region = Region({{{0, 0, -0.4f}}, {{0, 0, -1}}, {0.3f}, {}});
   layer.albedo = std::make_shared<Field>(small_field(3), 5);
   project.add_edit({layer.id, "paint", 1, Json::object(), {}, Json::object(), {}}, layer);
 }

@@ -45,7 +45,9 @@ inline Image square_scribble(Vec3f srgb, int half) {
   return s;
 }
 
-inline Region ball(Vec3f center, float radius) { return Region({{center}, {normalize(center)}, {radius}}); }
+inline Region ball(Vec3f center, float radius) {
+  return Region({{center}, {normalize(center)}, {radius}, {}});
+}
 
 // What an edit leaves: the scene but for the names of its layers.
 inline std::string bytes_of(const Scene& scene) {

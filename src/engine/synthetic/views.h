@@ -35,4 +35,9 @@ Json nerf_frame(const std::string& file_path, const Camera&);
 void write_nerf_cameras(const std::filesystem::path& folder, const std::string& split,
                         std::span<const Camera> cameras);
 
+// The same in PhySG's layout: <split>/cam_dict_norm.json for <split>/image/r_000.exr ...; its pixel centers
+// are at whole numbers.
+void write_physg_cameras(const std::filesystem::path& folder, const std::string& split,
+                         std::span<const Camera> cameras);
+
 }  // namespace cei3d
