@@ -160,11 +160,11 @@ TEST(Scene, LayersSayTheirPoseAndTheLastLightCounts) {
   s.light.lobes.resize(2);
   for (const EditLayer& layer : one_of_each_kind()) s = with_layer(std::move(s), layer);
   s = with_layer(std::move(s), one_of_each_kind()[1]);
-  EXPECT_EQ(s.shape_versions.size(), 2u);
+  EXPECT_EQ(s.shape_versions.size(), 3u);
   EXPECT_EQ(s.surface, s.shape_versions.back()->surface);
   std::vector<int> versions;
   for (const EditLayer& layer : s.layers) versions.push_back(layer.shape_version);
-  EXPECT_EQ(versions, (std::vector<int>{0, 0, 0, 0, 0, 1, 1, 1, 1}));
+  EXPECT_EQ(versions, (std::vector<int>{0, 0, 0, 0, 0, 1, 1, 1, 1, 2}));
   ASSERT_EQ(s.light.lobes.size(), 1u);
   EXPECT_EQ(s.light.lobes[0].lambda, 3.5f);
 }
