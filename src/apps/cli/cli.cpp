@@ -31,7 +31,9 @@ constexpr const char* kFooter =
     "writes.\n"
     "Pixels are (column,row) from the top left corner, centers at +0.5. Positions and lengths are in the\n"
     "capture's own frame and unit.\n"
-    "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (state saved).";
+    "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (state saved); of `batch work` also 75, "
+    "try "
+    "again later.";
 
 constexpr const char* kCommandFooter =
     "Options of every command: --quiet, --json, --log-level, --device, --threads (see `cei3d -h`).";
@@ -151,7 +153,7 @@ int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostrea
   app.require_subcommand(0, 1);
   Commands commands(app, common);
   for (const auto add : {add_check, add_reconstruct, add_render, add_edit, add_parts, add_history, add_export,
-                         add_eval, add_evaluate, add_info, add_bench, add_synth, add_open})
+                         add_eval, add_evaluate, add_info, add_bench, add_synth, add_open, add_batch})
     add(commands);
   app.footer(footer());
   wrap_help(app);

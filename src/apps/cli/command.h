@@ -62,6 +62,7 @@ void add_eval(Commands&);
 void add_evaluate(Commands&);
 void add_info(Commands&);  // info, doctor
 void add_bench(Commands&);
+void add_batch(Commands&);
 void add_open(Commands&);
 void add_synth(Commands&);
 

@@ -9,7 +9,9 @@
 
 namespace cei3d {
 
-enum class ErrorCode { failed = 1, usage = 2, interrupted = 130 };  // values are the program's exit codes
+// Values are the program's exit codes. again: nothing is wrong with the input, the same command may succeed
+// later.
+enum class ErrorCode { failed = 1, usage = 2, again = 75, interrupted = 130 };
 
 class Error : public std::runtime_error {
  public:
@@ -21,6 +23,12 @@ class Error : public std::runtime_error {
  private:
   ErrorCode code_;
   std::string hint_;
+};
+
+// The machine is in the way, not the input: a full disk, a file system that is gone. Exit code 1.
+class MachineError : public Error {
+ public:
+  explicit MachineError(const std::string& what) : Error(ErrorCode::failed, what) {}
 };
 
 // fail("{}: truncated PNG", path): bad data or a failed operation, exit code 1.

@@ -37,6 +37,20 @@ std::string reason(int code) {
   }
 }
 
+// Whether the same file may be written or read when the machine is in order again.
+bool may_pass(int code) {
+  for (const int passing :
+       {ENOSPC, EDQUOT, EIO, ESTALE, ENOTCONN, ENODEV, ETIMEDOUT, EHOSTDOWN, ENOMEM, EROFS})
+    if (code == passing) return true;
+  return false;
+}
+
+[[noreturn]] void fail_file(const char* what, const fs::path& path, int code) {
+  const std::string text = fmt::format("Cannot {} {}: {}.", what, path.string(), reason(code));
+  if (may_pass(code)) throw MachineError(text);
+  throw Error(ErrorCode::failed, text);
+}
+
 class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}
@@ -68,7 +82,7 @@ void make_parent(const fs::path& path) {
   if (path.parent_path().empty()) return;
   std::error_code error;
   fs::create_directories(path.parent_path(), error);
-  if (error) fail("Cannot make folder {}: {}.", path.parent_path().string(), reason(error.value()));
+  if (error) fail_file("make folder", path.parent_path(), error.value());
 }
 
 fs::path temporary_name(const fs::path& path) {
@@ -108,7 +122,7 @@ class Temporary {
 
  private:
   void require(bool done) const {
-    if (!done) fail("Cannot write {}: {}.", target_.string(), reason(errno));
+    if (!done) fail_file("write", target_, errno);
   }
 
   fs::path target_, path_;
@@ -120,8 +134,7 @@ class Temporary {
 std::string read_file(const fs::path& path) {
   const Descriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   struct stat info {};
-  if (fd.get() < 0 || ::fstat(fd.get(), &info) != 0)
-    fail("Cannot read {}: {}.", path.string(), reason(errno));
+  if (fd.get() < 0 || ::fstat(fd.get(), &info) != 0) fail_file("read", path, errno);
   if (S_ISDIR(info.st_mode)) fail("Cannot read {}: {}.", path.string(), reason(EISDIR));
   // +1: sees the end at once.
   std::string bytes(S_ISREG(info.st_mode) ? size_t(info.st_size) + 1 : 65536, '\0');
@@ -130,7 +143,7 @@ std::string read_file(const fs::path& path) {
     if (used == bytes.size()) bytes.resize(2 * used);
     const ssize_t n = ::read(fd.get(), bytes.data() + used, bytes.size() - used);
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail("Cannot read {}: {}.", path.string(), reason(errno));
+    if (n < 0) fail_file("read", path, errno);
     if (n == 0) break;
     used += size_t(n);
   }
@@ -165,7 +178,24 @@ void require_writable(const fs::path& path) {
 
 void append_to_file(const fs::path& path, std::string_view bytes) {
   const Descriptor fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666));
-  if (fd.get() < 0 || !write_all(fd.get(), bytes)) fail("Cannot write {}: {}.", path.string(), reason(errno));
+  if (fd.get() < 0 || !write_all(fd.get(), bytes)) fail_file("write", path, errno);
+}
+
+bool write_new_file(const fs::path& path, std::string_view bytes) {
+  Descriptor fd(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+  if (fd.get() < 0 && errno == EEXIST) return false;
+  if (fd.get() < 0) fail_file("write", path, errno);
+  if (write_all(fd.get(), bytes) && ::fsync(fd.get()) == 0 && fd.close()) return true;
+  const int code = errno;
+  ::unlink(path.c_str());
+  fail_file("write", path, code);
+}
+
+bool touch_file(const fs::path& path) { return ::utimensat(AT_FDCWD, path.c_str(), nullptr, 0) == 0; }
+
+void move_path(const fs::path& from, const fs::path& to) {
+  if (::rename(from.c_str(), to.c_str()) != 0) fail_file("write", to, errno);
+  sync_folder(to);
 }
 
 }  // namespace cei3d

@@ -10,6 +10,8 @@
 
 namespace cei3d {
 
+// All functions: MachineError when the disk is full or its file system is gone, as far as the system tells.
+
 // All bytes of a file. Errors: missing, a folder, unreadable.
 std::string read_file(const std::filesystem::path&);
 
@@ -33,5 +35,14 @@ void require_writable(const std::filesystem::path&);
 // Appends the bytes in one piece, also when several processes append; creates the file if missing. Error: it
 // cannot be written.
 void append_to_file(const std::filesystem::path&, std::string_view bytes);
+
+// False: there is such a file already, which stays as it is. Of several processes that call it at once, also
+// on several machines, one gets true. A reader may see the file before its bytes.
+bool write_new_file(const std::filesystem::path&, std::string_view bytes);
+
+bool touch_file(const std::filesystem::path&);  // sets its time to now; false: it cannot, or there is none
+
+// Renames a file or a folder within a file system; a file or an empty folder of that name is replaced.
+void move_path(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace cei3d

@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <stdlib.h>
 #include <sys/file.h>
+#include <sys/resource.h>
 #include <sys/sysinfo.h>
 #include <unistd.h>
 
@@ -48,6 +49,11 @@ fs::path program_file() {
 
 double thread_seconds() { return clock_seconds(CLOCK_THREAD_CPUTIME_ID); }
 double process_seconds() { return clock_seconds(CLOCK_PROCESS_CPUTIME_ID); }
+
+double peak_memory_gib() {
+  rusage usage{};
+  return ::getrusage(RUSAGE_SELF, &usage) == 0 ? double(usage.ru_maxrss) / double(1 << 20) : 0;
+}
 
 std::string utc_text(const char* format) {
   const std::time_t now = std::time(nullptr);

@@ -14,6 +14,7 @@ std::filesystem::path program_file();  // of the running program; empty where it
 
 double thread_seconds();   // processor time of the calling thread
 double process_seconds();  // processor time of all threads
+double peak_memory_gib();  // that the process has had so far
 
 std::string utc_text(const char* format);  // the time now, by a format of strftime
 

@@ -249,6 +249,12 @@ bool Session::toggle(const std::string& id, Progress& progress) {
   return threads_->run([&]() -> bool { return toggle_edit(project(), {*device_, *frames_, progress}, id); });
 }
 
+EditSummary Session::edit_by_params(const std::string& op, const Json& params, Progress& progress) {
+  return threads_->run([&]() -> EditSummary {
+    return add_edit_to(project(), {*device_, *frames_, progress}, {edit_op(op).name, params, {}});
+  });
+}
+
 ReplayReport Session::replay(const std::filesystem::path& on, Progress& progress) {
   return threads_->run([&]() -> ReplayReport {
     std::error_code error;

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "apps/cli/command.h"
+
+namespace cei3d {
+
+void add_batch_looks(Commands&, CLI::App* batch);  // status, retry, cancel, index
+
+}  // namespace cei3d
