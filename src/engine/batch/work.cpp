@@ -144,24 +144,8 @@ size_t first_of(const BatchManifest& manifest) {
   return std::stoul(hash.substr(0, 8), nullptr, 16) % manifest.size();
 }
 
-}  // namespace
-
-const char* batch_result_name(BatchResult r) { return kResults[size_t(r)]; }
-
-Json BatchWorkReport::json() const {
-  Json j{{"id", id}, {"result", batch_result_name(result)}, {"seconds", seconds}};
-  if (!sentence.empty()) j["sentence"] = sentence;
-  return j;
-}
-
-bool batch_is_settled(const std::optional<BatchState>& state, const std::string& key, bool gone) {
-  if (!state) return false;
-  const bool ended = state->outcome == BatchOutcome::done || state->outcome == BatchOutcome::failed;
-  return (ended && state->key == key) || (state->outcome == BatchOutcome::done && gone);
-}
-
-BatchWorkReport batch_work(const BatchCatalog& catalog, const BatchManifest& manifest, size_t index,
-                           Session& session, Progress& progress) {
+BatchWorkReport unguarded_work(const BatchCatalog& catalog, const BatchManifest& manifest, size_t index,
+                               Session& session, Progress& progress) {
   const std::string& id = manifest.id(index);
   const fs::path folder = batch_item_folder(catalog.folder(), id);
   std::error_code error;
@@ -181,6 +165,31 @@ BatchWorkReport batch_work(const BatchCatalog& catalog, const BatchManifest& man
   if (!attempt) return {id, BatchResult::taken, "Another worker has it.", 0};
   if (auto report = settled()) return *report;  // since the first look
   return Try(catalog, item, steps, *attempt).run(session, progress);
+}
+
+}  // namespace
+
+const char* batch_result_name(BatchResult r) { return kResults[size_t(r)]; }
+
+Json BatchWorkReport::json() const {
+  Json j{{"id", id}, {"result", batch_result_name(result)}, {"seconds", seconds}};
+  if (!sentence.empty()) j["sentence"] = sentence;
+  return j;
+}
+
+bool batch_is_settled(const std::optional<BatchState>& state, const std::string& key, bool gone) {
+  if (!state) return false;
+  const bool ended = state->outcome == BatchOutcome::done || state->outcome == BatchOutcome::failed;
+  return (ended && state->key == key) || (state->outcome == BatchOutcome::done && gone);
+}
+
+BatchWorkReport batch_work(const BatchCatalog& catalog, const BatchManifest& manifest, size_t index,
+                           Session& session, Progress& progress) {
+  try {
+    return unguarded_work(catalog, manifest, index, session, progress);
+  } catch (const MachineError& e) {
+    return {manifest.id(index), BatchResult::again, e.what(), 0};
+  }
 }
 
 std::vector<BatchWorkReport> batch_claim(const BatchCatalog& catalog, const BatchManifest& manifest,
