@@ -22,7 +22,7 @@ stubs "$out/m.jsonl" 20 0.1
 "$program" batch run "$out/m.jsonl" -o "$out/two" --jobs 2 --quiet & first=$!
 "$program" batch run "$out/m.jsonl" -o "$out/two" --jobs 2 --quiet & second=$!
 wait "$first" "$second"
-expect done "$(count "$out/two" done)" 20
+expect finished "$(count "$out/two" "done")" 20
 expect attempts "$(attempts "$out/two")" 20
 
 echo "a launcher that is killed, and its workers with it"
@@ -31,9 +31,9 @@ stubs "$out/m.jsonl" 6 1
 sleep 1.5
 kill -9 "$first"
 wait "$first" 2>/dev/null || true
-done_before=$(count "$out/parent" done)
+done_before=$(count "$out/parent" "done")
 batch run "$out/m.jsonl" -o "$out/parent" --jobs 2 --quiet
-expect done "$(count "$out/parent" done)" 6
+expect finished "$(count "$out/parent" "done")" 6
 echo "  $done_before were done when it was killed; attempts $(attempts "$out/parent")"
 
 echo "a worker that is stopped, replaced, and goes on"
@@ -50,7 +50,7 @@ kill -CONT "$first"
 wait "$first" || code=$?
 expect "exit code of the first" "$code" 75
 wait "$second"
-expect done "$(count "$out/brain" done)" 1
+expect finished "$(count "$out/brain" "done")" 1
 expect attempt "$(attempts "$out/brain")" 2
 expect leftovers "$(find "$out"/brain/items -name 'work-*' -o -name 'attempt-*' | wc -l)" 0
 
@@ -68,7 +68,7 @@ grep -i 'full\|space' "$out/disk.said" >/dev/null || fail "no word of the disk: 
 expect states "$(find "$out/disk/catalog/items" -name state.json | wc -l)" 0
 rm "$out/disk/filler"
 batch run "$out/m.jsonl" -o "$out/disk/catalog" --quiet
-expect done "$(count "$out/disk/catalog" done)" 4
+expect finished "$(count "$out/disk/catalog" "done")" 4
 
 echo "a file system that goes away under a worker"
 stubs "$out/m.jsonl" 1 2
@@ -82,7 +82,7 @@ expect "exit code without a catalog" "$code" 75
 rm -rf "$out/disk/gone"
 mv "$out/disk/away" "$out/disk/gone"
 batch run "$out/m.jsonl" -o "$out/disk/gone" --beat 0.2 --quiet
-expect done "$(count "$out/disk/gone" done)" 1
+expect finished "$(count "$out/disk/gone" "done")" 1
 
 echo "a clock that jumps by an hour while a worker lives"
 stubs "$out/m.jsonl" 1 2
@@ -104,7 +104,7 @@ printf '{"id":"missing","capture":"%s"}\n{"id":"truncated","capture":"%s"}\n' "$
 code=0
 batch run "$out/m.jsonl" -o "$out/calm" --jobs 2 --quiet >"$out/calm.said" 2>&1 || code=$?
 expect "exit code with bad captures" "$code" 1
-expect done "$(count "$out/calm" done)" 2
+expect finished "$(count "$out/calm" "done")" 2
 expect failed "$(count "$out/calm" failed)" 2
 "$program" batch run "$out/m.jsonl" -o "$out/wild" --jobs 2 --retries 10 --quiet >"$out/wild.said" 2>&1 & first=$!
 for pause in 5 4 6; do
@@ -113,7 +113,7 @@ for pause in 5 4 6; do
   [[ -z $victim ]] || kill -9 "$victim" || true
 done
 wait "$first" || true
-expect done "$(count "$out/wild" done)" 2
+expect finished "$(count "$out/wild" "done")" 2
 scene() { grep -o '"[0-9a-f]\{16,\}"' "$1"/items/*/"$2"/project/base/scene.json; }
 for id in spot0 spot1; do
   [[ $(scene "$out/calm" $id) == "$(scene "$out/wild" $id)" ]] || fail "$id: other bits after workers were killed"

@@ -3,7 +3,8 @@
 # slurm.sh PROGRAM FOLDER: a catalog on a Slurm of two nodes on this machine, of which a node and the controller are
 # killed, and tasks run into their limit; the objects have the bits of an undisturbed run. As root.
 set -euo pipefail
-readonly program=$(realpath "$1") out=$2
+program=$(realpath "$1")
+readonly program out=$2
 command -v slurmctld >/dev/null || { echo "SKIP: Slurm is not installed (./run cluster)"; exit 77; }
 rm -rf "$out"
 mkdir -p "$out"
@@ -12,10 +13,10 @@ fail() { printf 'FAILED: %s\n' "$*" >&2; squeue >&2 || true; tail -n 5 "$out"/*/
 count() { "$program" batch status "$1" --json | python3 -c 'import json,sys; print(json.load(sys.stdin)[sys.argv[1]])' "$2"; }
 wait_for_done() { # CATALOG N SECONDS
   for ((i = 0; i < $3; ++i)); do
-    [[ $(count "$1" done) == "$2" ]] && return
+    [[ $(count "$1" "done") == "$2" ]] && return
     sleep 1
   done
-  fail "$1: $(count "$1" done) of $2 after $3 s"
+  fail "$1: $(count "$1" "done") of $2 after $3 s"
 }
 scene() { grep -o '"[0-9a-f]\{16,\}"' "$1"/items/*/"$2"/project/base/scene.json; }
 same_bits() { # CATALOG CATALOG N
