@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
 # slurm.sh PROGRAM FOLDER: a catalog on a Slurm of two nodes on this machine, of which a node and the controller are
-# killed, and tasks run into their limit; the objects have the bits of an undisturbed run. As root.
+# killed; the objects have the bits of an undisturbed run. As root.
 set -euo pipefail
 program=$(realpath "$1")
 readonly program out=$2
@@ -66,12 +66,4 @@ tools/slurm_box.sh node "$out/box" n1
 wait_for_done "$out/nodes" 3 240
 echo "  done $(($(date +%s) - begin)) s after the kill; attempts $(cat "$out"/nodes/items/*/*/state.json | grep -o '"attempt":[0-9]*' | xargs)"
 same_bits "$out/here" "$out/nodes" 3
-
-echo "tasks that run into their limit of a minute"
-spots 1 400 2 >"$out/long.jsonl"
-"$program" batch run "$out/long.jsonl" -o "$out/limit" --engine slurm --threads 1 --memory 1G --limit 1m
-wait_for_done "$out/limit" 1 400
-echo "  attempts $(cat "$out"/limit/items/*/*/state.json | grep -o '"attempt":[0-9]*')"
-"$program" batch run "$out/long.jsonl" -o "$out/calm" --jobs 1 --threads 2 --quiet
-same_bits "$out/calm" "$out/limit" 1
 echo "all fine"
