@@ -34,13 +34,17 @@ PaintCommand command_of(const Options& o) {
 
 std::string text_of(const EditSummary& s) {
   const auto count = [&](const char* key) { return s.report.at(key).get<size_t>(); };
-  std::string text = fmt::format("{}: {} painted pixels, {} handler points; {}; mean color error {:.4f}.",
-                                 s.id, count("painted_pixels"), count("points"), stages_text(s),
-                                 s.report.at("mean_error").get<double>());
+  std::string text =
+      fmt::format("{}: {} painted pixels on {} handler points ({} new); {}; mean color error {:.4f}.", s.id,
+                  count("painted_pixels"), count("points"), count("refined"), stages_text(s),
+                  s.report.at("mean_error").get<double>());
   if (count("missed_pixels") > 0)
     text += fmt::format(
         " {} painted pixels have no effect: they are beside the object or on a surface that faces away.",
         count("missed_pixels"));
+  if (count("unchanged_pixels") > 0)
+    text +=
+        fmt::format(" {} pixels have the surface's own color and change nothing.", count("unchanged_pixels"));
   if (const double share = s.report.at("out_of_reach").get<double>(); share > 0.005)
     text +=
         fmt::format(" {:.0f} % of the paint is brighter or darker than any albedo can appear in this light.",
@@ -78,13 +82,24 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
   verb->add_flag("--erase", o->command.erase,
                  "Restore the reconstructed albedo and material where the scribble is opaque")
       ->excludes(target);
-  verb->add_option("--routing", o->routing,
-                   "How painted surface is found. both: near handler points and inside the scribble's "
-                   "outline. points, outline: one of them. none: retrain the object's albedo field instead, "
-                   "which changes other places, too; for comparison")
+  verb->add_option(
+          "--routing", o->routing,
+          "How painted surface is found. both: near edited handler points and inside the scribble's "
+          "outline. points: where the nearest handler point is edited. outline: without handler "
+          "points. none: retrain the object's albedo field instead, which changes other places, too; "
+          "for comparison")
       ->check(CLI::IsMember({"both", "points", "outline", "none"}))
       ->capture_default_str();
+  verb->add_option("--theta", o->command.theta,
+                   "With --routing points: paint all surface nearer than this to an edited handler point, in "
+                   "units of the capture, as in the paper; 0: by the nearest handler point")
+      ->capture_default_str();
   add_material_values(verb, o->command.material);
+  verb->add_option("--set", o->command.set,
+                   "key=value, repeatable: how the painted colors are learned. Keys: branch.steps, .batch, "
+                   ".levels, .hidden_layers, .width, .table_rate, .layer_rate, .loss (cross_entropy, l1)")
+      ->expected(1)
+      ->take_all();
   verb->add_option("--seed", o->command.seed, "Random seed")->capture_default_str();
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {

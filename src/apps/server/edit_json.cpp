@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/server/edit_json.h"
 
-#include "engine/project/dataset.h"
+#include "core/base/json.h"
+#include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace {

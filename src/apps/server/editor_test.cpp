@@ -4,8 +4,8 @@
 
 #include "apps/server/test_editor.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "engine/io/png_file.h"
-#include "engine/project/dataset.h"
 
 namespace cei3d {
 namespace {

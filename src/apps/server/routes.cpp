@@ -5,6 +5,7 @@
 #include "apps/server/guarded.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "engine/io/jpeg_file.h"
 #include "engine/io/png_file.h"
 #include "engine/session/edit_plan.h"

@@ -2,6 +2,7 @@
 #include "engine/page/object_page.h"
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "engine/io/gzip.h"
 #include "engine/page/page_files.h"
 

@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "core/base/json.h"
+#include "core/base/settings.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/check.h"
 #include "engine/edit/routing.h"
 #include "engine/reconstruct/reconstruct.h"
+#include "engine/segment/view_plan.h"
 
 namespace cei3d {
 
@@ -33,6 +35,8 @@ struct CheckRequest {
   std::filesystem::path contact_sheet{};  // PNG of all views
   std::filesystem::path fixed{};          // folder of a capture without what can be repaired safely
 };
+// How `reconstruct` loads the capture.
+CaptureOptions capture_options(const std::string& format, const ReconstructOptions&);
 struct CheckReport {
   Capture capture;
   std::vector<std::string>
@@ -50,6 +54,23 @@ struct ReconstructRequest {
   bool resume = false, replace = false;
   bool strict = false;  // refuse a capture of which images are missing
 };
+// The settings of a preset, for --list-settings.
+struct SettingsReport {
+  struct Line {
+    SettingInfo info;
+    Json value;
+    bool fitted = false;  // chosen by the size of a pixel on the object, unless it is set
+  };
+  std::string preset;
+  std::vector<Line> settings;
+  Json json() const;
+  std::string text() const;
+};
+// Usage error: no such preset.
+SettingsReport settings_of_preset(const std::string& preset);
+// Usage errors: those of add_setting().
+Json settings_from_text(const std::vector<std::string>& written);
+
 // Material and light of the object, and how well they explain the photographs.
 struct ObjectSummary {
   Material mean;
@@ -142,7 +163,9 @@ struct PaintCommand {
   uint64_t seed = 1;
   PaintTarget target = PaintTarget::albedo;  // meaning of the colors of the scribble
   Routing routing = Routing::both;
-  bool erase = false;  // restore the base's albedo and material where the scribble paints
+  double theta = 0;  // with Routing::points: distance to edited handler points, capture units; 0: the nearest
+  bool erase = false;              // restore the base's albedo and material where the scribble paints
+  std::vector<std::string> set{};  // "key=value" of branch_settings() (engine/edit/albedo_branch.h)
   // Material of the painted surface. The only color allowed is that of a preset; it replaces those of the
   // scribbles.
   MaterialEffects material{};
@@ -172,15 +195,28 @@ struct DeformCommand {
   std::string geometry = "mesh";    // "mesh", or "field": the moved surface gets a distance field of its own
   std::string distance = "signed";  // what that field is fitted to: "signed" distances or "l1", the paper's
 };
-// A part by clicks, a mask or a clicked material in one view, and optional changes of its material and color.
+// How the segmentation network sees the object.
+struct NetworkViews {
+  bool photographs = false;  // of the training views; else renders of the albedo
+  ViewPlan plan;
+};
+// A part by clicks, strokes, a mask or a clicked material in one view, and optional changes of its material
+// and color.
 struct PartCommand {
   std::string view;
   std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centers at +0.5
-  InputFile mask;                                // PNG in place of clicks; empty: none
-  std::optional<Vec2<double>> like{};            // instead of clicks: surface with the material at this pixel
-  bool like_color = false;                       // compare the albedo, too
-  std::string segmenter = "grow";                // or "sam"
-  bool in_view = false;                          // only the surface that this view shows
+  // RGBA PNGs of the view's size, besides clicks: strokes on the part, which give it their color or pattern,
+  // and beside it. Empty: none.
+  std::filesystem::path scribble{}, negative_scribble{};
+  std::string negative_color{};        // '#RRGGBB', sRGB: strokes of `scribble` beside the part
+  bool keep_color = false;             // do not take the scribble's color
+  bool keep_texture = false;           // the scribble's color scales the texture
+  InputFile mask;                      // PNG in place of clicks; empty: none
+  std::optional<Vec2<double>> like{};  // instead of clicks: surface with the material at this pixel
+  bool like_color = false;             // compare the albedo, too
+  std::string segmenter = "grow";      // or "sam"
+  NetworkViews network{};              // with "sam"
+  bool in_view = false;                // only the surface that this view shows
   std::string name;                      // empty: that of the part combined with, else "part1", "part2", ...
   std::string add, subtract, intersect;  // name of a part to combine with; at most one
   MaterialEffects effects;
@@ -245,6 +281,8 @@ std::optional<PaintTarget> paint_target_from_name(const std::string&);
 std::optional<Routing> routing_from_name(const std::string&);
 const char* paint_target_name(PaintTarget);
 const char* routing_name(Routing);
+std::optional<ViewOrder> view_order_from_name(const std::string&);              // "informative", "adjacent"
+std::optional<MaskCombination> mask_combination_from_name(const std::string&);  // "votes", "any"
 
 enum class Channel { rgb, albedo, diffuse, specular, normal, depth, roughness, metalness, mask };
 const char* channel_name(Channel);
@@ -354,6 +392,7 @@ struct ViewScore {
   double psnr = 0, ssim = 0;
   std::optional<double> psnr_masked;  // none without object pixels
   std::optional<double> lpips;
+  std::optional<double> flip;  // none in reports of older programs
 };
 // An edit against true images, inside the true masks.
 struct EditFidelity {
@@ -364,7 +403,7 @@ struct EditFidelity {
 // Pixels of the object outside the edit: edited renders against photographs. Means over views.
 struct RestScore {
   double psnr = 0, ssim = 0;
-  std::optional<double> lpips;
+  std::optional<double> lpips, flip;
   size_t pixels = 0, views = 0;
 };
 struct EditScore {
@@ -383,6 +422,7 @@ struct EvalReport {
   };
   std::optional<Alone> alone;        // the same without the correction network; none: the object has none
   std::optional<double> lpips, fid;  // fid: between renders and photographs
+  std::optional<double> flip;        // mean over views; none in reports of older programs
   std::optional<EditScore> edit;
   Json json() const;
   std::string markdown() const;

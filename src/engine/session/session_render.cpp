@@ -3,10 +3,10 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/io/image_file.h"
-#include "engine/project/dataset.h"
 #include "engine/project/project.h"
 #include "engine/render/render_cache.h"
 #include "engine/session/cameras.h"
@@ -15,6 +15,7 @@
 #include "engine/session/session.h"
 #include "engine/session/stopwatch.h"
 #include "engine/session/version.h"
+#include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
