@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/edit_verbs.h"
+#include "apps/cli/parse.h"
 
 namespace cei3d {
 namespace {
@@ -7,19 +8,42 @@ namespace {
 struct Options {
   std::string target = "albedo", routing = "both";
   std::vector<std::string> views, cameras, scribbles;
+  std::string decal, at;
+  DecalPlace place;
   PaintCommand command;
   EditOutput output;
 };
 
+// The picture that is laid onto the surface, in place of scribbles.
+PaintStroke decal_of(const Options& o) {
+  if (o.views.size() + o.cameras.size() != 1 || o.at.empty() || o.place.width == 0)
+    fail_usage("--decal needs one --view or --camera, --at X,Y and --width W.");
+  const std::vector<double> at = parse_numbers(o.at, 2, "--at");
+  PaintStroke s;
+  if (o.cameras.empty())
+    s.view = o.views.front();
+  else
+    s.camera = read_camera(o.cameras.front());
+  s.scribble = std::filesystem::path(o.decal);
+  s.decal = o.place;
+  s.decal->pixel = {at[0], at[1]};
+  return s;
+}
+
 PaintCommand command_of(const Options& o) {
   const size_t places = o.views.size() + o.cameras.size();
   if (!o.views.empty() && !o.cameras.empty()) fail_usage("Give --view or --camera, not both.");
-  if (places != o.scribbles.size())
-    fail_usage("There are {} --view or --camera and {} --scribble options; give one for each scribble.",
-               places, o.scribbles.size());
+  if (o.scribbles.empty() == o.decal.empty()) fail_usage("Give --scribble FILE.png or --decal FILE.");
   PaintCommand c = o.command;
   c.target = *paint_target_from_name(o.target);
   c.routing = *routing_from_name(o.routing);
+  if (!o.decal.empty()) {
+    c.strokes.push_back(decal_of(o));
+    return c;
+  }
+  if (places != o.scribbles.size())
+    fail_usage("There are {} --view or --camera and {} --scribble options; give one for each scribble.",
+               places, o.scribbles.size());
   for (size_t i = 0; i < o.scribbles.size(); ++i) {
     PaintStroke s;
     if (o.cameras.empty())
@@ -66,9 +90,16 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
           "RGBA PNG of the view's size. Where it is opaque, its sRGB color becomes the albedo; "
           "semi-transparent strokes are blended by their alpha. A material is painted where alpha is above "
           "one half; --material paints with its own color instead of the scribble's")
-      ->required()
       ->expected(1)
       ->take_all();
+  CLI::Option* decal = verb->add_option(
+      "--decal", o->decal,
+      "Instead of --scribble: a picture, PNG or JPEG, that is laid onto the surface at --at, "
+      "upright in the view, seen along the surface's normal there");
+  verb->add_option("--at", o->at, "Pixel of the view where the decal's middle is, X,Y")->needs(decal);
+  verb->add_option("--width", o->place.width, "Width of the decal, capture units")->needs(decal);
+  verb->add_option("--turn", o->place.turn_degrees, "Turn the decal clockwise in the view, degrees")
+      ->needs(decal);
   CLI::Option* target =
       verb->add_option("--target", o->target,
                        "Meaning of the painted color. albedo: color without light. appearance: color that "

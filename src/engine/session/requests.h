@@ -127,10 +127,17 @@ struct InputFile {
   std::string read() const;  // errors: missing, unreadable
 };
 
+// Where a picture is laid onto the surface.
+struct DecalPlace {
+  Vec2<double> pixel;       // of its middle in the view: (column, row), pixel centers at +0.5
+  double width = 0;         // of the picture, capture units, > 0
+  double turn_degrees = 0;  // clockwise as the view shows it; 0: upright in the view
+};
 struct PaintStroke {
-  std::string view;                   // a view's name
-  InputFile scribble;                 // RGBA PNG of the view's size
-  std::optional<Camera> camera = {};  // instead of a view, capture frame
+  std::string view;                      // a view's name
+  InputFile scribble;                    // RGBA PNG of the view's size
+  std::optional<Camera> camera = {};     // instead of a view, capture frame
+  std::optional<DecalPlace> decal = {};  // `scribble` is a picture, PNG or JPEG, that is laid here
 };
 enum class PaintTarget {
   albedo,      // the albedo
@@ -257,13 +264,21 @@ void check_camera(const Camera&, const std::string& what);  // error: no size, f
 enum class EnvConvention { by_up_axis, zup, yup, mitsuba, blender };
 std::optional<EnvConvention> env_convention_from_name(const std::string&);  // "zup", ...
 
+// A small distant light, added to the others.
+struct Sun {
+  Vec3d direction{0, 0, 1};  // towards it, capture frame; any length
+  double strength = 1;       // of what a surface that faces it receives, in units of what the rest of the
+                             // light gives to a surface on average
+};
+
 struct LightChoice {
   // Latitude-longitude image, or .npy of lobes as exported; empty: the object's own light.
   std::filesystem::path env;
   double rotate_degrees = 0;  // counter-clockwise about the up axis, seen from above
   EnvConvention convention = EnvConvention::by_up_axis;
-  double scale = 1;  // times the radiance
-  bool is_own() const { return env.empty() && rotate_degrees == 0 && scale == 1; }
+  double scale = 1;             // times the radiance
+  std::optional<Sun> sun = {};  // neither turned nor scaled with the rest
+  bool is_own() const { return env.empty() && rotate_degrees == 0 && scale == 1 && !sun; }
 };
 
 // Every edit.

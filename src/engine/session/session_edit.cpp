@@ -149,7 +149,8 @@ EditPlan Session::plan(const PaintCommand& command) const {
   Json strokes = Json::array();
   EditInputs inputs;
   std::string views;
-  for (const PaintStroke& s : command.strokes) {
+  for (const PaintStroke& given : command.strokes) {
+    const PaintStroke s = given.decal ? laid_decal(given) : given;
     const std::string input =
         inputs.empty() ? "scribble.png" : fmt::format("scribble{}.png", inputs.size() + 1);
     strokes.push_back(Json::object());
@@ -185,8 +186,8 @@ EditPlan Session::plan(const MaterialCommand& command) const {
 }
 
 EditPlan Session::plan(const LightChoice& choice) const {
-  if (choice.is_own()) fail_usage("Nothing to change: give --env, --rotate or --scale.");
-  check_turn(choice);
+  if (choice.is_own()) fail_usage("Nothing to change: give --env, --rotate, --scale or --sun.");
+  check_choice(choice);
   Json params = Json::object();
   EditInputs inputs;
   if (!choice.env.empty()) {
@@ -197,6 +198,10 @@ EditPlan Session::plan(const LightChoice& choice) const {
   }
   if (choice.rotate_degrees != 0) params["rotate_degrees"] = choice.rotate_degrees;
   if (choice.scale != 1) params["scale"] = choice.scale;
+  if (choice.sun) {
+    const Vec3d d = choice.sun->direction;
+    params["sun"] = {{"direction", {d.x, d.y, d.z}}, {"strength", choice.sun->strength}};
+  }
   return {"light", std::move(params), std::move(inputs)};
 }
 

@@ -36,6 +36,10 @@ Json light_json(const LightChoice& light) {
   constexpr const char* kNames[] = {"by the capture's up axis", "zup", "yup", "mitsuba", "blender"};
   Json j = {{"env", light.env.empty() ? Json("the object's own") : Json(light.env.string())},
             {"rotate_degrees", light.rotate_degrees}};
+  if (light.sun) {
+    const Vec3d d = light.sun->direction;
+    j["sun"] = {{"direction", {d.x, d.y, d.z}}, {"strength", light.sun->strength}};
+  }
   if (!light.env.empty()) j["convention"] = kNames[size_t(light.convention)];
   return j;
 }
