@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/image/resample.h"
 #include "engine/capture/capture.h"
