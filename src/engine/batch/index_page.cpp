@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/html.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -21,17 +22,6 @@ th{{position:sticky;top:0;background:#fff}}tr+tr{{border-top:1px solid #ddd}}td.
 img{{width:96px;height:96px;background:#eee}}.failed{{color:#b00}}small{{color:#555}}nav a{{margin-right:.6em}}
 </style><h1>{0}</h1>
 )";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '&'   ? "&amp;"
-           : c == '<' ? "&lt;"
-           : c == '>' ? "&gt;"
-           : c == '"' ? "&quot;"
-                      : std::string(1, c);
-  return out;
-}
 
 // A path as an address.
 std::string address(const fs::path& path) {
@@ -55,7 +45,7 @@ fs::path page_file(const fs::path& out, size_t page) {
 std::string links(const Json& row, const fs::path& folder) {
   std::string out;
   for (const auto& [variant, files] : row.at("files").items()) {
-    out += escaped(variant) + ":";
+    out += html_escaped(variant) + ":";
     for (const Json& file : files) {
       const fs::path path = file.get<std::string>();
       const std::string kind = path.extension() == ".html" ? "view" : path.extension().string().substr(1);
@@ -70,11 +60,11 @@ std::string remarks(const Json& row) {
   std::string out;
   if (const std::string sentence = row.at("sentence"); !sentence.empty())
     out += fmt::format("<span class=\"{}\">{}</span><br>", row.at("state").get<std::string>(),
-                       escaped(sentence));
-  for (const Json& w : row.at("warnings")) out += escaped(w.get<std::string>()) + "<br>";
+                       html_escaped(sentence));
+  for (const Json& w : row.at("warnings")) out += html_escaped(w.get<std::string>()) + "<br>";
   for (const auto& [name, value] : row.at("tags").items())
-    out += fmt::format("<small>{}: {}</small><br>", escaped(name),
-                       escaped(value.is_string() ? value.get<std::string>() : value.dump()));
+    out += fmt::format("<small>{}: {}</small><br>", html_escaped(name),
+                       html_escaped(value.is_string() ? value.get<std::string>() : value.dump()));
   return out;
 }
 
@@ -83,15 +73,16 @@ std::string table_row(const Json& row, const fs::path& page_folder) {
   const std::string id = row.at("id"), state = row.at("state");
   std::string picture;
   if (row.contains("thumbnail"))
-    picture = fmt::format("<img loading=\"lazy\" alt=\"{}\" src=\"{}\">", escaped(id),
+    picture = fmt::format("<img loading=\"lazy\" alt=\"{}\" src=\"{}\">", html_escaped(id),
                           address(folder / row.at("thumbnail").get<std::string>()));
   return fmt::format(
       "<tr><td>{}<td><b>{}</b><br><small>{}</small><td class=\"{}\">{}<td class=n>{}<td class=n>{}<td "
       "class=n>{}"
       "<td class=n>{}<td class=n>{}<td>{}<td>{}</tr>\n",
-      picture, escaped(id), row.at("material").is_string() ? escaped(row.at("material")) : "", state, state,
-      number(row.at("psnr_worst"), 1), number(row.at("psnr"), 1), number(row.at("psnr_alone"), 1),
-      number(row.at("vertices"), 0), number(row.at("seconds"), 0), links(row, folder), remarks(row));
+      picture, html_escaped(id), row.at("material").is_string() ? html_escaped(row.at("material")) : "",
+      state, state, number(row.at("psnr_worst"), 1), number(row.at("psnr"), 1),
+      number(row.at("psnr_alone"), 1), number(row.at("vertices"), 0), number(row.at("seconds"), 0),
+      links(row, folder), remarks(row));
 }
 
 std::string summary(const std::vector<Json>& rows) {
@@ -116,7 +107,7 @@ void write_index_pages(const std::vector<Json>& rows, const fs::path& catalog, c
   const size_t pages = std::max<size_t>(1, (rows.size() + kRowsOnAPage - 1) / kRowsOnAPage);
   const fs::path folder = fs::absolute(out).lexically_normal().parent_path();
   const std::string top =
-      fmt::format(kHead, "Catalog " + escaped(catalog.filename().string())) + summary(rows) +
+      fmt::format(kHead, "Catalog " + html_escaped(catalog.filename().string())) + summary(rows) +
       page_list(pages, out) +
       "<table><tr><th><th>object<th>state<th>worst view, dB<th>PSNR, dB<th>light and material "
       "alone, dB<th>vertices<th>seconds<th>files<th>remarks</tr>\n";

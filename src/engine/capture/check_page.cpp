@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/html.h"
 #include "core/base/parallel.h"
 #include "core/image/resample.h"
 #include "engine/capture/capture.h"
@@ -51,17 +52,6 @@ std::string base64(const std::string& bytes) {
   return out;
 }
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text)
-    out += c == '&'   ? "&amp;"
-           : c == '<' ? "&lt;"
-           : c == '>' ? "&gt;"
-           : c == '"' ? "&quot;"
-                      : std::string(1, c);
-  return out;
-}
-
 std::string image_tag(const Image& image) {
   return fmt::format("<img src=\"data:image/jpeg;base64,{}\">", base64(encode_jpeg(image, 85)));
 }
@@ -77,7 +67,8 @@ std::string finding_item(const Finding& f) {
   const char* word = f.severity == Severity::error     ? "problem"
                      : f.severity == Severity::warning ? "warning"
                                                        : "note";
-  return fmt::format("<li class=\"{0}\"><b>{0}</b> {1} {2}</li>\n", word, escaped(f.what), escaped(f.fix));
+  return fmt::format("<li class=\"{0}\"><b>{0}</b> {1} {2}</li>\n", word, html_escaped(f.what),
+                     html_escaped(f.fix));
 }
 
 }  // namespace
@@ -127,7 +118,7 @@ Image contact_sheet(const Capture& capture, const CaptureReport& report, int siz
 
 std::string check_page(const Capture& capture, const CaptureReport& report) {
   std::string page = kHead;
-  page += fmt::format("<h1>{}</h1><p>{} views, format {}. {}</p><ul>\n", escaped(capture.root.string()),
+  page += fmt::format("<h1>{}</h1><p>{} views, format {}. {}</p><ul>\n", html_escaped(capture.root.string()),
                       capture.views.size(), report.format,
                       report.usable() ? "Ready for <code>cei3d reconstruct</code>." : "Cannot be used yet.");
   for (const Finding& f : report.findings) page += finding_item(f);
@@ -143,7 +134,7 @@ std::string check_page(const Capture& capture, const CaptureReport& report) {
   for (size_t i = 0; i < pictures.size(); ++i)
     page += fmt::format("<figure{}>{}<figcaption>{}</figcaption></figure>\n",
                         is_named(capture.views[i], report) ? " class=\"named\"" : "", image_tag(pictures[i]),
-                        escaped(capture.views[i].name));
+                        html_escaped(capture.views[i].name));
   return page;
 }
 

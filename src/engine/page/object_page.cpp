@@ -2,6 +2,7 @@
 #include "engine/page/object_page.h"
 
 #include "core/base/error.h"
+#include "core/base/html.h"
 #include "engine/io/gzip.h"
 #include "engine/page/page_files.h"
 
@@ -14,27 +15,6 @@ std::string hash_source(const PageFile& file) {
   for (size_t i = 0; i < file.sha256.size(); i += 2)
     bytes.push_back(char(std::stoi(std::string(file.sha256.substr(i, 2)), nullptr, 16)));
   return "'sha256-" + base64(bytes) + "'";
-}
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
 }
 
 // JSON that holds no tag.
@@ -103,7 +83,7 @@ std::string object_page(const std::string& title, const Json& about, const std::
                              hash_source(style) + "; base-uri 'none'; form-action 'none'";
   std::string blocks = block("about", "application/json", json_block(about));
   for (const PageData& d : data) blocks += block(d.name, "application/octet-stream", base64(gzip(d.bytes)));
-  const std::string name = escaped(title);
+  const std::string name = html_escaped(title);
   return Filled(page_file("page.html").bytes)
       .with({{"policy", policy},
              {"name", name},
