@@ -26,6 +26,11 @@ refused_by_check() {
 
 refused 2 '50' reconstruct "$sample" -o "$out/project" --views 51
 absent "$out/project"
+refused 2 'geometry.loss.eikonal' reconstruct "$sample" -o "$out/project" --set geometry.loss.eikonol=0.1
+refused 2 '0 to 100' reconstruct "$sample" -o "$out/project" --set geometry.loss.eikonal=-1
+refused 2 'random:0.1' reconstruct "$sample" -o "$out/project" --split half
+absent "$out/project"
+cei3d reconstruct --list-settings --preset paper | grep -q '^geometry.sdf.hidden_layers = 8' || fail "the settings of a preset"
 fresh; rm "$out/capture/train/r_011.png"
 refused 1 'missing.*r_011' reconstruct "$out/capture" -o "$out/project" --iterations 1 --strict
 absent "$out/project"
@@ -60,6 +65,13 @@ mapfile -t a < <(paint tests/e2e/data/empty_192.png); refused_edit 1 'opaque' "$
 mapfile -t a < <(paint tests/e2e/data/corner_192.png); refused_edit 1 'on the object|surface' "${a[@]}"
 mapfile -t a < <(paint tests/e2e/data/rgb_192.png); refused_edit 1 'alpha' "${a[@]}"
 mapfile -t a < <(paint "$out/no_such.png"); refused_edit 1 'no_such.png' "${a[@]}"
+refused_edit 2 'branch.steps' edit "$project" paint --view train/r_055 --scribble "$sample/edits/paint/scribble.png" --set branch.step=9
+part() { printf '%s\n' edit "$project" part --view train/r_055 --scribble "$1"; }
+mapfile -t a < <(part tests/e2e/data/other_size.png); refused_edit 2 '48x48' "${a[@]}"
+mapfile -t a < <(part tests/e2e/data/empty_192.png); refused_edit 1 'no stroke' "${a[@]}"
+mapfile -t a < <(part tests/e2e/data/corner_192.png); refused_edit 1 'nothing of the object' "${a[@]}"
+mapfile -t a < <(part tests/e2e/data/rgb_192.png); refused_edit 1 'alpha' "${a[@]}"
+refused_edit 2 'views' edit "$project" part --view train/r_055 --positive 100,100 --views none
 head -c 500 "$sample/edits/paint/scribble.png" >"$out/truncated.png"
 mapfile -t a < <(paint "$out/truncated.png"); refused_edit 1 'truncated.png' "${a[@]}"
 refused_edit 2 'r_555|view' edit "$project" paint --view r_555 --scribble "$sample/edits/paint/scribble.png"

@@ -40,3 +40,12 @@ cei3d undo "$project"
 cei3d undo "$project"
 views "$out/back"
 same_pictures "$out/before" "$out/back"
+# A scribble of several colors as the prompt: the part gets its pattern.
+cei3d edit "$project" part --view train/r_055 --scribble "$scribble" --name patterned --picture "$out/patterned.png" \
+  --json >"$out/patterned.json"
+grep -q '"changed_outside": 0' "$out/patterned.json" || fail "the part's pattern left the part"
+views "$out/patterned"
+! diff -rq -x render.json "$out/before" "$out/patterned" >/dev/null || fail "the pattern does not show"
+cei3d undo "$project"
+views "$out/unpatterned"
+same_pictures "$out/before" "$out/unpatterned"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/cli/edit_verbs.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 

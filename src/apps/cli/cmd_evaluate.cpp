@@ -4,23 +4,26 @@
 #include "apps/cli/command.h"
 #include "apps/cli/parse.h"
 #include "core/base/error.h"
-#include "engine/evaluate/evaluation.h"
+#include "engine/evaluate/evaluation_set.h"
 
 namespace cei3d {
 namespace {
 
 struct Options {
-  std::string capture, out, time, trial_time, sections;
+  std::string out, time, trial_time, sections, split;
+  std::vector<std::string> captures;
   std::string part_view;
   PaintStroke paint;
   EditTruth part_truth;
-  std::vector<std::string> positive, negative;
+  std::vector<std::string> positive, negative, set;
   std::string color = "#c04020";
   std::string views = "100,50,25,12", downscales = "1,2,4,8";
+  int seeds = 1;
+  bool boards = false;
   EvaluationRequest request;
 };
 
-constexpr const char* kSections[] = {"paint", "part", "views", "sizes"};
+constexpr const char* kSections[] = {"paint", "part", "applications", "views", "sizes"};
 
 std::vector<int> counts(const std::string& text, const std::string& option) {
   std::vector<int> out;
@@ -42,7 +45,8 @@ void check_sections(const std::string& text) {
     const size_t end = std::min(text.find(',', begin), text.size());
     const std::string word = text.substr(begin, end - begin);
     if (std::find(std::begin(kSections), std::end(kSections), word) == std::end(kSections))
-      fail_usage("--only '{}': unknown section '{}'. Sections are paint, part, views, sizes.", text, word);
+      fail_usage("--only '{}': unknown section '{}'. Sections are paint, part, applications, views, sizes.",
+                 text, word);
     begin = end + 1;
   }
 }
@@ -79,9 +83,10 @@ EvaluationRequest request_of(const Options& o) {
   check_sections(o.sections);
   check_truth(r.paint_truth, "");
   check_truth(o.part_truth, "part-");
-  r.capture = parse_capture_spec(o.capture).path;
   r.out = o.out;
+  if (!o.split.empty()) parse_split(o.split, r.options);
   if (!o.time.empty()) r.options.seconds = parse_duration(o.time);
+  r.options.set = settings_from_text(o.set);
   if (!o.trial_time.empty()) r.trial_seconds = parse_duration(o.trial_time);
   r.paint = paint_of(o);
   r.part = part_of(o);
@@ -89,11 +94,39 @@ EvaluationRequest request_of(const Options& o) {
   if (wanted(o, "views")) r.views = counts(o.views, "--views");
   if (wanted(o, "sizes")) r.downscales = counts(o.downscales, "--downscales");
   r.ablations = wanted(o, "paint");
+  r.parts = wanted(o, "part");
+  r.applications = wanted(o, "applications");
   return r;
 }
 
+// Of several captures, smaller objects are made only where they are asked for.
+EvaluationSetRequest set_of(const Options& o) {
+  EvaluationSetRequest set;
+  set.each = request_of(o);
+  if (o.captures.size() > 1 && (set.each.paint || set.each.part || !set.each.project.empty()))
+    fail_usage(
+        "--view, --part-view and --project are about one capture; several bring their own edits/ along.");
+  if (o.sections.empty()) set.each.views = set.each.downscales = {};
+  for (const std::string& c : o.captures) set.captures.push_back(parse_capture_spec(c).path);
+  set.seeds = o.seeds;
+  set.boards = o.boards;
+  return set;
+}
+
+void evaluate_set(const Options& o, Session& session, Console& console) {
+  const EvaluationSetReport report = evaluate_captures(session, set_of(o), console);
+  for (const EvaluatedCapture& c : report.captures)
+    if (!c.failed.empty()) console.warn(fmt::format("{} could not be evaluated: {}", c.name, c.failed));
+  console.answer(report.json(),
+                 report.markdown() + fmt::format("\nWritten to {}.\n",
+                                                 (std::filesystem::path(o.out) / "report.md").string()));
+}
+
 void evaluate(const Options& o, Session& session, Console& console) {
-  const EvaluationReport report = evaluate_capture(session, request_of(o), console);
+  if (o.captures.size() > 1 || o.seeds > 1 || o.boards) return evaluate_set(o, session, console);
+  EvaluationRequest request = request_of(o);
+  request.capture = parse_capture_spec(o.captures.front()).path;
+  const EvaluationReport report = evaluate_capture(session, request, console);
   for (const auto* rows : {&report.views, &report.sizes})
     for (const EvaluationRow& r : *rows)
       if (!r.skipped.empty()) console.warn(fmt::format("Skipped {}: {}.", r.what, r.skipped));
@@ -121,10 +154,18 @@ void add_object(CLI::App* verb, Options& o) {
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->excludes(time);
+  verb->add_option("--set", o.set,
+                   "key=value: a setting of the preset, see `cei3d reconstruct -h`; repeatable")
+      ->expected(1)
+      ->take_all();
   verb->add_option("--seed", options.seed, "Random seed")->capture_default_str();
-  verb->add_option("--test-every", options.test_every,
-                   "Hold out every Nth view for testing when the capture has no test split")
-      ->capture_default_str();
+  CLI::Option* every =
+      verb->add_option("--test-every", options.test_every,
+                       "Hold out every Nth view for testing when the capture has no test split")
+          ->capture_default_str();
+  verb->add_option("--split", o.split,
+                   "The same as a word: every:N, or random:SHARE of the views, chosen by --seed")
+      ->excludes(every);
   verb->add_option("--format", o.request.format,
                    "Format of the capture, see `cei3d check -h` (default: detected from the files)");
   verb->add_option("--views", o.views,
@@ -158,14 +199,27 @@ void add_evaluate(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add(
       "evaluate",
-      "The paper's evaluation of a capture: novel views, a paint and a part edit, ablations, fewer and "
+      "The paper's evaluation of captures: novel views, a paint and a part edit, ablations, fewer and "
       "smaller photographs; a report with images. Can be interrupted and called again");
-  verb->add_option("capture", o->capture, "Folder of posed photographs, or its .json")->required();
+  verb->add_option(
+          "captures", o->captures,
+          "Folders of posed photographs, or their .json. Of several, OUTPUT/report.md has the tables of "
+          "all; each is edited by what lies in its edits/ folder, or by a scribble that is made up")
+      ->required();
   verb->add_option("-o,--output", o->out, "Folder for the report, its images and objects")->required();
   add_object(verb, *o);
   add_edits(verb, *o);
-  verb->add_option("--only", o->sections,
-                   "Sections to run besides the novel views: paint,part,views,sizes (default: all)");
+  verb->add_option(
+      "--only", o->sections,
+      "Sections to run besides the novel views: paint,part,applications,views,sizes (default: all; of "
+      "several captures all but views,sizes)");
+  verb->add_option("--seeds", o->seeds,
+                   "Objects of each capture, of as many seeds; the tables have their spread")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  verb->add_flag("--boards", o->boards,
+                 "Also write boards for a user study: the painted object by each method, in an order that "
+                 "boards/key.json tells");
   verb->add_option("--samples", o->request.samples,
                    "Samples per pixel and axis; twice as many at the silhouette")
       ->check(CLI::Range(1, 16))

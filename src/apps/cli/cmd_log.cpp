@@ -2,6 +2,7 @@
 // log, undo, redo, toggle, goto, rename, restore, forget, replay.
 #include "apps/cli/command.h"
 #include "core/base/error.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 namespace {

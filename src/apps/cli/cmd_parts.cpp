@@ -2,6 +2,7 @@
 #include "apps/cli/command.h"
 #include "apps/cli/parse.h"
 #include "core/base/error.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 namespace {

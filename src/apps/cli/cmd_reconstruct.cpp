@@ -9,11 +9,25 @@ namespace {
 
 struct Options {
   std::string capture, project, time, light = "auto", light_color = "near-white";
+  std::vector<std::string> set;
+  std::string split;
+  bool list_settings = false;
   ReconstructRequest request;
 };
 
+void list_settings(const Options& o, Console& console) {
+  const SettingsReport r = settings_of_preset(o.request.options.preset);
+  console.answer(r.json(), r.text());
+}
+
 void run_reconstruct(const Options& o, Session& session, Console& console) {
+  if (o.list_settings) return list_settings(o, console);
   ReconstructRequest request = o.request;
+  if (o.project.empty()) fail_usage("reconstruct needs a project folder to create: -o PROJECT.");
+  if (request.resume && !o.set.empty())
+    fail_usage("--resume continues with the settings of the project; leave out --set.");
+  request.options.set = settings_from_text(o.set);
+  if (!o.split.empty()) parse_split(o.split, request.options);
   if (o.capture.empty() && !request.resume)
     fail_usage("reconstruct needs a CAPTURE, or --resume to continue a project.");
   if (!o.capture.empty()) request.capture = parse_capture_spec(o.capture).path;
@@ -32,10 +46,10 @@ void run_reconstruct(const Options& o, Session& session, Console& console) {
 
 void add_schedule_options(CLI::App* verb, Options& o) {
   ReconstructOptions& options = o.request.options;
-  verb->add_option(
-          "--preset", options.preset,
-          "fast: small networks, minutes. balanced: as fast with four times the steps; with --time the same "
-          "as fast. paper: the paper's network sizes; about 28 hours on two cores unless --time is given")
+  verb->add_option("--preset", options.preset,
+                   "fast: small networks, minutes. balanced: a deeper network and hash tables four times as "
+                   "large, for a quarter of an hour and more. paper: the paper's network sizes; about 28 "
+                   "hours on two cores unless --time is given")
       ->check(CLI::IsMember({"fast", "balanced", "paper"}))
       ->capture_default_str();
   CLI::Option* time =
@@ -59,14 +73,29 @@ void add_schedule_options(CLI::App* verb, Options& o) {
       ->capture_default_str();
 }
 
-void add_view_options(CLI::App* verb, ReconstructOptions& options) {
+void add_settings(CLI::App* verb, Options& o) {
+  verb->add_option("--set", o.set,
+                   "key=value: a number or choice of the preset; repeatable. @FILE.json: a file that holds "
+                   "{\"set\": {\"key\": value, ...}}")
+      ->expected(1)
+      ->take_all();
+  verb->add_flag("--list-settings", o.list_settings,
+                 "List what --set can change, with the preset's values, and do nothing else");
+}
+
+void add_view_options(CLI::App* verb, Options& o) {
+  ReconstructOptions& options = o.request.options;
   verb->add_option("--downscale", options.downscale, "Use the images at 1/N of their size")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();
-  verb->add_option(
-          "--test-every", options.test_every,
-          "Hold out every Nth view for testing when the capture has no test split; 0: train on all views")
-      ->capture_default_str();
+  CLI::Option* every =
+      verb->add_option(
+              "--test-every", options.test_every,
+              "Hold out every Nth view for testing when the capture has no test split; 0: train on all views")
+          ->capture_default_str();
+  verb->add_option("--split", o.split,
+                   "The same as a word: every:N, or random:SHARE of the views, chosen by --seed")
+      ->excludes(every);
   verb->add_option("--views", options.views,
                    "Train on N views only, spread evenly; the others become validation views. 0: all")
       ->check(CLI::NonNegativeNumber)
@@ -93,9 +122,10 @@ void add_reconstruct(Commands& commands) {
   CLI::App* verb = commands.add("reconstruct", "Make an editable object (a project) from posed photographs");
   verb->add_option("capture", o->capture,
                    "Folder of posed photographs, or its file of cameras; not needed with --resume");
-  verb->add_option("-o,--output", o->project, "Project folder to create")->required();
+  verb->add_option("-o,--output", o->project, "Project folder to create");
   add_schedule_options(verb, *o);
-  add_view_options(verb, o->request.options);
+  add_settings(verb, *o);
+  add_view_options(verb, *o);
   add_light_options(verb, *o);
   verb->add_option("--format", o->request.format,
                    capture_format_names() + " (default: detected from the files)");

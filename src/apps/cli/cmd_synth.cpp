@@ -10,7 +10,7 @@ namespace {
 
 struct Options {
   std::vector<std::string> materials;
-  std::string size = "200x200", tint, diffuse = "burley";
+  std::string size = "200x200", tint, diffuse = "burley", layout = "nerf";
   double roughness = -1;
   SynthRequest request;
 };
@@ -54,6 +54,7 @@ SynthRequest request_of(const Options& o) {
   if (!o.tint.empty()) r.light_tint = parse_tint(o.tint);
   if (o.roughness >= 0) r.roughness = float(o.roughness);
   if (o.diffuse == "lambert") r.diffuse = Diffuse::lambert;
+  if (o.layout == "physg") r.layout = SynthLayout::physg;
   return r;
 }
 
@@ -107,6 +108,11 @@ void add_drawing_options(CLI::App* verb, Options& o) {
   verb->add_option("--noise", r.noise,
                    "Standard deviation of the noise on the training images, of sRGB values from 0 to 1")
       ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  verb->add_option("--layout", o.layout,
+                   "Files of the views. nerf: NeRF-synthetic, 8-bit PNG. physg: PhySG, linear EXR, with "
+                   "radiance above 1")
+      ->check(CLI::IsMember({"nerf", "physg"}))
       ->capture_default_str();
   verb->add_option("--seed", r.seed, "Random seed")->capture_default_str();
 }

@@ -6,7 +6,7 @@
 #include <iosfwd>
 #include <string>
 
-#include "core/base/json.h"
+#include "core/base/json_fwd.h"
 #include "core/base/progress.h"
 
 namespace cei3d {

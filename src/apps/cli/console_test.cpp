@@ -6,6 +6,8 @@
 
 #include <sstream>
 
+#include "core/base/json.h"
+
 namespace cei3d {
 namespace {
 

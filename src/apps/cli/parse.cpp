@@ -118,6 +118,22 @@ std::vector<Vec2<double>> parse_pixels(const std::vector<std::string>& texts, co
   return pixels;
 }
 
+void parse_split(const std::string& text, ReconstructOptions& options) {
+  const size_t colon = text.find(':');
+  const std::string how = text.substr(0, colon);
+  if (colon == std::string::npos || (how != "every" && how != "random"))
+    fail_usage("--split '{}' should be every:N or random:SHARE, for example random:0.1.", text);
+  const double value = parse_numbers(text.substr(colon + 1), 1, "--split " + how)[0];
+  if (how == "random") {
+    if (!(value > 0 && value < 1)) fail_usage("--split '{}': a share lies between 0 and 1.", text);
+    options.test_share = value;
+    return;
+  }
+  if (!(value >= 2 && value <= 1e6 && value == std::floor(value)))
+    fail_usage("--split '{}': every Nth view needs a whole number of 2 or more.", text);
+  options.test_every = int(value);
+}
+
 CameraChoice parse_cameras(const std::string& text) {
   if (text.ends_with(".json") && is_camera_file(text)) return CameraFile{text};
   const CaptureSpec spec = parse_capture_spec(text);

@@ -22,6 +22,8 @@ EnvConvention parse_env_convention(const std::string& text);
 std::vector<double> parse_numbers(const std::string& text, size_t count, const std::string& option);
 // "120.5,88" each: (column, row).
 std::vector<Vec2<double>> parse_pixels(const std::vector<std::string>& texts, const std::string& option);
+// "every:8", "random:0.1": which views are held out. Into test_every or test_share.
+void parse_split(const std::string& text, ReconstructOptions&);
 // A FILE.json with cameras as `render` writes it, or a capture with or without ":split".
 CameraChoice parse_cameras(const std::string& text);
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/server/edit_json.h"
 
-#include "engine/project/dataset.h"
+#include "core/base/json.h"
+#include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace {
@@ -68,6 +69,7 @@ PaintCommand paint_from(JsonReader& j, const Uploads& uploads) {
     PaintStroke stroke;
     read_place(reader, stroke.view, stroke.camera);
     stroke.scribble = sent_file(uploads, reader.require<std::string>("scribble"));
+    if (reader.has("decal")) stroke.decal = decal_place(reader);
     reader.finish();
     c.strokes.push_back(std::move(stroke));
   }
@@ -80,10 +82,31 @@ PaintCommand paint_from(JsonReader& j, const Uploads& uploads) {
   return c;
 }
 
+PointDrag drag_from(JsonReader& j) {
+  PointDrag d{point_from(j, "from"), point_from(j, "to")};
+  if (j.has("turn")) d.turn = point_from(j, "turn");
+  return d;
+}
+
+void read_more_points(JsonReader& j, DeformCommand& c) {
+  if (j.has("more"))
+    for (const Json& more : j.array("more")) {
+      JsonReader reader(more, "A handle");
+      c.more.push_back(drag_from(reader));
+      reader.finish();
+    }
+  if (!j.has("pins")) return;
+  for (const Json& pin : j.array("pins")) {
+    const Json named = {{"at", pin}};
+    JsonReader reader(named, "A pin");
+    c.pins.push_back(point_from(reader, "at"));
+  }
+}
+
 DeformCommand deform_from(JsonReader& j) {
   DeformCommand c;
   if (j.has("from")) {
-    c.drag = PointDrag{point_from(j, "from"), point_from(j, "to")};
+    c.drag = drag_from(j);
   } else {
     PixelDrag drag;
     read_place(j, drag.view, drag.camera);
@@ -91,6 +114,7 @@ DeformCommand deform_from(JsonReader& j) {
     drag.drag = pixel_from(j, "drag");
     c.drag = drag;
   }
+  read_more_points(j, c);
   c.radius = j.optional<double>("radius");
   c.part = j.optional<std::string>("part", "");
   return c;
@@ -146,6 +170,14 @@ Camera camera_member(JsonReader& j, const char* key) {
   return camera;
 }
 
+DecalPlace decal_place(JsonReader& j) {
+  JsonReader reader = j.object("decal");
+  DecalPlace place{pixel_from(reader, "pixel"), reader.require<double>("width"),
+                   reader.optional("turn", 0.0)};
+  reader.finish();
+  return place;
+}
+
 LightChoice light_choice(JsonReader& j, const Uploads& uploads) {
   LightChoice c;
   if (const auto env = j.optional<std::string>("env"); env && !env->empty()) c.env = uploads.path(*env);
@@ -153,6 +185,10 @@ LightChoice light_choice(JsonReader& j, const Uploads& uploads) {
   c.scale = j.optional("scale", 1.0);
   if (const auto name = j.optional<std::string>("env_convention"))
     c.convention = named(j, "env_convention", env_convention_from_name, name->c_str());
+  if (!j.has("sun")) return c;
+  JsonReader sun = j.object("sun");
+  c.sun = Sun{point_from(sun, "direction"), sun.optional("strength", 1.0)};
+  sun.finish();
   return c;
 }
 

@@ -15,7 +15,9 @@ namespace cei3d {
 EditCommand edit_command(const std::string& op, const Json& params, const Uploads&);
 
 Camera camera_member(JsonReader&, const char* key);  // an object as camera_json() writes it
-// Keys "env" (id of an upload), "rotate", "scale", "env_convention".
+// Key "decal": {"pixel", "width", "turn"}.
+DecalPlace decal_place(JsonReader&);
+// Keys "env" (id of an upload), "rotate", "scale", "env_convention", "sun": {"direction", "strength"}.
 LightChoice light_choice(JsonReader&, const Uploads&);
 // Keys "camera", "channel", "samples", "light", "as_photographed".
 FrameRequest frame_request(JsonReader&, const Uploads&);

@@ -8,6 +8,7 @@
 #include "apps/server/guarded.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 namespace {

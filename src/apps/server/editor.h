@@ -10,6 +10,7 @@
 //   POST /api/edit              {"op", "params", "amend"}
 //   POST /api/preview           the same, not stored: {"token", "report"}; then /api/commit {"token"}
 //   POST /api/pick              {"camera", "pixel"}: the surface there, or null
+//   POST /api/decal             {"camera", "decal", "size"}: the camera whose picture the decal is, or null
 //   POST /api/mask              {"camera", "part" or "token"}: PNG
 //   POST /api/undo redo toggle goto rename restore forget
 //   POST /api/export            {"file", ...}; then GET /api/download/FILE
@@ -83,6 +84,7 @@ class Editor : public HttpApp, private JobListener {
   void preview(JsonReader&, const HttpRequest&, Reply);
   void commit(JsonReader&, const HttpRequest&, Reply);
   void pick(JsonReader&, const HttpRequest&, Reply);
+  void decal(JsonReader&, const HttpRequest&, Reply);
   void mask(JsonReader&, const HttpRequest&, Reply);
   void undo(JsonReader&, const HttpRequest&, Reply);
   void redo(JsonReader&, const HttpRequest&, Reply);

@@ -4,8 +4,8 @@
 
 #include "apps/server/test_editor.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "engine/io/png_file.h"
-#include "engine/project/dataset.h"
 
 namespace cei3d {
 namespace {
@@ -39,8 +39,17 @@ TEST_F(EditorTest, EveryToolGivesTheObjectsOfItsCommand) {
   done("material", {{"part", "cap"}, {"roughness", 0.4}, {"metalness", 1}});
   done("light", {{"rotate", 40}, {"scale", 1.5}});
   done("deform", {{"camera", camera(0)}, {"pixel", {24, 24}}, {"drag", {4, 2}}, {"radius", 0.35}});
+  const Json decal = {{"pixel", {26, 22}}, {"width", 0.3}, {"turn", 30}};
+  done("paint", {{"strokes", {{{"camera", camera(0)}, {"scribble", upload(png)}, {"decal", decal}}}}});
+  done("light", {{"sun", {{"direction", {1, 0, 1}}, {"strength", 2}}}});
+  done("deform", {{"from", {0, 0, 0.7}},
+                  {"to", {0, 0, 0.8}},
+                  {"turn", {0, 0, 20}},
+                  {"more", {{{"from", {0.7, 0, 0}}, {"to", {0.75, 0, 0}}}}},
+                  {"pins", {{0, 0.7, 0}}},
+                  {"radius", 0.3}});
   const std::vector<std::string> by_editor = result_objects(folder());
-  ASSERT_EQ(by_editor.size(), 5u);
+  ASSERT_EQ(by_editor.size(), 8u);
 
   editor_.reset();
   const std::filesystem::path other = temp_.path() / "other", file = temp_.path() / "scribble.png";
@@ -62,6 +71,12 @@ TEST_F(EditorTest, EveryToolGivesTheObjectsOfItsCommand) {
   session.change_material(material, quiet);
   session.change_light({"", 40, EnvConvention::by_up_axis, 1.5}, quiet);
   session.deform({PixelDrag{"train/r_0", {24, 24}, {4, 2}, {}}, 0.35, ""}, quiet);
+  session.paint({{{"train/r_0", file, {}, DecalPlace{{26, 22}, 0.3, 30}}}}, quiet);
+  session.change_light({"", 0, EnvConvention::by_up_axis, 1, Sun{{1, 0, 1}, 2}}, quiet);
+  DeformCommand bend{PointDrag{{0, 0, 0.7}, {0, 0, 0.8}, {0, 0, 20}}, 0.3, ""};
+  bend.more = {{{0.7, 0, 0}, {0.75, 0, 0}}};
+  bend.pins = {{0, 0.7, 0}};
+  session.deform(bend, quiet);
   EXPECT_EQ(result_objects(other), by_editor);
 }
 
@@ -129,6 +144,16 @@ TEST_F(EditorTest, TellsWhatIsUnderThePointer) {
   const Json on = Json::parse(post("/api/pick", {{"camera", camera(0)}, {"pixel", {24, 24}}}).body);
   EXPECT_EQ(on["albedo"].get<std::string>().size(), 7u);
   EXPECT_EQ(post("/api/pick", {{"camera", camera(0)}, {"pixel", {0, 0}}}).body, "null");
+}
+
+TEST_F(EditorTest, ADecalIsSeenByItsCamera) {
+  const Json decal = {{"pixel", {24, 24}}, {"width", 0.2}};
+  const auto over = [&](const Json& place) {
+    return post("/api/decal", {{"camera", camera(0)}, {"decal", place}, {"size", {64, 32}}});
+  };
+  EXPECT_EQ(Json::parse(over(decal).body)["width"], 64);
+  EXPECT_EQ(over({{"pixel", {0, 0}}, {"width", 0.2}}).body, "null");
+  EXPECT_EQ(over({{"pixel", {24, 24}}, {"width", -1}}).status, 400);
 }
 
 TEST_F(EditorTest, BadRequestsAreSentencesAndChangeNothing) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/system.h"
 #include "engine/capture/capture.h"
 #include "engine/project/project.h"

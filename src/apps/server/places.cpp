@@ -4,11 +4,12 @@
 #include "apps/server/editor.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/json.h"
 #include "engine/capture/normalize.h"
-#include "engine/project/dataset.h"
 #include "engine/project/project.h"
 #include "engine/segment/sam.h"
 #include "engine/session/version.h"
+#include "model/geometry/shape/camera_json.h"
 #include "model/material/presets.h"
 #include "model/scene/scene.h"
 

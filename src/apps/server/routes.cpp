@@ -5,8 +5,10 @@
 #include "apps/server/guarded.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "engine/io/jpeg_file.h"
 #include "engine/io/png_file.h"
+#include "engine/project/dataset.h"
 #include "engine/session/edit_plan.h"
 
 namespace cei3d {
@@ -32,7 +34,7 @@ const std::map<std::string, Editor::Route>& Editor::routes() {
       {"restore", &Editor::restore},    {"forget", &Editor::forget},
       {"export", &Editor::export_file}, {"open", &Editor::open},
       {"close", &Editor::close},        {"reconstruct", &Editor::reconstruct},
-      {"cancel", &Editor::cancel}};
+      {"cancel", &Editor::cancel},      {"decal", &Editor::decal}};
   return all;
 }
 
@@ -119,6 +121,18 @@ void Editor::pick(JsonReader& j, const HttpRequest&, Reply reply) {
   on_worker("pick", std::move(reply), [camera, pixel = Vec2<double>{x, y}](Session& session, Progress&) {
     const auto point = session.pick(camera, pixel);
     return json_response(point ? point->json() : Json());
+  });
+}
+
+void Editor::decal(JsonReader& j, const HttpRequest&, Reply reply) {
+  const Camera camera = camera_member(j, "camera");
+  const DecalPlace place = decal_place(j);
+  const auto [width, height] = j.numbers<2>("size");
+  j.finish();
+  if (!(width >= 1 && height >= 1 && width < 1e5 && height < 1e5)) fail_usage("A decal has no such size.");
+  on_worker("pick", std::move(reply), [=](Session& session, Progress&) {
+    const auto over = session.decal_camera(camera, place, int(width), int(height));
+    return json_response(over ? camera_json(*over) : Json());
   });
 }
 

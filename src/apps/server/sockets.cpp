@@ -9,6 +9,7 @@
 #include "apps/server/guarded.h"
 #include "core/base/clock.h"
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "engine/session/tiled_frame.h"
 
 namespace cei3d {

@@ -7,6 +7,7 @@
 #include <future>
 
 #include "apps/server/editor.h"
+#include "core/base/json.h"
 #include "core/base/temp_folder.h"
 #include "engine/session/test_edits.h"
 

@@ -3,6 +3,4 @@
 
 #include <nlohmann/json.hpp>
 
-namespace cei3d {
-using Json = nlohmann::ordered_json;
-}
+#include "core/base/json_fwd.h"

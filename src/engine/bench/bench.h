@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/base/json.h"
 #include "core/base/progress.h"
 #include "engine/session/requests.h"
 

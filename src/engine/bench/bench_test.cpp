@@ -8,6 +8,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/temp_folder.h"
 #include "engine/project/project.h"
 #include "engine/render/sphere_scene.h"

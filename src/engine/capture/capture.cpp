@@ -89,14 +89,15 @@ Vec3d up_axis(const Capture& capture) {
   return near_axis(up, 0.995).value_or(up);
 }
 
-void hold_out(Capture& capture, int every) {
+void hold_out(Capture& capture, const CaptureOptions& o) {
+  const int every = o.test_every;
   if (every < 0 || every == 1) fail_usage("--test-every should be 2 or more (or 0 for none), not {}.", every);
   const bool has_split = std::any_of(capture.views.begin(), capture.views.end(),
                                      [](const View& v) { return v.split != Split::train; });
-  if (every == 0 || has_split) return;
-  int i = 0;
-  for (View& view : capture.views)
-    if (view.split == Split::train && i++ % every == 0) view.split = Split::test;
+  if (has_split) return;
+  if (o.test_share > 0) return hold_out_random(capture, o.test_share, o.seed);
+  for (size_t i = 0; every > 0 && i < capture.views.size(); i += size_t(every))
+    capture.views[i].split = Split::test;
 }
 
 void make_names_unique(Capture& capture) {
@@ -172,7 +173,7 @@ Capture load_capture(const fs::path& path, const CaptureOptions& options) {
   Capture capture = format_of(path, options.format).load(path);
   if (capture.views.empty()) fail("{} lists no views.", path.string());
   fit_to_photographs(capture, options.strict);
-  hold_out(capture, options.test_every);
+  hold_out(capture, options);
   keep_training_views(capture, options.views);
   std::stable_sort(capture.views.begin(), capture.views.end(),
                    [](const View& a, const View& b) { return a.split < b.split; });

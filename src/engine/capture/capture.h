@@ -17,6 +17,9 @@ struct CaptureOptions {
   int test_every = 0;   // every Nth training view becomes a test view when the capture has none; 0: never
   int views = 0;        // number of training views to use, by keep_training_views(); 0: all
   bool strict = false;  // keep views whose images are missing; check() then reports them as errors
+  // Instead of every Nth: this share of the training views, chosen at random by the seed; 0: none.
+  double test_share = 0;
+  uint64_t seed = 1;
 };
 
 // Loads cameras and file names, and of the images only sizes and masks (fit_to_photographs()). path: a

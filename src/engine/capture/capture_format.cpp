@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "engine/capture/capture.h"
 #include "engine/io/image_file.h"
 

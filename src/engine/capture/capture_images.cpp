@@ -123,6 +123,12 @@ Mask load_file_mask(const View& view) {
   return mask_of(coverage, stated);
 }
 
+ImageDepth CaptureImages::depth(const View& view) const {
+  require_path(view);
+  const int bits = read_image_bits(view.image_path);
+  return bits == 8 ? ImageDepth::bits8 : bits == 16 ? ImageDepth::bits16 : ImageDepth::open;
+}
+
 Image CaptureImages::load(const View& view) const { return downscale(load_linear_rgba(view), downscale_); }
 
 }  // namespace cei3d

@@ -35,6 +35,7 @@ class CaptureImages : public ImageSource {
  public:
   explicit CaptureImages(int downscale = 1) : downscale_(downscale) {}
   Image load(const View& view) const override;
+  ImageDepth depth(const View& view) const override;
 
  private:
   int downscale_;

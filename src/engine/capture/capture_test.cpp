@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/base/error_of.h"
+#include "core/base/json.h"
 #include "core/base/temp_folder.h"
 #include "core/math/color.h"
 #include "engine/capture/capture_images.h"

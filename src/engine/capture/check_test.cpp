@@ -6,6 +6,7 @@
 #include <functional>
 
 #include "core/base/error_of.h"
+#include "core/base/json.h"
 #include "core/base/temp_folder.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/test_capture.h"

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "engine/capture/capture_format.h"
 #include "engine/capture/picture_index.h"
 #include "engine/capture/words.h"

@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_format.h"
 #include "engine/io/image_file.h"

@@ -2,9 +2,13 @@
 #include "engine/capture/spread.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "core/base/error.h"
+#include "core/math/rng.h"
 
 namespace cei3d {
 
@@ -29,6 +33,18 @@ void keep_training_views(Capture& capture, int count) {
     }
     chosen = size_t(std::max_element(distance.begin(), distance.end()) - distance.begin());
   }
+}
+
+void hold_out_random(Capture& capture, double share, uint64_t seed) {
+  std::vector<std::pair<uint32_t, View*>> order;
+  for (View& v : capture.views)
+    if (v.split == Split::train) order.push_back({Rng(seed, 0, order.size()).bits(), &v});
+  const double count = std::max(1.0, std::round(share * double(order.size())));
+  if (!(share > 0 && share < 1) || double(order.size()) - count < 2)
+    fail_usage("A random share of {} cannot be held out of {} views.", share, order.size());
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (size_t i = 0; i < size_t(count); ++i) order[i].second->split = Split::test;
 }
 
 }  // namespace cei3d

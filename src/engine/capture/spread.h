@@ -12,4 +12,8 @@ namespace cei3d {
 // view. count 0: keeps all. Usage errors: fewer than 2, or more than there are.
 void keep_training_views(Capture& capture, int count);
 
+// Makes a random share of the training views test views, at least one. The same seed chooses the same. Usage
+// error: a share that leaves fewer than two to train on, or is not between 0 and 1.
+void hold_out_random(Capture& capture, double share, uint64_t seed);
+
 }  // namespace cei3d

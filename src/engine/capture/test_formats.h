@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/bytes.h"
+#include "core/base/json.h"
 #include "engine/capture/test_capture.h"
 #include "engine/capture/test_npz.h"
 #include "model/scene/view.h"

@@ -36,7 +36,7 @@ MaterialField half_metal() {
 EditLayer ball(Vec3f center, float radius) {
   EditLayer l;
   l.id = "0001-material";
-  l.region = Region({{center}, {normalize(center)}, {radius}});
+  l.region = Region({{center}, {normalize(center)}, {radius}, {}});
   return l;
 }
 

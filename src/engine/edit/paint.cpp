@@ -2,14 +2,11 @@
 #include "engine/edit/paint.h"
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 
-#include "core/base/cancel.h"
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/math/quantile.h"
-#include "core/math/rng.h"
+#include "engine/edit/albedo_branch.h"
 #include "engine/edit/material.h"
 #include "engine/edit/relearn.h"
 #include "engine/render/scene_light.h"
@@ -36,6 +33,8 @@ void check_stroke(const Stroke& s) {
 }
 
 void check_material(const PaintRequest& r) {
+  if (r.theta > 0 && r.routing != Routing::points)
+    fail_usage("--theta is a distance to handler points; use it with --routing points.");
   check_change(r.material);
   if (r.routing == Routing::none && (r.color || !r.material.empty()))
     fail_usage("Paint with a material needs to know where; use another --routing.");
@@ -58,10 +57,15 @@ struct Paint {
   float pixel = 1e9f;           // of the finest scribble, on the surface, unit frame
 };
 
+BranchSamples samples_of(const Paint& paint) {
+  return {positions_of(paint.hits), paint.targets, paint.pixel};
+}
+
 float pixel_of(const Stroke& s) { return median(s.footprints) * float(s.scale); }
 
 // later: regions of later strokes, which cover this one.
 void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
+  if (s.hits.empty()) return;
   paint.pixel = min(paint.pixel, pixel_of(s));
   for (size_t i = 0; i < s.hits.size(); ++i) {
     const Hit& h = s.hits[i];
@@ -93,73 +97,6 @@ float solve_for_albedo(const Device& device, const Scene& scene, const SceneLigh
   return float(outside) / float(std::max<size_t>(paint.hits.size(), 1));
 }
 
-// Finest cells of half a pixel and a table that holds those on the stroke, so that borders between two colors
-// stay as sharp as in the scribble.
-FieldConfig branch_config(const Paint& paint) {
-  FieldConfig c;
-  c.encoding.levels = 8;
-  c.encoding.base_resolution = 16;
-  c.encoding.finest_resolution = int(clamp(4 / paint.pixel, 64.0f, 4096.0f));
-  c.encoding.log2_table = std::clamp(int(std::bit_width(paint.hits.size())), 14, 16);
-  c.hidden_layers = 1;
-  c.width = 32;
-  c.outputs = 3;
-  c.output_activation = Activation::sigmoid;
-  return c;
-}
-
-constexpr int kSteps = 400, kBatch = 2048;
-
-// A batch drawn with replacement, a function of seed and step.
-struct Batch {
-  std::vector<Vec3f> x, target;
-
-  Batch(const Paint& s, uint64_t seed, int step) : x(kBatch), target(kBatch) {
-    for (int i = 0; i < kBatch; ++i) {
-      const uint32_t k = Rng(seed, step, i).below(uint32_t(s.hits.size()));
-      x[i] = s.hits[k].position;
-      target[i] = s.targets[k];
-    }
-  }
-};
-
-// Gradient of the mean cross entropy. Through the sigmoid it becomes out - target, so dark and saturated
-// colors, where the sigmoid is flat, are learned as fast as others.
-FieldTrainer::Loss cross_entropy(const std::vector<Vec3f>& target) {
-  return [&target](int begin, int end, const float* out, float* d_out) {
-    for (int i = begin; i < end; ++i)
-      for (int c = 0; c < 3; ++c) {
-        const int k = 3 * (i - begin) + c;
-        d_out[k] = (out[k] - target[i][c]) / (max(out[k] * (1 - out[k]), 1e-6f) * float(kBatch));
-      }
-  };
-}
-
-std::shared_ptr<const Field> fit_branch(const Device& device, const Paint& s, uint64_t seed,
-                                        Progress& progress) {
-  auto field = std::make_shared<Field>(branch_config(s), seed);
-  FieldTrainer trainer(*field, {.encoding_rate = 2e-2f, .network_rate = 1e-2f});
-  for (int step = 0; step < kSteps; ++step) {
-    check_cancelled(progress, "painting was interrupted; nothing was changed");
-    const float fraction = float(step) / kSteps;
-    const Batch batch(s, seed, step);
-    trainer.step(device, batch.x, cross_entropy(batch.target), 0.5f * (1 + std::cos(kPi * fraction)) + 1e-3f);
-    if (step % 40 == 0) progress.report({"paint", 0.2 + 0.8 * fraction, -1, ""});
-  }
-  return field;
-}
-
-// The same color everywhere, exactly.
-std::shared_ptr<const Field> uniform_branch(Vec3f color) {
-  FieldConfig c;
-  c.hidden_layers = 0;
-  auto field = std::make_shared<Field>(c, 0);
-  for (Param& p : field->params().all()) std::fill(p.value.begin(), p.value.end(), 0.0f);
-  Param& bias = field->params().all().back();
-  for (int i = 0; i < 3; ++i) bias.value[i] = color[i];
-  return field;
-}
-
 void measure_branch(const Device& device, const Field& branch, const Paint& s, PaintReport& report) {
   std::vector<Vec3f> x;
   std::vector<size_t> index;
@@ -181,13 +118,24 @@ void measure_branch(const Device& device, const Field& branch, const Paint& s, P
   report.mean_error = float(sum / double(std::max<size_t>(out.size(), 1)));
 }
 
-std::vector<Stroke> trace_strokes(const Device& device, const Scene& scene, const PaintRequest& request) {
+// Whether only colors of the albedo are painted, so that paint of the surface's own color changes nothing.
+bool paints_albedo(const PaintRequest& r) {
+  return !r.erase && !r.unlit && !r.seen_in && !r.color && r.material.empty() && r.routing != Routing::none;
+}
+
+std::vector<Stroke> trace_strokes(const Device& device, const Scene& scene, const PaintRequest& request,
+                                  PaintReport& report) {
   if (request.scribbles.empty()) fail("there is no scribble to paint");
   for (const Scribble& s : request.scribbles) check_scribble(s);
   std::vector<Stroke> strokes;
   for (const Scribble& s : request.scribbles) {
-    strokes.push_back(trace_stroke(device, scene, s.camera, s.image));
-    check_stroke(strokes.back());
+    int unchanged = 0;
+    const bool compare = paints_albedo(request);
+    strokes.push_back(
+        trace_stroke(device, scene, s.camera,
+                     compare ? without_unchanged(device, scene, s.camera, s.image, unchanged) : s.image));
+    report.unchanged_pixels += unchanged;
+    if (strokes.back().painted_pixels > 0 || unchanged == 0) check_stroke(strokes.back());
   }
   return strokes;
 }
@@ -208,12 +156,19 @@ std::shared_ptr<const Field> relearn_all(const Device& device, const Scene& scen
                  progress);
 }
 
-void count(const std::vector<Stroke>& strokes, const std::vector<Region>& regions, PaintReport& report) {
+std::vector<Region> regions_of(const std::vector<Stroke>& strokes, const Scene& scene,
+                               const PaintRequest& request, PaintReport& report) {
+  std::vector<Region> regions;
   for (const Stroke& s : strokes) {
+    size_t added = 0;
+    Region::Points points = refine_and_label(s, scene.handlers.get(), added);
     report.painted_pixels += s.painted_pixels;
     report.missed_pixels += s.missed_pixels;
+    report.refined += added;
+    report.points += points.edited_count();
+    regions.push_back(stroke_region(s, std::move(points), request.routing, request.theta));
   }
-  for (const Region& r : regions) report.points += r.points().positions.size();
+  return regions;
 }
 
 }  // namespace
@@ -223,11 +178,9 @@ PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& 
   PaintReport& report = result.report;
   check_material(request);
   const double start = steady_seconds();
-  const std::vector<Stroke> strokes = trace_strokes(device, scene, request);
+  const std::vector<Stroke> strokes = trace_strokes(device, scene, request, report);
   if (!request.material.empty()) check_opacity(strokes);
-  std::vector<Region> regions;
-  for (const Stroke& s : strokes) regions.push_back(stroke_region(s, request.routing));
-  count(strokes, regions, report);
+  std::vector<Region> regions = regions_of(strokes, scene, request, report);
   Paint paint;
   for (size_t i = 0; i < strokes.size(); ++i)
     add_stroke(strokes[i], std::span(regions).subspan(i + 1), paint);
@@ -240,13 +193,15 @@ PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& 
   result.layer.erase = result.layer.erase_material = request.erase;
   result.layer.unlit = request.unlit;
   result.layer.material = request.material;
+  if (paint.hits.empty()) return result;  // all of it is the surface's own color
   if (request.routing == Routing::none) {
     result.layer.everywhere = true;
     result.layer.albedo = relearn_all(device, scene, request, paint, regions, progress);
   } else {
     if (!request.erase)
       result.layer.albedo =
-          request.color ? uniform_branch(*request.color) : fit_branch(device, paint, request.seed, progress);
+          request.color ? uniform_branch(*request.color)
+                        : fit_branch(device, samples_of(paint), request.branch, request.seed, progress);
     result.layer.region = std::move(regions.front());
     result.layer.also.assign(std::make_move_iterator(regions.begin() + 1),
                              std::make_move_iterator(regions.end()));

@@ -8,6 +8,7 @@
 
 #include "core/base/progress.h"
 #include "core/image/image.h"
+#include "engine/edit/albedo_branch.h"
 #include "engine/edit/routing.h"
 #include "engine/render/render.h"
 
@@ -28,17 +29,21 @@ struct PaintRequest {
   uint64_t seed = 1;                // for the branch's weights and batches
   bool erase = false;  // restore the base's albedo and material; the scribbles' colors are ignored
   Routing routing = Routing::both;
+  float theta = 0;     // with Routing::points: stroke_region(); 0: by the nearest labeled point
   bool unlit = false;  // show the painted color without light
   // null: the painted colors are display colors of the albedo. Else: of the radiance under this light.
   const SceneLight* seen_in = nullptr;
+  BranchOptions branch{};        // of the fit of the painted colors
   MaterialChange material{};     // where the weight of the paint is above kMaterialWeight
   std::optional<Vec3f> color{};  // linear; instead of the scribbles' colors
 };
 
 struct PaintReport {
   int painted_pixels = 0;
-  int missed_pixels = 0;                // painted pixels without a surface that faces the view
-  size_t points = 0;                    // edited handler points
+  int missed_pixels = 0;     // painted pixels without a surface that faces the view
+  int unchanged_pixels = 0;  // painted pixels whose color the surface has already; they are not painted
+  size_t points = 0;         // edited handler points, H+
+  size_t refined = 0;        // handler points that the strokes added, edited and beside
   float mean_error = 0, max_error = 0;  // of the branch on the painted surface, linear
   float out_of_reach = 0;  // share of the paint whose color no albedo in [0, 1] gives under the light
   double trace_seconds = 0, train_seconds = 0;  // stages

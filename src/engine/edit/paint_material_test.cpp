@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/base/error_of.h"
+#include "core/base/json.h"
 #include "core/math/color.h"
 #include "engine/edit/change_report.h"
 #include "engine/edit/paint.h"

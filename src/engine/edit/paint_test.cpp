@@ -310,24 +310,6 @@ PaintRequest routed(Routing routing) {
   return r;
 }
 
-TEST_F(PaintTest, PointsAloneReachALittleTooFarAndTheOutlineAloneDoesNot) {
-  const Scene points = painted(*before_, routed(Routing::points)),
-              outline = painted(*before_, routed(Routing::outline));
-  int spilled = 0;
-  for (int i = 0; i < 40000; ++i) {
-    Rng rng(3, 0, i);
-    const Vec3f n = normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()}), p = n * kRadius;
-    const bool front_side = dot(n, normalize(to_float(front().center) - p)) > 0.1f;
-    const double away = front_side ? from_rectangle(p) : 1e9;
-    const bool by_points = points.layers[0].contains(p, n);
-    EXPECT_TRUE(by_points || away > 0);
-    EXPECT_FALSE(by_points && away > 3) << away;
-    EXPECT_TRUE(std::abs(away) < 0.3 || outline.layers[0].contains(p, n) == (away < 0)) << away;
-    spilled += away > 0.3 && by_points;
-  }
-  EXPECT_GT(spilled, 10);
-}
-
 TEST_F(PaintTest, WithoutRoutingTheScribbleIsLearntAndTheUnseenSideChanges) {
   const Scene spilled = painted(*before_, routed(Routing::none));
   EXPECT_TRUE(spilled.layers[0].everywhere);

@@ -7,6 +7,7 @@
 #include "engine/edit/handler_colors.h"
 #include "engine/edit/like.h"
 #include "engine/edit/material.h"
+#include "engine/edit/part_pattern.h"
 #include "engine/edit/part_seeds.h"
 #include "engine/segment/grow.h"
 #include "engine/segment/seen_points.h"
@@ -81,12 +82,34 @@ void check_size(size_t points, size_t all, const PartRequest& r) {
         r.name);
 }
 
-void set_effects(const Device& device, const Scene& scene, const PartRequest& r, EditLayer& layer) {
-  layer.material = r.change;
-  if (!r.color) return;
-  Tint tint{*r.color, r.keep_texture, {1, 1, 1}, r.change.blend};
+// Gives the part one color.
+void set_color(const Device& device, const Scene& scene, const PartRequest& r, Vec3f color,
+               EditLayer& layer) {
+  Tint tint{color, r.keep_texture, {1, 1, 1}, r.change.blend};
   if (r.keep_texture) tint.mean = mean_color_inside(device, scene, layer);
   layer.tint = tint;
+}
+
+void set_pattern(const Device& device, const Scene& scene, const PartRequest& r, EditLayer& layer,
+                 Progress& progress) {
+  if (r.keep_texture || r.change.blend < 1)
+    fail_usage(
+        "The scribble has several colors, a pattern, which replaces the texture; leave out "
+        "--keep-texture and --blend, or give one --color.");
+  const std::vector<Vec2f> drawn = drawn_on_object(device, scene, r, r.scribble->positive);
+  const Vec2f middle = spread(drawn, 1).front();
+  const Hit hit = clicked_hits(device, scene, r, std::span(&middle, 1)).front();
+  const double depth = r.camera.project(to_double(hit.position)).z;
+  layer.albedo = fit_pattern(device, scene, layer, PartPattern(*r.scribble, r.camera, depth), progress);
+}
+
+void set_effects(const Device& device, const Scene& scene, const PartRequest& r, EditLayer& layer,
+                 Progress& progress) {
+  layer.material = r.change;
+  if (r.color) return set_color(device, scene, r, *r.color, layer);
+  if (!r.scribble || r.keep_color) return;
+  if (r.scribble->one_color()) return set_color(device, scene, r, r.scribble->tile.rgb(0, 0), layer);
+  set_pattern(device, scene, r, layer, progress);
 }
 
 double vertex_share(const Scene& scene, const EditLayer& layer) {
@@ -123,7 +146,7 @@ PartResult select_part(const Device& device, const Scene& scene, const PartReque
   layer.shape_version = scene.shape_versions.empty() ? 0 : int(scene.shape_versions.size()) - 1;
   layer.region = Region(ScoredPoints({points.positions, points.normals, std::move(scores), points.spacing}));
   result.report.share = vertex_share(scene, layer);
-  set_effects(device, scene, r, layer);
+  set_effects(device, scene, r, layer, progress);
   result.report.seed_seconds = seeded - start;
   result.report.select_seconds = found - seeded;
   result.report.color_seconds = steady_seconds() - found;

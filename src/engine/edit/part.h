@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `edit part`: turns clicks, a mask or a clicked material in one view into a part of the object; its color
-// and material may change in the same edit. [paper sec. 4.3, CPS; docs/method.md#parts]
+// `edit part`: turns clicks, strokes, a mask or a clicked material in one view into a part of the object; its
+// color and material may change in the same edit. [paper sec. 4.3, CPS; docs/method.md#parts]
 #pragma once
 
 #include <functional>
@@ -12,6 +12,7 @@
 #include "core/compute/device.h"
 #include "core/image/image.h"
 #include "core/math/camera.h"
+#include "engine/edit/part_scribble.h"
 #include "engine/segment/prompts.h"
 #include "model/scene/scene.h"
 
@@ -34,10 +35,13 @@ struct PartRequest {
   std::string name;  // of the part
   std::string view;  // name of the view, for error messages
   Camera camera;     // of the view, unit frame
-  Prompts clicks;    // in the view; at least one positive unless there is a mask or a likeness
-  Image mask;        // instead of clicks: 1 channel, of the view's size; inside where >= 0.5
+  Prompts clicks;    // in the view; at least one positive unless there is a scribble, a mask or a likeness
+  // Besides clicks: strokes in the view, which give the part their color or pattern.
+  std::optional<PartScribble> scribble;
+  bool keep_color = false;           // do not take the scribble's color
+  Image mask;                        // instead of clicks: 1 channel, of the view's size; inside where >= 0.5
   std::optional<PartLikeness> like;  // instead of clicks: by the material at a pixel
-  // If set, finds the part from the clicks instead of growing it on the handler points. Returns #handlers
+  // If set, finds the part from the prompts instead of growing it on the handler points. Returns #handlers
   // scores in [0, 1].
   std::function<std::vector<float>(const Scene&, const PartRequest&, Progress&)> network;
   bool in_view = false;  // only the part that the view shows, for comparison
@@ -59,9 +63,9 @@ struct PartResult {
 };
 
 // Pure: the scene is not changed. Usage errors: no positive click, clicks outside the image, a positive and a
-// negative click on the same point, a mask of another size, no part to combine with. Errors: clicks on the
-// background, a mask that shows none of the object, a material that the whole object has, a part that is
-// empty or the whole object, cancelled.
+// negative click on the same point, a scribble or mask of another size, no part to combine with, texture kept
+// under a pattern. Errors: clicks on the background, a scribble or mask that shows none of the object, a
+// material that the whole object has, a part that is empty or the whole object, cancelled.
 PartResult select_part(const Device&, const Scene&, const PartRequest&, Progress&);
 
 }  // namespace cei3d

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <functional>
 
-#include "core/base/error.h"
+#include "core/base/error_of.h"
+#include "core/math/color.h"
 #include "core/math/rng.h"
 #include "engine/render/sphere_scene.h"
 #include "model/scene/appearance.h"
@@ -118,6 +119,86 @@ TEST_F(PartTest, InOneViewOnlyEndsWhereTheViewDoes) {
   const PartResult all = select(clicked()), seen = select(r);
   EXPECT_GT(right_share(seen.layer, seen_cap), 0.98);
   EXPECT_LT(seen.report.share, 0.7 * all.report.share);
+}
+
+// A stroke along a row of pixels that shows the cap, and one that shows the rest.
+Image stroke(int row, int x0, int x1, Vec3f srgb) {
+  Image rgba(kSize, kSize, 4);
+  for (int y = row - 1; y <= row + 1; ++y)
+    for (int x = x0; x < x1; ++x) {
+      for (int c = 0; c < 3; ++c) rgba.at(x, y)[c] = srgb[c];
+      rgba.at(x, y)[3] = 1;
+    }
+  return rgba;
+}
+
+TEST_F(PartTest, AStrokeSelectsThePartAndGivesItItsColor) {
+  PartRequest r = request();
+  const int on_cap = int(pixel({0, -0.4f, 0.5f}).y), below = int(pixel({0, -0.7f, -0.1f}).y);
+  const Vec3f green{0.2f, 0.8f, 0.4f};
+  r.scribble = part_scribble(stroke(on_cap, 40, 56, green), stroke(below, 30, 66, green), std::nullopt);
+  const PartResult result = select(r);
+  EXPECT_GT(right_share(result.layer, cap), 0.995);
+  ASSERT_TRUE(result.layer.tint);
+  EXPECT_NEAR(length(result.layer.tint->color - linear_from_srgb(green)), 0, 1e-5);
+  r.keep_color = true;
+  EXPECT_FALSE(select(r).layer.tint);
+  r.keep_color = false;
+  r.color = Vec3f{1, 0, 0};
+  EXPECT_EQ(select(r).layer.tint->color.x, 1);
+}
+
+TEST_F(PartTest, APatternIsContinuedOverThePart) {
+  PartRequest r = request();
+  const int on_cap = int(pixel({0, -0.4f, 0.5f}).y);
+  Image rgba = stroke(on_cap, 40, 56, {0.2f, 0.2f, 0.2f});
+  for (int y = on_cap - 1; y <= on_cap + 1; ++y)
+    for (int x = 40; x < 48; ++x) rgba.at(x, y)[0] = 0.9f;  // left half red, right half dark
+  r.scribble = part_scribble(rgba, {}, std::nullopt);
+  EXPECT_EQ(r.scribble->tile.width, 16);
+  EXPECT_EQ(r.scribble->tile.height, 3);
+  r.network = [](const Scene& scene, const PartRequest&, Progress&) {
+    std::vector<float> scores;
+    for (const Vec3f p : scene.handlers->positions)
+      scores.push_back(clamp(0.5f + cap(p) / (2 * kSpacing), 0.0f, 1.0f));
+    return scores;
+  };
+  const EditLayer layer = select(r).layer;
+  ASSERT_TRUE(layer.albedo);
+  // Columns 32 to 40 mirror the red half, columns 56 to 64 the dark one; rows repeat it.
+  const auto red_at = [&](float column, float row) {
+    const Ray ray = r.camera.ray(column, row);
+    const float b = dot(ray.origin, ray.direction);
+    const float d = b * b - dot(ray.origin, ray.origin) + square(kSphereRadius);
+    return layer.albedo->eval3(device_, std::vector{ray.origin + ray.direction * (-b - sqrt(d))})[0].x;
+  };
+  for (const float row : {float(on_cap) - 3.5f, float(on_cap) + 0.5f}) {
+    for (const float column : {36.0f, 44.0f})
+      EXPECT_NEAR(red_at(column, row), linear_from_srgb(0.9f), 0.1) << column << ' ' << row;
+    for (const float column : {52.0f, 60.0f})
+      EXPECT_NEAR(red_at(column, row), linear_from_srgb(0.2f), 0.1) << column << ' ' << row;
+  }
+  r.keep_texture = true;
+  EXPECT_THAT(refusal(r, ErrorCode::usage), HasSubstr("pattern"));
+}
+
+TEST_F(PartTest, WrongScribblesSaySo) {
+  PartRequest r = request();
+  const auto scribble = [&](const Image& rgba, std::optional<Vec3f> beside = {}) {
+    r.scribble = part_scribble(rgba, {}, beside);
+    return r;
+  };
+  const Vec3f blue{0, 0, 1};
+  EXPECT_THAT(refusal(scribble(stroke(2, 1, 5, blue)), ErrorCode::failed),
+              HasSubstr("nothing of the object"));
+  r.scribble->positive = Image(kSize, kSize / 2, 1);
+  EXPECT_THAT(refusal(r, ErrorCode::usage), HasSubstr("view's own size"));
+  const Image on = stroke(kSize / 2, 40, 50, blue);
+  r.scribble = part_scribble(on, on, std::nullopt);
+  EXPECT_THAT(refusal(r, ErrorCode::usage), HasSubstr("cover"));
+  EXPECT_THAT(error_of([&] { scribble(Image(kSize, kSize, 4)); }).what(), HasSubstr("no stroke"));
+  EXPECT_THAT(error_of([&] { scribble(Image(kSize, kSize, 3)); }).what(), HasSubstr("alpha"));
+  EXPECT_THAT(error_of([&] { scribble(on, linear_from_srgb(blue)); }).what(), HasSubstr("--negative-color"));
 }
 
 TEST_F(PartTest, AMaskSelectsTheSame) {

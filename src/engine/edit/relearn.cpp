@@ -7,6 +7,7 @@
 #include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/math/rng.h"
+#include "engine/edit/albedo_branch.h"
 #include "model/scene/appearance.h"
 
 namespace cei3d {
@@ -24,18 +25,6 @@ ColorSamples batch_of(const ColorSamples& painted, const ColorSamples& beside, u
     b.colors[i] = from.colors[k];
   }
   return b;
-}
-
-// Gradient of the mean absolute difference. [paper eq. 17]
-FieldTrainer::Loss absolute_difference(const std::vector<Vec3f>& target) {
-  return [&target](int begin, int end, const float* out, float* d_out) {
-    for (int i = begin; i < end; ++i)
-      for (int c = 0; c < 3; ++c) {
-        const int k = 3 * (i - begin) + c;
-        const float d = out[k] - target[i][c];
-        d_out[k] = float((d > 0) - (d < 0)) / (3 * kBatch);
-      }
-  };
 }
 
 }  // namespace

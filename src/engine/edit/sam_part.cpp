@@ -16,26 +16,27 @@ constexpr float kSure = 0.9f;  // scores from which (and 1 minus it, below which
 // such neighbors.
 constexpr float kUntold = 0.49f;
 
-// Runs the network on albedo images, each encoded once.
-class AlbedoViews : public ViewSegmenter {
+// Runs the network on images of the views, each encoded once.
+class EncodedViews : public ViewSegmenter {
  public:
-  AlbedoViews(const Device& device, const Scene& scene, const SamPartRequest& request)
-      : device_(device),
-        scene_(scene),
-        cameras_(request.views.cameras),
-        sam_(request.networks, request.threads) {}
+  EncodedViews(const Device& device, const Scene& scene, const SamPartRequest& request)
+      : device_(device), scene_(scene), request_(request), sam_(request.networks, request.threads) {}
 
   Image mask(int view, std::span<const Vec2f> positive, std::span<const Vec2f> negative) override {
     auto it = pictures_.find(view);
-    if (it == pictures_.end())
-      it = pictures_.emplace(view, sam_.encode(albedo_image(device_, scene_, cameras_[view]))).first;
+    if (it == pictures_.end()) it = pictures_.emplace(view, sam_.encode(image(view))).first;
     return sam_.mask(it->second, positive, negative);
   }
 
  private:
+  Image image(int view) const {
+    return request_.image ? request_.image(view)
+                          : albedo_image(device_, scene_, request_.views.cameras[size_t(view)]);
+  }
+
   const Device& device_;
   const Scene& scene_;
-  const std::vector<Camera>& cameras_;
+  const SamPartRequest& request_;
   Sam sam_;
   std::map<int, SamImage> pictures_;
 };
@@ -44,13 +45,15 @@ class AlbedoViews : public ViewSegmenter {
 
 PropagateResult sam_part(const Device& device, const Scene& scene, const SamPartRequest& request,
                          Progress& progress) {
-  AlbedoViews views(device, scene, request);
+  EncodedViews views(device, scene, request);
   PropagateResult result = propagate(*scene.handlers, *scene.surface, request.views, views, progress);
   std::vector<Seed> seeds;
   for (float& score : result.scores) {
     seeds.push_back(score > kSure ? Seed::positive : score < 1 - kSure ? Seed::negative : Seed::none);
     if (score == 0.5f) score = kUntold;
   }
+  for (size_t i = 0; i < request.certain.size(); ++i)
+    if (request.certain[i] != Seed::none) seeds[i] = request.certain[i];
   const PointGraph graph = point_graph(*scene.handlers, handler_colors(device, scene));
   result.scores = random_walk(graph, seeds, result.scores);
   return result;

@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// Selects a part from clicks in one view by a segmentation network.
+// Selects a part from prompts in one view by a segmentation network.
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <vector>
 
 #include "engine/render/render.h"
+#include "engine/segment/compete.h"
 #include "engine/segment/propagate.h"
 
 namespace cei3d {
 
 struct SamPartRequest {
   std::filesystem::path networks;  // folder of networks and runtime: installed_sam(), or the user's own
-  PropagateRequest views;          // cameras to choose from, the clicked one among them, and the clicks
-  int threads = 0;                 // of the network; 0: all cores
+  PropagateRequest views;          // cameras to choose from, the clicked one among them, and the prompts
+  // Images of the views for the network: RGBA, linear, straight alpha, of the camera's size. Null: renders of
+  // the albedo, which have no shadows or highlights that look like borders.
+  std::function<Image(int view)> image;
+  std::vector<Seed> certain;  // #handlers, points that the user marked; empty: none
+  int threads = 0;            // of the network; 0: all cores
 };
 
 // Scores like those of grow() (#handlers, [0, 1], to be interpolated by ScoredPoints), and the views that
-// were used. The network segments renders of the albedo, which have no shadows or highlights that look like
-// borders; random_walk() then moves the border of the votes to where the color changes. Pure; results do not
+// were used. random_walk() moves the border of the votes to where the color changes. Pure; results do not
 // depend on threads. Errors: no network (with what to do), nothing found at the clicks, cancelled.
 PropagateResult sam_part(const Device&, const Scene&, const SamPartRequest&, Progress&);
 

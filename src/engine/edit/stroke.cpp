@@ -6,6 +6,8 @@
 
 #include "core/math/color.h"
 #include "core/math/quantile.h"
+#include "model/geometry/shape/point_index.h"
+#include "model/scene/appearance.h"
 
 namespace cei3d {
 namespace {
@@ -73,9 +75,20 @@ float footprint(const Camera& camera, const Hit& hit, float depth) {
   return depth / float(camera.fx) / max(dot(hit.normal, hit.to_camera), 0.25f);
 }
 
+// Whether there is paint less than a pixel of the scribble away.
+bool is_beside(const Projector& mask, double u, double v, int scale) {
+  for (const Vec2<double> d : {Vec2<double>{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+    if (mask.alpha_at(u + d.x * scale, v + d.y * scale) > 0) return true;
+  return false;
+}
+
 void add_hit(Stroke& s, const Projector& mask, int x, int y, const Hit& hit, float depth) {
   if (dot(hit.normal, hit.to_camera) <= kMinFacing) return;
   const float coverage = mask.alpha_at(x + 0.5, y + 0.5);
+  if (coverage <= 0 && is_beside(mask, x + 0.5, y + 0.5, s.scale)) {
+    s.beside.push_back(hit);
+    s.beside_footprints.push_back(footprint(s.camera, hit, depth));
+  }
   const float* color =
       nearest_color(s, (float(x) + 0.5f) / float(s.scale), (float(y) + 0.5f) / float(s.scale));
   if (coverage <= 0 || !color) return;
@@ -124,6 +137,33 @@ PixelBox painted_box(const Image& rgba, int margin) {
   return {x0, y0, x1 - x0 + 1, y1 - y0 + 1};
 }
 
+Image without_unchanged(const Device& device, const Scene& scene, const Camera& camera, const Image& rgba,
+                        int& unchanged) {
+  constexpr float kStep = 1.5f / 255;
+  Image left = rgba;
+  unchanged = 0;
+  const PixelBox box = painted_box(rgba, 2);  // with the neighbors that the pixels' filter reaches
+  if (box.width == 0) return left;
+  const GBuffer traced = trace_view(device, scene, crop_camera(camera, box, 1), 2);
+  Appearance look = appearance_at(device, scene, traced.hits);
+  constexpr float kNoAlbedo = 2;  // of surface shown without light: paint on it makes it lit
+  for (size_t i = 0; i < look.unlit.size(); ++i)
+    if (look.unlit[i] > 0) look.albedo[i] = {kNoAlbedo, kNoAlbedo, kNoAlbedo};
+  const Image shown = filtered_albedo(traced, look.albedo);
+  const float least = min_alpha(rgba);
+  for (int y = 0; y < box.height; ++y)
+    for (int x = 0; x < box.width; ++x) {
+      float* painted = left.at(box.x0 + x, box.y0 + y);
+      const float* now = shown.at(x, y);
+      if (painted[3] < least || now[3] == 0) continue;
+      const auto same = [&](int c) { return std::abs(srgb_from_linear(now[c]) - painted[c]) < kStep; };
+      if (!same(0) || !same(1) || !same(2)) continue;
+      painted[3] = 0;
+      ++unchanged;
+    }
+  return left;
+}
+
 Stroke trace_stroke(const Device& device, const Scene& scene, const Camera& camera, const Image& rgba) {
   Stroke s;
   const PixelBox box = painted_box(rgba, 2);
@@ -156,26 +196,6 @@ Stroke trace_stroke(const Device& device, const Scene& scene, const Camera& came
 
 namespace {
 
-// The edited handler points with their reach.
-Region::Points stroke_points(const Stroke& s) {
-  std::vector<Hit> painted;
-  std::vector<float> footprints;
-  for (size_t i = 0; i < s.hits.size(); ++i) {
-    if (s.coverage[i] < s.min_alpha) continue;
-    painted.push_back(s.hits[i]);
-    footprints.push_back(s.footprints[i]);
-  }
-  if (painted.empty()) return {};
-  const float spacing = 0.5f * float(s.scale) * median(footprints);  // two points per pixel and direction
-  HandlerPoints handlers = thin_hits(painted, footprints, spacing);
-  Region::Points points{std::move(handlers.positions), std::move(handlers.normals),
-                        std::move(handlers.footprints)};
-  // Every painted ray has a point within the spacing; a surface point between rays is less than 1.5
-  // footprints away from one of them.
-  for (float& r : points.reach) r = spacing + 1.5f * r;
-  return points;
-}
-
 Projector stroke_projector(const Stroke& s) {
   Projector projector;
   projector.camera = s.camera;
@@ -186,13 +206,92 @@ Projector stroke_projector(const Stroke& s) {
   return projector;
 }
 
+// Points of one label.
+struct Labeled {
+  std::vector<Hit> hits;
+  std::vector<float> footprints;
+  void add(const Hit& hit, float footprint) {
+    hits.push_back(hit);
+    footprints.push_back(footprint);
+  }
+};
+
+// The handler points that the stroke's view shows in its crop, by whether they are in the paint.
+void label_known(const Stroke& s, const HandlerPoints& known, Labeled& in, Labeled& out) {
+  const Projector paint = stroke_projector(s);
+  Projector all = paint;
+  all.min_alpha = 0;
+  for (size_t i = 0; i < known.positions.size(); ++i) {
+    const Vec3f p = known.positions[i], n = known.normals[i];
+    if (all.covers(p, n)) (paint.covers(p, n) ? in : out).add({p, n, n, 0, 0, 0}, known.footprints[i]);
+  }
+}
+
+// Hits without a known point within the spacing, thinned to it.
+HandlerPoints refinement(const Labeled& known, const Labeled& hits, float spacing) {
+  std::vector<Vec3f> positions = positions_of(known.hits);
+  const PointIndex index = positions.empty() ? PointIndex() : PointIndex(positions, spacing);
+  Labeled left;
+  for (size_t i = 0; i < hits.hits.size(); ++i) {
+    const Hit& h = hits.hits[i];
+    const auto on_its_side = [&](size_t k) { return dot(known.hits[k].normal, h.normal) > 0; };
+    if (!index.any_within(h.position, spacing, on_its_side)) left.add(h, hits.footprints[i]);
+  }
+  return thin_hits(left.hits, left.footprints, spacing);
+}
+
+void append(const Labeled& known, const HandlerPoints& fine, float spacing, bool edited, Region::Points& to) {
+  // Every ray has a point within the spacing; surface between rays is less than 1.5 footprints away from one.
+  const auto reach = [&](float footprint) { return spacing + 1.5f * footprint; };
+  for (size_t i = 0; i < known.hits.size(); ++i) {
+    to.positions.push_back(known.hits[i].position);
+    to.normals.push_back(known.hits[i].normal);
+    to.reach.push_back(reach(known.footprints[i]));
+  }
+  for (size_t i = 0; i < fine.positions.size(); ++i) {
+    to.positions.push_back(fine.positions[i]);
+    to.normals.push_back(fine.normals[i]);
+    to.reach.push_back(reach(fine.footprints[i]));
+  }
+  to.edited.resize(to.positions.size(), edited);
+}
+
+// H+ alone, with the same reach for all.
+Region::Points within(const Region::Points& points, float theta) {
+  Region::Points out;
+  for (size_t i = 0; i < points.positions.size(); ++i) {
+    if (!points.is_edited(i)) continue;
+    out.positions.push_back(points.positions[i]);
+    out.normals.push_back(points.normals[i]);
+    out.reach.push_back(theta);
+  }
+  return out;
+}
+
 }  // namespace
 
-Region stroke_region(const Stroke& s, Routing routing) {
+Region::Points refine_and_label(const Stroke& s, const HandlerPoints* known, size_t& added) {
+  Labeled known_in, known_out, in, out{s.beside, s.beside_footprints};
+  if (known) label_known(s, *known, known_in, known_out);
+  for (size_t i = 0; i < s.hits.size(); ++i)
+    (s.coverage[i] >= s.min_alpha ? in : out).add(s.hits[i], s.footprints[i]);
+  added = 0;
+  if (in.hits.empty()) return {};
+  const float spacing = 0.5f * float(s.scale) * median(in.footprints);  // two points per pixel and direction
+  const HandlerPoints fine_in = refinement(known_in, in, spacing),
+                      fine_out = refinement(known_out, out, spacing);
+  added = fine_in.positions.size() + fine_out.positions.size();
+  Region::Points points;
+  append(known_in, fine_in, spacing, true, points);
+  append(known_out, fine_out, spacing, false, points);
+  return points;
+}
+
+Region stroke_region(const Stroke& s, Region::Points points, Routing routing, float theta) {
   if (routing == Routing::outline) return Region({}, stroke_projector(s));
-  Region::Points points = stroke_points(s);
   if (points.positions.empty()) return {};
-  return Region(std::move(points), routing == Routing::points ? Projector{} : stroke_projector(s));
+  if (routing != Routing::points) return Region(std::move(points), stroke_projector(s));
+  return Region(theta > 0 ? within(points, theta) : std::move(points), Projector{});
 }
 
 }  // namespace cei3d

@@ -31,13 +31,27 @@ struct Stroke {
   std::vector<float> coverage;  // #hits, interpolated alpha; >= min_alpha: painted
   // #hits, distance between neighboring rays on the surface, unit frame
   std::vector<float> footprints;
+  std::vector<Hit> beside;  // less than a pixel beside the paint
+  std::vector<float> beside_footprints;
   Image depth;  // of the crop at its finer scale, 0: nothing hit
 };
+
+// The scribble, transparent where the view shows its color already as albedo, to 1/255: paint that changes
+// nothing leaves the surface as it is, finer than its pixels. unchanged: written, their number.
+Image without_unchanged(const Device&, const Scene&, const Camera& camera, const Image& rgba, int& unchanged);
 
 // camera: unit frame; rgba: sRGB, straight alpha, of the camera's size.
 Stroke trace_stroke(const Device&, const Scene&, const Camera& camera, const Image& rgba);
 
-// The region that the stroke paints. Routing::none has no region; it gets that of Routing::both.
-Region stroke_region(const Stroke&, Routing routing = Routing::both);
+// Refines the handler points H where the stroke's rays are finer than them, and labels the refined ones: H+
+// in the paint, the others beside it. All those of H that the stroke's view shows in its crop are among them.
+// known: H on the present shape; null: there are none. added: written, the number of points that are not in
+// H.
+Region::Points refine_and_label(const Stroke&, const HandlerPoints* known, size_t& added);
+
+// The region that the stroke paints. points: refine_and_label(). theta: for Routing::points, if above 0, a
+// point belongs to the edit if one of H+ is nearer than this, as in the paper, unit frame. Routing::none has
+// no region; it gets that of Routing::both.
+Region stroke_region(const Stroke&, Region::Points points, Routing routing = Routing::both, float theta = 0);
 
 }  // namespace cei3d

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
+#include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "engine/evaluate/evaluation_objects.h"
 #include "engine/session/stopwatch.h"
@@ -55,6 +56,7 @@ class Job {
         rows_(request.out / "rows"),
         objects_(session, request) {
     report_.capture = full_path(r_.capture);
+    report_.folder = r_.out;
   }
 
   EvaluationReport run() {
@@ -76,6 +78,7 @@ class Job {
       add(report_.part, part_row("part", "the method", false));
       add(report_.part, part_row("part-in-view", "no propagation: what the clicked view shows", true));
     }
+    if (r_.applications) add_applications();
     for (const int n : r_.views) add(report_.views, views_row(n));
     for (const int n : r_.downscales) add(report_.sizes, size_row(n));
     return report_;
@@ -194,6 +197,49 @@ class Job {
       row.seconds = total_seconds(edit);
       score_edit(edit, r_.part->truth, row, p);
     });
+  }
+
+  // What cannot be done to this object is skipped.
+  EvaluationRow application_row(const char* name, const char* what,
+                                const std::function<EditSummary(Progress&)>& edit) {
+    Json settings = eval_settings(whole());
+    settings["application"] = what;
+    try {
+      return row(name, what, settings, [&](EvaluationRow& row, Progress& p) {
+        objects_.open(whole(), p);
+        const EditSummary made = edit(p);
+        row.seconds = total_seconds(made);
+        score_edit(made, {}, row, p);
+      });
+    } catch (const Error& e) {
+      if (e.code() == ErrorCode::interrupted) throw;
+      return {name, what, e.what(), 0, {}, {}};
+    }
+  }
+
+  void add_applications() {
+    add(report_.applications,
+        application_row("roughness", "a glossy object made rough, or the reverse", [&](Progress& p) {
+          MaterialCommand c;
+          c.effects.roughness = session_.info().object.mean.roughness < 0.35f ? 0.6 : 0.15;
+          return session_.change_material(c, p);
+        }));
+    add(report_.applications, application_row("light", "the light turned by 90 degrees", [&](Progress& p) {
+          LightChoice turned;
+          turned.rotate_degrees = 90;
+          return session_.change_light(turned, p);
+        }));
+    add(report_.applications,
+        application_row("drag", "the middle of a view dragged by an eighth of its width",
+                        [&](Progress& p) { return session_.deform(drag(), p); }));
+  }
+
+  // In the middle of the object as the painted, or else the first, view shows it.
+  DeformCommand drag() const {
+    const Capture& capture = objects_.capture();
+    const View& view = r_.paint ? find_view(capture, r_.paint->view) : capture.views.front();
+    const Vec3d middle = view.camera.project(session_.info().normalization.center);
+    return {PixelDrag{view.name, {middle.x, middle.y}, {0.125 * view.camera.width, 0}}, {}, ""};
   }
 
   EvaluationRow views_row(int n) {

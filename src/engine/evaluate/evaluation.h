@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/json.h"
 #include "engine/session/session.h"
 
 namespace cei3d {
@@ -32,6 +33,8 @@ struct EvaluationRequest {
   EditTruth paint_truth;
   std::optional<PartTrial> part;
   bool ablations = true;               // also paint without parts of the method
+  bool parts = true;                   // several captures: also their own part edits
+  bool applications = false;           // also another roughness, a turned light, a dragged point
   std::vector<int> views, downscales;  // one object each
   NetworkFiles networks;
   int samples = 2;
@@ -51,10 +54,12 @@ EvaluationRow evaluation_row_from_json(const Json&, const std::string& what = "A
 
 struct EvaluationReport {
   std::string capture;
-  EvaluationRow object;  // all views, full size
+  std::filesystem::path folder;  // that the report is in; not in its JSON
+  EvaluationRow object;          // all views, full size
   // The method, then without handler points, without disentangled properties.
   std::vector<EvaluationRow> paint;
-  std::vector<EvaluationRow> part;   // the method, then without propagation to other views
+  std::vector<EvaluationRow> part;          // the method, then without propagation to other views
+  std::vector<EvaluationRow> applications;  // roughness, light, drag
   std::vector<EvaluationRow> views;  // objects from fewer photographs, with the paint edit if there is one
   std::vector<EvaluationRow> sizes;  // objects from smaller photographs, likewise
   Json json() const;

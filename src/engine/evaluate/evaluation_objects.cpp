@@ -2,6 +2,7 @@
 #include "engine/evaluate/evaluation_objects.h"
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "engine/capture/capture.h"
 #include "engine/project/dataset.h"
 #include "engine/project/project.h"
@@ -11,8 +12,9 @@ namespace fs = std::filesystem;
 namespace {
 
 Json options_json(const ReconstructOptions& o) {
-  return {{"preset", o.preset}, {"seconds", o.seconds},       {"iterations", o.iterations}, {"seed", o.seed},
-          {"views", o.views},   {"test_every", o.test_every}, {"downscale", o.downscale}};
+  return {{"preset", o.preset},       {"seconds", o.seconds}, {"iterations", o.iterations},
+          {"seed", o.seed},           {"views", o.views},     {"test_every", o.test_every},
+          {"downscale", o.downscale}, {"set", o.set},         {"test_share", o.test_share}};
 }
 
 }  // namespace
@@ -23,7 +25,10 @@ EvaluationObjects::EvaluationObjects(Session& session, const EvaluationRequest& 
     : session_(session), r_(request), kept_(request.out / "objects"), capture_(full_path(request.capture)) {
   if (Project::is_project(r_.out))
     fail_usage("{} is a project; name another folder for the report.", r_.out.string());
-  const Capture capture = load_capture(r_.capture, {r_.format, r_.options.test_every, 0});
+  ReconstructOptions all = r_.options;
+  all.views = 0;
+  loaded_ = load_capture(r_.capture, capture_options(r_.format, all));
+  const Capture& capture = loaded_;
   training_views_ = int(views_of(capture, Split::train).size());
   fingerprint_ = capture_fingerprint(capture);
   if (r_.paint) find_view(capture, r_.paint->view);

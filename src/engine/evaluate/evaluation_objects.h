@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "core/base/json.h"
 #include "engine/evaluate/evaluation.h"
 #include "engine/evaluate/kept_values.h"
 
@@ -22,6 +23,7 @@ class EvaluationObjects {
   // Errors: no such capture, view or finished object, an object of another capture, OUT is a project.
   EvaluationObjects(Session&, const EvaluationRequest&);
 
+  const Capture& capture() const { return loaded_; }
   int training_views() const { return training_views_; }
   EvaluationObject whole() const;                          // from all photographs
   EvaluationObject with(const ReconstructOptions&) const;  // objects with equal options are one
@@ -37,6 +39,7 @@ class EvaluationObjects {
   Session& session_;
   const EvaluationRequest& r_;
   KeptValues kept_;
+  Capture loaded_;
   std::string capture_, fingerprint_;
   int training_views_ = 0;
   Json given_;

@@ -79,6 +79,7 @@ const std::vector<Column> kNovelViews{
        const auto& alone = r.scores.alone;
        return alone ? fmt::format("{}, {}", db(alone->psnr), db(alone->psnr_masked)) : "";
      }},
+    {"FLIP", [](const EvaluationRow& r) { return or_nothing(r.scores.flip, "{:.4f}"); }},
     {"LPIPS", [](const EvaluationRow& r) { return or_nothing(r.scores.lpips, "{:.4f}"); }},
     {"FID", [](const EvaluationRow& r) { return or_nothing(r.scores.fid, "{:.1f}"); }},
     {"rendered with", [](const EvaluationRow& r) {
@@ -97,6 +98,7 @@ const std::vector<Column> kRest{
     {"non-edited area: PSNR", [](const EvaluationRow& r) { return rest_of(r) ? db(rest_of(r)->psnr) : ""; }},
     {"SSIM",
      [](const EvaluationRow& r) { return rest_of(r) ? fmt::format("{:.4f}", rest_of(r)->ssim) : ""; }},
+    {"FLIP", [](const EvaluationRow& r) { return rest_of(r) ? or_nothing(rest_of(r)->flip, "{:.4f}") : ""; }},
     {"LPIPS",
      [](const EvaluationRow& r) { return rest_of(r) ? or_nothing(rest_of(r)->lpips, "{:.4f}") : ""; }},
     {"FID before/after",
@@ -175,6 +177,7 @@ Json EvaluationReport::json() const {
           {"object", object.json()},
           {"paint", rows_json(paint)},
           {"part", rows_json(part)},
+          {"applications", rows_json(applications)},
           {"views", rows_json(views)},
           {"sizes", rows_json(sizes)}};
 }
@@ -194,6 +197,8 @@ std::string EvaluationReport::markdown() const {
   text += section("A part by clicks, with and without propagation",
                   "The same clicks in one view; the part is recolored.", part,
                   columns({{kEditTime, kPoints, kShare}, kFidelity, kRest}));
+  text += section("Other edits", "Of the whole object and of its shape; images: photograph, before, after.",
+                  applications, columns({{kEditTime}, kRest}));
   const std::vector<Column> trials = columns({{kMadeIn}, kNovelViews, kFidelity, kRest});
   text += section("Fewer photographs",
                   "Spread evenly; scored on the same held-out views, with the same scribble.", views, trials);

@@ -10,6 +10,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "core/base/temp_folder.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/test_capture.h"

@@ -2,6 +2,7 @@
 #include "engine/evaluate/kept_values.h"
 
 #include "core/base/file.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 

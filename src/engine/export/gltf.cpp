@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "engine/export/gltf_parts.h"
 
 namespace cei3d {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "core/base/json.h"
 #include "engine/export/file_names.h"
 #include "engine/export/gltf_parts.h"
 

@@ -22,7 +22,7 @@ namespace {
 constexpr size_t kHeaderBytes = size_t(1) << 20;  // that hold the size of nearly every file
 
 ImageSize png_size(const std::string& bytes, const std::string& name) {
-  if (bytes.size() < 24 || bytes.compare(12, 4, "IHDR") != 0)
+  if (bytes.size() < 25 || bytes.compare(12, 4, "IHDR") != 0)
     fail("{} is a broken PNG: it ends too early.", name);
   const auto number = [&](size_t i) {
     uint32_t v = 0;
@@ -153,6 +153,23 @@ ImageSize read_image_size(const std::filesystem::path& path) {
 ExifNotes read_image_exif(const std::filesystem::path& path) {
   const std::string start = start_of(path);
   return start.rfind("\xff\xd8", 0) == 0 ? read_exif(start) : ExifNotes();
+}
+
+int read_image_bits(const std::filesystem::path& path) {
+  const std::string bytes = read_file(path), name = path.string();
+  switch (image_format(bytes, name)) {
+    case ImageFormat::png:
+      png_size(bytes, name);
+      return uint8_t(bytes[24]) == 16 ? 16 : 8;
+    case ImageFormat::jpeg:
+      return 8;
+    case ImageFormat::tiff:
+      return tiff_bits(bytes, name);
+    case ImageFormat::exr:
+    case ImageFormat::hdr:
+      return 32;
+  }
+  fail("{}: unknown image format.", name);
 }
 
 bool has_image_suffix(const std::filesystem::path& path) {

@@ -21,6 +21,9 @@ Image read_image(const std::filesystem::path& path);
 Image read_linear_image(const std::filesystem::path& path);
 ImageSize read_image_size(const std::filesystem::path& path);  // without decoding pixels, as stored
 ExifNotes read_image_exif(const std::filesystem::path& path);  // defaults for a file without
+// Bits of a channel: 8 or 16 of display-encoded values up to 1; 32: linear values without an upper limit
+// (EXR, HDR).
+int read_image_bits(const std::filesystem::path& path);
 ImageFormat image_format(const std::string& bytes, const std::string& name);
 bool has_image_suffix(const std::filesystem::path& path);  // .png .jpg .jpeg .tif .tiff .exr .hdr, any case
 

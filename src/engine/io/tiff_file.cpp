@@ -112,6 +112,10 @@ float sample(const uint8_t* row, size_t i, const Layout& l) {
 
 ImageSize tiff_size(const std::string& bytes, const std::string& name) { return Reader(bytes, name).size(); }
 
+int tiff_bits(const std::string& bytes, const std::string& name) {
+  return layout_of(Reader(bytes, name), name).bits;
+}
+
 TiffImage decode_tiff(const std::string& bytes, const std::string& name) {
   const Reader reader(bytes, name);
   const Layout l = layout_of(reader, name);

@@ -10,6 +10,8 @@
 namespace cei3d {
 
 ImageSize tiff_size(const std::string& bytes, const std::string& name);
+// Of a channel: 8, 16, or 32 of floating point.
+int tiff_bits(const std::string& bytes, const std::string& name);
 
 struct TiffImage {
   Image image;          // 1, 3 or 4 channels, values as stored, /255 or /65535; straight alpha

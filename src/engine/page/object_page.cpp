@@ -3,6 +3,7 @@
 
 #include "core/base/error.h"
 #include "core/base/html.h"
+#include "core/base/json.h"
 #include "engine/io/gzip.h"
 #include "engine/page/page_files.h"
 

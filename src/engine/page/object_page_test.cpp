@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/json.h"
 #include "engine/page/page_files.h"
 
 namespace cei3d {

@@ -3,16 +3,16 @@
 
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/json.h"
+#include "core/base/json_reader.h"
 #include "engine/capture/capture.h"
+#include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
 Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
-Vec3d vector_from(const Json& j) {
-  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
-}
 Vec3d vector_from(JsonReader& reader, const char* key) {
   const auto [x, y, z] = reader.numbers<3>(key);
   return {x, y, z};
@@ -49,39 +49,6 @@ uintmax_t size_of(const fs::path& file) {
   const uintmax_t size = file.empty() ? 0 : fs::file_size(file, error);
   return error ? 0 : size;
 }
-
-}  // namespace
-
-Json camera_json(const Camera& c) {
-  Json rotation = Json::array();
-  for (const Vec3d& row : c.world_from_cam.row) rotation.push_back(vector_json(row));
-  return {{"width", c.width},
-          {"height", c.height},
-          {"fx", c.fx},
-          {"fy", c.fy},
-          {"cx", c.cx},
-          {"cy", c.cy},
-          {"skew", c.skew},
-          {"world_from_cam", std::move(rotation)},
-          {"center", vector_json(c.center)}};
-}
-
-Camera camera_from_json(JsonReader& reader) {
-  Camera c;
-  c.width = reader.require<int>("width");
-  c.height = reader.require<int>("height");
-  c.fx = reader.require<double>("fx");
-  c.fy = reader.require<double>("fy");
-  c.cx = reader.require<double>("cx");
-  c.cy = reader.require<double>("cy");
-  c.skew = reader.optional("skew", 0.0);
-  for (int i = 0; i < 3; ++i)
-    c.world_from_cam.row[i] = vector_from(reader.array("world_from_cam").at(size_t(i)));
-  c.center = vector_from(reader, "center");
-  return c;
-}
-
-namespace {
 
 Json photo_json(const PhotoCamera& photo) {
   const LensDistortion& lens = photo.lens();

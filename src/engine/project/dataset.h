@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "core/base/json_reader.h"
+#include "core/base/json_fwd.h"
 #include "model/scene/view.h"
 
 namespace cei3d {
@@ -22,8 +22,5 @@ Dataset dataset_from_json(const Json&, const std::filesystem::path& project);
 
 // Hash of views, cameras and image sizes; the size of a missing image counts as 0.
 std::string capture_fingerprint(const Capture&);
-
-Json camera_json(const Camera&);
-Camera camera_from_json(JsonReader&);  // reads the keys of camera_json()
 
 }  // namespace cei3d

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/base/cancel.h"
+#include "core/base/json.h"
 #include "core/math/color.h"
 
 namespace cei3d {

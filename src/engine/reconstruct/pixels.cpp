@@ -6,6 +6,7 @@
 
 #include "core/image/area.h"
 #include "core/math/color.h"
+#include "core/math/half.h"
 #include "model/geometry/shape/visual_hull.h"
 
 namespace cei3d {
@@ -14,9 +15,16 @@ namespace {
 
 uint8_t to_byte(float v) { return uint8_t(std::lround(std::clamp(v, 0.0f, 1.0f) * 255)); }
 
+std::array<uint16_t, 3> halves_of(const float* linear) {
+  constexpr float kMost = 65504;  // of 16 bits
+  std::array<uint16_t, 3> h;
+  for (size_t c = 0; c < 3; ++c) h[c] = half_from_float(std::clamp(linear[c], 0.0f, kMost));
+  return h;
+}
+
 }  // namespace
 
-void PixelStore::add_view(const Camera& unit_camera, const Image& image, int rim) {
+void PixelStore::add_view(const Camera& unit_camera, const Image& image, int rim, ImageDepth depth) {
   const auto view = uint16_t(cameras_.size());
   cameras_.push_back(unit_camera);
   Area touched(size_t(image.width) * image.height), mask(touched.size());
@@ -25,6 +33,9 @@ void PixelStore::add_view(const Camera& unit_camera, const Image& image, int rim
     const float alpha = image.data[4 * i + 3];
     mask[i] = alpha < 0 ? kUnknown : alpha > 0.5f ? kObject : kBackground;
   }
+  depths_.push_back(depth);
+  const bool deep = depth != ImageDepth::bits8;
+  if (deep) halves_.resize(pixels_.size());
   const Area keep = dilated(touched, image.width, image.height, rim);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
@@ -35,8 +46,32 @@ void PixelStore::add_view(const Camera& unit_camera, const Image& image, int rim
                          uint16_t(y),
                          {to_byte(srgb_from_linear(p[0])), to_byte(srgb_from_linear(p[1])),
                           to_byte(srgb_from_linear(p[2])), to_byte(p[3])}});
+      if (deep) halves_.push_back(halves_of(p));
     }
+  if (!deep && !halves_.empty()) halves_.resize(pixels_.size());
   masks_.push_back(std::move(mask));
+}
+
+Vec3f PixelStore::radiance(size_t pixel) const {
+  const Pixel& p = pixels_[pixel];
+  Vec3f out;
+  const bool deep = depths_[p.view] != ImageDepth::bits8;
+  for (size_t c = 0; c < 3; ++c)
+    out[int(c)] = deep ? float_from_half(halves_[pixel][c]) : linear_from_srgb(float(p.srgba[c]) / 255);
+  return out;
+}
+
+uint8_t PixelStore::clipped(size_t pixel) const {
+  const Pixel& p = pixels_[pixel];
+  const ImageDepth depth = depths_[p.view];
+  uint8_t bits = 0;
+  for (size_t c = 0; c < 3; ++c) {
+    const bool full = depth == ImageDepth::bits8    ? p.srgba[c] == 255
+                      : depth == ImageDepth::bits16 ? halves_[pixel][c] >= half_from_float(1)
+                                                    : false;
+    bits |= uint8_t(full << c);
+  }
+  return bits;
 }
 
 }  // namespace cei3d

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The training pixels of the object and a rim around it, packed into 12 bytes each, so that 100 views of 800
-// x 800 fit in memory.
+// The training pixels of the object and a rim around it, packed into 10 bytes each, so that 100 views of 800
+// x 800 fit in memory; 16 bytes where a file holds more than 8 bits a channel.
 #pragma once
 
 #include <array>
@@ -10,22 +10,27 @@
 
 #include "core/image/image.h"
 #include "core/math/camera.h"
+#include "model/scene/view.h"
 
 namespace cei3d {
 
 struct Pixel {
   uint16_t view, x, y;
-  std::array<uint8_t, 4> srgba;  // display-encoded color, straight alpha
+  std::array<uint8_t, 4> srgba;  // display-encoded color, at most 1; straight alpha
 };
 
 class PixelStore {
  public:
   // image: RGBA, linear, straight alpha, below 0 where unknown. Keeps known pixels with an alpha above zero
-  // within `rim` pixels.
-  void add_view(const Camera& unit_camera, const Image& image, int rim);
+  // within `rim` pixels. depth: of the file. Of 8 bits the display-encoded bytes are all that is kept; else the
+  // radiance, too.
+  void add_view(const Camera& unit_camera, const Image& image, int rim, ImageDepth depth = ImageDepth::bits8);
 
   const std::vector<Camera>& cameras() const { return cameras_; }
   const std::vector<Pixel>& pixels() const { return pixels_; }
+  Vec3f radiance(size_t pixel) const;  // linear, as far as the file holds it
+  // Bit c: channel c is at the upper limit of its file, its radiance may be higher.
+  uint8_t clipped(size_t pixel) const;
   // Of each view, row-major: kObject where alpha > 0.5, kUnknown where alpha < 0 (visual_hull.h).
   const std::vector<std::vector<uint8_t>>& masks() const { return masks_; }
   // Ray through the center of a pixel plus `away` (pixels), unit frame.
@@ -36,6 +41,9 @@ class PixelStore {
  private:
   std::vector<Camera> cameras_;
   std::vector<Pixel> pixels_;
+  std::vector<std::array<uint16_t, 3>>
+      halves_;                      // of the radiance: #pixels, or empty when all files have 8 bits
+  std::vector<ImageDepth> depths_;  // of the views
   std::vector<std::vector<uint8_t>> masks_;
 };
 

@@ -2,6 +2,7 @@
 // How the time of a reconstruction is divided among its stages.
 #pragma once
 
+#include "core/base/json.h"
 #include "engine/reconstruct/presets.h"
 #include "engine/reconstruct/rates.h"
 #include "engine/reconstruct/reconstruct.h"

@@ -36,6 +36,17 @@ Preset fast() {
   return p;
 }
 
+// Two hidden layers and four times the hash tables.
+Preset balanced() {
+  Preset p = fast();
+  p.geometry.sdf.hidden_layers = 2;
+  p.appearance.albedo.hidden_layers = 2;
+  p.appearance.albedo.width = 64;
+  p.larger_tables = 2;
+  p.iterations = 16000;
+  return p;
+}
+
 Preset paper() {
   Preset p;
   FieldConfig& sdf = p.geometry.sdf;
@@ -81,11 +92,7 @@ Preset paper() {
 Preset preset_by_name(const std::string& name) {
   if (name == "fast") return fast();
   if (name == "paper") return paper();
-  if (name == "balanced") {
-    Preset p = fast();
-    p.iterations = 16000;
-    return p;
-  }
+  if (name == "balanced") return balanced();
   fail_usage("unknown preset '{}': fast, balanced or paper", name);
 }
 
@@ -98,8 +105,8 @@ void fit_to_footprint(Preset& p, double footprint) {
   };
   fit(p.trial.geometry.sdf.encoding, fine ? 17 : 15);
   if (!p.resolution_from_views) return;
-  fit(p.geometry.sdf.encoding, fine ? 17 : 15);
-  fit(p.appearance.albedo.encoding, fine ? 19 : 16);
+  fit(p.geometry.sdf.encoding, (fine ? 17 : 15) + p.larger_tables);
+  fit(p.appearance.albedo.encoding, (fine ? 19 : 16) + p.larger_tables);
   fit(p.appearance.materials.encoding, fine ? 17 : 15);
   p.meshing.resolution = fine ? 256 : finest > 140 ? 192 : 96;
   p.finer_meshing.resolution = p.meshing.resolution * 3 / 2;

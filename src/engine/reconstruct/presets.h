@@ -22,6 +22,7 @@ struct Preset {
   MeshingOptions meshing;              // of the surface on which light and material are fitted, by vertex
   MeshingOptions finer_meshing;        // of the finished object, whose silhouettes are those of its mesh
   bool resolution_from_views = false;  // grids as fine as the pixels, see fit_to_footprint()
+  int larger_tables = 0;               // added to the logarithm of the hash tables that it chooses
   int polish_steps = 600;              // of a round, at most; half of them in a run by steps
   int joint_steps = 0;                 // of the joint descent, at most; half of them in a run by steps
   int residual_steps = 9000;           // at most; half of them in a run by steps
@@ -35,7 +36,7 @@ struct Preset {
   size_t max_residual_hits = 4000000;
 };
 
-// "fast" (hash grids), "balanced" (the same for longer), "paper" (the paper's networks: 8x512 SDF, 4x512
+// "fast" (hash grids), "balanced" (larger ones, for longer), "paper" (the paper's networks: 8x512 SDF, 4x512
 // albedo, frequency encodings). Usage error for any other name.
 Preset preset_by_name(const std::string& name);
 

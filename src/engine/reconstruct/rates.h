@@ -5,7 +5,7 @@
 #pragma once
 
 #include "core/base/clock.h"
-#include "core/base/json.h"
+#include "core/base/json_fwd.h"
 #include "core/base/progress.h"
 #include "engine/reconstruct/pixels.h"
 #include "engine/reconstruct/presets.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/reconstruct.h"
 
+#include "core/base/json.h"
+#include "engine/reconstruct/preset_settings.h"
 #include "engine/reconstruct/reconstruct_with.h"
 #include "engine/reconstruct/stages.h"
 
@@ -41,6 +43,7 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
   const TrainingViews views = load_training_views(in.capture, in.images, in.normalization, progress);
   Preset preset = in.preset;
   fit_to_footprint(preset, views.footprint);
+  preset_settings().put(in.options.set, preset);
   std::optional<SavedRun> saved = read_saved(in, preset, views.train, checkpoints);
   const Json rates = rates_of(in, preset, views.train, saved, progress);
   if (saved) progress.resume_at(saved->position.elapsed);

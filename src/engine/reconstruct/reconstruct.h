@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/base/json.h"
 #include "core/base/progress.h"
 #include "model/light/light_color.h"
 #include "model/scene/scene.h"
@@ -18,11 +19,14 @@ struct ReconstructOptions {
   int iterations = 0;
   int joint_steps = -1;  // of the joint descent, at most; 0: none; -1: the preset's
   uint64_t seed = 1;
-  int downscale = 1;                 // use images at 1/N of their size
-  int test_every = 8;                // hold out every Nth view when the capture has no split; 0: none
+  int downscale = 1;      // use images at 1/N of their size
+  int test_every = 8;     // hold out every Nth view when the capture has no split; 0: none
+  double test_share = 0;  // instead: hold out this share of the views, chosen at random by the seed
   std::optional<LightMotion> light;  // how the light moves against the object; none: to be found
   LightColorPrior light_color;
   int views = 0;  // number of training views, by keep_training_views(); 0: all
+  // Values of the preset that differ from it, by key (engine/reconstruct/preset_settings.h).
+  Json set = Json::object();
 };
 
 // Storage of training states. Head and tensors of a checkpoint are stored together or not at all.

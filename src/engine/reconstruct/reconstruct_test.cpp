@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/json.h"
 #include "core/base/test_unknown_keys.h"
 #include "engine/reconstruct/run_state.h"
 #include "engine/reconstruct/test_run.h"

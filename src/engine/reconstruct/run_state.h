@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "core/base/json.h"
 #include "engine/reconstruct/geometry/geometry_stage.h"
 #include "engine/reconstruct/reconstruct.h"
 #include "engine/reconstruct/surface_and_hits.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/cancel.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/json.h"
 #include "engine/reconstruct/plan.h"
 #include "engine/reconstruct/run_clock.h"
 #include "engine/reconstruct/run_state.h"

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/cancel.h"
+#include "core/base/json.h"
 #include "engine/reconstruct/appearance/find_light_frame.h"
 #include "engine/reconstruct/appearance/residual_fit.h"
 #include "engine/reconstruct/geometry/silhouette_level.h"

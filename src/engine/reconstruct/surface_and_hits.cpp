@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/base/cancel.h"
-#include "core/math/color.h"
 #include "core/math/rng.h"
 #include "engine/render/render.h"
 
@@ -16,22 +15,22 @@ namespace {
 // one core.
 constexpr size_t kSlab = 1 << 13;
 
-// Traces the pixels of the slab and empties it.
+// Traces the pixels of the slab (indices) and empties it.
 void add_hits(const Device& device, const Field& sdf, const Surface& surface, const PixelStore& pixels,
-              std::vector<Pixel>& slab, ObjectHits& out) {
+              std::vector<size_t>& slab, ObjectHits& out) {
   std::vector<Ray> rays;
   rays.reserve(slab.size());
-  for (const Pixel& p : slab) rays.push_back(pixels.cameras()[p.view].ray(p.x + 0.5, p.y + 0.5));
+  for (const size_t i : slab) rays.push_back(pixels.ray(pixels.pixels()[i]));
   std::vector<uint32_t> ray_of_hit;
   const std::vector<Hit> hits = trace_rays(device, sdf, surface, rays, ray_of_hit);
   for (size_t i = 0; i < hits.size(); ++i) {
-    const Pixel& p = slab[ray_of_hit[i]];
-    const Camera& camera = pixels.cameras()[p.view];
-    const auto channel = [&](int c) { return linear_from_srgb(float(p.srgba[c]) / 255); };
+    const size_t pixel = slab[ray_of_hit[i]];
+    const uint16_t view = pixels.pixels()[pixel].view;
+    const Camera& camera = pixels.cameras()[view];
     out.hits.push_back(hits[i]);
-    out.colors.push_back({channel(0), channel(1), channel(2)});
-    out.clipped.push_back(uint8_t((p.srgba[0] == 255) | (p.srgba[1] == 255) << 1 | (p.srgba[2] == 255) << 2));
-    out.views.push_back(p.view);
+    out.colors.push_back(pixels.radiance(pixel));
+    out.clipped.push_back(pixels.clipped(pixel));
+    out.views.push_back(view);
     out.footprints.push_back(length(hits[i].position - to_float(camera.center)) / float(camera.fx));
   }
   slab.clear();
@@ -47,11 +46,11 @@ ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& su
   ObjectHits out;
   const auto reserve = [n = std::min(options.max_hits, inner)](auto&... lists) { (lists.reserve(n), ...); };
   reserve(out.hits, out.colors, out.clipped, out.views, out.footprints);
-  std::vector<Pixel> slab;
+  std::vector<size_t> slab;
   size_t i = 0;
-  for (const Pixel& p : pixels.pixels()) {
-    if (!inside(p)) continue;
-    if (keep == 1 || Rng(7, options.subset, i).uniform() < keep) slab.push_back(p);
+  for (size_t pixel = 0; pixel < pixels.pixels().size(); ++pixel) {
+    if (!inside(pixels.pixels()[pixel])) continue;
+    if (keep == 1 || Rng(7, options.subset, i).uniform() < keep) slab.push_back(pixel);
     ++i;
     if (slab.size() < kSlab && i < inner) continue;
     check_cancelled(progress);

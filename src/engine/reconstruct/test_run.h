@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/math/rotation.h"
 #include "engine/reconstruct/reconstruct_with.h"
 #include "engine/reconstruct/test_box.h"

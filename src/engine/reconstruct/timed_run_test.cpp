@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "core/base/json.h"
 #include "engine/reconstruct/test_rates.h"
 #include "engine/reconstruct/test_run.h"
 

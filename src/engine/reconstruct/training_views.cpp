@@ -35,7 +35,7 @@ TrainingViews load_training_views(const Capture& capture, const ImageSource& ima
     if (!train && v.held_out.cameras().size() >= kMaxHeldOut) continue;
     const Image image = images.load(view);
     const Camera camera = camera_of(view, normalization, image);
-    (train ? v.train : v.held_out).add_view(camera, image, kRim);
+    (train ? v.train : v.held_out).add_view(camera, image, kRim, images.depth(view));
     if (train) v.footprint += length(camera.center) / camera.fx, ++trained;
   }
   v.footprint /= std::max(trained, 1);

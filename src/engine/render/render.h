@@ -57,6 +57,8 @@ struct Frame {
   std::vector<uint8_t> edited;           // #pixels, 1: a sample of the pixel lies in the region of an edit
 };
 Frame shade_view(const Device&, const Scene&, const SceneLight&, const GBuffer&);
+// Frame::albedo alone. albedo: #hits, linear.
+Image filtered_albedo(const GBuffer&, std::span<const Vec3f> albedo);
 // The same bit for bit. memory: of an earlier frame of the same buffer (engine/render/hit_memory.h); what is
 // unchanged is taken over, and this frame is kept in it.
 Frame shade_view(const Device&, const Scene&, const SceneLight&, const GBuffer&, HitMemory& memory);

@@ -77,35 +77,75 @@ void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverag
 }
 
 // Evaluates the correction network where the memory has no value.
-void fill_residuals(const Device& device, const Scene& scene, const Appearance& look,
+void fill_residuals(const Device& device, const Scene& scene, const Photographed& photographed,
                     std::span<const Hit> hits, HitMemory& memory) {
   if (memory.residual != scene.residual || memory.residuals.size() != hits.size()) {
     memory.residual = scene.residual;
     memory.residuals.assign(hits.size(), Vec3f{0, 0, 0});
     memory.has_residual.assign(hits.size(), 0);
   }
-  std::vector<Hit> original;
+  std::vector<Hit> in_place;
   std::vector<size_t> of;
   for (size_t i = 0; i < hits.size(); ++i)
-    if (look.original[i] > 0 && !memory.has_residual[i]) {
-      original.push_back(hits[i]);
+    if (photographed.in_place[i] && !memory.has_residual[i]) {
+      in_place.push_back(hits[i]);
       of.push_back(i);
     }
-  const std::vector<Vec3f> values = residual_at(device, *scene.residual, original);
+  const std::vector<Vec3f> values = residual_at(device, *scene.residual, in_place);
   for (size_t k = 0; k < of.size(); ++k) {
     memory.residuals[of[k]] = values[k];
     memory.has_residual[of[k]] = 1;
   }
 }
 
-// Output of the correction network times Appearance::original: #hits.
-std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const Appearance& look,
-                             std::span<const Hit> hits, HitMemory& memory) {
+// Radiance of the hits as they were photographed, under the present light. hits: indices.
+std::vector<Vec3f> photographed_radiance(const SceneLight& light, std::span<const Hit> all,
+                                         const Appearance& look, std::span<const size_t> hits) {
+  std::vector<Hit> some;
+  Appearance before;
+  for (const size_t i : hits) {
+    some.push_back(all[i]);
+    before.albedo.push_back(look.photographed.albedo[i]);
+    before.material.push_back(look.photographed.material[i]);
+    before.layer.push_back(look.layer[i]);
+  }
+  const Shading shading = light.shade(some, before);
+  std::vector<Vec3f> out(hits.size());
+  for (size_t k = 0; k < out.size(); ++k) out[k] = shading.diffuse[k] + shading.specular[k];
+  return out;
+}
+
+// What an edit leaves of the correction: it is a share of the radiance that light and material explain, and
+// stays that share where they change. Where they become much brighter it stays behind, because the errors of
+// a dark surface say little about a bright one.
+float kept_share(float now, float before) {
+  constexpr float kMost = 2, kBlack = 1e-4f;
+  return std::clamp((now + kBlack) / (before + kBlack), 0.0f, kMost);
+}
+
+// Output of the correction network, carried over to the edited surface: #hits, linear radiance.
+std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const SceneLight& light,
+                             const Shading& shading, std::span<const Hit> hits, HitMemory& memory) {
   std::vector<Vec3f> out(hits.size(), Vec3f{0, 0, 0});
   if (!scene.residual) return out;
-  fill_residuals(device, scene, look, hits, memory);
-  for (size_t i = 0; i < hits.size(); ++i)
-    if (look.original[i] > 0) out[i] = memory.residuals[i] * look.original[i];
+  const Appearance& look = memory.lit->look;
+  fill_residuals(device, scene, look.photographed, hits, memory);
+  std::vector<size_t> edited;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    if (!look.photographed.in_place[i]) continue;
+    out[i] = memory.residuals[i];
+    const Vec3f a = look.albedo[i], b = look.photographed.albedo[i];
+    const bool same =
+        a.x == b.x && a.y == b.y && a.z == b.z && look.material[i] == look.photographed.material[i];
+    if (!same) edited.push_back(i);
+  }
+  const std::vector<Vec3f> before = photographed_radiance(light, hits, look, edited);
+  for (size_t k = 0; k < edited.size(); ++k) {
+    const size_t i = edited[k];
+    const Vec3f now = shading.diffuse[i] + shading.specular[i];
+    for (int c = 0; c < 3; ++c) out[i][c] *= kept_share(now[c], before[k][c]);
+    if (!look.unlit.empty()) out[i] = out[i] * (1 - look.unlit[i]);
+  }
   return out;
 }
 
@@ -122,7 +162,7 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
       light.light_hits(g.hits, appearance_at(device, scene, g.hits), memory.lit ? &*memory.lit : nullptr);
   const Appearance& look = memory.lit->look;
   const Shading shading = memory.lit->shading();
-  const std::vector<Vec3f> residual = residuals(device, scene, look, g.hits, memory);
+  const std::vector<Vec3f> residual = residuals(device, scene, light, shading, g.hits, memory);
   const PixelFilter filter(g);
   Frame f = empty_frame(g.width, g.height);
   parallel_for(g.height, [&](int y) {
@@ -157,6 +197,23 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
     }
   });
   return f;
+}
+
+Image filtered_albedo(const GBuffer& g, std::span<const Vec3f> albedo) {
+  const PixelFilter filter(g);
+  Image out(g.width, g.height, 4);
+  parallel_for(g.height, [&](int y) {
+    for (int x = 0; x < g.width; ++x) {
+      Vec3f sum{0, 0, 0};
+      float weight = 0;
+      const float total = filter.visit_hits(x, y, [&](uint32_t i, float w) {
+        sum += w * albedo[i];
+        weight += w;
+      });
+      if (weight > 0) put_mean(out, size_t(y) * g.width + x, sum, weight, std::min(1.0f, weight / total));
+    }
+  });
+  return out;
 }
 
 Frame shade_view(const Device& device, const Scene& scene, const SceneLight& light, const GBuffer& g) {

@@ -86,7 +86,7 @@ TEST(ChangedScene, TurningTheObjectIsTurningCameraAndLight) {
 EditLayer spot(Vec3f where, Vec3f color) {
   EditLayer layer;
   layer.id = "0002-spot";
-  layer.region = Region({{where}, {normalize(where)}, {0.25f}});
+  layer.region = Region({{where}, {normalize(where)}, {0.25f}, {}});
   layer.tint = Tint{color, false, {1, 1, 1}};
   return layer;
 }

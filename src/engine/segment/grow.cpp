@@ -10,17 +10,17 @@
 namespace cei3d {
 namespace {
 
-constexpr float kSeedReach = 2;  // spacings
+constexpr float kClickReach = 2, kStrokeReach = 1;  // spacings
 
 // Paths from a click to the handler points around it.
 class Clicks {
  public:
-  explicit Clicks(const HandlerPoints& points)
-      : points_(points), index_(points.positions, kSeedReach * points.spacing) {}
+  Clicks(const HandlerPoints& points, float reach)
+      : points_(points), reach_(reach * points.spacing), index_(points.positions, reach_) {}
 
   std::vector<uint32_t> around(const SurfacePoint& click) const {
     std::vector<uint32_t> found;
-    index_.any_within(click.position, kSeedReach * points_.spacing, [&](size_t i) {
+    index_.any_within(click.position, reach_, [&](size_t i) {
       if (dot(points_.normals[i], click.normal) > 0) found.push_back(uint32_t(i));
       return false;
     });
@@ -42,16 +42,15 @@ class Clicks {
 
  private:
   const HandlerPoints& points_;
+  float reach_;  // unit frame
   PointIndex index_;
 };
 
-}  // namespace
-
-std::vector<Seed> click_seeds(const HandlerPoints& points, std::span<const SurfacePoint> positive,
-                              std::span<const SurfacePoint> negative) {
-  std::vector<Seed> seeds(points.positions.size(), Seed::none);
-  std::vector<uint8_t> both(seeds.size(), 0);
-  const Clicks clicks(points);
+// Seeds of the points around; those around both kinds get none.
+std::vector<Seed> seeds_around(const Clicks& clicks, size_t points, std::span<const SurfacePoint> positive,
+                               std::span<const SurfacePoint> negative) {
+  std::vector<Seed> seeds(points, Seed::none);
+  std::vector<uint8_t> both(points, 0);
   const auto put = [&](std::span<const SurfacePoint> list, Seed kind) {
     for (const SurfacePoint& click : list)
       for (const uint32_t i : clicks.around(click)) {
@@ -61,8 +60,17 @@ std::vector<Seed> click_seeds(const HandlerPoints& points, std::span<const Surfa
   };
   put(positive, Seed::positive);
   put(negative, Seed::negative);
-  for (size_t i = 0; i < seeds.size(); ++i)
+  for (size_t i = 0; i < points; ++i)
     if (both[i]) seeds[i] = Seed::none;
+  return seeds;
+}
+
+}  // namespace
+
+std::vector<Seed> click_seeds(const HandlerPoints& points, std::span<const SurfacePoint> positive,
+                              std::span<const SurfacePoint> negative) {
+  const Clicks clicks(points, kClickReach);
+  std::vector<Seed> seeds = seeds_around(clicks, points.positions.size(), positive, negative);
   const auto put_nearest = [&](std::span<const SurfacePoint> list, Seed kind) {
     for (const SurfacePoint& click : list) {
       Seed& seed = seeds[clicks.nearest(click)];
@@ -75,6 +83,11 @@ std::vector<Seed> click_seeds(const HandlerPoints& points, std::span<const Surfa
   put_nearest(positive, Seed::positive);
   put_nearest(negative, Seed::negative);
   return seeds;
+}
+
+std::vector<Seed> stroke_seeds(const HandlerPoints& points, std::span<const SurfacePoint> positive,
+                               std::span<const SurfacePoint> negative) {
+  return seeds_around(Clicks(points, kStrokeReach), points.positions.size(), positive, negative);
 }
 
 std::vector<float> grow(const HandlerPoints& points, std::span<const Vec3f> albedo,

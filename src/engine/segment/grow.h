@@ -17,6 +17,11 @@ namespace cei3d {
 std::vector<Seed> click_seeds(const HandlerPoints&, std::span<const SurfacePoint> positive,
                               std::span<const SurfacePoint> negative);
 
+// Seeds along strokes, given by points of the surface: the handler points within a spacing on the same side,
+// or the nearest one. A point within reach of strokes of both kinds gets no seed. Returns #N.
+std::vector<Seed> stroke_seeds(const HandlerPoints&, std::span<const SurfacePoint> positive,
+                               std::span<const SurfacePoint> negative);
+
 // Score of each handler point, [0, 1], to be interpolated by ScoredPoints. albedo: #N linear albedo.
 // Time: about n log n in the points; 200 000 take some seconds on one core.
 std::vector<float> grow(const HandlerPoints&, std::span<const Vec3f> albedo, std::span<const Seed> seeds);

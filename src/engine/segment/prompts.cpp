@@ -87,6 +87,19 @@ void add_prompts(const BelievedPixels& pixels, size_t count, Prompts& prompts) {
   choose(near.empty() ? outside : near, count, prompts.negative);
 }
 
+std::vector<Vec2f> spread(std::span<const Vec2f> pixels, size_t count) {
+  if (pixels.empty() || count == 0) return {};
+  Vec2f mean{0, 0};
+  for (const Vec2f p : pixels) mean.x += p.x / float(pixels.size()), mean.y += p.y / float(pixels.size());
+  const auto nearer = [&](Vec2f a, Vec2f b) { return distance(a, mean) < distance(b, mean); };
+  std::vector<Vec2f> chosen{*std::min_element(pixels.begin(), pixels.end(), nearer)};
+  while (chosen.size() < std::min(count, pixels.size())) {
+    const auto closer = [&](Vec2f a, Vec2f b) { return nearest(a, chosen) < nearest(b, chosen); };
+    chosen.push_back(*std::max_element(pixels.begin(), pixels.end(), closer));
+  }
+  return chosen;
+}
+
 Vec2f deepest(std::span<const Vec2f> wrong, std::span<const Vec2f> right) {
   const std::vector<Vec2f> others = thinned(right, kOthers);
   Vec2f best = wrong.front();

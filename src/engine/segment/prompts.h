@@ -24,6 +24,10 @@ struct BelievedPixels {
 // ones no farther from the part than its size.
 void add_prompts(const BelievedPixels&, size_t count, Prompts& prompts);
 
+// At most `count` of the pixels, far from each other: first the one nearest to their mean, then each time the
+// one farthest from those chosen.
+std::vector<Vec2f> spread(std::span<const Vec2f> pixels, size_t count);
+
 // The pixel of `wrong` that is farthest from the pixels that are right. wrong must not be empty.
 Vec2f deepest(std::span<const Vec2f> wrong, std::span<const Vec2f> right);
 

@@ -27,15 +27,19 @@ constexpr float kSurroundings = 0.5f;    // distance around the part, in its ext
 constexpr float kMinGain = 0.02f;        // minimum mean gain per point for which a view is segmented
 constexpr float kMinSeen = 0.07f;        // minimum share of the part that a view must show
 
-// Score of each point from the votes so far.
+// Score of each point from the masks so far.
 class Votes {
  public:
-  explicit Votes(size_t n) : sum_(n, 0.0f), weight_(n, 0.0f) {}
+  Votes(size_t n, MaskCombination combination) : combination_(combination), sum_(n, 0.0f), weight_(n, 0.0f) {}
   void add(uint32_t point, float probability, float weight) {
-    sum_[point] += weight * probability;
+    sum_[point] +=
+        weight * (combination_ == MaskCombination::votes ? probability : float(probability > 0.5f));
     weight_[point] += weight;
   }
-  float score(size_t i) const { return (sum_[i] + 0.5f * kPrior) / (weight_[i] + kPrior); }
+  float score(size_t i) const {
+    if (combination_ == MaskCombination::any) return sum_[i] > 0 ? 1 : weight_[i] > 0 ? 0 : 0.5f;
+    return (sum_[i] + 0.5f * kPrior) / (weight_[i] + kPrior);
+  }
   // Information that one more vote would add, [0, 1].
   float need(size_t i) const { return 1 / (1 + weight_[i] / kEnough); }
   bool in(size_t i) const { return score(i) >= kBelieved; }
@@ -43,6 +47,7 @@ class Votes {
   size_t size() const { return sum_.size(); }
 
  private:
+  MaskCombination combination_;
   std::vector<float> sum_, weight_;
 };
 
@@ -93,7 +98,7 @@ class Propagation {
         surface_(surface),
         request_(request),
         segmenter_(segmenter),
-        votes_(handlers.positions.size()),
+        votes_(handlers.positions.size(), request.plan.combination),
         tolerance_(std::max(2 * handlers.spacing, 0.01f)) {
     find_clicks(request.clicks.positive, positive_);
     find_clicks(request.clicks.negative, negative_);
@@ -101,7 +106,10 @@ class Propagation {
 
   void first_view();
   void next_view(int view);
-  int choose_view() const;  // -1: none is useful
+  // The next view by the plan's order; -1: none is left, or none is useful.
+  int choose_view() const {
+    return request_.plan.order == ViewOrder::adjacent ? adjacent_view() : informative_view();
+  }
   PropagateResult result() const;
   size_t segmented() const { return report_.views.size() + report_.refused.size(); }
 
@@ -115,6 +123,9 @@ class Propagation {
                                  const std::vector<Vec3f>& normals, float facing) const {
     return seen_points(surface_, request_.cameras[view], positions, normals, facing, tolerance_);
   }
+  Image first_mask() const;
+  int adjacent_view() const;
+  int informative_view() const;
   Prompts prompts_for(int view, const std::vector<SeenPoint>& seen) const;
   Places wanted(std::vector<float>& need, std::vector<uint8_t>& in) const;
   bool used(int view) const;
@@ -126,6 +137,7 @@ class Propagation {
   Votes votes_;
   float tolerance_;
   Places positive_, negative_;  // surface points that the user clicked
+  int last_ = 0;                // the view segmented last
   PropagateReport report_;
 };
 
@@ -153,10 +165,21 @@ void Propagation::vote(const std::vector<SeenPoint>& seen, const Image& mask, fl
     votes_.add(s.point, 1 / (1 + std::exp(-sample(mask, s.pixel))), weight * s.facing);
 }
 
+// Log-odds: the user's own mask, else that of the clicks.
+Image Propagation::first_mask() const {
+  constexpr float kSureOdds = 4;
+  const Prompts& clicks = request_.clicks;
+  if (request_.mask.empty()) return segmenter_.mask(request_.first, clicks.positive, clicks.negative);
+  Image odds = request_.mask;
+  for (float& m : odds.data) m = m >= 0.5f ? kSureOdds : -kSureOdds;
+  return odds;
+}
+
 void Propagation::first_view() {
   const int view = request_.first;
   const std::vector<SeenPoint> seen = seen_by(view, handlers_.positions, handlers_.normals, kMinFacing);
-  vote(seen, segmenter_.mask(view, request_.clicks.positive, request_.clicks.negative), kFirstWeight);
+  vote(seen, first_mask(), kFirstWeight);
+  last_ = view;
   report_.views.push_back(view);
   const bool found =
       std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) { return votes_.in(s.point); });
@@ -187,9 +210,16 @@ Prompts Propagation::prompts_for(int view, const std::vector<SeenPoint>& seen) c
 }
 
 // Adds a prompt where the mask differs most from the believed points, as a user would, and segments again.
+// When any mask counts there is no such check.
 void Propagation::next_view(int view) {
   const std::vector<SeenPoint> seen = seen_by(view, handlers_.positions, handlers_.normals, kMinFacing);
   Prompts prompts = prompts_for(view, seen);
+  last_ = view;
+  if (request_.plan.combination == MaskCombination::any && !prompts.positive.empty()) {
+    vote(seen, segmenter_.mask(view, prompts.positive, prompts.negative), 1);
+    report_.views.push_back(view);
+    return;
+  }
   Image best;
   float agreement = 0;
   for (int round = 0; round <= kCorrections && !prompts.positive.empty(); ++round) {
@@ -241,10 +271,23 @@ bool Propagation::used(int view) const {
   return has(report_.views) || has(report_.refused);
 }
 
+// By the angle between the directions from the object's middle; of equals, the first.
+int Propagation::adjacent_view() const {
+  const auto direction = [&](int view) { return normalize(request_.cameras[size_t(view)].center); };
+  double best = -2;
+  int chosen = -1;
+  for (int view = 0; view < int(request_.cameras.size()); ++view) {
+    if (used(view)) continue;
+    const double cosine = dot(direction(view), direction(last_));
+    if (cosine > best) best = cosine, chosen = view;
+  }
+  return chosen;
+}
+
 // The view with the largest product of new information and known share of the part. Without the second factor
 // the first step would go to a view that shows hardly any believed point, and its mask would contradict those
 // few.
-int Propagation::choose_view() const {
+int Propagation::informative_view() const {
   std::vector<float> need;
   std::vector<uint8_t> in;
   const Places places = wanted(need, in);
@@ -279,11 +322,12 @@ PropagateResult propagate(const HandlerPoints& handlers, const Surface& surface,
                           const PropagateRequest& request, ViewSegmenter& segmenter, Progress& progress) {
   Propagation p(handlers, surface, request, segmenter);
   p.first_view();
-  while (int(p.segmented()) < request.max_views) {
+  const int views = std::min(request.plan.max_views, int(request.cameras.size()));
+  while (int(p.segmented()) < views) {
     check_cancelled(progress, "Interrupted; nothing was changed.");
     ProgressReport report;
     report.stage = "views";
-    report.fraction = double(p.segmented()) / request.max_views;
+    report.fraction = double(p.segmented()) / views;
     progress.report(report);
     const int view = p.choose_view();
     if (view < 0) break;

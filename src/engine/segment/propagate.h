@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Propagates a part from clicks in one view: the mask there is carried to the handler points, which give
-// prompts for the next view, and so on around the part. [paper Algorithm 1] Where the algorithm is silent:
-// hidden points are ignored, the views vote, and a mask that contradicts the earlier votes is not counted.
+// prompts for the next view, and so on around the part. [paper Algorithm 1] The algorithm does not say how
+// prompts are chosen: here hidden points are ignored, and prompts are spread over the part. How views are
+// chosen and combined is in view_plan.h.
 #pragma once
 
 #include <span>
@@ -10,6 +11,7 @@
 #include "core/base/progress.h"
 #include "core/math/camera.h"
 #include "engine/segment/prompts.h"
+#include "engine/segment/view_plan.h"
 #include "engine/segment/view_segmenter.h"
 #include "model/geometry/shape/handlers.h"
 #include "model/geometry/shape/surface.h"
@@ -19,13 +21,15 @@ namespace cei3d {
 struct PropagateRequest {
   std::vector<Camera> cameras;  // of the views that the segmenter knows, unit frame
   int first = 0;                // index of the clicked view
-  Prompts clicks;               // in the clicked view, at least one positive
-  int max_views = 10;           // maximum number of views to segment
+  Prompts clicks;               // in the clicked view, at least one positive unless there is a mask
+  Image mask;  // of the part in the clicked view, 1 channel, inside where >= 0.5; may be empty
+  ViewPlan plan;
 };
 
 struct PropagateReport {
-  std::vector<int> views;    // views that voted, in order; the clicked one first
-  std::vector<int> refused;  // views whose masks contradicted the earlier votes
+  std::vector<int> views;  // views that voted, in order; the clicked one first
+  // Views that gave nothing: the mask contradicted the earlier votes, or no prompt could be seen.
+  std::vector<int> refused;
 };
 
 struct PropagateResult {

@@ -144,7 +144,7 @@ TEST(Propagate, HiddenPointsHaveNoVote) {
   // One view: what lies behind the sphere projects into the mask, too.
   const HandlerPoints h = sphere_points(4000);
   PropagateRequest request = band_request();
-  request.max_views = 1;
+  request.plan.max_views = 1;
   const Camera& c = request.cameras[0];
   Oracle oracle(request.cameras, [](Vec3f) { return true; });
   Progress silent;
@@ -158,6 +158,68 @@ TEST(Propagate, HiddenPointsHaveNoVote) {
       EXPECT_GT(scores[i], 0.6f);
     }
   }
+}
+
+TEST(Propagate, AMaskOfTheUserStandsForTheFirstView) {
+  const HandlerPoints h = sphere_points(6000);
+  PropagateRequest request = band_request();
+  Oracle truth(request.cameras, band);
+  request.mask = truth.mask(0, {}, {});
+  for (float& m : request.mask.data) m = m > 0;
+  request.clicks = {};
+  Oracle oracle(request.cameras, band);
+  Progress silent;
+  const PropagateResult r = propagate(h, sphere(), request, oracle, silent);
+  EXPECT_EQ(oracle.asked.count(0), 0u);
+  EXPECT_GT(r.report.views.size(), 4u);
+  EXPECT_GT(right(h, r.scores, band), 0.95);
+}
+
+TEST(Propagate, InAdjacentOrderEachViewIsTheNearestOneLeft) {
+  const HandlerPoints h = sphere_points(3000);
+  PropagateRequest request = band_request();
+  request.plan = {ViewPlan::kAll, ViewOrder::adjacent, MaskCombination::any};
+  Oracle oracle(request.cameras, band);
+  Progress silent;
+  const std::vector<int> views = propagate(h, sphere(), request, oracle, silent).report.views;
+  ASSERT_EQ(views.size(), request.cameras.size());
+  for (size_t k = 0; k + 1 < views.size(); ++k) {
+    const auto cosine = [&](int v) {
+      return dot(normalize(request.cameras[size_t(v)].center),
+                 normalize(request.cameras[size_t(views[k])].center));
+    };
+    for (size_t later = k + 2; later < views.size(); ++later)
+      EXPECT_GE(cosine(views[k + 1]), cosine(views[later]) - 1e-9);
+  }
+}
+
+TEST(Propagate, AnyMaskCountsInTheUnion) {
+  // One view shows a second place as part: the union has more of it than the votes.
+  const HandlerPoints h = sphere_points(6000);
+  PropagateRequest request = band_request();
+  request.plan.max_views = ViewPlan::kAll;
+  const auto spot = [](Vec3f p) { return length(p - Vec3f{0.45f, 0.26f, 0.46f}) < 0.12f; };  // in view 1
+  Progress silent;
+  const auto share_of_spot = [&](MaskCombination combination) {
+    request.plan.combination = combination;
+    Oracle honest(request.cameras, band);
+    Oracle wrong(request.cameras, [&](Vec3f p) { return band(p) || spot(p); });
+    struct Mixed : ViewSegmenter {
+      Oracle &honest, &wrong;
+      Mixed(Oracle& a, Oracle& b) : honest(a), wrong(b) {}
+      Image mask(int view, std::span<const Vec2f> in, std::span<const Vec2f> out) override {
+        return (view == 1 ? wrong : honest).mask(view, in, out);
+      }
+    } mixed(honest, wrong);
+    const std::vector<float> scores = propagate(h, sphere(), request, mixed, silent).scores;
+    int in = 0, all = 0;
+    for (size_t i = 0; i < scores.size(); ++i)
+      if (spot(h.positions[i])) in += scores[i] > 0.5f, ++all;
+    return double(in) / all;
+  };
+  const double any = share_of_spot(MaskCombination::any);
+  EXPECT_GT(any, 0.5);
+  EXPECT_LT(share_of_spot(MaskCombination::votes), any);
 }
 
 TEST(Propagate, SaysSoWhenNothingIsFound) {
@@ -196,6 +258,17 @@ TEST(SeenPoints, SampleIsExactOnALinearPicture) {
   EXPECT_NEAR(sample(image, {2.2f, 1.9f}), 2 * 2.2f - 3 * 1.9f, 1e-5);
   EXPECT_EQ(sample(image, {-7, -7}), *image.at(0, 0));
   EXPECT_EQ(sample(image, {99, 99}), *image.at(4, 3));
+}
+
+TEST(Prompts, SpreadFromTheMiddleOfAStroke) {
+  std::vector<Vec2f> line;
+  for (int x = 0; x <= 100; ++x) line.push_back({float(x), 7});
+  const std::vector<Vec2f> some = spread(line, 3);
+  ASSERT_EQ(some.size(), 3u);
+  EXPECT_EQ(some[0].x, 50);
+  EXPECT_EQ(some[1].x + some[2].x, 100);  // both ends
+  EXPECT_EQ(spread(std::span(line).first(2), 5).size(), 2u);
+  EXPECT_TRUE(spread({}, 5).empty());
 }
 
 TEST(Prompts, KeepAwayFromTheBorderAndFromEachOther) {

@@ -8,8 +8,9 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "core/base/temp_folder.h"
-#include "engine/project/dataset.h"
+#include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace {

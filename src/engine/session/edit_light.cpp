@@ -1,10 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/base/json.h"
 #include "engine/io/npy.h"
 #include "engine/session/edit_ops.h"
 #include "engine/session/light_choice.h"
 
 namespace cei3d {
 namespace {
+
+std::optional<Sun> sun_from(JsonReader& params) {
+  if (!params.has("sun")) return std::nullopt;
+  JsonReader reader = params.object("sun");
+  const auto [x, y, z] = reader.numbers<3>("direction");
+  const Sun sun{{x, y, z}, reader.require<double>("strength")};
+  reader.finish();
+  return sun;
+}
 
 EditOutcome make(const EditContext& context, const EditJob& job) {
   JsonReader params = job.reader();
@@ -15,9 +25,12 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
   out.layer.id = job.id;
   out.layer.everywhere = true;
   const double degrees = params.optional("rotate_degrees", 0.0), scale = params.optional("scale", 1.0);
+  const std::optional<Sun> sun = sun_from(params);
   params.finish();
-  out.layer.light = turned_light(light, degrees, scale, context.scene.up);
+  light = turned_light(light, degrees, scale, context.scene.up);
+  if (sun) light = with_sun(light, *sun);
   out.report = {{"lobes", light.lobes.size()}};
+  out.layer.light = std::move(light);
   return out;
 }
 
@@ -25,6 +38,7 @@ Aspects depends(const Json& params) { return {.light = !params.contains("env")};
 
 }  // namespace
 
-const EditOp kLightOp{"light", 1, make, depends};
+// Version 2: a sun.
+const EditOp kLightOp{"light", 2, make, depends};
 
 }  // namespace cei3d

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "core/base/json.h"
 #include "engine/edit/material.h"
 #include "engine/session/edit_ops.h"
 #include "engine/session/edit_params.h"

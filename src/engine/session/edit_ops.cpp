@@ -2,6 +2,7 @@
 #include "engine/session/edit_ops.h"
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "engine/project/project.h"
 
 namespace cei3d {

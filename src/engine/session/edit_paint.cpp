@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/undistort.h"
 #include "engine/edit/paint.h"
@@ -60,7 +61,9 @@ Scribble scribble_of(const EditContext& context, const EditJob& job, const Json&
 Json report_json(const PaintReport& r) {
   return {{"painted_pixels", r.painted_pixels},
           {"missed_pixels", r.missed_pixels},
+          {"unchanged_pixels", r.unchanged_pixels},
           {"points", r.points},
+          {"refined", r.refined},
           {"mean_error", r.mean_error},
           {"max_error", r.max_error},
           {"out_of_reach", r.out_of_reach},
@@ -86,6 +89,11 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
   request.seed = params.require<uint64_t>("seed");
   request.erase = params.optional("erase", false);
   request.routing = routing_of(params);
+  request.theta = params.optional("theta", 0.0f) * float(context.scene.normalization.scale);
+  if (params.has("set")) {
+    check_settings(branch_settings().infos(), params.member("set"));
+    branch_settings().put(params.member("set"), request.branch);
+  }
   const Effects effects = effects_from_params(params);
   request.material = effects.change;
   request.color = effects.color;
@@ -120,12 +128,16 @@ Aspects depends(const Json& stored) {
   JsonReader params(stored, "The parameters of a paint edit");
   const bool seen = target_of(params) == PaintTarget::appearance;
   const bool everything = routing_of(params) == Routing::none;
-  return {.shape = true, .look = seen || everything, .light = seen};
+  const Effects effects = effects_from_params(params);
+  const bool compares = target_of(params) == PaintTarget::albedo && !params.optional("erase", false) &&
+                        !effects.color && effects.change.empty();  // with the albedo below
+  return {.shape = true, .look = seen || everything || compares, .light = seen};
 }
 
 }  // namespace
 
-// Version 2: several strokes; version 3: materials, also erased ones; version 4: cameras of their own.
+// Version 2: several strokes; version 3: materials, also erased ones; version 4: cameras of their own,
+// labeled handler points.
 const EditOp kPaintOp{"paint", 4, make, depends, migrate};
 
 }  // namespace cei3d

@@ -6,10 +6,11 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/name_distance.h"
 #include "core/math/color.h"
 #include "engine/capture/capture.h"
-#include "engine/project/dataset.h"
+#include "model/geometry/shape/camera_json.h"
 #include "model/material/presets.h"
 
 namespace cei3d {

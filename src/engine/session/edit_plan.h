@@ -2,6 +2,7 @@
 // An edit before it is made, and before it is stored.
 #pragma once
 
+#include "core/base/json.h"
 #include "engine/project/project.h"
 #include "engine/session/edit_ops.h"
 

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "engine/io/image_file.h"
+#include "engine/metrics/flip.h"
 #include "engine/metrics/psnr.h"
 #include "engine/metrics/ssim.h"
 #include "model/scene/parts.h"
@@ -89,6 +90,7 @@ void EditScorer::add_rest(const EditImages& p, const Area& grown) {
   if (!similar) return;
   rest_.psnr += *psnr_in_mask(after, photo, rest);
   rest_.ssim += *similar;
+  rest_.flip = rest_.flip.value_or(0) + *flip_in_area(photo, after, rest);
   if (const auto d = perceptual_.distance(shown_in(after, rest, 1), shown_in(photo, rest, 1)))
     rest_.lpips = rest_.lpips.value_or(0) + *d;
   rest_.pixels += pixels_in(rest);
@@ -108,7 +110,7 @@ EditScore EditScorer::result() const {
   }
   if (rest_.views > 0) {
     const double n = double(rest_.views);
-    score.rest = RestScore{rest_.psnr / n, rest_.ssim / n, {}, rest_.pixels, rest_.views};
+    score.rest = RestScore{rest_.psnr / n, rest_.ssim / n, {}, *rest_.flip / n, rest_.pixels, rest_.views};
     if (rest_.lpips) score.rest->lpips = *rest_.lpips / n;
   }
   score.fid = perceptual_.frechet(before_, after_);

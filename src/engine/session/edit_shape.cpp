@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // deform and remove: edits of the object's shape.
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "engine/edit/deform.h"
 #include "engine/edit/remove.h"
 #include "engine/session/edit_ops.h"

@@ -266,6 +266,29 @@ TEST_F(EditTest, LightIsTurnedScaledAndReplaced) {
   EXPECT_NEAR(radiance(scene("a").light, {0, 0.6f, 0.8f}).y, 0.5f, 0.1f);
 }
 
+TEST_F(EditTest, ASunGivesWhatItsStrengthSays) {
+  const SgMixture own = scene("a").light;
+  session_.change_light({"", 0, EnvConvention::by_up_axis, 1, Sun{{0, 3, 4}, 2}}, quiet_);
+  const SgMixture all = scene("a").light;
+  ASSERT_EQ(all.lobes.size(), own.lobes.size() + 1);
+  const SgMixture sun{{all.lobes.back()}};
+  // Irradiance by summing over directions: around the sun, and of the rest over all normals.
+  const auto around = [&](int i, int n, float widest) {  // equal shares of a cap about the sun
+    const float c = 1 - widest * (float(i) + 0.5f) / float(n), s = std::sqrt(1 - c * c), t = 2.4f * float(i);
+    const Vec3f z{0, 0.6f, 0.8f}, x{1, 0, 0}, y = cross(z, x);
+    return z * c + x * (s * std::cos(t)) + y * (s * std::sin(t));
+  };
+  constexpr int kRays = 200000;
+  double facing = 0, mean = 0;
+  for (int i = 0; i < kRays; ++i) {
+    const Vec3f near = around(i, kRays, 0.02f);
+    facing += radiance(sun, near).y * dot(near, Vec3f{0, 0.6f, 0.8f}) * 2 * kPi * 0.02 / kRays;
+    const Vec3f l = radiance(own, around(i, kRays, 2));
+    mean += (l.x + l.y + l.z) / 3 * 4 * kPi / kRays / 4;
+  }
+  EXPECT_NEAR(facing / mean, 2, 0.01);
+}
+
 TEST_F(EditTest, WrongLightsChangeNothing) {
   const std::string before = files_of(folder("a"));
   const auto code = [&](const LightChoice& c) {
@@ -274,6 +297,8 @@ TEST_F(EditTest, WrongLightsChangeNothing) {
   EXPECT_EQ(code({}), ErrorCode::usage);
   EXPECT_EQ(code({"", 0, EnvConvention::by_up_axis, 0}), ErrorCode::usage);
   EXPECT_EQ(code({"", NAN, EnvConvention::by_up_axis, 1}), ErrorCode::usage);
+  EXPECT_EQ(code({"", 0, EnvConvention::by_up_axis, 1, Sun{{0, 0, 0}, 1}}), ErrorCode::usage);
+  EXPECT_EQ(code({"", 0, EnvConvention::by_up_axis, 1, Sun{{0, 0, 1}, -1}}), ErrorCode::usage);
   const fs::path sky = temp_.path() / "sky.hdr";
   write_hdr(sky, Image(16, 16, 3, 0.5f));
   EXPECT_EQ(code({sky, 0, EnvConvention::by_up_axis, 1}), ErrorCode::failed);

@@ -17,11 +17,28 @@ Json edit_json(const EditScore& e) {
   if (e.rest) {
     Json& rest = j["non_edited"] = {{"psnr", decibels(e.rest->psnr)}, {"ssim", e.rest->ssim}};
     if (e.rest->lpips) rest["lpips"] = *e.rest->lpips;
+    if (e.rest->flip) rest["flip"] = *e.rest->flip;
     rest["pixels"] = e.rest->pixels;
     rest["views"] = e.rest->views;
   }
   if (e.fid) j["fid_before_after"] = *e.fid;
   return j;
+}
+
+std::string rest_markdown(const RestScore& r) {
+  std::string head, rule, row;
+  const auto column = [&](const char* name, const std::optional<double>& value) {
+    if (!value) return;
+    head += fmt::format(" {} |", name);
+    rule += "---|";
+    row += fmt::format(" {:.4f} |", *value);
+  };
+  column("SSIM", r.ssim);
+  column("FLIP", r.flip);
+  column("LPIPS", r.lpips);
+  return fmt::format(
+      "\n| non-edited area: views | PSNR |{} pixels |\n|---|---|{}---|\n| {} | {} dB |{} {} |\n", head, rule,
+      r.views, decibels_text(r.psnr), row, r.pixels);
 }
 
 std::string edit_markdown(const EditScore& e) {
@@ -32,13 +49,7 @@ std::string edit_markdown(const EditScore& e) {
         "|---|---|---|---|---|---|\n| {} | {} dB | {:.3f} | {} | {} | {} |\n",
         e.truth->views, decibels_text(e.truth->psnr_inside), e.truth->iou, e.truth->pixels_inside,
         e.truth->changed_outside, e.truth->pixels_outside);
-  if (e.rest)
-    text += fmt::format(
-        "\n| non-edited area: views | PSNR | SSIM |{} pixels |\n|---|---|---|{}---|\n| {} | {} dB | {:.4f} "
-        "|{} {} |\n",
-        e.rest->lpips ? " LPIPS |" : "", e.rest->lpips ? "---|" : "", e.rest->views,
-        decibels_text(e.rest->psnr), e.rest->ssim,
-        e.rest->lpips ? fmt::format(" {:.4f} |", *e.rest->lpips) : "", e.rest->pixels);
+  if (e.rest) text += rest_markdown(*e.rest);
   if (e.fid) text += fmt::format("\nFID between the renders before and after the edit: {:.1f}\n", *e.fid);
   return text;
 }
@@ -56,8 +67,8 @@ EditScore edit_from(JsonReader reader) {
                      reader.require<size_t>("pixels_outside"), reader.require<size_t>("views")};
   if (reader.has("non_edited")) {
     JsonReader r = reader.object("non_edited");
-    e.rest = RestScore{decibels_from(r, "psnr"), r.require<double>("ssim"), r.optional<double>("lpips"),
-                       r.require<size_t>("pixels"), r.require<size_t>("views")};
+    e.rest = RestScore{decibels_from(r, "psnr"),   r.require<double>("ssim"),   r.optional<double>("lpips"),
+                       r.optional<double>("flip"), r.require<size_t>("pixels"), r.require<size_t>("views")};
     r.finish();
   }
   e.fid = reader.optional<double>("fid_before_after");
@@ -70,10 +81,12 @@ ViewScore view_from(JsonReader reader) {
               decibels_from(reader, "psnr"),
               reader.require<double>("ssim"),
               {},
+              {},
               {}};
   if (const Json& masked = reader.member("psnr_masked"); !masked.is_null())
     v.psnr_masked = decibels_from(masked);
   v.lpips = reader.optional<double>("lpips");
+  v.flip = reader.optional<double>("flip");
   reader.finish();
   return v;
 }
@@ -97,6 +110,7 @@ EvalReport eval_report_from_json(const Json& j, const std::string& what) {
   }
   r.lpips = reader.optional<double>("lpips");
   r.fid = reader.optional<double>("fid");
+  r.flip = reader.optional<double>("flip");
   if (reader.has("edit")) r.edit = edit_from(reader.object("edit"));
   for (const Json& v : reader.array("views")) r.views.push_back(view_from({v, "A view of " + what}));
   reader.finish();
@@ -114,6 +128,7 @@ Json EvalReport::json() const {
   if (alone) j["alone"] = {{"psnr", decibels(alone->psnr)}, {"psnr_masked", decibels(alone->psnr_masked)}};
   if (lpips) j["lpips"] = *lpips;
   if (fid) j["fid"] = *fid;
+  if (flip) j["flip"] = *flip;
   if (edit) j["edit"] = edit_json(*edit);
   j["views"] = Json::array();
   for (const ViewScore& v : views) {
@@ -122,6 +137,7 @@ Json EvalReport::json() const {
                  {"ssim", v.ssim},
                  {"psnr_masked", v.psnr_masked ? decibels(*v.psnr_masked) : Json()}};
     if (v.lpips) view["lpips"] = *v.lpips;
+    if (v.flip) view["flip"] = *v.flip;
     j["views"].push_back(std::move(view));
   }
   return j;
@@ -141,6 +157,7 @@ std::string EvalReport::markdown() const {
   if (alone)
     column("light and material alone", fmt::format("{} dB, {} dB in the mask", decibels_text(alone->psnr),
                                                    decibels_text(alone->psnr_masked)));
+  if (flip) column("FLIP", fmt::format("{:.4f}", *flip));
   if (lpips) column("LPIPS", fmt::format("{:.4f}", *lpips));
   if (fid) column("FID", fmt::format("{:.1f}", *fid));
   std::string text = head + "\n" + rule + "\n" + row + "\n";

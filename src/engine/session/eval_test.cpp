@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "core/base/temp_folder.h"
 #include "core/base/test_unknown_keys.h"
 #include "core/infer/onnx.h"
@@ -81,6 +82,7 @@ TEST_F(EvalTest, OwnRendersAreMatchedExactly) {
   const EvalReport r = session_.evaluate({}, quiet_);
   EXPECT_EQ(r.views.size(), 3u);
   EXPECT_TRUE(std::isinf(r.psnr));
+  EXPECT_DOUBLE_EQ(*r.flip, 0);
   EXPECT_TRUE(std::isinf(r.psnr_masked));
   EXPECT_DOUBLE_EQ(r.ssim, 1);
   EXPECT_FALSE(r.lpips || r.fid || r.edit);

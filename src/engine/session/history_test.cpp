@@ -8,6 +8,7 @@
 
 #include "core/base/error_of.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "core/math/rng.h"
 #include "engine/render/render_cache.h"
 #include "engine/session/test_edits.h"

@@ -8,6 +8,7 @@
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "core/math/rotation.h"
+#include "core/math/sg.h"
 #include "engine/io/image_file.h"
 #include "engine/io/npy.h"
 #include "model/light/fit.h"
@@ -93,10 +94,27 @@ SgMixture environment_light(const Device& device, const LightChoice& choice, Vec
   return light_from_array(to_array(light));  // rounded as the cache stores it
 }
 
-void check_turn(const LightChoice& choice) {
+SgMixture with_sun(const SgMixture& light, const Sun& sun) {
+  constexpr float kSharpness = 1000;  // a glow of some three degrees: highlights and soft shadows
+  Vec3f power{0, 0, 0};
+  for (const SgLobe& lobe : light.lobes) power += lobe.mu * sg_integral(lobe.lambda);
+  const float received = (power.x + power.y + power.z) / 3 / 4;  // mean over all normals
+  const float peak = float(sun.strength) * received / sg_integral(kSharpness);
+  SgMixture out = light;
+  out.lobes.push_back({to_float(normalize(sun.direction)), kSharpness, Vec3f{1, 1, 1} * peak});
+  return out;
+}
+
+void check_choice(const LightChoice& choice) {
   if (!std::isfinite(choice.rotate_degrees)) fail_usage("The angle to turn the light by is not a number.");
   if (!(choice.scale > 0 && choice.scale <= 1e6))
     fail_usage("{} is not a factor for the light; give one above 0, and up to 1e6.", choice.scale);
+  if (!choice.sun) return;
+  const double far = length(choice.sun->direction);
+  if (!(far > 0 && std::isfinite(far)))
+    fail_usage("The direction to the sun has no length; give three numbers.");
+  if (!(choice.sun->strength >= 0 && choice.sun->strength <= 1e6))
+    fail_usage("{} is not a strength of the sun; give one from 0 to 1e6.", choice.sun->strength);
 }
 
 SgMixture turned_light(const SgMixture& light, double degrees, double scale, Vec3d up) {
@@ -108,9 +126,10 @@ SgMixture turned_light(const SgMixture& light, double degrees, double scale, Vec
 
 SgMixture chosen_light(const Device& device, const LightChoice& choice, const SgMixture& own, Vec3d up,
                        const LightCache& cache) {
-  check_turn(choice);
+  check_choice(choice);
   const SgMixture light = choice.env.empty() ? own : environment_light(device, choice, up, cache);
-  return turned_light(light, choice.rotate_degrees, choice.scale, up);
+  const SgMixture turned = turned_light(light, choice.rotate_degrees, choice.scale, up);
+  return choice.sun ? with_sun(turned, *choice.sun) : turned;
 }
 
 }  // namespace cei3d

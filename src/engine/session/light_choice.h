@@ -20,10 +20,13 @@ SgMixture environment_light(const Device&, const LightChoice&, Vec3d up, const L
 
 // Light rotated about the up axis (degrees, counter-clockwise seen from above) and scaled.
 SgMixture turned_light(const SgMixture&, double degrees, double scale, Vec3d up);
-// Usage errors: an angle that is not finite, a scale that is not positive.
-void check_turn(const LightChoice&);
+// The light and a white sun, which is one narrow lobe.
+SgMixture with_sun(const SgMixture&, const Sun&);
+// Usage errors: an angle that is not finite, a scale that is not positive, a sun without direction or with a
+// negative strength.
+void check_choice(const LightChoice&);
 
-// The chosen light, rotated and scaled. own: the light of the scene.
+// The chosen light, rotated and scaled, and its sun. own: the light of the scene.
 SgMixture chosen_light(const Device&, const LightChoice&, const SgMixture& own, Vec3d up,
                        const LightCache& = {});
 

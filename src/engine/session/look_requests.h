@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/json.h"
 #include "engine/session/requests.h"
 
 namespace cei3d {

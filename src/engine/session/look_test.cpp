@@ -7,11 +7,12 @@
 #include <map>
 
 #include "core/base/error_of.h"
-#include "engine/project/dataset.h"
+#include "core/base/json.h"
 #include "engine/session/edit_plan.h"
 #include "engine/session/frame_files.h"
 #include "engine/session/test_edits.h"
 #include "engine/session/tiled_frame.h"
+#include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/error_of.h"
+#include "core/base/json.h"
 #include "core/base/temp_folder.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
@@ -142,9 +143,11 @@ TEST_F(PartsTest, WrongCommandsChangeNothing) {
   c.view = "r_0";
   c.like = {32, 32};
   EXPECT_THAT(error_of([&] { session_.select_part(c, quiet_); }).what(), HasSubstr("has one material"));
-  c = columns(10, 30);
   c.segmenter = "sam";
-  EXPECT_EQ(code(c), ErrorCode::usage);
+  EXPECT_EQ(code(c), ErrorCode::usage);  // a network needs prompts
+  c = columns(10, 30);
+  c.keep_color = true;
+  EXPECT_EQ(code(c), ErrorCode::usage);  // of which scribble?
   EXPECT_EQ(error_of([&] { mask_of("ear"); }).code(), ErrorCode::usage);
   EXPECT_TRUE(session_.log().empty());
 }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/temp_folder.h"
 #include "engine/capture/test_capture.h"
 #include "engine/project/project.h"

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 namespace {
@@ -14,6 +15,8 @@ constexpr const char* kChannels[] = {"rgb",   "albedo",    "diffuse",   "specula
 constexpr const char* kSeverities[] = {"note", "warning", "error"};
 constexpr const char* kTargets[] = {"albedo", "appearance", "radiance"};
 constexpr const char* kRoutings[] = {"both", "points", "outline", "none"};
+constexpr const char* kViewOrders[] = {"informative", "adjacent"};
+constexpr const char* kMaskCombinations[] = {"votes", "any"};
 constexpr const char* kConventions[] = {"", "zup", "yup", "mitsuba", "blender"};
 
 template <class Enum, size_t N>
@@ -47,8 +50,18 @@ std::optional<PaintTarget> paint_target_from_name(const std::string& name) {
 std::optional<Routing> routing_from_name(const std::string& name) {
   return from_name<Routing>(kRoutings, name);
 }
+std::optional<ViewOrder> view_order_from_name(const std::string& name) {
+  return from_name<ViewOrder>(kViewOrders, name);
+}
+std::optional<MaskCombination> mask_combination_from_name(const std::string& name) {
+  return from_name<MaskCombination>(kMaskCombinations, name);
+}
 std::optional<EnvConvention> env_convention_from_name(const std::string& name) {
   return from_name<EnvConvention>(kConventions, name);
+}
+
+CaptureOptions capture_options(const std::string& format, const ReconstructOptions& o) {
+  return {format, o.test_every, o.views, false, o.test_share, o.seed};
 }
 
 Json MachineInfo::json() const {

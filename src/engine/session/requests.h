@@ -9,10 +9,11 @@
 #include <vector>
 
 #include "core/base/json.h"
+#include "core/base/settings.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/check.h"
-#include "engine/edit/routing.h"
 #include "engine/reconstruct/reconstruct.h"
+#include "engine/session/edit_requests.h"
 
 namespace cei3d {
 
@@ -33,6 +34,8 @@ struct CheckRequest {
   std::filesystem::path contact_sheet{};  // PNG of all views
   std::filesystem::path fixed{};          // folder of a capture without what can be repaired safely
 };
+// How `reconstruct` loads the capture.
+CaptureOptions capture_options(const std::string& format, const ReconstructOptions&);
 struct CheckReport {
   Capture capture;
   std::vector<std::string>
@@ -50,6 +53,23 @@ struct ReconstructRequest {
   bool resume = false, replace = false;
   bool strict = false;  // refuse a capture of which images are missing
 };
+// The settings of a preset, for --list-settings.
+struct SettingsReport {
+  struct Line {
+    SettingInfo info;
+    Json value;
+    bool fitted = false;  // chosen by the size of a pixel on the object, unless it is set
+  };
+  std::string preset;
+  std::vector<Line> settings;
+  Json json() const;
+  std::string text() const;
+};
+// Usage error: no such preset.
+SettingsReport settings_of_preset(const std::string& preset);
+// Usage errors: those of add_setting().
+Json settings_from_text(const std::vector<std::string>& written);
+
 // Material and light of the object, and how well they explain the photographs.
 struct ObjectSummary {
   Material mean;
@@ -100,104 +120,6 @@ struct LogEntry {
   Json json() const;
 };
 
-// Changes of material and color, as the user writes them.
-struct MaterialEffects {
-  std::string preset;  // name of a material, "gold"; the members below override its values
-  std::optional<double> roughness, specular, metalness;  // [0, 1]
-  std::optional<double> roughness_scale;  // factor on the present roughness; the result is clamped to 1
-  std::string color;                      // "#RRGGBB", sRGB; empty: the preset's or the present
-  bool replace = false;  // the color replaces the texture instead of scaling it; that of a preset always does
-  std::optional<double> blend;  // [0, 1], share of the new values; the rest is the present value; none: 1
-  bool empty() const {
-    return preset.empty() && !roughness && !specular && !metalness && !roughness_scale && color.empty();
-  }
-};
-// For help: "gold, silver, ...".
-std::string material_preset_names();
-// Empty if there is a preset of that name; else an error message with similar names.
-std::string unknown_preset(const std::string& name);
-
-// A file that an edit is made from. The bytes may be given; else they are read from the path.
-struct InputFile {
-  InputFile() = default;
-  InputFile(std::filesystem::path file) : path(std::move(file)) {}
-  std::filesystem::path path;
-  std::optional<std::string> bytes;
-  bool empty() const { return path.empty() && !bytes; }
-  std::string read() const;  // errors: missing, unreadable
-};
-
-struct PaintStroke {
-  std::string view;                   // a view's name
-  InputFile scribble;                 // RGBA PNG of the view's size
-  std::optional<Camera> camera = {};  // instead of a view, capture frame
-};
-enum class PaintTarget {
-  albedo,      // the albedo
-  appearance,  // the color in the painted view under the present light; the albedo follows from it
-  radiance     // the color in every view under every light: shown without shading
-};
-struct PaintCommand {
-  std::vector<PaintStroke> strokes;  // later strokes cover earlier ones
-  uint64_t seed = 1;
-  PaintTarget target = PaintTarget::albedo;  // meaning of the colors of the scribble
-  Routing routing = Routing::both;
-  bool erase = false;  // restore the base's albedo and material where the scribble paints
-  // Material of the painted surface. The only color allowed is that of a preset; it replaces those of the
-  // scribbles.
-  MaterialEffects material{};
-};
-struct MaterialCommand {
-  std::string part;  // its name; empty: the whole object
-  MaterialEffects effects;
-};
-
-// Drag of a surface point, capture frame.
-struct PointDrag {
-  Vec3d from, to;
-  Vec3d turn{0, 0, 0};  // rotation of the surface around the point: axis times angle in degrees
-};
-// Drag of the surface point seen at `pixel` by `drag` pixels, in the plane through it parallel to the image.
-struct PixelDrag {
-  std::string view;
-  Vec2<double> pixel, drag;           // (column, row), pixel centers at +0.5
-  std::optional<Camera> camera = {};  // instead of a view, capture frame
-};
-struct DeformCommand {
-  std::variant<PointDrag, PixelDrag> drag;
-  std::optional<double> radius;     // along the surface, capture units
-  std::string part;                 // empty: the whole object
-  std::vector<PointDrag> more{};    // further points that are dragged at once
-  std::vector<Vec3d> pins{};        // points of the surface around which nothing moves, capture frame
-  std::string geometry = "mesh";    // "mesh", or "field": the moved surface gets a distance field of its own
-  std::string distance = "signed";  // what that field is fitted to: "signed" distances or "l1", the paper's
-};
-// A part by clicks, a mask or a clicked material in one view, and optional changes of its material and color.
-struct PartCommand {
-  std::string view;
-  std::vector<Vec2<double>> positive, negative;  // (column, row), pixel centers at +0.5
-  InputFile mask;                                // PNG in place of clicks; empty: none
-  std::optional<Vec2<double>> like{};            // instead of clicks: surface with the material at this pixel
-  bool like_color = false;                       // compare the albedo, too
-  std::string segmenter = "grow";                // or "sam"
-  bool in_view = false;                          // only the surface that this view shows
-  std::string name;                      // empty: that of the part combined with, else "part1", "part2", ...
-  std::string add, subtract, intersect;  // name of a part to combine with; at most one
-  MaterialEffects effects;
-  std::optional<Camera> camera = {};  // instead of a view, capture frame
-};
-struct RemoveCommand {
-  std::string part;
-};
-// Result of an edit.
-struct EditSummary {
-  std::string id;
-  Json report;  // by kind of edit; "seconds": of its stages
-  double load_seconds = 0, store_seconds = 0;
-  double seconds(const char* stage) const { return report.at("seconds").at(stage).get<double>(); }
-  Json json() const;
-};
-
 // One view without an edit and with it.
 struct ChangeRequest {
   std::string id;                 // of the edit
@@ -241,11 +163,6 @@ bool shows_photographs(const CameraChoice&);        // whether they are views of
 bool is_camera_file(const std::filesystem::path&);  // whether it is JSON with a list "cameras"
 
 // Names as on the command line; none: unknown name.
-std::optional<PaintTarget> paint_target_from_name(const std::string&);
-std::optional<Routing> routing_from_name(const std::string&);
-const char* paint_target_name(PaintTarget);
-const char* routing_name(Routing);
-
 enum class Channel { rgb, albedo, diffuse, specular, normal, depth, roughness, metalness, mask };
 const char* channel_name(Channel);
 std::optional<Channel> channel_from_name(const std::string&);
@@ -253,22 +170,6 @@ std::optional<Channel> channel_from_name(const std::string&);
 // One camera, capture frame: FILE.json of `--camera`. Errors: unreadable, not exactly one camera.
 Camera read_camera(const std::filesystem::path&);
 void check_camera(const Camera&, const std::string& what);  // error: no size, focal length or rotation
-
-enum class EnvConvention { by_up_axis, zup, yup, mitsuba, blender };
-std::optional<EnvConvention> env_convention_from_name(const std::string&);  // "zup", ...
-
-struct LightChoice {
-  // Latitude-longitude image, or .npy of lobes as exported; empty: the object's own light.
-  std::filesystem::path env;
-  double rotate_degrees = 0;  // counter-clockwise about the up axis, seen from above
-  EnvConvention convention = EnvConvention::by_up_axis;
-  double scale = 1;  // times the radiance
-  bool is_own() const { return env.empty() && rotate_degrees == 0 && scale == 1; }
-};
-
-// Every edit.
-using EditCommand =
-    std::variant<PaintCommand, MaterialCommand, LightChoice, DeformCommand, RemoveCommand, PartCommand>;
 
 struct RenderRequest {
   std::filesystem::path out;
@@ -354,6 +255,7 @@ struct ViewScore {
   double psnr = 0, ssim = 0;
   std::optional<double> psnr_masked;  // none without object pixels
   std::optional<double> lpips;
+  std::optional<double> flip;  // none in reports of older programs
 };
 // An edit against true images, inside the true masks.
 struct EditFidelity {
@@ -364,7 +266,7 @@ struct EditFidelity {
 // Pixels of the object outside the edit: edited renders against photographs. Means over views.
 struct RestScore {
   double psnr = 0, ssim = 0;
-  std::optional<double> lpips;
+  std::optional<double> lpips, flip;
   size_t pixels = 0, views = 0;
 };
 struct EditScore {
@@ -383,6 +285,7 @@ struct EvalReport {
   };
   std::optional<Alone> alone;        // the same without the correction network; none: the object has none
   std::optional<double> lpips, fid;  // fid: between renders and photographs
+  std::optional<double> flip;        // mean over views; none in reports of older programs
   std::optional<EditScore> edit;
   Json json() const;
   std::string markdown() const;

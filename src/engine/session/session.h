@@ -93,7 +93,10 @@ class Session {
   // whatever is edited meanwhile, and must not outlive the open project.
   std::unique_ptr<TiledFrame> frame(const FrameRequest&, const EditPreview* on_top = nullptr);
   // The surface seen at a pixel (column, row); none: the background. camera: capture frame.
-  std::optional<PickedPoint> pick(const Camera& camera, Vec2<double> pixel);
+  std::optional<PickedPoint> pick(const Camera& camera, Vec2<double> pixel) const;
+  // The camera, capture frame, whose picture is a decal of width x height pixels that is laid where `camera`
+  // sees the surface. None: the background.
+  std::optional<Camera> decal_camera(const Camera& camera, const DecalPlace&, int width, int height) const;
   // Where the camera sees the part: 1 channel, share of the pixel. preview: a part that is not stored.
   Image part_picture(const Camera&, const std::string& part, const EditPreview* preview = nullptr);
   std::vector<View> views() const;  // of the capture
@@ -116,6 +119,7 @@ class Session {
   EditPlan plan(const DeformCommand&) const;
   EditPlan plan(const RemoveCommand&) const;
   EditPlan plan(const PartCommand&) const;
+  PaintStroke laid_decal(const PaintStroke&) const;  // with camera and scribble instead of the decal
   void move_to(const Stack& next, Json event, Progress&);
   ReconstructReport run_reconstruction(const ReconstructRequest&, Progress&);
 

@@ -2,16 +2,17 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/capture/capture.h"
 #include "engine/edit/change_report.h"
 #include "engine/io/image_file.h"
-#include "engine/project/dataset.h"
 #include "engine/project/project.h"
 #include "engine/render/render_cache.h"
 #include "engine/session/frame_files.h"
 #include "engine/session/session.h"
+#include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace {

@@ -4,8 +4,10 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
+#include "engine/edit/albedo_branch.h"
 #include "engine/io/npy.h"
 #include "engine/project/project.h"
 #include "engine/render/render_cache.h"
@@ -94,6 +96,8 @@ std::string version_note(const std::string& id, int version, const EditOp& op) {
 // Usage errors: options that exclude each other.
 void check_paint(const PaintCommand& c) {
   const MaterialEffects& m = c.material;
+  if (!(c.theta >= 0 && std::isfinite(c.theta))) fail_usage("--theta {} is not a distance.", c.theta);
+  if (c.theta > 0 && c.routing != Routing::points) fail_usage("--theta goes with --routing points.");
   if (c.erase && c.target != PaintTarget::albedo) fail_usage("--erase paints no color; leave out --target.");
   if (c.erase && c.routing == Routing::none) fail_usage("--erase needs a region; use another --routing.");
   if (!m.color.empty()) fail_usage("Paint has the colors of its scribble; leave out --color.");
@@ -149,7 +153,8 @@ EditPlan Session::plan(const PaintCommand& command) const {
   Json strokes = Json::array();
   EditInputs inputs;
   std::string views;
-  for (const PaintStroke& s : command.strokes) {
+  for (const PaintStroke& given : command.strokes) {
+    const PaintStroke s = given.decal ? laid_decal(given) : given;
     const std::string input =
         inputs.empty() ? "scribble.png" : fmt::format("scribble{}.png", inputs.size() + 1);
     strokes.push_back(Json::object());
@@ -169,6 +174,11 @@ EditPlan Session::plan(const PaintCommand& command) const {
   else
     params["target"] = paint_target_name(command.target);
   if (command.routing != Routing::both) params["routing"] = routing_name(command.routing);
+  if (command.theta > 0) params["theta"] = command.theta;
+  if (!command.set.empty()) {
+    params["set"] = Json::object();
+    for (const std::string& s : command.set) add_setting(branch_settings().infos(), s, params["set"]);
+  }
   put_effects(command.material, params);
   return {"paint", std::move(params), std::move(inputs)};
 }
@@ -185,8 +195,8 @@ EditPlan Session::plan(const MaterialCommand& command) const {
 }
 
 EditPlan Session::plan(const LightChoice& choice) const {
-  if (choice.is_own()) fail_usage("Nothing to change: give --env, --rotate or --scale.");
-  check_turn(choice);
+  if (choice.is_own()) fail_usage("Nothing to change: give --env, --rotate, --scale or --sun.");
+  check_choice(choice);
   Json params = Json::object();
   EditInputs inputs;
   if (!choice.env.empty()) {
@@ -197,6 +207,10 @@ EditPlan Session::plan(const LightChoice& choice) const {
   }
   if (choice.rotate_degrees != 0) params["rotate_degrees"] = choice.rotate_degrees;
   if (choice.scale != 1) params["scale"] = choice.scale;
+  if (choice.sun) {
+    const Vec3d d = choice.sun->direction;
+    params["sun"] = {{"direction", {d.x, d.y, d.z}}, {"strength", choice.sun->strength}};
+  }
   return {"light", std::move(params), std::move(inputs)};
 }
 

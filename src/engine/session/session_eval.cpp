@@ -7,6 +7,7 @@
 #include "core/compute/device.h"
 #include "engine/capture/capture_images.h"
 #include "engine/io/image_file.h"
+#include "engine/metrics/flip.h"
 #include "engine/metrics/psnr.h"
 #include "engine/metrics/ssim.h"
 #include "engine/project/project.h"
@@ -55,7 +56,8 @@ ViewScore score_view(const View& view, const Image& rendered, const Image& photo
   const Image a = over_background(rendered, 1), b = over_background(photo, 1);
   perceptual.add(sets.rendered, a);
   perceptual.add(sets.photos, b);
-  return {view.name, psnr(a, b), ssim(a, b), psnr_in_mask(a, b, mask_of(photo)), perceptual.distance(a, b)};
+  return {view.name, psnr(a, b), ssim(a, b), psnr_in_mask(a, b, mask_of(photo)), perceptual.distance(a, b),
+          flip(b, a)};
 }
 
 // Progress of one view as a share of all.
@@ -71,6 +73,7 @@ void summarise(EvalReport& r) {
   for (const ViewScore& v : r.views) {
     r.psnr += v.psnr / double(r.views.size());
     r.ssim += v.ssim / double(r.views.size());
+    if (v.flip) r.flip = r.flip.value_or(0) + *v.flip / double(r.views.size());
     if (v.lpips) r.lpips = r.lpips.value_or(0) + *v.lpips / double(r.views.size());
     if (v.psnr_masked) {
       r.psnr_masked += *v.psnr_masked;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "core/image/resample.h"
@@ -62,7 +63,7 @@ std::unique_ptr<TiledFrame> Session::frame(const FrameRequest& request, const Ed
   });
 }
 
-std::optional<PickedPoint> Session::pick(const Camera& camera, Vec2<double> pixel) {
+std::optional<PickedPoint> Session::pick(const Camera& camera, Vec2<double> pixel) const {
   return threads_->run([&]() -> std::optional<PickedPoint> {
     check_camera(camera, "The camera");
     const Scene scene = project().scene();

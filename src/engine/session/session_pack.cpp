@@ -2,6 +2,7 @@
 // The object as the page draws it.
 #include "core/base/error.h"
 #include "core/base/hash.h"
+#include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "engine/project/project.h"
 #include "engine/render/render_cache.h"

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/capture/undistort.h"
@@ -50,14 +51,48 @@ void put_combination(const PartCommand& c, Json& params) {
 
 // Usage errors: not exactly one way to say where the part is.
 void check_place(const PartCommand& c) {
-  const bool clicks = !c.positive.empty() || !c.negative.empty();
-  if (clicks + !c.mask.empty() + c.like.has_value() != 1)
+  const bool prompts = !c.positive.empty() || !c.negative.empty() || !c.scribble.empty();
+  if (prompts + !c.mask.empty() + c.like.has_value() != 1)
     fail_usage(
-        "Give the part by one of --positive X,Y (and --negative X,Y), --like X,Y and --mask "
-        "FILE.png.");
-  if (c.segmenter == "sam" && !clicks)
-    fail_usage("The network needs clicks; leave out --segmenter with --mask and --like.");
+        "Give the part by one of --scribble FILE.png or --positive X,Y (and --negative X,Y), --like X,Y and "
+        "--mask FILE.png.");
+  if (c.segmenter == "sam" && c.like)
+    fail_usage("The network needs prompts; leave out --segmenter with --like.");
   if (c.like_color && !c.like) fail_usage("--like-color goes with --like.");
+  if (!c.scribble.empty()) return;
+  if (!c.negative_scribble.empty()) fail_usage("--negative-scribble goes with --scribble.");
+  if (!c.negative_color.empty()) fail_usage("--negative-color goes with --scribble.");
+  if (c.keep_color) fail_usage("--keep-color goes with --scribble.");
+  if (c.keep_texture) fail_usage("--keep-texture goes with --color or --scribble.");
+}
+
+void put_scribble(const PartCommand& c, Json& params, EditInputs& inputs) {
+  if (c.scribble.empty()) return;
+  params["scribble"] = c.scribble.string();
+  inputs.emplace_back("scribble.png", read_file(c.scribble));
+  if (!c.negative_scribble.empty()) {
+    params["negative_scribble"] = c.negative_scribble.string();
+    inputs.emplace_back("negative.png", read_file(c.negative_scribble));
+  }
+  if (!c.negative_color.empty()) {
+    color_from_text(c.negative_color);
+    params["negative_color"] = c.negative_color;
+  }
+  if (c.keep_color) params["keep_color"] = true;
+  if (c.keep_texture) params["keep_texture"] = true;
+}
+
+// Only what differs from the defaults. Usage error: no view.
+void put_network(const NetworkViews& n, Json& params) {
+  const ViewPlan plan = n.plan, usual;
+  if (plan.max_views < 1) fail_usage("The network needs at least one view; give --views a number or `all`.");
+  if (n.photographs) params["on"] = "photographs";
+  if (plan.max_views == ViewPlan::kAll)
+    params["views"] = "all";
+  else if (plan.max_views != usual.max_views)
+    params["views"] = std::to_string(plan.max_views);
+  if (plan.order == ViewOrder::adjacent) params["order"] = "adjacent";
+  if (plan.combination == MaskCombination::any) params["combine"] = "any";
 }
 
 }  // namespace
@@ -84,6 +119,8 @@ EditPlan Session::plan(const PartCommand& command) const {
     params["mask"] = command.mask.path.string();
     inputs.emplace_back("mask.png", command.mask.read());
   }
+  put_scribble(command, params, inputs);
+  if (command.segmenter == "sam") put_network(command.network, params);
   put_effects(command.effects, params);
   return {"part", std::move(params), std::move(inputs)};
 }

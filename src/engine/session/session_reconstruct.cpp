@@ -8,6 +8,7 @@
 #include "engine/io/image_file.h"
 #include "engine/project/dataset.h"
 #include "engine/project/project.h"
+#include "engine/reconstruct/preset_settings.h"
 #include "engine/session/object_summary.h"
 #include "engine/session/run_log.h"
 #include "engine/session/session.h"
@@ -39,9 +40,11 @@ Json options_json(const ReconstructRequest& r) {
           {"seed", o.seed},
           {"downscale", o.downscale},
           {"test_every", o.test_every},
+          {"test_share", o.test_share},
           {"light_color", light_color_text(o.light_color)},
           {"views", o.views},
           {"light", o.light ? light_motion_name(*o.light) : "auto"},
+          {"set", o.set},
           {"format", r.format}};
 }
 
@@ -55,9 +58,12 @@ ReconstructOptions options_from_json(const Json& j) {
   o.seed = reader.require<uint64_t>("seed");
   o.downscale = reader.require<int>("downscale");
   o.test_every = reader.require<int>("test_every");
+  o.test_share = reader.optional("test_share", 0.0);
   o.views = reader.optional("views", 0);                                        // missing in older projects
   o.light = light_motion_named(reader.optional("light", std::string("auto")));  // missing in older projects
   o.light_color = light_color_from(reader.optional("light_color", std::string())).value_or(LightColorPrior());
+  if (reader.has("set")) o.set = reader.member("set");
+  check_settings(preset_settings().infos(), o.set);
   reader.has("format");
   reader.finish();
   return o;
@@ -89,7 +95,7 @@ void require_same_capture(const Project& project, const fs::path& given) {
   Capture now = project.capture();
   if (!given.empty()) {
     const Json& o = project.head().options;
-    now = load_capture(given, {o.value("format", ""), o.value("test_every", 0), o.value("views", 0)});
+    now = load_capture(given, capture_options(o.value("format", ""), options_from_json(o)));
   }
   if (capture_fingerprint(now) != project.fingerprint())
     fail(
@@ -120,8 +126,9 @@ ReconstructReport Session::run_reconstruction(const ReconstructRequest& request,
   } else {
     Project::check_place(request.project, request.replace);
     const ReconstructOptions& o = request.options;
-    const CheckReport checked =
-        check({request.capture, {request.format, o.test_every, o.views, request.strict}, {}});
+    CaptureOptions loading = capture_options(request.format, o);
+    loading.strict = request.strict;
+    const CheckReport checked = check({request.capture, loading, {}});
     project_.reset();
     project_ = std::make_unique<Project>(create_project(request, checked));
   }

@@ -3,10 +3,10 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/io/image_file.h"
-#include "engine/project/dataset.h"
 #include "engine/project/project.h"
 #include "engine/render/render_cache.h"
 #include "engine/session/cameras.h"
@@ -15,6 +15,7 @@
 #include "engine/session/session.h"
 #include "engine/session/stopwatch.h"
 #include "engine/session/version.h"
+#include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -36,6 +37,10 @@ Json light_json(const LightChoice& light) {
   constexpr const char* kNames[] = {"by the capture's up axis", "zup", "yup", "mitsuba", "blender"};
   Json j = {{"env", light.env.empty() ? Json("the object's own") : Json(light.env.string())},
             {"rotate_degrees", light.rotate_degrees}};
+  if (light.sun) {
+    const Vec3d d = light.sun->direction;
+    j["sun"] = {{"direction", {d.x, d.y, d.z}}, {"strength", light.sun->strength}};
+  }
   if (!light.env.empty()) j["convention"] = kNames[size_t(light.convention)];
   return j;
 }

@@ -3,6 +3,7 @@
 // its day stored it. It is made anew only when a format changes so that it cannot be read any more.
 #include <gtest/gtest.h>
 
+#include "core/base/json.h"
 #include "engine/project/project.h"
 #include "engine/reconstruct/test_run.h"
 #include "engine/session/session.h"
@@ -52,7 +53,7 @@ void add_small_paint(const fs::path& folder) {
   Project project = Project::open(folder, Project::Mode::write);
   EditLayer layer;
   layer.id = project.stack().next_id("paint");
-  layer.region = Region({{{0, 0, -0.4f}}, {{0, 0, -1}}, {0.3f}});
+  layer.region = Region({{{0, 0, -0.4f}}, {{0, 0, -1}}, {0.3f}, {}});
   layer.albedo = std::make_shared<Field>(small_field(3), 5);
   project.add_edit({layer.id, "paint", 1, Json::object(), {}, Json::object(), {}}, layer);
 }

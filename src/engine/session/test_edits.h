@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "core/base/temp_folder.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
@@ -45,7 +46,9 @@ inline Image square_scribble(Vec3f srgb, int half) {
   return s;
 }
 
-inline Region ball(Vec3f center, float radius) { return Region({{center}, {normalize(center)}, {radius}}); }
+inline Region ball(Vec3f center, float radius) {
+  return Region({{center}, {normalize(center)}, {radius}, {}});
+}
 
 // What an edit leaves: the scene but for the names of its layers.
 inline std::string bytes_of(const Scene& scene) {

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 #include "engine/io/image_file.h"
 #include "engine/io/ply.h"
 #include "engine/synthetic/body_mesh.h"
@@ -61,8 +62,10 @@ class CaptureWriter {
   }
 
   void write_descriptions() {
-    write_nerf_cameras(out(), "train", train_);
-    if (!test_.empty()) write_nerf_cameras(out(), "test", test_);
+    const auto write_cameras =
+        request_.layout == SynthLayout::physg ? write_physg_cameras : write_nerf_cameras;
+    write_cameras(out(), "train", train_);
+    if (!test_.empty()) write_cameras(out(), "test", test_);
     write_ply(out() / "mesh_gt.ply", body_mesh(*scene_.shape.body, kMeshCells));
     write_hdr(out() / "envs" / (request_.light + ".hdr"), lat_long(scene_.light, kMapHeight));
     for (const std::string& name : relight_)
@@ -85,14 +88,19 @@ class CaptureWriter {
     return request_.light_turns ? turned_with(scene_.light, camera.center) : scene_.light;
   }
 
+  void write_photograph(const char* split, size_t i, const Image& linear_rgba) {
+    if (request_.layout == SynthLayout::physg)
+      write_radiance(out() / split, view_stem(i), linear_rgba);
+    else
+      write_color(out() / split / (view_stem(i) + ".png"), linear_rgba);
+  }
   void write_training_view(size_t i) {
     const TrueView v = view(train_[i], training_light(train_[i]), i);
-    write_color(out() / "train" / (view_stem(i) + ".png"),
-                with_noise(v.color, request_.noise, request_.seed, i));
+    write_photograph("train", i, with_noise(v.color, request_.noise, request_.seed, i));
   }
   void write_test_view(size_t i) {
     const TrueView v = view(test_[i], training_light(test_[i]), kTestSeed + i);
-    write_color(out() / "test" / (view_stem(i) + ".png"), v.color);
+    write_photograph("test", i, v.color);
     write_truth(out(), view_stem(i), v);
   }
   void write_relit_view(const std::string& light, size_t i) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/json.h"
+#include "core/base/json_fwd.h"
 #include "core/base/progress.h"
 #include "engine/synthetic/path_tracer.h"
 
@@ -19,6 +19,11 @@ struct RegionFinish {
   Finish finish;
 };
 
+enum class SynthLayout {
+  nerf,  // NeRF-synthetic: 8-bit sRGB PNG
+  physg  // PhySG: linear EXR, with radiance above 1
+};
+
 struct SynthRequest {
   std::filesystem::path out;  // missing, or an empty folder
   std::string shape = "teapot", material = "plastic", light = "daylight";
@@ -28,6 +33,7 @@ struct SynthRequest {
   float light_strength = 1;
   bool light_turns = false;  // with the camera about z, as if the body stood on a turntable
   Diffuse diffuse = Diffuse::burley;
+  SynthLayout layout = SynthLayout::nerf;
   int bounces = 3;
   int width = 200, height = 200;
   int views = 100, test_views = 20;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "core/base/json.h"
 #include "engine/synthetic/synthetic_capture.h"
 
 namespace cei3d {

@@ -42,6 +42,11 @@ void write_color(const std::filesystem::path& path, const Image& linear_rgba) {
   write_png(path, srgb_from_linear(linear_rgba));
 }
 
+void write_radiance(const std::filesystem::path& folder, const std::string& stem, const Image& linear_rgba) {
+  write_exr(folder / "image" / (stem + ".exr"), linear_rgba);
+  write_png(folder / "mask" / (stem + ".png"), alpha_of(linear_rgba));
+}
+
 void write_truth(const std::filesystem::path& folder, const std::string& stem, const TrueView& view) {
   const auto file = [&](const char* kind) { return folder / "gt" / kind / (stem + ".png"); };
   write_color(file("albedo"), view.albedo);
@@ -59,7 +64,7 @@ Image with_noise(Image image, float deviation, uint64_t seed, uint64_t view) {
     Rng rng(seed, view, i);
     for (size_t c = 0; c < 3; ++c)
       image.data[i + c] =
-          linear_from_srgb(clamp(srgb_from_linear(image.data[i + c]) + deviation * rng.normal(), 0.0f, 1.0f));
+          linear_from_srgb(max(srgb_from_linear(image.data[i + c]) + deviation * rng.normal(), 0.0f));
   }
   return image;
 }

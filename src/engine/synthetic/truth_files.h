@@ -14,6 +14,8 @@ inline constexpr double kDepthScale = 8192;
 
 // sRGB, 8-bit RGBA, straight alpha.
 void write_color(const std::filesystem::path& path, const Image& linear_rgba);
+// Linear, with radiance above 1: FOLDER/image/STEM.exr and FOLDER/mask/STEM.png.
+void write_radiance(const std::filesystem::path& folder, const std::string& stem, const Image& linear_rgba);
 // gt/albedo, normal, depth, roughness, metalness and mask of a view, each as gt/<kind>/<stem>.png.
 void write_truth(const std::filesystem::path& folder, const std::string& stem, const TrueView& view);
 // Gaussian noise on the sRGB values, as a sensor's would be after development.

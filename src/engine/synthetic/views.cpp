@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 namespace {
@@ -80,6 +81,28 @@ void write_nerf_cameras(const std::filesystem::path& folder, const std::string& 
   for (size_t i = 0; i < cameras.size(); ++i)
     j["frames"].push_back(nerf_frame("./" + split + "/" + view_stem(i), cameras[i]));
   write_file_atomic(folder / ("transforms_" + split + ".json"), j.dump(1) + "\n");
+}
+
+void write_physg_cameras(const std::filesystem::path& folder, const std::string& split,
+                         std::span<const Camera> cameras) {
+  Json views = Json::object();
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    const Camera& c = cameras[i];
+    const Mat3d cam_from_world = transpose(c.world_from_cam);
+    const Vec3d shift = -(cam_from_world * c.center);
+    Json pose = Json::array();
+    for (int r = 0; r < 3; ++r) {
+      const Vec3d m = cam_from_world.row[r];
+      for (const double v : {m.x, m.y, m.z, shift[r]}) pose.push_back(v);
+    }
+    for (const double v : {0.0, 0.0, 0.0, 1.0}) pose.push_back(v);
+    views[view_stem(i) + ".exr"] = {{"K",
+                                     {c.fx, c.skew, c.cx - 0.5, 0.0, 0.0, c.fy, c.cy - 0.5, 0.0,  //
+                                      0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0}},
+                                    {"W2C", pose},
+                                    {"img_size", {c.width, c.height}}};
+  }
+  write_file_atomic(folder / split / "cam_dict_norm.json", views.dump(1) + "\n");
 }
 
 }  // namespace cei3d

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/json.h"
+#include "core/base/json_fwd.h"
 #include "core/math/camera.h"
 
 namespace cei3d {
@@ -34,5 +34,10 @@ Json nerf_frame(const std::string& file_path, const Camera&);
 // transforms_<split>.json for images <split>/r_000.png ... cameras: of one size and focal length.
 void write_nerf_cameras(const std::filesystem::path& folder, const std::string& split,
                         std::span<const Camera> cameras);
+
+// The same in PhySG's layout: <split>/cam_dict_norm.json for <split>/image/r_000.exr ...; its pixel centers
+// are at whole numbers.
+void write_physg_cameras(const std::filesystem::path& folder, const std::string& split,
+                         std::span<const Camera> cameras);
 
 }  // namespace cei3d

@@ -2,6 +2,7 @@
 #include "engine/view/pack.h"
 
 #include "core/base/bytes.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 namespace {

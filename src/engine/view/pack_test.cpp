@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/json.h"
 #include "core/math/rng.h"
 #include "engine/view/quantize.h"
 #include "engine/view/test_pack.h"

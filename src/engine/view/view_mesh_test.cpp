@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "engine/render/scene_light.h"
 #include "engine/render/sphere_scene.h"
 #include "engine/view/quantize.h"

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/base/json.h"
+#include "core/base/json_fwd.h"
 #include "core/compute/device.h"
 #include "core/math/encoding.h"
 #include "core/math/vec.h"

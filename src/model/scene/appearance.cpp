@@ -25,6 +25,7 @@ struct Route {
   int layer = -1;                                 // topmost local layer; -1: none
   uint32_t material_begin = 0, material_end = 0;  // of the chunk's materials, the last one first
   bool base = true;                               // the lowest contribution is on top of the base's albedo
+  bool untouched = true;                          // no layer contributes to the albedo
 
   bool same_material() const { return material_begin == material_end; }
 };
@@ -98,6 +99,7 @@ class Walk {
 
   void add(Op::Kind kind, int l, float weight, Vec3f position, Vec3f color) {
     constexpr float kOpaque = 0.9995f;
+    r_.untouched = false;
     chunk_.ops.push_back({kind, l, index_, weight < kOpaque ? weight : 1, position, color});
     if (weight >= kOpaque && kind != Op::Kind::tint) r_.base = false;
   }
@@ -175,19 +177,25 @@ void put_colors(const Device& device, const Scene& scene, std::span<const Hit> h
     }
 }
 
-std::vector<float> original_shares(const Scene& scene, std::span<const Hit> hits, const Routes& routes) {
-  std::vector<float> share(hits.size(), 1.0f);
-  for (const Chunk& chunk : routes.chunks)
-    for (auto op = chunk.ops.rbegin(); op != chunk.ops.rend(); ++op) {
-      float& s = share[op->hit];
-      s = s * (1 - op->weight) + (op->kind == Op::Kind::base ? op->weight : 0);
-    }
+// look: with the base's albedo where no layer covers it; material: the base's.
+Photographed photographed(const Device& device, const Scene& scene, std::span<const Hit> hits,
+                          const Routes& routes, const std::vector<Vec3f>& look,
+                          const std::vector<Material>& material) {
+  Photographed out{look, material, std::vector<uint8_t>(hits.size(), 1)};
+  std::vector<Vec3f> x;
+  std::vector<size_t> of;
   for (size_t i = 0; i < hits.size(); ++i) {
-    const bool moved =
-        !scene.shape_versions.empty() && scene.shape_versions.back()->shaped_in(hits[i].triangle) > 0;
-    if (moved || !routes.at[i].same_material()) share[i] = 0;
+    if (!scene.shape_versions.empty() && scene.shape_versions.back()->shaped_in(hits[i].triangle) > 0) {
+      out.albedo[i] = {0, 0, 0};
+      out.in_place[i] = 0;
+    } else if (!routes.at[i].untouched) {
+      x.push_back(in_version(scene.shape_versions, hits[i], 0).position);
+      of.push_back(i);
+    }
   }
-  return share;
+  const std::vector<Vec3f> albedo = scene.albedo->eval3(device, x);
+  for (size_t k = 0; k < of.size(); ++k) out.albedo[of[k]] = albedo[k];
+  return out;
 }
 
 // Base materials. Surface that an edit added is outside the field's domain and gets the mean.
@@ -218,6 +226,7 @@ Appearance appearance_at(const Device& device, const Scene& scene, std::span<con
   Appearance out;
   put_colors(device, scene, hits, routes, out);
   out.material = base_materials(device, scene, hits);
+  if (scene.residual) out.photographed = photographed(device, scene, hits, routes, out.albedo, out.material);
   out.layer.resize(hits.size());
   for (size_t i = 0; i < hits.size(); ++i) {
     const Route& r = routes.at[i];
@@ -225,7 +234,6 @@ Appearance appearance_at(const Device& device, const Scene& scene, std::span<con
     if (!r.same_material())
       out.material[i] = edited_material(scene, r, routes.chunks[i / kGrain], out.material[i]);
   }
-  if (scene.residual) out.original = original_shares(scene, hits, routes);
   return out;
 }
 

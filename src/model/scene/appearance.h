@@ -11,14 +11,20 @@
 
 namespace cei3d {
 
+// What the photographs showed at the hits: their albedo and material before all edits.
+struct Photographed {
+  std::vector<Vec3f> albedo;       // #hits, linear
+  std::vector<Material> material;  // #hits
+  std::vector<uint8_t> in_place;   // #hits, 1: surface that no edit moved or added; elsewhere all is 0
+};
+
 struct Appearance {
   std::vector<Vec3f> albedo;       // #hits, linear
   std::vector<Material> material;  // #hits
   std::vector<int> layer;          // #hits, the last local layer that affects the hit; -1: none
   std::vector<float> unlit{};      // #hits, share of the albedo that is shown without light; empty: 0
-  // #hits, [0, 1], share of the hit that is as photographed: neither color nor material nor shape edited, or
-  // edits erased. The correction network is shown with this weight; empty where the scene has none.
-  std::vector<float> original{};
+  // As the object was reconstructed; for the correction network, empty where the scene has none.
+  Photographed photographed{};
 };
 
 // Layers are applied in their order, each in the shape version that it was made in: a branch covers the

@@ -2,6 +2,7 @@
 #include "model/scene/aspects.h"
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 namespace {

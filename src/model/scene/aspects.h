@@ -3,7 +3,7 @@
 // when, an edit before it that changes an aspect it reads has appeared or disappeared.
 #pragma once
 
-#include "core/base/json.h"
+#include "core/base/json_fwd.h"
 #include "model/scene/layer.h"
 
 namespace cei3d {

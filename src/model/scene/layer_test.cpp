@@ -4,13 +4,14 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/test_unknown_keys.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {
 namespace {
 
-Region some_region() { return Region({{{0, 0, 0.5f}}, {{0, 0, 1}}, {0.1f}}); }
+Region some_region() { return Region({{{0, 0, 0.5f}}, {{0, 0, 1}}, {0.1f}, {}}); }
 
 std::shared_ptr<const Field> some_field() {
   FieldConfig c;
@@ -49,7 +50,7 @@ std::vector<EditLayer> one_of_each_kind() {
   layers[6].albedo = some_field();
   layers[6].unlit = true;
   layers[7] = layers[0];
-  layers[7].also = {some_region(), Region({{{0.5f, 0, 0}}, {{1, 0, 0}}, {0.2f}})};
+  layers[7].also = {some_region(), Region({{{0.5f, 0, 0}}, {{1, 0, 0}}, {0.2f}, {}})};
   layers[7].albedo = nullptr;
   layers[7].erase = layers[7].erase_material = true;
   layers[8].reshape = some_reshape();
@@ -91,7 +92,7 @@ Region seen_region() {
   projector.camera.width = projector.camera.height = 2;
   projector.min_alpha = 0.25f;
   projector.alpha = projector.depth = Image(2, 2, 1);
-  return Region({{{0, 0, 0.5f}}, {{0, 0, 1}}, {0.1f}}, projector);
+  return Region({{{0, 0, 0.5f}}, {{0, 0, 1}}, {0.1f}, {}}, projector);
 }
 
 TEST(EditLayer, RefusesUnknownKeysWhereverTheyAre) {

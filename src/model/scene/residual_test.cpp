@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/base/test_unknown_keys.h"
 #include "core/math/rng.h"
 #include "model/scene/scene.h"

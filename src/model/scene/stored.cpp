@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "core/base/bytes.h"
+#include "core/base/json.h"
 #include "model/geometry/shape/vec_tensors.h"
 
 namespace cei3d {

@@ -57,6 +57,13 @@ struct Capture {
   std::vector<std::string> warnings;  // one sentence per assumption that the loader made
 };
 
+// What an image file can hold.
+enum class ImageDepth {
+  bits8,   // 256 steps of the display curve up to 1
+  bits16,  // finer steps up to 1
+  open     // linear radiance without an upper limit
+};
+
 // Loads the image of a view. An interface, because reading files is up to engine/capture (CaptureImages).
 // Called from several threads.
 class ImageSource {
@@ -64,6 +71,7 @@ class ImageSource {
   virtual ~ImageSource() = default;
   // RGBA, linear, straight alpha; alpha is the object mask, below 0 where it is not known what the view shows
   virtual Image load(const View&) const = 0;
+  virtual ImageDepth depth(const View&) const { return ImageDepth::bits8; }
 };
 
 // Alpha of pixels that show nothing known: neither object nor background.

@@ -7,6 +7,7 @@
 #include "core/base/cancel.h"
 #include "core/base/clock.h"
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/math/reflection.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/display_loss.h"

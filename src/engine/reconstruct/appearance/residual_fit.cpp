@@ -127,7 +127,11 @@ class Trainer {
   }
 
   double squared_error(uint32_t sample, Vec3f got) const {
-    return display_error(got, samples_.colors[sample]);
+    double sum = 0;
+    for (int c = 0; c < 3; ++c)
+      sum += square(srgb_from_linear(clamp(got[c], 0.0f, 1.0f)) -
+                    srgb_from_linear(min(samples_.colors[sample][c], 1.0f)));
+    return sum;
   }
 
   // dL/d(output of the network).

@@ -6,6 +6,7 @@
 
 #include <cmath>
 
+#include "core/base/json.h"
 #include "core/math/rng.h"
 #include "engine/render/render.h"
 #include "engine/render/scene_light.h"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/cancel.h"
+#include "core/base/json.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
 #include "engine/render/render.h"
 

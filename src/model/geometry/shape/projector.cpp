@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
+#include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace {
@@ -44,30 +46,8 @@ Image image_of(const Tensors& tensors, const std::string& name) {
   return image;
 }
 
-Json camera_json(const Camera& c) {
-  Json j{{"width", c.width}, {"height", c.height},
-         {"fx", c.fx},       {"fy", c.fy},
-         {"cx", c.cx},       {"cy", c.cy},
-         {"skew", c.skew},   {"center", {c.center.x, c.center.y, c.center.z}}};
-  for (const Vec3d& r : c.world_from_cam.row) j["world_from_cam"].push_back({r.x, r.y, r.z});
-  return j;
-}
-
-Vec3d vector_from(const Json& j) {
-  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
-}
-
 Camera camera_from(JsonReader reader) {
-  Camera c;
-  c.width = reader.require<int>("width");
-  c.height = reader.require<int>("height");
-  c.fx = reader.require<double>("fx");
-  c.fy = reader.require<double>("fy");
-  c.cx = reader.require<double>("cx");
-  c.cy = reader.require<double>("cy");
-  c.skew = reader.require<double>("skew");
-  c.center = vector_from(reader.member("center"));
-  for (size_t i = 0; i < 3; ++i) c.world_from_cam.row[i] = vector_from(reader.array("world_from_cam").at(i));
+  const Camera c = camera_from_json(reader);
   reader.finish();
   if (c.width < 1 || c.height < 1)
     fail("the edit's camera has no pixels; the project is damaged, undo or repeat the edit");

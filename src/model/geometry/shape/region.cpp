@@ -2,8 +2,10 @@
 #include "model/geometry/shape/region.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 
 namespace cei3d {
 namespace {
@@ -48,15 +50,41 @@ Region::Region(ScoredPoints part) {
   data_ = std::move(data);
 }
 
+size_t Region::Points::edited_count() const {
+  return edited.empty() ? positions.size() : size_t(std::count(edited.begin(), edited.end(), 1));
+}
+
+bool Region::any_is_edited(Vec3f position, Vec3f normal) const {
+  const Data& d = *data_;
+  return d.index.any_within(position, d.max_reach, [&](size_t i) {
+    const Vec3f gap = d.points.positions[i] - position;
+    return dot(gap, gap) < square(d.points.reach[i]) && dot(d.points.normals[i], normal) > 0 &&
+           d.points.is_edited(i);
+  });
+}
+
+bool Region::nearest_is_edited(Vec3f position, Vec3f normal) const {
+  const Data& d = *data_;
+  float nearest = std::numeric_limits<float>::infinity();
+  bool edited = false;
+  d.index.any_within(position, d.max_reach, [&](size_t i) {
+    const Vec3f gap = d.points.positions[i] - position;
+    const float distance = dot(gap, gap);
+    if (distance < nearest && distance < square(d.points.reach[i]) && dot(d.points.normals[i], normal) > 0) {
+      nearest = distance;
+      edited = d.points.is_edited(i);
+    }
+    return false;
+  });
+  return edited;
+}
+
 bool Region::contains(Vec3f position, Vec3f normal) const {
   const Data& d = *data_;
   if (!d.scored.empty()) return d.scored.score(position, normal) >= 0.5f;
-  if (!d.projector.empty() && !d.projector.covers(position, normal)) return false;
-  if (!d.projector.empty() && d.points.positions.empty()) return true;
-  return d.index.any_within(position, d.max_reach, [&](size_t i) {
-    const Vec3f gap = d.points.positions[i] - position;
-    return dot(gap, gap) < square(d.points.reach[i]) && dot(d.points.normals[i], normal) > 0;
-  });
+  if (d.projector.empty()) return nearest_is_edited(position, normal);
+  if (!d.projector.covers(position, normal)) return false;
+  return d.points.positions.empty() || any_is_edited(position, normal);
 }
 
 float Region::weight(Vec3f position, Vec3f normal) const {
@@ -76,6 +104,7 @@ void Region::save(Tensors& tensors, Json& head) const {
   tensors["region/positions"] = tensor_of(points.positions);
   tensors["region/normals"] = tensor_of(points.normals);
   tensors["region/reach"] = {{int64_t(points.reach.size())}, points.reach, {}};
+  if (!points.edited.empty()) tensors["region/edited"] = {{int64_t(points.edited.size())}, {}, points.edited};
   if (!projector.empty()) save_projector(projector, tensors, head["projector"], "region/projector/");
 }
 
@@ -91,6 +120,12 @@ Region Region::load(const Tensors& tensors, const Json& head, const std::string&
   points.positions = vectors_of(find(tensors, "region/positions", 3 * n));
   points.normals = vectors_of(find(tensors, "region/normals", 3 * n));
   points.reach = find(tensors, "region/reach", n).f32;
+  if (const auto edited = tensors.find("region/edited"); edited != tensors.end()) {
+    if (edited->second.u8.size() != n)
+      fail("'region/edited' holds {} labels where {} belong; the project is damaged, undo or repeat the edit",
+           edited->second.u8.size(), n);
+    points.edited = edited->second.u8;
+  }
   const bool has_projector = reader.has("projector");
   reader.finish();
   if (!has_projector) return Region(std::move(points));

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// A region of the surface: the points within reach of an edited handler point, on the same side of the
-// surface [paper sec. 4.2]. The reach follows the local spacing: docs/method.md#regions-and-routing.
+// A region of the surface by handler points that an edit labels: H+, the edited ones, and those beside them
+// [paper sec. 4.2]. A point of the surface belongs to it if, of the labeled points within reach on the same
+// side, the nearest is an edited one: docs/method.md#regions-and-routing.
 //
-// Points alone give an outline as soft as their reach. A region from a painted view therefore also holds the
-// painted mask with the camera and the depths of that view: a point belongs to it only if that camera sees it
-// inside the mask. The points select the surface, the mask is the border: as sharp as the scribble (alpha
-// 0.5, interpolated between pixels), and hidden surfaces are not changed.
+// A region from a painted view also holds the painted mask with the camera and the depths of that view: a
+// point belongs to it only if an edited point is within reach and that camera sees it inside the mask. The
+// points select the surface, the mask is the border: as sharp as the scribble (alpha 0.5, interpolated
+// between pixels), and hidden surfaces are not changed.
 //
 // A part of the object is a third kind: scored points (model/geometry/shape/scored_points.h).
 #pragma once
@@ -14,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "core/base/json.h"
 #include "core/math/vec.h"
 #include "model/geometry/shape/point_index.h"
 #include "model/geometry/shape/projector.h"
@@ -25,9 +27,12 @@ class Region {
  public:
   Region() = default;  // contains nothing
   struct Points {
-    std::vector<Vec3f> positions;  // #N edited points (H+), unit frame
+    std::vector<Vec3f> positions;  // #N handler points, unit frame
     std::vector<Vec3f> normals;    // #N, unit
     std::vector<float> reach;      // #N, unit frame
+    std::vector<uint8_t> edited;   // #N, 1: in H+, 0: beside the edit; empty: all are in H+
+    bool is_edited(size_t i) const { return edited.empty() || edited[i]; }
+    size_t edited_count() const;
   };
   // projector empty: the points alone decide. No points: the mask alone decides.
   explicit Region(Points points, Projector projector = {});
@@ -47,6 +52,10 @@ class Region {
   static Region load(const Tensors& tensors, const Json& head, const std::string& what = "A region");
 
  private:
+  // Of the labeled points within reach on the same side.
+  bool nearest_is_edited(Vec3f position, Vec3f normal) const;
+  bool any_is_edited(Vec3f position, Vec3f normal) const;
+
   struct Data {
     Points points;
     Projector projector;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/base/json.h"
 #include "core/math/rng.h"
 #include "model/geometry/shape/test_regions.h"
 

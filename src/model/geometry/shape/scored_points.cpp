@@ -2,6 +2,7 @@
 #include "model/geometry/shape/scored_points.h"
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "model/geometry/shape/vec_tensors.h"
 
 namespace cei3d {

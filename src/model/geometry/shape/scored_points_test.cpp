@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/base/json.h"
 #include "core/math/rng.h"
 #include "model/geometry/shape/handlers.h"
 #include "model/geometry/shape/test_regions.h"

@@ -5,6 +5,7 @@
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "model/field/params.h"
 
 namespace cei3d {

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/preset_settings.h"
+
+#include <algorithm>
+
+namespace cei3d {
+namespace {
+
+template <class Owner>
+using Group = SettingGroup<Preset, Owner>;
+
+constexpr const char* kNeus = "[Wang et al. 2021]";
+constexpr const char* kHashGrid = "[Mueller et al. 2022]";
+constexpr const char* kAdam = "[Kingma and Ba 2015]";
+constexpr const char* kPaper = "[paper sec. 5.1]";
+
+void add_network(const Group<FieldConfig>& g) {
+  g.part("encoding.", &FieldConfig::encoding)
+      .add("frequencies", &EncodingConfig::frequencies, {0, 16}, "",
+           "Frequencies of sine and cosine of the position", "[Mildenhall et al. 2020]")
+      .add("levels", &EncodingConfig::levels, {0, 24}, "", "Levels of the hash grid; 0: none", kHashGrid)
+      .add("base_resolution", &EncodingConfig::base_resolution, {4, 512}, "cells an axis",
+           "Of the first level", kHashGrid)
+      .add("finest_resolution", &EncodingConfig::finest_resolution, {4, 4096}, "cells an axis",
+           "Of the last level")
+      .add("log2_table", &EncodingConfig::log2_table, {8, 22}, "", "Logarithm of the entries of a level",
+           kHashGrid);
+  g.add("hidden_layers", &FieldConfig::hidden_layers, {0, 16}, "", "Hidden layers", kPaper)
+      .add("width", &FieldConfig::width, {1, 1024}, "neurons", "Of a hidden layer", kPaper)
+      .add("skip_layer", &FieldConfig::skip_layer, {-1, 15}, "",
+           "Hidden layer that reads the encoding again; -1: none", "[Yariv et al. 2020]")
+      .choice("activation", &FieldConfig::activation,
+              {{Activation::relu, "relu"}, {Activation::softplus, "softplus"}, {Activation::elu, "elu"}},
+              "Of the hidden layers")
+      .add("softplus_beta", &FieldConfig::softplus_beta, {1, 1000}, "", "Sharpness of softplus",
+           "[Yariv et al. 2020]");
+}
+
+void add_losses(const Group<GeometryLosses>& g) {
+  g.add("huber_width", &GeometryLosses::huber_width, {1e-6, 10}, "sRGB, 0 to 1",
+        "Color error from which the color loss grows linearly", "[Huber 1964]")
+      .add("eikonal", &GeometryLosses::eikonal, {0, 100}, "", "Weight of (|gradient| - 1)^2",
+           "[Gropp et al. 2020]")
+      .add("empty", &GeometryLosses::empty, {0, 100}, "", "Weight of the push on points that rays pass")
+      .add("anchor", &GeometryLosses::anchor, {0, 100}, "", "Weight of the distance to the start shape");
+}
+
+void add_sampling(const Group<SamplingOptions>& g) {
+  g.add("step_min", &SamplingOptions::step_min, {1e-4, 0.5}, "object radii",
+        "Shortest distance between samples")
+      .add("step_max", &SamplingOptions::step_max, {1e-4, 0.5}, "object radii",
+           "Longest distance between samples")
+      .add("step_width", &SamplingOptions::step_width, {0.05, 50}, "standard deviations of the opacity",
+           "Distance between samples")
+      .add("keep_weight", &SamplingOptions::keep_weight, {0, 0.5}, "",
+           "Weight below which a sample is skipped");
+}
+
+void add_schedule(const Group<GeometryOptions>& g) {
+  constexpr SettingRange kPosition{1e-3, 1};  // in the schedule
+  g.add("rays", &GeometryOptions::rays, {kChunkRays, 65536, kChunkRays}, "rays a step", "Size of a batch",
+        kPaper)
+      .add("inv_s_start", &GeometryOptions::inv_s_start, {1, 1e5}, "1 / object radius",
+           "Inverse standard deviation of the opacity at the beginning", kNeus)
+      .add("inv_s_end", &GeometryOptions::inv_s_end, {1, 1e5}, "1 / object radius", "The same at the end",
+           kNeus)
+      .add("inv_s_until", &GeometryOptions::inv_s_until, kPosition, "of the schedule",
+           "Where it reaches the end")
+      .add("unlock_until", &GeometryOptions::unlock_until, kPosition, "of the schedule",
+           "Where all levels of the hash grid are in use", "[Wang et al. 2023]")
+      .add("first_levels", &GeometryOptions::first_levels, {1, 24}, "", "Levels in use from the beginning")
+      .add("decay_from", &GeometryOptions::decay_from, {0, 0.999}, "of the schedule",
+           "Where rates begin to decay")
+      .add("decay_to", &GeometryOptions::decay_to, {1e-6, 1}, "", "Factor of the rates at the end")
+      .add("table_rate", &GeometryOptions::table_rate, {0, 1}, "", "Rate of the hash tables", kAdam)
+      .add("layer_rate", &GeometryOptions::layer_rate, {0, 1}, "", "Rate of the layers", kAdam)
+      .add("prefit_steps", &GeometryOptions::prefit_steps, {0, 1e6}, "steps",
+           "That fit the field to the start shape")
+      .add("refresh_every", &GeometryOptions::refresh_every, {1, 1e6}, "steps",
+           "Between two updates of the occupancy grid")
+      .add("tight_grid_from", &GeometryOptions::tight_grid_from, {0, 1}, "of the schedule",
+           "Where the occupancy grid is trusted more")
+      .add("hold_start", &GeometryOptions::hold_start, {}, "",
+           "Hold every start shape, all around its surface")
+      .add("anchor_until", &GeometryOptions::anchor_until, kPosition, "of the schedule",
+           "Until where a start shape is held");
+}
+
+void add_geometry(const Group<GeometryOptions>& g) {
+  add_network(g.part("sdf.", &GeometryOptions::sdf));
+  g.part("sdf.", &GeometryOptions::sdf)
+      .add("sphere_radius", &FieldConfig::sphere_radius, {0, 1}, "object radii",
+           "Of the sphere that it begins as", "[Yariv et al. 2020]");
+  g.add("radiance_layers", &GeometryOptions::radiance_layers, {1, 8}, "",
+        "Hidden layers of the radiance network", kNeus)
+      .add("radiance_width", &GeometryOptions::radiance_width, {1, 1024}, "neurons", "Of a layer of it",
+           kNeus);
+  add_schedule(g);
+  add_sampling(g.part("sampling.", &GeometryOptions::sampling));
+  add_losses(g.part("loss.", &GeometryOptions::loss));
+}
+
+void add_shapes(const Group<ShapeOptions>& g) {
+  g.add("cells", &ShapeOptions::cells, {16, 512}, "cells an axis", "Of the shapes by masks and colors")
+      .add("stereo_cells", &ShapeOptions::stereo_cells, {16, 512}, "cells an axis", "Of the shape by depths");
+  g.part("carving.", &ShapeOptions::carving)
+      .add("steps", &CarveOptions::steps, {1, 1e5}, "steps", "Of carving", "[Sun et al. 2022]")
+      .add("rays", &CarveOptions::rays, {1, 1e6}, "rays a step", "Size of a batch")
+      .add("density", &CarveOptions::density, {1e-3, 1e3}, "1 / object radius", "At the beginning")
+      .add("density_rate", &CarveOptions::density_rate, {0, 1}, "",
+           "Largest change of a cell's opacity a step")
+      .add("color_rate", &CarveOptions::color_rate, {0, 1}, "sRGB, 0 to 1",
+           "Largest change of a color a step")
+      .add("opacity_weight", &CarveOptions::opacity_weight, {0, 100}, "", "Of the masks against the colors")
+      .add("empty_opacity", &CarveOptions::empty_opacity, {0, 1}, "",
+           "Below which a cell that is lit is empty")
+      .add("lit", &CarveOptions::lit, {0, 1}, "", "Share of the light of a ray from which a cell is lit")
+      .add("opening", &CarveOptions::opening, {0, 16}, "cells", "Narrower hollows are removed as noise");
+  g.part("stereo.", &ShapeOptions::stereo)
+      .add("pixels", &StereoOptions::pixels, {1000, 1e9}, "pixels", "Of all depth maps together")
+      .add("neighbors", &StereoOptions::neighbors, {2, 32}, "views", "That a view is matched with")
+      .add("window", &StereoOptions::window, {1, 16}, "pixels", "Half width of a window")
+      .add("min_score", &StereoOptions::min_score, {-1, 1}, "", "Least correlation", "[Goesele et al. 2006]")
+      .add("agreement", &StereoOptions::agreement, {0, 100}, "planes", "Largest difference between two maps");
+}
+
+void add_appearance(const Group<AppearanceOptions>& g) {
+  add_network(g.part("albedo.", &AppearanceOptions::albedo));
+  add_network(g.part("materials.", &AppearanceOptions::materials));
+  g.add("albedo_steps", &AppearanceOptions::albedo_steps, {-1, 1e6}, "steps",
+        "Of the albedo under the separated light; -1: by the time")
+      .add("joint_steps", &AppearanceOptions::joint_steps, {-1, 1e6}, "steps",
+           "Of albedo, material and light together; -1: by the time")
+      .add("lobe_steps", &AppearanceOptions::lobe_steps, {0, 1e6}, "steps",
+           "That fit lobes to the separated light", "[paper eq. 12]")
+      .add("material_steps", &AppearanceOptions::material_steps, {0, 1e6}, "steps",
+           "That fit the material field")
+      .add("roughness", &AppearanceOptions::roughness, {0, 1}, "",
+           "Of the object, if it is known; 0: searched")
+      .add("batch", &AppearanceOptions::batch, {1, 1e6}, "pixels a step", "Size of a batch")
+      .add("network_rate", &AppearanceOptions::network_rate, {0, 1}, "", "Rate of the layers", kAdam);
+}
+
+void add_meshing(const Group<MeshingOptions>& g) {
+  g.add("resolution", &MeshingOptions::resolution, {16, 1024, 4}, "cells an axis", "Of the mesh",
+        "[Gibson 1998]")
+      .add("smallest_part", &MeshingOptions::smallest_part, {0, 1}, "of the triangles",
+           "Smaller components are dropped");
+}
+
+void add_run(const Group<Preset>& g) {
+  g.add("iterations", &Preset::iterations, {1, 1e8}, "steps",
+        "Of the geometry stage, without --time or --iterations", kPaper)
+      .add("polish_steps", &Preset::polish_steps, {0, 1e6}, "steps", "Of a round of polishing, at most")
+      .add("polish_from_iterations", &Preset::polish_from_iterations, {0, 1e8}, "steps",
+           "Of the geometry stage, from which a run by steps polishes and meshes finer")
+      .add("trials_from_iterations", &Preset::trials_from_iterations, {0, 1e8}, "steps",
+           "Of the geometry stage, from which a run by steps compares start shapes")
+      .add("residual_steps", &Preset::residual_steps, {0, 1e6}, "steps", "Of the correction network; 0: none")
+      .add("refinement_steps", &Preset::refinement_steps, {1, 1e6}, "steps", "Of a refinement of the albedo")
+      .add("larger_tables", &Preset::larger_tables, {0, 4}, "",
+           "Added to the logarithm of the hash tables that are fitted to the pixels")
+      .add("max_hits", &Preset::max_hits, {100, 1e9}, "pixels", "Of the appearance stage, at most")
+      .add("brief_hits", &Preset::brief_hits, {100, 1e9}, "pixels",
+           "Of the appearance between rounds of polishing")
+      .add("max_residual_hits", &Preset::max_residual_hits, {100, 1e9}, "pixels",
+           "Of the correction network, at most");
+}
+
+SettingTable<Preset> make_table() {
+  SettingTable<Preset> table;
+  const Group<Preset> preset(table, "", [](Preset& p) -> Preset& { return p; });
+  add_run(preset);
+  add_geometry(preset.part("geometry.", &Preset::geometry));
+  const Group<TrialOptions> trial = preset.part("trial.", &Preset::trial);
+  trial.add("steps", &TrialOptions::steps, {1, 1e6}, "steps", "Of the training from each start shape")
+      .add("rays", &TrialOptions::rays, {64, 1e8}, "pixels", "Of the comparison of start shapes");
+  add_shapes(trial.part("shapes.", &TrialOptions::shapes));
+  add_geometry(trial.part("geometry.", &TrialOptions::geometry));
+  add_appearance(preset.part("appearance.", &Preset::appearance));
+  preset.part("polish.", &Preset::polish)
+      .add("batch", &PolishOptions::batch, {1, 1e6}, "pixels a step", "Size of a batch")
+      .add("weight", &PolishOptions::weight, {0, 100}, "",
+           "Of the shading loss against the loss of the geometry stage")
+      .add("from", &PolishOptions::from, {0, 0.999}, "of the schedule", "Where polishing begins in it");
+  add_meshing(preset.part("meshing.", &Preset::meshing));
+  add_meshing(preset.part("finer_meshing.", &Preset::finer_meshing));
+  return table;
+}
+
+}  // namespace
+
+const SettingTable<Preset>& preset_settings() {
+  static const SettingTable<Preset> table = make_table();
+  return table;
+}
+
+bool is_fitted(const Preset& preset, const std::string& key) {
+  static const std::vector<std::string> grids{"trial.geometry.sdf.", "geometry.sdf.", "appearance.albedo.",
+                                              "appearance.materials."};
+  if (key == "meshing.resolution" || key == "finer_meshing.resolution") return preset.resolution_from_views;
+  for (const std::string& grid : grids)
+    if (key == grid + "encoding.finest_resolution" || key == grid + "encoding.log2_table")
+      return preset.resolution_from_views || grid.starts_with("trial");
+  return false;
+}
+
+}  // namespace cei3d

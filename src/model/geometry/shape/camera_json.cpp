@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "model/geometry/shape/camera_json.h"
+
+#include "core/base/json.h"
+
+namespace cei3d {
+namespace {
+
+Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
+Vec3d vector_from(const Json& j) {
+  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+}
+
+}  // namespace
+
+Json camera_json(const Camera& c) {
+  Json rotation = Json::array();
+  for (const Vec3d& row : c.world_from_cam.row) rotation.push_back(vector_json(row));
+  return {{"width", c.width},
+          {"height", c.height},
+          {"fx", c.fx},
+          {"fy", c.fy},
+          {"cx", c.cx},
+          {"cy", c.cy},
+          {"skew", c.skew},
+          {"world_from_cam", std::move(rotation)},
+          {"center", vector_json(c.center)}};
+}
+
+Camera camera_from_json(JsonReader& reader) {
+  Camera c;
+  c.width = reader.require<int>("width");
+  c.height = reader.require<int>("height");
+  c.fx = reader.require<double>("fx");
+  c.fy = reader.require<double>("fy");
+  c.cx = reader.require<double>("cx");
+  c.cy = reader.require<double>("cy");
+  c.skew = reader.optional("skew", 0.0);
+  for (size_t i = 0; i < 3; ++i) c.world_from_cam.row[i] = vector_from(reader.array("world_from_cam").at(i));
+  const auto [x, y, z] = reader.numbers<3>("center");
+  c.center = {x, y, z};
+  return c;
+}
+
+}  // namespace cei3d
