@@ -89,7 +89,7 @@ TEST_F(OwnEditsTest, AreReadFromBesideThePhotographs) {
 TEST_F(OwnEditsTest, AMadeScribbleLiesOnTheObject) {
   const Capture loaded = load_capture(capture());
   const PaintStroke stroke = made_scribble(loaded, temp_.path() / "scribble.png");
-  const Image scribble = read_image(stroke.scribble),
+  const Image scribble = read_image(stroke.scribble.path),
               photo = read_image(find_view(loaded, stroke.view).image_path);
   int painted = 0, object = 0;
   for (size_t i = 3; i < scribble.data.size(); i += 4) {
