@@ -10,6 +10,7 @@
 #include "engine/io/png_file.h"
 #include "engine/project/dataset.h"
 #include "engine/session/edit_plan.h"
+#include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace {
