@@ -18,6 +18,7 @@ namespace {
 constexpr const char* kAbout =
     "cei3d: reconstructs an editable, relightable 3D object from posed photographs.\n"
     "\n"
+    "  cei3d demo                                             all of it, on the sample capture\n"
     "  cei3d check CAPTURE                                    check that a capture can be used\n"
     "  cei3d reconstruct CAPTURE -o PROJECT                   reconstruct an object from photographs\n"
     "  cei3d edit PROJECT paint --view NAME --scribble S.png  paint on one view, see it in all\n"
@@ -72,6 +73,14 @@ void add_common(CLI::App& app, CommonOptions& o) {
       ->check(CLI::Range(0, 4096))
       ->capture_default_str()
       ->group("Everywhere");
+}
+
+// The command line with those options of every command that were given here; --json is its caller's.
+std::vector<std::string> with_common(std::vector<std::string> line, const CommonOptions& o) {
+  if (o.quiet) line.push_back("--quiet");
+  line.insert(line.end(),
+              {"--log-level", o.log_level, "--device", o.device, "--threads", std::to_string(o.threads)});
+  return line;
 }
 
 // Lines of at most `width` characters, broken at spaces.
@@ -151,9 +160,13 @@ int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostrea
   app.get_formatter()->column_width(kNameColumn);
   add_common(app, common);
   app.require_subcommand(0, 1);
-  Commands commands(app, common);
-  for (const auto add : {add_check, add_reconstruct, add_render, add_edit, add_parts, add_history, add_export,
-                         add_eval, add_evaluate, add_info, add_bench, add_synth, add_open, add_batch})
+  Commands commands(app, common, [&](const std::vector<std::string>& line) {
+    std::ostringstream unseen;
+    return run_cli(with_common(line, common), common.json ? unseen : out, err, err_is_terminal);
+  });
+  for (const auto add :
+       {add_check, add_reconstruct, add_render, add_edit, add_parts, add_history, add_export, add_eval,
+        add_evaluate, add_info, add_bench, add_synth, add_open, add_batch, add_demo, add_manual})
     add(commands);
   app.footer(footer());
   wrap_help(app);

@@ -33,9 +33,9 @@ Typed type(const std::vector<std::string>& args) {
   return {code, out.str(), err.str()};
 }
 
-const std::vector<std::string> kVerbs = {"check", "reconstruct", "render", "edit",   "log",
-                                         "undo",  "redo",        "toggle", "replay", "export",
-                                         "eval",  "info",        "doctor", "synth"};
+const std::vector<std::string> kVerbs = {"check",  "reconstruct", "render", "edit",       "log",   "undo",
+                                         "redo",   "toggle",      "replay", "export",     "eval",  "info",
+                                         "doctor", "synth",       "demo",   "completion", "manual"};
 
 TEST(Cli, HelpNamesEveryVerb) {
   const Typed t = type({"--help"});
@@ -151,6 +151,8 @@ TEST(Cli, WrongUsageIsTwo) {
       {"evaluate", "c", "-o", "d", "--downscales", "0"},
       {"evaluate", "c", "-o", "d", "--view", "r_0"},
       {"evaluate", "c", "-o", "d", "--part-view", "r_0"},
+      {"completion", "csh"},
+      {"demo", "--sample", "no/such/folder"},
       {"doctor", "--log-level", "loud"},
       {"doctor", "--device", "abacus"},
   };

@@ -6,6 +6,8 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "apps/cli/console.h"
 #include "engine/session/session.h"
@@ -19,9 +21,13 @@ struct CommonOptions {
   int threads = 0;
 };
 
+// Runs another command line, without the program's name; returns its exit code.
+using RunLine = std::function<int(const std::vector<std::string>&)>;
+
 class Commands {
  public:
-  Commands(CLI::App& app, const CommonOptions& common) : app_(app), common_(common) {}
+  Commands(CLI::App& app, const CommonOptions& common, RunLine run_line)
+      : app_(app), common_(common), run_line_(std::move(run_line)) {}
 
   // Adds a command. parent: the command that it belongs to; null: the program.
   CLI::App* add(const std::string& name, const std::string& help, CLI::App* parent = nullptr) {
@@ -39,12 +45,16 @@ class Commands {
     Session session(common_.device, common_.threads);
     run_(session, console);
   }
+  const CLI::App& app() const { return app_; }
   const CommonOptions& common() const { return common_; }
+  // With the options of every command as they are here.
+  int run_line(const std::vector<std::string>& line) const { return run_line_(line); }
   bool chosen() const { return bool(run_); }
 
  private:
   CLI::App& app_;
   const CommonOptions& common_;
+  RunLine run_line_;
   std::function<void(Session&, Console&)> run_;
 };
 
@@ -65,5 +75,7 @@ void add_bench(Commands&);
 void add_batch(Commands&);
 void add_open(Commands&);
 void add_synth(Commands&);
+void add_demo(Commands&);
+void add_manual(Commands&);  // completion, manual
 
 }  // namespace cei3d

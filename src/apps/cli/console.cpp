@@ -48,6 +48,10 @@ void Console::done(const Json& json, const std::string& text) {
   if (json_ || level_ >= LogLevel::info) answer(json, text);
 }
 
+void Console::say(const std::string& text) {
+  if (!json_ && level_ >= LogLevel::info) out_ << text << std::endl;
+}
+
 void Console::warn(const std::string& text) {
   clear_bar();
   if (level_ >= LogLevel::warn) err_ << "warning: " << text << '\n';

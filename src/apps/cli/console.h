@@ -13,8 +13,8 @@ namespace cei3d {
 
 enum class LogLevel { error, warn, info, debug };
 
-// answer(), done(), warn() and error() may be called only by the thread that made the object, while no work
-// runs.
+// answer(), done(), say(), warn() and error() may be called only by the thread that made the object, while no
+// work runs.
 class Console : public Progress {
  public:
   Console(std::ostream& out, std::ostream& err, bool err_is_terminal)
@@ -27,6 +27,8 @@ class Console : public Progress {
   void answer(const Json& json, const std::string& text);
   // The result of an action, not printed with --quiet.
   void done(const Json& json, const std::string& text);
+  // A line for people: not printed with --quiet or --json.
+  void say(const std::string& text);
   void warn(const std::string& text);
   // With --json also prints an object on standard output, unless an answer was printed before.
   void error(const std::string& text, const std::string& hint, int code);
