@@ -1,26 +1,51 @@
 # SPDX-License-Identifier: Apache-2.0
-# A project that an earlier program stored opens and renders as it did then, to 1/255, with its edits and without them.
-# tests/e2e/data/stored is made by: cei3d_engine_session_test --gtest_also_run_disabled_tests --gtest_filter='StoredProject.*'
+# Projects that earlier programs stored, one of each format, open and render as they did then, to 1/255, with their edits
+# and without them. Those of tests/e2e/data/formats are made, when the format changes, by:
+# cei3d_engine_session_test --gtest_also_run_disabled_tests --gtest_filter='StoredProject.*'
 source "$(dirname "$0")/lib.sh"
 
-readonly stored=tests/e2e/data/stored
-project=$out/project
-cp -r "$stored/project" "$project"
-as_stored() { # NAME DEVICE
-  cei3d render "$project" -o "$out/$1-${2/\//-}" --channels rgb,albedo,normal,roughness --device "$2"
-  python3 tests/e2e/within.py "$stored/$1" "$out/$1-${2/\//-}" || fail "$1 by $2 is not as it was stored"
+readonly formats=tests/e2e/data/formats
+
+as_stored() { # FORMAT NAME DEVICE
+  cei3d render "$project" -o "$out/$1-$2-${3/\//-}" --channels rgb,albedo,normal,roughness --device "$3"
+  python3 tests/e2e/within.py "$formats/$1/$2" "$out/$1-$2-${3/\//-}" || fail "format $1: $2 by $3 is not as it was stored"
 }
 
-cei3d info "$project"
-[[ $(cei3d log "$project" | grep -c ' on ') == 5 ]] || fail "not five edits in the log"
-as_stored edited auto
-as_stored edited cpu/scalar
-# Each is undone and made again, which needs what is stored of it.
-for id in 0001-paint 0002-material 0003-part 0004-deform 0005-light; do
-  cei3d toggle "$project" "$id"
-done
-as_stored plain auto
-for id in 0005-light 0004-deform 0003-part 0002-material 0001-paint; do
-  cei3d toggle "$project" "$id"
-done
-as_stored edited auto
+toggle() { # IDS...: each is undone or made again, which needs what is stored of it
+  local id
+  for id in "$@"; do cei3d toggle "$project" "$id"; done
+}
+
+all_files() { (cd "$project" && find . -type f ! -path './cache/*' ! -name .lock -exec sha256sum {} + | sort); }
+
+try_format() { # FORMAT
+  project=$out/project-$1
+  cp -r "$formats/$1/project" "$project"
+  [[ $(grep -o '"version": [0-9]*' "$project/project.json") == "\"version\": $1" ]] || fail "$project is not of format $1"
+  all_files >"$out/before"
+  cei3d info "$project"
+  [[ $(cei3d log "$project" | grep -c ' on ') == 5 ]] || fail "format $1: not five edits in the log"
+  as_stored "$1" edited auto
+  as_stored "$1" edited cpu/scalar
+  all_files >"$out/after"
+  same "$out/before" "$out/after"
+  toggle 0001-paint 0002-material 0003-part 0004-deform 0005-light
+  as_stored "$1" plain auto
+  toggle 0005-light 0004-deform 0003-part 0002-material 0001-paint
+  as_stored "$1" edited auto
+  cei3d edit "$project" material --roughness 0.9
+  cei3d export "$project" -o "$out/format-$1.glb" --faces 500 --texture 64
+}
+
+# What each format brought.
+set_aside() {
+  cei3d log "$project" | grep '^0006-material *aside' >/dev/null || fail "format 5: nothing is set aside"
+  cei3d log "$project" | grep '^0001-paint .*stripe' >/dev/null || fail "format 5: the edit has lost its name"
+  cei3d restore "$project" 0006-material
+  [[ $(cei3d log "$project" | grep -c ' on ') == 6 ]] || fail "format 5: what was set aside is not done again"
+}
+
+newest=$(sed -n 's/^inline constexpr int kProjectVersion = \([0-9]*\);$/\1/p' src/engine/project/project.h)
+[[ -d $formats/$newest ]] || fail "no project of format $newest is stored in $formats"
+for folder in "$formats"/*; do try_format "${folder##*/}"; done
+set_aside
