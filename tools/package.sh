@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # package.sh BUILD [deb|tarball]: packages of what is built in the folder BUILD, into BUILD/package: a .deb for this release of the
 # system, and a .tar.gz that brings its libraries along, for any Linux on x86-64 whose glibc is not older than this one.
-# The same commit gives the same bytes on the same system.
+# Packing the same build of the same commit again gives the same bytes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 readonly build=$1 out=$1/package
