@@ -131,9 +131,9 @@ TEST(Reconstruct, ResumedAnywhereMakesTheSameObject) {
   SmallRun small;
   const Reference& reference = uninterrupted();
   const std::vector<std::string>& stages = reference.progress.stages;
-  const std::vector<std::string> expected{"loading",    "start",    "geometry",   "polish 1",
-                                          "polish 2",   "surface",  "appearance", "joint",
-                                          "finer mesh", "residual", "done"};
+  const std::vector<std::string> expected{"loading",  "start",      "geometry", "polish 1",
+                                          "polish 2", "surface",    "light",    "appearance",
+                                          "joint",    "finer mesh", "residual", "done"};
   ASSERT_EQ(stages, expected);
   EXPECT_GT(reference.checkpoints.midway.at("geometry"), 0);
   for (size_t s = 1; s + 1 < stages.size(); ++s) {

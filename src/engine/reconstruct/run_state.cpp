@@ -3,13 +3,14 @@
 
 #include "core/base/error.h"
 #include "core/base/json_reader.h"
+#include "model/geometry/shape/vec_tensors.h"
 
 namespace cei3d {
 
 namespace {
 
 constexpr int kVersion = 2;  // version 1: the geometry stage alone, its tensors without a prefix
-const std::string kGeometry = "geometry/", kScene = "scene/";
+const std::string kGeometry = "geometry/", kScene = "scene/", kSeparatedAlbedo = "separated_albedo";
 
 void add_prefixed(const std::string& prefix, Tensors from, Tensors& to) {
   for (auto& [name, tensor] : from) to[prefix + name] = std::move(tensor);
@@ -69,6 +70,7 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
   save_scene(state.scene, scene, scene_head);
   add_prefixed(kScene, std::move(scene), tensors);
   head["scene"] = std::move(scene_head);
+  if (!state.separated_albedo.empty()) tensors[kSeparatedAlbedo] = tensor_of(state.separated_albedo);
 }
 
 RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry& make_geometry) {
@@ -84,6 +86,11 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   const Json& scene = reader.member("scene");
   reader.finish();
   state.scene = load_scene(without_prefix(kScene, tensors), scene, "the object in the checkpoint");
+  if (tensors.contains(kSeparatedAlbedo)) {
+    if (!state.scene.surface) fail("albedo of vertices without a surface");
+    state.separated_albedo =
+        vectors_from(tensors, kSeparatedAlbedo, int64_t(state.scene.surface->mesh().positions.size()));
+  }
   if (has_geometry) {
     state.geometry = make_geometry();
     state.geometry->load(without_prefix(kGeometry, tensors));

@@ -24,8 +24,12 @@ struct RunState {
   bool light_frame_known = false;  // whether scene.light_frame is final
   Scene scene;                     // the finished parts of the object
 
-  // Hits of the appearance stage on scene.surface. Not in checkpoints: they are recomputed.
+  // Between the stages of light and appearance: LinearSplit::albedo, #V of scene.surface; else empty.
+  std::vector<Vec3f> separated_albedo;
+
+  // Hits of these stages on scene.surface, and its transport. Not in checkpoints: they are recomputed.
   ObjectHits hits;
+  std::shared_ptr<const Transport> transport;
 };
 
 using MakeGeometry = std::function<std::unique_ptr<GeometryStage>()>;

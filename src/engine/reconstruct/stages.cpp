@@ -24,6 +24,7 @@ constexpr float kHandlerSpacing = 1.5f;  // of handler points, in pixels
 constexpr float kMaxLevel = 0.002f;  // maximum shift of the zero level: the thickness of the sharpest density
 // A shorter descent is not worth another estimate of light and material.
 constexpr double kMinPolishSeconds = 10;
+constexpr double kLightShare = 0.6;  // of the planned time of light and appearance
 
 // Lengths of the stages of a run by steps, in steps of the geometry stage.
 constexpr double kStartSteps = 50, kTrialsSteps = 1500, kLookSteps = 350, kSurfaceSteps = 80,
@@ -175,16 +176,42 @@ AppearanceOptions appearance_options(const RunContext& run) {
   return options;
 }
 
-void estimate_appearance(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+// What the stages of light and appearance see; computed again where a run is resumed between them.
+AppearanceInput appearance_input(const RunContext& run, RunState& state, const LightTurns* turns) {
+  AppearanceInput input{state.scene.surface, state.hits.samples(turns), state.transport};
+  state.transport = input.transport = transport_of(input, run.progress);
+  return input;
+}
+
+void find_hits(const RunContext& run, RunState& state) {
+  if (state.hits.hits.empty()) state.hits = scene_hits(run, state.scene, {run.preset.max_hits});
+}
+
+void estimate_light(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   Scene& scene = state.scene;
-  if (state.hits.hits.empty()) state.hits = scene_hits(run, scene, {run.preset.max_hits});
+  find_hits(run, state);
   const Turns turns = light_turns(run, state, scene.surface, state.hits);
-  AppearanceResult made = fit_appearance(run.device, {scene.surface, state.hits.samples(turns.get())},
+  AppearanceResult made = separate_light(run.device, appearance_input(run, state, turns.get()),
                                          appearance_options(run), run.progress);
   check_cancelled(run.progress);
-  state.hits = {};
   scene.light = std::move(made.light);
   scene.light_error = relative_error(made.split.light_error);
+  scene.material = made.material;
+  state.separated_albedo = std::move(made.split.albedo);
+}
+
+void estimate_appearance(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  Scene& scene = state.scene;
+  find_hits(run, state);
+  const Turns turns = light_turns(run, state, scene.surface, state.hits);
+  AppearanceResult made{scene.light, scene.material, nullptr, {}};
+  descend_on_appearance(run.device, appearance_input(run, state, turns.get()), appearance_options(run),
+                        state.separated_albedo, made, run.progress);
+  check_cancelled(run.progress);
+  state.hits = {};
+  state.transport = nullptr;
+  state.separated_albedo.clear();
+  scene.light = std::move(made.light);
   scene.material = made.material;
   scene.albedo = std::move(made.albedo);
 }
@@ -295,7 +322,8 @@ std::vector<Stage> stages_of(const Plan& plan) {
                         polish(run, state, round);
                       }});
   stages.push_back({"surface", budget.surface, make_surface});
-  stages.push_back({"appearance", budget.appearance, estimate_appearance});
+  stages.push_back({"light", kLightShare * budget.appearance, estimate_light});
+  stages.push_back({"appearance", (1 - kLightShare) * budget.appearance, estimate_appearance});
   for (int k = 1; k <= plan.refinements; ++k)
     stages.push_back({fmt::format("albedo {}", k), budget.refinement,
                       [k](const RunContext& run, RunState& state, const Stage::Checkpoint&) {

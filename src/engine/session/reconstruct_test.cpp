@@ -59,7 +59,7 @@ TEST(Reconstruct, InterruptedProjectHasNoObjectAndResumes) {
   request.options.test_every = 0;
   EXPECT_EQ(stages_until(request, "geometry"), std::set<std::string>{"start"});
   request.resume = true;
-  EXPECT_EQ(stages_until(request, "appearance"), (std::set<std::string>{"geometry", "surface"}));
+  EXPECT_EQ(stages_until(request, "appearance"), (std::set<std::string>{"geometry", "surface", "light"}));
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ class Descent {
         });
       };
       albedo_trainer_.step(device_, points_, loss, rate * std::pow(0.1f, float(step) / float(steps)));
-      if (step % 50 == 0) progress_.report({"albedo", 0.6 + 0.2 * step / steps, -1, ""});
+      if (step % 50 == 0) progress_.report({"albedo", 0.5 * step / steps, -1, ""});
     }
   }
 
@@ -98,7 +98,7 @@ class Descent {
       else
         lighting_->set_lobes(result_.light);
       joint_step(light, std::pow(0.1f, float(step) / float(steps)));
-      if (step % 50 == 0) progress_.report({"light and albedo", 0.8 + 0.2 * step / steps, -1, ""});
+      if (step % 50 == 0) progress_.report({"light and albedo", 0.5 + 0.5 * step / steps, -1, ""});
     }
   }
 
@@ -216,13 +216,17 @@ MaterialField fit_materials(const Device& device, const AppearanceInput& input,
 
 }  // namespace
 
-AppearanceResult fit_appearance(const Device& device, const AppearanceInput& input,
+std::shared_ptr<const Transport> transport_of(const AppearanceInput& input, const Progress& progress) {
+  if (input.transport) return input.transport;
+  return std::make_shared<const Transport>(input.surface, std::vector<uint8_t>(), progress);
+}
+
+AppearanceResult separate_light(const Device& device, const AppearanceInput& input,
                                 const AppearanceOptions& options, Progress& progress) {
   const double start = steady_seconds();
   AppearanceResult result;
   progress.report({"light", 0, -1, ""});
-  const auto transport = std::make_shared<const Transport>(input.surface, std::vector<uint8_t>(), progress);
-  result.split = linear_split(*transport, input.samples,
+  result.split = linear_split(*transport_of(input, progress), input.samples,
                               split_options(options, input.samples.turned.turns != nullptr), progress);
   const Material& mean = result.split.material;
   progress.log(Json{{"stage", "linear split"},
@@ -231,30 +235,44 @@ AppearanceResult fit_appearance(const Device& device, const AppearanceInput& inp
                     {"metalness", mean.metalness},
                     {"one_material", result.split.materials.empty()}}
                    .dump());
-  progress.report({"lobes", 0.5, -1, ""});
+  progress.report({"lobes", 0.9, -1, ""});
   LobeFitOptions lobes;
   lobes.height = result.split.light.height;
   lobes.steps = options.lobe_steps;
   lobes.seen_through = 0.5f * reflection_scale(result.split.smoothest);
   result.light = fit_lobes(device, result.split.light, lobes, EnvUp::z, progress);
   result.material = fit_materials(device, input, options, result.split, progress);
+  return result;
+}
+
+void descend_on_appearance(const Device& device, const AppearanceInput& input,
+                           const AppearanceOptions& options, const std::vector<Vec3f>& vertex_albedo,
+                           AppearanceResult& result, Progress& progress) {
+  const double start = steady_seconds();
   const bool brief = options.effort == Effort::brief;
-  Descent descent(device, input, transport, options, Field(options.albedo, options.seed + 100),
-                  result.split.albedo, result, progress);
+  const Material mean = result.material.mean();
+  Descent descent(device, input, transport_of(input, progress), options,
+                  Field(options.albedo, options.seed + 100), vertex_albedo, result, progress);
   descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800, 1);
   // The strength of the light is determined only by reflections of dielectrics.
   const bool all_metal = mean.metalness > kAllMetal;
   descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps : joint_steps_for(mean, brief),
                       !all_metal);
   result.albedo = std::make_shared<const Field>(descent.take_albedo());
-  progress.log(Json{{"stage", "appearance"}, {"seconds", steady_seconds() - start}}.dump());
+  progress.log(Json{{"stage", "descent"}, {"seconds", steady_seconds() - start}}.dump());
+}
+
+AppearanceResult fit_appearance(const Device& device, AppearanceInput input, const AppearanceOptions& options,
+                                Progress& progress) {
+  input.transport = transport_of(input, progress);
+  AppearanceResult result = separate_light(device, input, options, progress);
+  descend_on_appearance(device, input, options, std::vector<Vec3f>(result.split.albedo), result, progress);
   return result;
 }
 
 void refine_albedo(const Device& device, const AppearanceInput& input, const AppearanceOptions& options,
                    AppearanceResult& result, Progress& progress, int steps) {
-  const auto transport = std::make_shared<const Transport>(input.surface, std::vector<uint8_t>(), progress);
-  Descent descent(device, input, transport, options, *result.albedo,
+  Descent descent(device, input, transport_of(input, progress), options, *result.albedo,
                   result.albedo->eval3(device, input.surface->mesh().positions), result, progress);
   descent.fit_albedo(steps, 0.2f);
   result.albedo = std::make_shared<const Field>(descent.take_albedo());

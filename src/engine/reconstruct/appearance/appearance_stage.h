@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The appearance stage (PPD): light, albedo and material of a finished surface, started by the linear
-// separation. [paper sec. 4.2; docs/method.md#appearance-stage]
+// Light, albedo and material of a finished surface (PPD): first by the linear separation, then by descent.
+// [paper sec. 4.2; docs/method.md#appearance-stage]
 #pragma once
 
 #include <memory>
@@ -15,7 +15,8 @@ namespace cei3d {
 
 struct AppearanceInput {
   std::shared_ptr<const Surface> surface;
-  SurfaceSamples samples;  // pixels wholly on the object
+  SurfaceSamples samples;                           // pixels wholly on the object
+  std::shared_ptr<const Transport> transport = {};  // of the surface; null: it is computed
 };
 
 enum class Effort { brief, full };  // brief: fewer samples and steps, half the time
@@ -42,7 +43,18 @@ struct AppearanceResult {
   LinearSplit split;  // the linear separation, for reports
 };
 
-AppearanceResult fit_appearance(const Device&, const AppearanceInput&, const AppearanceOptions&, Progress&);
+// The linear separation, and from it lobes of light and a field of materials. The result has no albedo field.
+AppearanceResult separate_light(const Device&, const AppearanceInput&, const AppearanceOptions&, Progress&);
+
+// Fits the albedo field under the separated light, then descends on albedo, material and light. result: light
+// and material of separate_light(). vertex_albedo: LinearSplit::albedo.
+void descend_on_appearance(const Device&, const AppearanceInput&, const AppearanceOptions&,
+                           const std::vector<Vec3f>& vertex_albedo, AppearanceResult& result, Progress&);
+
+// Both.
+AppearanceResult fit_appearance(const Device&, AppearanceInput, const AppearanceOptions&, Progress&);
+
+std::shared_ptr<const Transport> transport_of(const AppearanceInput&, const Progress&);
 
 // Refines the albedo at low rates on another random subset of the samples: in one subset of a large capture a
 // texel has few samples, and the field learns their noise. result: of the same surface. About 30 s on two
