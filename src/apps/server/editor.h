@@ -116,6 +116,15 @@ class Editor : public HttpApp, private JobListener {
   Json state() const;
   std::filesystem::path object_folder() const;
 
+  // packs.cpp: what the page draws. The last pack of each kind is kept.
+  struct KeptPack {
+    std::string key;
+    std::shared_ptr<const std::string> bytes;
+  };
+  void prepare_packs();  // in the background, before a page asks for them
+  std::shared_ptr<const std::string> pack_of(Session&, const std::string& kind);
+  std::shared_ptr<const std::string> kept_pack(const std::string& kind, const std::string& key) const;
+
   // sockets.cpp
   void on_progress(const std::string& job, const ProgressReport&) override;
   void broadcast(const Json&);
@@ -133,6 +142,7 @@ class Editor : public HttpApp, private JobListener {
   std::set<std::string> exports_;  // names of files that may be downloaded
   std::filesystem::path exports_folder_;
   std::map<SocketPtr, Tab> tabs_;
+  std::map<std::string, KeptPack> packs_;  // by kind
   std::atomic<uint64_t> tokens_ = 0;
   std::unique_ptr<Worker> worker_;  // last: it uses the others
 };

@@ -117,6 +117,7 @@ void Editor::open_project(Session& session, const fs::path& path) {
               {"program", kVersion}};
   }
   publish(session);
+  prepare_packs();
 }
 
 fs::path Editor::object_folder() const {

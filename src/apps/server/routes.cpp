@@ -68,18 +68,6 @@ void Editor::photo(const HttpRequest& request, Reply reply) {
   });
 }
 
-void Editor::pack(const HttpRequest& request, Reply reply) {
-  const std::string kind = request.path.substr(std::string("/api/pack/").size());
-  const auto token = request.parameter("preview");
-  const bool keyed = request.parameter("key").has_value() && !token;
-  on_worker("pack", std::move(reply),
-            [kind, keyed, made = token ? kept(*token) : nullptr](Session& session, Progress&) {
-              HttpResponse r{200, "application/octet-stream", session.view_pack(kind, made.get())};
-              if (keyed) r.headers.emplace_back("Cache-Control", "private, max-age=86400");
-              return r;
-            });
-}
-
 void Editor::upload(const HttpRequest& request, Reply reply) {
   if (request.body.empty()) return reply(error_response(400, "The file is empty."));
   reply(guarded_response([&] {
