@@ -32,7 +32,7 @@ export class Stage extends EventTarget {
     this.exact = null;
     this.camera = new ViewCamera({ width: 1, height: 1, fx: 1, fy: 1, cx: 0.5, cy: 0.5, skew: 0, world_from_cam: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], center: [0, 0, -1] }, [0, 0, 0], [0, 0, 1], 1);
     this.channel = 'rgb';
-    /** @type {{rotate: number, scale: number, env?: string}} light that is looked under */
+    /** @type {import('./light.js').Light} light that is looked under */
     this.light = { rotate: 0, scale: 1 };
     /** @type {string | null} token of the edit that is previewed */
     this.preview = null;
@@ -64,7 +64,7 @@ export class Stage extends EventTarget {
     this.photo = null;
     byId('cover').classList.remove('done');
     this.picture.getContext('2d')?.clearRect(0, 0, this.picture.width, this.picture.height);
-    this.live.begin().catch(() => {});
+    this.live.begin().catch(() => {}).finally(() => { if (!this.isLive() && !this.exact) this.moved(); });
     this.resized();
   }
 
@@ -97,6 +97,14 @@ export class Stage extends EventTarget {
   emit(type) { this.dispatchEvent(new Event(type)); }
 
   isLive() { return this.live.shows(this.channel, this.light, this.preview, this.photo); }
+
+  /** Shows all but some parts, which only the page's own picture can. @param {string[]} names */
+  hide(names) {
+    if (names.length === this.live.hidden.size && names.every((name) => this.live.hidden.has(name))) return;
+    this.live.hidden = new Set(names);
+    this.emit('hidden');
+    this.moved();
+  }
 
   /** The page can draw the object anew: below the exact frame, if there is one. */
   liveReady() {
@@ -131,7 +139,7 @@ export class Stage extends EventTarget {
         byId('cover').classList.add('done');
         this.redraw();
       });
-    } else {
+    } else if (!this.live.starting) {
       if (this.asked?.kind === 'quick') this.asked.stale = true;
       else this.ask('quick', 1);
       this.redraw();
@@ -145,12 +153,18 @@ export class Stage extends EventTarget {
     if (this.store.state.mode !== 'project') return;
     clearTimeout(this.timer);
     this.exact = null;
+    const kept = [...this.live.hidden].filter((name) => this.store.state.parts.some((p) => p.name === name));
+    if (kept.length < this.live.hidden.size) this.hide(kept);
     this.live.refresh().catch(() => {});
     this.asked = null;
     this.rest();
   }
 
   rest() {
+    if (this.live.hidden.size && this.live.renderer && (this.isLive() || !this.live.current())) {
+      if (this.isLive()) byId('badge').textContent = 'some parts hidden';
+      return;
+    }
     if (this.asked?.kind === 'quick') {
       this.timer = window.setTimeout(() => this.rest(), kRest);  // that one first
       return;
@@ -186,7 +200,7 @@ export class Stage extends EventTarget {
     context?.drawImage(this.back, tile.x, tile.y, tile.width, tile.height, tile.x, tile.y, tile.width, tile.height);
   }
 
-  /** @param {{seq: number, seconds: number}} frame */
+  /** @param {import('./messages.js').FrameNews} frame */
   finish({ seq, seconds }) {
     const asked = this.asked;
     if (!asked || seq !== asked.seq) return;
@@ -210,7 +224,10 @@ export class Stage extends EventTarget {
   }
 
   /** Whether a picture is complete and nothing is under way. */
-  settled() { return this.asked === null && this.exact !== null && byId('badge').textContent.startsWith('refined'); }
+  settled() {
+    const badge = byId('badge').textContent ?? '';
+    return this.asked === null && (this.exact !== null ? badge.startsWith('refined') : badge === 'some parts hidden');
+  }
 
   /** Whether the object is at a pixel of the frame. @param {number} x @param {number} y */
   onObject(x, y) {

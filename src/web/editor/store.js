@@ -4,13 +4,18 @@
 import { ApiError, getJson, Line, postJson } from './api.js';
 import { complain } from './dom.js';
 
+/** @typedef {import('./messages.js').ProjectState} State of an open project; of other places it has `mode`, and what they show */
+/** @typedef {import('./messages.js').ObjectInfo} ObjectInfo */
+/** @typedef {State['history'][number]} Edit */
+/** @typedef {State['parts'][number]} Part */
+
 export class Store extends EventTarget {
   constructor() {
     super();
-    /** @type {any} */
-    this.state = { mode: 'opening', history: [], parts: [] };
-    /** @type {any} */
-    this.object = null;
+    /** @type {State} */
+    this.state = /** @type {any} */ ({ mode: 'opening', history: [], parts: [] });
+    /** @type {ObjectInfo} none before a project is open */
+    this.object = /** @type {any} */ (null);
     /** @type {string | null} name of the selected part */
     this.part = null;
     this.saving = 0;
@@ -55,7 +60,7 @@ export class Store extends EventTarget {
     state.history ??= [];
     state.parts ??= [];
     this.state = state;
-    if (this.part && !state.parts.some((/** @type {any} */ p) => p.name === this.part)) this.part = null;
+    if (this.part && !state.parts.some((/** @type {Part} */ p) => p.name === this.part)) this.part = null;
     if (before.mode !== state.mode || before.folder !== state.folder) this.emit('mode', state);
     this.emit('state', state);
     if (before.revision !== state.revision) this.emit('revision', { before, state });
@@ -107,10 +112,10 @@ export class Store extends EventTarget {
     }
   }
 
-  /** Edits that are done, in order. @returns {any[]} */
+  /** Edits that are done, in order. @returns {Edit[]} */
   done() { return this.state.history.slice(0, this.state.done); }
-  /** The last edit that is done. @returns {any} */
+  /** The last edit that is done. @returns {Edit | undefined} */
   last() { return this.done().at(-1); }
   canUndo() { return this.state.done > 0; }
-  canRedo() { return this.state.history.some((/** @type {any} */ e) => !e.done && !e.set_aside); }
+  canRedo() { return this.state.history.some((e) => !e.done && !e.set_aside); }
 }
