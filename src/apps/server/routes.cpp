@@ -8,7 +8,6 @@
 #include "core/base/json.h"
 #include "engine/io/jpeg_file.h"
 #include "engine/io/png_file.h"
-#include "engine/project/dataset.h"
 #include "engine/session/edit_plan.h"
 #include "model/geometry/shape/camera_json.h"
 

@@ -22,8 +22,8 @@ struct Pixel {
 class PixelStore {
  public:
   // image: RGBA, linear, straight alpha, below 0 where unknown. Keeps known pixels with an alpha above zero
-  // within `rim` pixels. depth: of the file. Of 8 bits the display-encoded bytes are all that is kept; else the
-  // radiance, too.
+  // within `rim` pixels. depth: of the file. Of 8 bits the display-encoded bytes are all that is kept; else
+  // the radiance, too.
   void add_view(const Camera& unit_camera, const Image& image, int rim, ImageDepth depth = ImageDepth::bits8);
 
   const std::vector<Camera>& cameras() const { return cameras_; }

@@ -161,26 +161,29 @@ TEST_F(ResidualTest, StartsAsNothing) {
   for (const Vec3f r : residual_at(device, make_residual(scene.sdf, 1), hits)) EXPECT_EQ(dot(r, r), 0);
 }
 
-TEST_F(ResidualTest, StaysOutOfAnEditsRegionAndWholeOutsideIt) {
-  const Scene edited = with_layer(scene, upper_half(scene));
-  const Image glowing = picture(scene), plain = picture(without()), got = picture(edited);
-  int inside = 0, outside = 0;
+TEST_F(ResidualTest, IsWholeOutsideAnEditsRegionAndFollowsTheEditInside) {
+  EditLayer rougher = upper_half(scene);
+  rougher.material.roughness = 0.9f;
+  const Scene edited = with_layer(scene, rougher);
+  const Image glowing = picture(scene), got = picture(edited),
+              plain = picture(with_layer(without(), rougher));
+  int inside = 0, outside = 0, corrected = 0;
   const Frame marks =
       shade_view(device, edited, trace_view(device, edited, camera_towards_origin({2.5, 1.5, 0.5}, 96), 1));
   for (size_t i = 0; i < marks.edited.size(); ++i)
     for (int c = 0; c < 3; ++c) {
-      const int y = int(i) / 96;
       if (got.data[4 * i + 3] == 0) continue;
       if (!marks.edited[i]) {
         EXPECT_EQ(got.data[4 * i + c], glowing.data[4 * i + c]);
         ++outside;
-      } else if (y < 40) {
-        EXPECT_EQ(got.data[4 * i + c], plain.data[4 * i + c]);
+      } else {
+        corrected += got.data[4 * i + c] != plain.data[4 * i + c];
         ++inside;
       }
     }
-  EXPECT_GT(inside, 1000);
   EXPECT_GT(outside, 1000);
+  EXPECT_GT(inside, 1000);
+  EXPECT_GT(corrected, inside / 2);
 }
 
 TEST_F(ResidualTest, IsBackWhereAnEditIsErased) {
@@ -194,16 +197,11 @@ TEST_F(ResidualTest, IsBackWhereAnEditIsErased) {
   EXPECT_EQ(picture(with_layer(painted, erase)).data, picture(scene).data);
 }
 
-TEST_F(ResidualTest, IsGoneUnderAnotherLightOrWhenAllOfTheObjectIsEdited) {
+TEST_F(ResidualTest, IsGoneUnderAnotherLight) {
   EditLayer light;
   light.id = "0001-light";
   light.light = scene.light;
   EXPECT_FALSE(with_layer(scene, light).residual);
-  EditLayer everywhere;
-  everywhere.id = "0001-material";
-  everywhere.everywhere = true;
-  everywhere.material.roughness = 0.9f;
-  EXPECT_EQ(picture(with_layer(scene, everywhere)).data, picture(with_layer(without(), everywhere)).data);
 }
 
 TEST_F(ResidualTest, IsKeptWithTheObject) {
