@@ -29,9 +29,10 @@ function moments(n) {
 /** Draws a short stroke somewhere on the object and returns before it is kept. */
 const stroke = (page) => page.evaluate(([a, b, c]) => {
   const { paint, stage } = globalThis.cei3d, { width, height } = stage.picture;
-  for (let i = 0; i < 200; ++i) {
-    const x = width * (0.3 + 0.4 * ((a + 0.618 * i) % 1)), y = height * (0.3 + 0.4 * ((b + 0.382 * i) % 1));
-    if (!stage.onObject(x, y)) continue;
+  for (let i = 0; i < 300; ++i) {
+    const x = width * (0.3 + 0.4 * ((a + 0.7549 * i) % 1)), y = height * (0.3 + 0.4 * ((b + 0.5698 * i) % 1));
+    // Not at the rim, which a stroke does not reach.
+    if (![[-8, 0], [20, 5], [0, -8], [0, 8]].every(([dx, dy]) => stage.onObject(x + dx, y + dy))) continue;
     const p = { x, y, pressure: 1, shift: false, alt: false, ctrl: false, onObject: true, erase: false };
     paint.setColor(`#${Math.floor(c * 0xffffff).toString(16).padStart(6, '0')}`);
     paint.down(p);
@@ -49,7 +50,8 @@ async function main() {
   const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--js-flags=--expose-gc'] });
   const page = await browser.newPage({ viewport: { width: 868, height: 674 } });
   const heap = async () => page.evaluate(() => { globalThis.gc?.(); return performance.memory.usedJSHeapSize / 1e6; });
-  const seconds = [], memory = [];
+  const seconds = [], memory = [], refused = [];
+  page.on('response', async (r) => { if (r.status() >= 400) refused.push(`${r.status()} ${r.url()} ${await r.text().catch(String)}`); });
   try {
     await page.goto(server.url);
     await settled(page);
@@ -92,6 +94,9 @@ async function main() {
     console.log(`| stroke to kept edit, median of the first and of the last tenth | ${median(seconds.slice(0, tenth))} s; ${median(seconds.slice(-tenth))} s |`);
     for (const [i, program_, page_] of memory) console.log(`| memory after ${i} strokes: program; scripts of the page | ${Math.round(program_)} MB; ${page_.toFixed(1)} MB |`);
     if (lost > 0 || done !== logged() || done !== strokes) throw new Error('Edits are missing or doubled.');
+  } catch (error) {
+    console.error(refused.join('\n'));
+    throw error;
   } finally {
     server.process.removeAllListeners('exit');
     server.process.kill('SIGKILL');

@@ -5,6 +5,7 @@
 //   GET  /api/state             what is open: history, parts, findings, jobs
 //   GET  /api/object            what does not change while it is open: views, cameras, frame
 //   GET  /api/photo/VIEW?width= a photograph, JPEG
+//   GET  /api/making            the object that is being made, PNG
 //   GET  /api/pack/KIND?key=    what the page draws, by a key of the state; or ?preview=TOKEN
 //   POST /api/upload?name=      bytes in, {"id"} out
 //   POST /api/edit              {"op", "params", "amend"}
@@ -111,6 +112,7 @@ class Editor : public HttpApp, private JobListener {
   void open_project(Session&, const std::filesystem::path&);
   void open_capture(Session&, const std::filesystem::path&);
   void show_library();
+  void show_making(const Image&);
   void publish(Session&);  // the present state, to everybody
   void publish(Json state);
   Json state() const;
@@ -138,6 +140,7 @@ class Editor : public HttpApp, private JobListener {
   std::atomic<bool> read_only_ = false;
   mutable std::mutex mutex_;  // of the members below
   Json state_, object_;
+  std::string making_;  // PNG
   std::deque<std::pair<std::string, std::shared_ptr<const EditPreview>>> previews_;
   std::set<std::string> exports_;  // names of files that may be downloaded
   std::filesystem::path exports_folder_;

@@ -44,6 +44,11 @@ void Editor::get(const HttpRequest& request, Reply reply) {
     const std::lock_guard lock(mutex_);
     return reply(json_response(object_));
   }
+  if (request.path == "/api/making") {
+    const std::lock_guard lock(mutex_);
+    return reply(making_.empty() ? error_response(404, "There is no picture of it yet.")
+                                 : HttpResponse{200, "image/png", making_});
+  }
   if (request.path.starts_with("/api/photo/")) return photo(request, std::move(reply));
   if (request.path.starts_with("/api/pack/")) return pack(request, std::move(reply));
   if (request.path.starts_with("/api/download/")) return download(request, std::move(reply));

@@ -18,7 +18,7 @@ export class DecalTool {
     this.hint = 'Drop a picture on the object, or choose one and click where it shall lie. Drag moves it, [ ] scale it, Enter presses it in, Esc drops it.';
     this.width = 0.5;  // of the object's radius
     this.turn = 0;  // degrees, clockwise
-    /** @type {{id: string, bitmap: ImageBitmap} | null} */
+    /** @type {{id: string, file: Blob, name: string, bitmap: ImageBitmap} | null} */
     this.picture = null;
     /** @type {{camera: CameraJson, pixel: [number, number]} | null} where its middle lies */
     this.place = null;
@@ -53,7 +53,8 @@ export class DecalTool {
   async take(file, at) {
     try {
       const bitmap = await createImageBitmap(file), known = ['image/png', 'image/jpeg'].includes(file.type);
-      this.picture = { id: await upload(known ? file : await pngOf(bitmap), file.name), bitmap };
+      const picture = known ? file : await pngOf(bitmap);
+      this.picture = { id: await upload(picture, file.name), file: picture, name: file.name, bitmap };
       if (!at) return toast('Click on the object where it shall lie.');
       this.put(at);
       await this.preview();
@@ -98,9 +99,12 @@ export class DecalTool {
 
   async keep() {
     if (!this.place || !this.picture) return;
-    const params = this.params();
+    const params = this.params(), { file, name } = this.picture;
     this.forget();
-    await this.store.change('edit', { op: 'paint', params });
+    await this.store.change('edit', async () => {
+      await upload(file, name);
+      return { op: 'paint', params };
+    });
     await this.stage.tryEdit(null);
   }
 

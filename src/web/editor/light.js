@@ -28,6 +28,8 @@ export class LightTool {
     this.label = 'Light';
     this.hint = 'Click on the ball to put a sun; turn with Shift and the right button; drop an .hdr or .exr on the view. Nothing is changed before Keep.';
     this.file = '';
+    /** @type {File | null} */
+    this.env = null;
     /** @type {HTMLCanvasElement | null} */
     this.ball = null;
     stage.addEventListener('moved', () => this.drawBall());
@@ -151,6 +153,7 @@ export class LightTool {
     try {
       const env = await upload(file, file.name);
       this.file = file.name;
+      this.env = file;
       this.set({ env });
       toast(`Looking under ${file.name}; Keep makes it the object’s light.`);
     } catch (error) { complain(error); }
@@ -158,7 +161,11 @@ export class LightTool {
 
   async keep() {
     if (!this.differs()) return;
-    const done = await this.store.change('edit', { op: 'light', params: { ...this.stage.light } });
+    const params = { ...this.stage.light }, { env } = this;
+    const done = await this.store.change('edit', async () => {
+      if (params.env && env) await upload(env, env.name);
+      return { op: 'light', params };
+    });
     if (done) this.drop();
   }
 

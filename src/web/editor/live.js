@@ -5,6 +5,7 @@ import { getBytes } from './api.js';
 
 /** @type {Record<string, string>} channels of the program that the renderer knows */
 const kChannels = { rgb: 'lit', albedo: 'albedo', normal: 'normal', roughness: 'roughness' };
+const kLate = 1200;  // milliseconds
 const kSurface = ['shape', 'look'], kLight = ['tables', 'light', 'vertex_light'];
 
 export class Live {
@@ -27,7 +28,6 @@ export class Live {
     this.previewed = null;
     /** @type {{keys: Record<string, string>, packs: Map<string, Promise<ArrayBuffer>>} | null} packs that were asked for ahead */
     this.ahead = null;
-    this.starting = false;  // its first picture is on the way
     this.off = new URLSearchParams(location.search).has('frames');  // for tests: only the program's frames
     this.prepared = this.off ? Promise.resolve() : this.prepare();  // before there is an object: it takes a while
   }
@@ -37,12 +37,10 @@ export class Live {
     this.previewed = null;
     this.hidden.clear();
     if (this.off) return;
-    this.starting = true;
-    try {
-      await this.start();
-    } finally {
-      this.starting = false;
-    }
+    this.ahead = { keys: this.store.state.packs, packs: this.fetchMissing() };
+    await this.prepared;
+    this.renderer?.clear();
+    await this.refresh();
   }
 
   async prepare() {
@@ -52,14 +50,7 @@ export class Live {
     } catch { /* there is no WebGL 2 */ }
   }
 
-  async start() {
-    this.ahead = { keys: this.store.state.packs, packs: this.fetchMissing() };
-    await this.prepared;
-    this.renderer?.clear();
-    await this.refresh();
-  }
-
-  /** Fetches what has changed, all at once; where there is nothing yet, what shows the surface is drawn before its light. @returns {Promise<void>} */
+  /** Fetches what has changed, all at once. Where there is nothing yet and the light is late, the surface comes first. @returns {Promise<void>} */
   async refresh() {
     /** @type {Record<string, string>} */
     const keys = this.store.state.packs;
@@ -68,7 +59,8 @@ export class Live {
     this.previewed = null;
     const packs = this.ahead?.keys === keys ? this.ahead.packs : this.fetchMissing(), missing = [...packs.keys()];
     this.ahead = null;
-    const steps = this.renderer.complete ? [missing] : [kSurface, kLight].map((kinds) => kinds.filter((kind) => packs.has(kind)));
+    const late = !this.renderer.complete && await Promise.race([Promise.all(packs.values()).then(() => false), new Promise((resolve) => setTimeout(() => resolve(true), kLate))]);
+    const steps = late ? [kSurface, kLight].map((kinds) => kinds.filter((kind) => packs.has(kind))) : [missing];
     for (const kinds of steps) {
       const bytes = await Promise.all(kinds.map((kind) => packs.get(kind)));
       if (keys !== this.store.state.packs) return this.refresh();
@@ -113,13 +105,13 @@ export class Live {
   /** Whether what is drawn is the object as it is now. */
   current() { return this.has([...kSurface, ...kLight]); }
 
-  /** Whether it has the surface and waits for the light: the picture shows the albedo until then. */
+  /** Whether it has the surface and waits for the light: it can draw the albedo. */
   unlit() { return Boolean(this.renderer && !this.renderer.complete && this.has(kSurface)); }
 
   /** @param {string} channel @param {import('./light.js').Light} light @param {string | null} preview @param {string | null} photo */
   shows(channel, light, preview, photo) {
     const still = photo === null || this.store.object?.material?.light?.motion === 'world';
-    return channel in kChannels && light.scale === 1 && !light.env && !light.sun && preview === this.previewed && still && (this.current() || this.unlit());
+    return channel in kChannels && light.scale === 1 && !light.env && !light.sun && preview === this.previewed && still && this.current();
   }
 
   /** @param {any} camera @param {string} channel @param {{rotate: number}} light */

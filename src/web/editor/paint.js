@@ -200,18 +200,9 @@ export class PaintTool {
     ++this.busy;
     try {
       const png = await new Promise((resolve) => pending.canvas.toBlob(resolve, 'image/png'));
-      for (;;) {
-        try {
-          const scribble = await upload(png, 'scribble.png');
-          const done = await this.store.change('edit', { op: 'paint', params: { strokes: [{ camera: pending.camera, scribble }], ...look } });
-          if (!done) this.saving = this.saving.filter((s) => s !== pending.canvas);
-          break;
-        } catch (error) {
-          if (/** @type {any} */ (error).status !== 0) throw error;
-          this.store.setLost(true);
-          await new Promise((resolve) => this.store.line.addEventListener('welcome', resolve, { once: true }));
-        }
-      }
+      const done = await this.store.change('edit', async () => (
+        { op: 'paint', params: { strokes: [{ camera: pending.camera, scribble: await upload(png, 'scribble.png') }], ...look } }));
+      if (!done) this.saving = this.saving.filter((s) => s !== pending.canvas);
     } catch (error) {
       this.saving = this.saving.filter((s) => s !== pending.canvas);
       complain(error);

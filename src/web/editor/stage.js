@@ -43,6 +43,7 @@ export class Stage extends EventTarget {
     this.asked = null;
     this.timer = 0;
     this.waiting = 0;
+    this.fresh = false;  // the page has not drawn the object yet
     /** @type {(context: CanvasRenderingContext2D) => void} */
     this.drawTool = () => {};
     store.line.on('tile', (tile) => this.takeTile(tile));
@@ -64,7 +65,8 @@ export class Stage extends EventTarget {
     this.photo = null;
     byId('cover').classList.remove('done');
     this.picture.getContext('2d')?.clearRect(0, 0, this.picture.width, this.picture.height);
-    this.live.begin().catch(() => {}).finally(() => { if (!this.isLive() && !this.exact) this.moved(); });
+    this.fresh = true;
+    this.live.begin().catch(() => {});
     this.resized();
   }
 
@@ -108,11 +110,14 @@ export class Stage extends EventTarget {
 
   /** The page can draw the object anew: below the exact frame, if there is one. */
   liveReady() {
-    if (!this.isLive()) return;
+    const first = !byId('cover').classList.contains('done');
+    if (!this.isLive() && !(first && this.live.unlit())) return;
+    // A driver's first picture takes long where it draws in software; that of the program is on its way.
+    if (this.fresh && this.isLive()) return;
     this.live.draw(this.json(), this.channel, this.light);
     byId('cover').classList.add('done');
     if (!this.exact) this.picture.style.opacity = '0';  // it is of the object before
-    if (this.asked?.kind === 'quick' || (!this.asked && !this.exact)) this.moved();
+    if (this.isLive() && (this.asked?.kind === 'quick' || (!this.asked && !this.exact))) this.moved();
   }
 
   /** Shows an edit that is not kept, or none. @param {string | null} token @param {boolean} [look] whether it changes nothing but the look */
@@ -134,12 +139,13 @@ export class Stage extends EventTarget {
       this.asked = null;
       this.picture.style.opacity = '0';
       cancelAnimationFrame(this.waiting);
+      this.fresh = false;
       this.waiting = requestAnimationFrame(() => {
         this.live.draw(this.json(), this.channel, this.light);
         byId('cover').classList.add('done');
         this.redraw();
       });
-    } else if (!this.live.starting) {
+    } else {
       if (this.asked?.kind === 'quick') this.asked.stale = true;
       else this.ask('quick', 1);
       this.redraw();
@@ -220,7 +226,13 @@ export class Stage extends EventTarget {
     byId('badge').textContent = `${asked.samples === 1 ? 'exact' : 'refined'}  ${seconds.toFixed(2)} s`;
     this.emit('exact');
     if (asked.samples === 1) this.ask('rest', 2);
-    else this.emit('settled');
+    else this.settle();
+  }
+
+  settle() {
+    if (this.fresh && this.isLive()) this.live.draw(this.json(), this.channel, this.light);  // so that it moves at once
+    this.fresh = false;
+    this.emit('settled');
   }
 
   /** Whether a picture is complete and nothing is under way. */

@@ -74,7 +74,9 @@ export class Store extends EventTarget {
 
   /**
    * Changes the object. Waits for the changes before it; where the connection is lost it tries again when it is back.
-   * @param {string} route @param {object} [body] @returns {Promise<any>} the result; undefined: it failed and the user knows
+   * @param {string} route @param {object | (() => Promise<object>)} [body] a function is called before each try: it sends the files that the body
+   * names, which a program that was started anew does not have
+   * @returns {Promise<any>} the result; undefined: it failed and the user knows
    */
   change(route, body = {}) {
     ++this.saving;
@@ -87,11 +89,14 @@ export class Store extends EventTarget {
     return done;
   }
 
-  /** @param {string} route @param {any} body @returns {Promise<any>} */
-  async send(route, body) {
+  /** @param {string} route @param {any} make @returns {Promise<any>} */
+  async send(route, make) {
     const before = this.state;
     for (;;) {
+      /** @type {any} */
+      let body = {};
       try {
+        body = typeof make === 'function' ? await make() : make;
         const answer = await postJson(route, body, before.revision);
         await this.take(answer.state);
         return answer.result;
