@@ -47,7 +47,7 @@ const stroke = (page) => page.evaluate(([a, b, c]) => {
 async function main() {
   const reloadAt = moments(reloads), killAt = moments(kills);
   let server = await serve(program, project), lost = 0, unacknowledged = 0;
-  const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--js-flags=--expose-gc'] });
+  const browser = await chromium.launch({ executablePath, args: ['--no-sandbox', '--js-flags=--expose-gc', '--enable-precise-memory-info'] });
   const page = await browser.newPage({ viewport: { width: 868, height: 674 } });
   const heap = async () => page.evaluate(() => { globalThis.gc?.(); return performance.memory.usedJSHeapSize / 1e6; });
   const seconds = [], memory = [], refused = [];
