@@ -3,7 +3,7 @@
 // Draws an object into a canvas by WebGL 2. What it draws comes as packs (src/engine/view), each of which can be replaced
 // at any time.
 import { clipFromRelative, dot, ofPixel, plus } from './camera.js';
-import { filterShader, partShader, screenShader, surfaceShader, vertexShader } from './shaders.js';
+import { filterShader, litShader, partShader, plainShader, screenShader, vertexShader } from './shaders.js';
 
 /** @typedef {import('./camera.js').Camera} Camera */
 /** @typedef {import('./pack.js').Pack} Pack */
@@ -15,6 +15,7 @@ import { filterShader, partShader, screenShader, surfaceShader, vertexShader } f
  * @property {number[][]} room_from_object rotation of directions of the object to those of the light, rows
  * @property {number} samples per pixel and axis, 1 or 2
  * @property {number} highlight index of a part, 0 for none
+ * @property {number[]} [hidden] indices of parts that are not drawn
  */
 /** @typedef {{frame: WebGLFramebuffer, width: number, height: number, parts: (WebGLRenderbuffer | WebGLTexture)[]}} Target */
 
@@ -74,10 +75,11 @@ export class Renderer {
     // Light is averaged before it is cut off, as far as the hardware can.
     const float = gl.getExtension('EXT_color_buffer_half_float') || gl.getExtension('EXT_color_buffer_float');
     this.sampleFormat = float ? gl.RGBA16F : gl.SRGB8_ALPHA8;
-    this.surface = makeProgram(gl, vertexShader, surfaceShader);
+    this.lit = makeProgram(gl, vertexShader, litShader);
+    this.plain = makeProgram(gl, vertexShader, plainShader);
     this.part = makeProgram(gl, vertexShader, partShader);
     this.filter = makeProgram(gl, screenShader, filterShader);
-    this.uniforms = new Map([this.surface, this.part, this.filter].map((p) => [p, uniformsOf(gl, p)]));
+    this.uniforms = new Map([this.lit, this.plain, this.part, this.filter].map((p) => [p, uniformsOf(gl, p)]));
     this.vertices = gl.createVertexArray();
     this.screen = gl.createVertexArray();
     /** @type {Map<string, WebGLBuffer>} */
@@ -91,12 +93,25 @@ export class Renderer {
     this.targets = null;
     /** @type {Target | null} */
     this.pixel = null;
+    gl.vertexAttribI4ui(5, 0, 0, 0, 0);  // the bounce where there is none
+  }
+
+  /** Forgets the object. */
+  clear() {
+    const {gl} = this;
+    this.heads.clear();
+    gl.bindVertexArray(this.vertices);
+    for (const location of [4, 5]) gl.disableVertexAttribArray(location);
+    gl.bindVertexArray(null);
   }
 
   /** Whether all that a picture needs is there. */
   get complete() {
-    return ['shape', 'look', 'vertex_light', 'light', 'tables'].every((kind) => this.heads.has(kind));
+    return this.hasSurface && ['vertex_light', 'light', 'tables'].every((kind) => this.heads.has(kind));
   }
+
+  /** Whether all is there that channels without light need. */
+  get hasSurface() { return this.heads.has('shape') && this.heads.has('look'); }
 
   /** @param {Pack} pack of any kind; replaces what there is of that kind */
   set(pack) {
@@ -181,13 +196,13 @@ export class Renderer {
   }
 
   /**
-   * Draws into the canvas, which gets the camera's size.
+   * Draws into the canvas, which gets the camera's size; nothing while what the channel needs is missing.
    * @param {View} view
    */
   draw(view) {
     const {gl} = this;
     const {width, height} = view.camera;
-    if (!this.complete || gl.isContextLost()) return;
+    if (!(view.channel === 'lit' ? this.complete : this.hasSurface) || gl.isContextLost()) return;
     if (this.canvas.width !== width || this.canvas.height !== height) {
       this.canvas.width = width;
       this.canvas.height = height;
@@ -215,7 +230,18 @@ export class Renderer {
   /** @param {View} view @param {WebGLFramebuffer} frame @param {number} width @param {number} height */
   drawSurface(view, frame, width, height) {
     const {gl} = this;
-    const u = this.begin(this.surface, view.camera, frame, width, height);
+    const lit = view.channel === 'lit';
+    const u = this.begin(lit ? this.lit : this.plain, view.camera, frame, width, height, view.hidden);
+    gl.uniform1i(u.uChannel, Math.max(channels.indexOf(view.channel), 0));
+    gl.uniform1i(u.uHighlight, view.highlight);
+    gl.uniform3fv(u.uHighlightColor, kHighlight);
+    if (lit) this.bindLight(view, u);
+    this.drawTriangles();
+  }
+
+  /** @param {View} view @param {Object<string, WebGLUniformLocation | null>} u of the program */
+  bindLight(view, u) {
+    const {gl} = this;
     const tables = this.heads.get('tables'), light = this.heads.get('light');
     kUnits.forEach((name, unit) => {
       gl.activeTexture(gl.TEXTURE0 + unit);
@@ -233,14 +259,10 @@ export class Renderer {
     gl.uniform1f(u.uMiddleShare, tables.middle_share);
     gl.uniform1f(u.uDielectricF0, tables.dielectric_f0);
     gl.uniform1f(u.uMetalF0, tables.metal_f0);
-    gl.uniform1i(u.uChannel, Math.max(channels.indexOf(view.channel), 0));
-    gl.uniform1i(u.uHighlight, view.highlight);
-    gl.uniform3fv(u.uHighlightColor, kHighlight);
-    this.drawTriangles();
   }
 
-  /** Clears a target and makes a program ready. @param {WebGLProgram} program @param {Camera} camera @param {WebGLFramebuffer} frame @param {number} width @param {number} height */
-  begin(program, camera, frame, width, height) {
+  /** Clears a target and makes a program ready. @param {WebGLProgram} program @param {Camera} camera @param {WebGLFramebuffer} frame @param {number} width @param {number} height @param {number[]} [hidden] */
+  begin(program, camera, frame, width, height, hidden = []) {
     const {gl} = this;
     const box = this.heads.get('shape'), u = this.uniforms.get(program) ?? {};
     gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
@@ -253,6 +275,9 @@ export class Renderer {
     gl.uniformMatrix4fv(u.uClip, false, clipFromRelative(camera, near, far));
     gl.uniform3fv(u.uBoxMin, plus(box.min, camera.center, -1));
     gl.uniform3fv(u.uBoxSize, box.size);
+    const bits = new Uint32Array(8);
+    for (const part of hidden) bits[part >> 5] |= 1 << (part & 31);
+    gl.uniform1uiv(u['uHidden[0]'], bits);
     return u;
   }
 
@@ -268,12 +293,13 @@ export class Renderer {
    * @param {Camera} camera
    * @param {number} x pixels
    * @param {number} y
+   * @param {number[]} [hidden] indices of parts that are not there
    */
-  partAt(camera, x, y) {
+  partAt(camera, x, y, hidden) {
     const {gl} = this;
-    if (!this.complete || gl.isContextLost()) return -1;
+    if (!this.hasSurface || gl.isContextLost()) return -1;
     this.pixel ??= this.makeTarget(1, 1, gl.RGBA8, 0);
-    this.begin(this.part, ofPixel(camera, x, y), this.pixel.frame, 1, 1);
+    this.begin(this.part, ofPixel(camera, x, y), this.pixel.frame, 1, 1, hidden);
     this.drawTriangles();
     const out = new Uint8Array(4);
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, out);

@@ -46,7 +46,11 @@ void main() {
   gl_Position = uClip * vec4(vPosition, 1.0);
 }`;
 
-export const surfaceShader = `#version 300 es
+// A bit for every part.
+const isHidden = `bool isHidden() { return (uHidden[vPart >> 5] >> uint(vPart & 31) & 1u) != 0u; }`;
+
+/** The surface with its color; color: GLSL that sets `vec3 color` of the normal n and the direction v to the camera. @param {string} before @param {string} color */
+const surfaceWith = (before, color) => `#version 300 es
 precision highp float;
 precision highp int;
 precision highp sampler3D;
@@ -55,14 +59,33 @@ in vec4 vAlbedo, vVisibility1, vVisibility2;
 in float vVisibility0;
 flat in int vPart;
 uniform int uChannel, uHighlight;
+uniform uint uHidden[8];
 uniform vec3 uHighlightColor;
+out vec4 outColor;
+${before}
+${isHidden}
+void main() {
+  if (isHidden()) discard;
+  vec3 n = normalize(vNormal), v = normalize(-vPosition);
+  vec3 color;
+  ${color}
+  if (vPart > 0 && vPart == uHighlight) color = mix(color, uHighlightColor, 0.4);
+  outColor = vec4(color, 1.0);
+}`;
+
+// Channels that need no light. Drivers prepare this one in a fraction of the time of the other.
+export const plainShader = surfaceWith('', `
+  if (uChannel == 1) color = vAlbedo.rgb;
+  else if (uChannel == 2) color = n * 0.5 + 0.5;
+  else color = vec3(uChannel == 3 ? vMaterial.x : vMaterial.z);`);
+
+export const litShader = surfaceWith(`
 uniform mat3 uRoom;  // directions of the light from those of the object
 uniform sampler2D uIrradiance, uSurface, uBase, uFresnel, uLobe;
 uniform sampler3D uReflection;
 uniform float uIrradianceSide, uReflectionSide, uReflectionLevels;
 uniform vec2 uTableSize;
 uniform float uLeastRoughness, uMiddleShare, uDielectricF0, uMetalF0;
-out vec4 outColor;
 const float kPi = 3.14159265;
 
 vec2 octahedral(vec3 d, float side) {
@@ -116,26 +139,19 @@ vec3 lit(vec3 n, vec3 v, float roughness, float specular, float metalness) {
   vec3 color = albedo * irradiance * ((1.0 - metalness) / kPi * surface.z) +
                ((albedo * metalness + dielectric) * surface.x + surface.y) * reflected;
   return mix(max(color, 0.0), albedo, vAlbedo.a);
-}
-
-void main() {
-  vec3 n = normalize(vNormal), v = normalize(-vPosition);
-  float roughness = vMaterial.x, specular = vMaterial.y, metalness = vMaterial.z;
-  vec3 color;
-  if (uChannel == 0) color = lit(n, v, roughness, specular, metalness);
-  else if (uChannel == 1) color = vAlbedo.rgb;
-  else if (uChannel == 2) color = n * 0.5 + 0.5;
-  else if (uChannel == 3) color = vec3(roughness);
-  else color = vec3(metalness);
-  if (vPart > 0 && vPart == uHighlight) color = mix(color, uHighlightColor, 0.4);
-  outColor = vec4(color, 1.0);
-}`;
+}`, 'color = lit(n, v, vMaterial.x, vMaterial.y, vMaterial.z);');
 
 export const partShader = `#version 300 es
 precision highp float;
+precision highp int;
 flat in int vPart;
+uniform uint uHidden[8];
 out vec4 outColor;
-void main() { outColor = vec4(float(vPart) / 255.0, 0.0, 0.0, 1.0); }`;
+${isHidden}
+void main() {
+  if (isHidden()) discard;
+  outColor = vec4(float(vPart) / 255.0, 0.0, 0.0, 1.0);
+}`;
 
 // The whole picture.
 export const screenShader = `#version 300 es

@@ -1,71 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // editor.cjs PROGRAM PROJECT PICTURES CHROMIUM: a first session in the live editor, in a browser, with what can go wrong.
 const fs = require('node:fs');
-const path = require('node:path');
-const { chromium } = require('playwright-core');
 const { serve, settled } = require('./serve.cjs');
-const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+const { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, withPage } = require('./page.cjs');
 
 const [program, project, pictures, executablePath] = process.argv.slice(2);
 fs.mkdirSync(pictures, { recursive: true });
-const began = Date.now();
-const say = (text) => console.log(`${((Date.now() - began) / 1000).toFixed(1)} s  ${text}`);
-
-function check(what, condition) {
-  if (!condition) throw new Error(`FAILED: ${what}`);
-  say(what);
-}
-
-const state = (page) => page.evaluate(() => globalThis.cei3d.store.state);
-const picture = async (page, name) => page.screenshot({ path: path.join(pictures, `${name}.png`) });
-
-async function accessible(page, name) {
-  await page.evaluate(axe);
-  const { violations } = await page.evaluate(() => window.axe.run(document, { runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa'] }));
-  for (const v of violations) console.log(v.id, v.help, v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160)));
-  check(`no violation of WCAG 2.2 AA: ${name}`, violations.length === 0);
-}
-
-/** No two of the page's areas overlap, and nothing is cut off. */
-async function tidy(page, name) {
-  const problems = await page.evaluate(() => {
-    const areas = ['.bar', '#tools', '#stage', '#panels', '#strip', '.status'].map((s) => [s, document.querySelector(s)]).filter(([, n]) => n && n.offsetParent !== null || n?.getBoundingClientRect().width > 0);
-    const out = [];
-    for (const [a, x] of areas) for (const [b, y] of areas) {
-      const p = x.getBoundingClientRect(), q = y.getBoundingClientRect();
-      if (a < b && p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 1 && q.top < p.bottom - 1) out.push(`${a} ${b}`);
-    }
-    if (document.documentElement.scrollWidth > innerWidth || document.documentElement.scrollHeight > innerHeight) out.push('the page scrolls');
-    return out;
-  });
-  check(`the page is tidy: ${name} ${problems}`, problems.length === 0);
-}
-
-/** Pixels of the picture: object or not, and colors. */
-const pixels = (page, list) => page.evaluate((at) => {
-  const c = document.getElementById('picture').getContext('2d');
-  return at.map(([x, y]) => [...c.getImageData(Math.round(x), Math.round(y), 1, 1).data]);
-}, list);
-
-/** The middle of the object's pixels, in pixels of the window. */
-const middle = (page) => page.evaluate(() => {
-  const canvas = document.getElementById('picture'), { width, height } = canvas;
-  const d = canvas.getContext('2d').getImageData(0, 0, width, height).data;
-  let n = 0, sx = 0, sy = 0;
-  for (let y = 0; y < height; y += 2) for (let x = 0; x < width; x += 2) if (d[4 * (y * width + x) + 3] > 200) { n += 1; sx += x; sy += y; }
-  const r = canvas.getBoundingClientRect(), s = r.width / width;
-  return { n, fx: sx / n, fy: sy / n, x: r.left + (sx / n) * s, y: r.top + (sy / n) * s };
-});
-
-async function drag(page, from, to, options = {}) {
-  await page.mouse.move(...from);
-  await page.mouse.down(options);
-  await page.mouse.move((from[0] + to[0]) / 2, (from[1] + to[1]) / 2, { steps: 4 });
-  await page.mouse.move(...to, { steps: 4 });
-  await page.mouse.up(options);
-}
+const picture = picturesIn(pictures);
 
 async function firstSession(page, url) {
+  /** @type {string[]} */
+  const asked = [];
+  page.on('request', (r) => asked.push(new URL(r.url()).pathname));
   await page.goto(url);
   await page.waitForFunction(() => document.getElementById('cover').classList.contains('done'), null, { timeout: 30000 });
   say('first picture');
@@ -77,6 +23,8 @@ async function firstSession(page, url) {
 
   const at = await middle(page);
   check('the object is in the picture', at.n > 2000);
+  const packs = asked.map((p) => p.startsWith('/api/pack/')), photos = asked.map((p) => p.startsWith('/api/photo/'));
+  check('what the picture needs is asked for before photographs', packs.lastIndexOf(true) >= 4 && (photos.indexOf(true) < 0 || photos.indexOf(true) > packs.lastIndexOf(true)));
   await drawsItself(page);
   const box = await page.locator('#view').boundingBox();
   const before = await page.evaluate(() => globalThis.cei3d.stage.json().center.join());
@@ -268,49 +216,30 @@ async function keyboardOnly(page) {
   await settled(page);
 }
 
-async function main() {
-  let server = await serve(program, project);
-  const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
-  const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, acceptDownloads: true, colorScheme: 'dark', reducedMotion: 'reduce' });
-  const page = await context.newPage();
-  const errors = [];
-  page.on('pageerror', (error) => errors.push(String(error)));
-  page.on('console', (m) => { if (m.type() === 'error' && !/Failed to load resource|WebSocket connection/.test(m.text())) errors.push(m.text()); });
-  try {
-    await firstSession(page, server.url);
-    await paints(page);
-    await selects(page);
-    await polishes(page);
-    await lights(page);
-    await compares(page);
-    await exports(page);
-    await keyboardOnly(page);
-    await twoWindows(context, page, server.url);
-    const revision = (await state(page)).revision;
-    await page.reload();
-    await settled(page);
-    check('a reload shows the same', (await state(page)).revision === revision);
-    const { done } = await state(page);
-    await dies(page, server);
-    server = await serve(program, project, server.port);
-    await page.goto(server.url);
-    await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n + 1, done, { timeout: 20000 });
-    await settled(page);
-    check('what was drawn meanwhile is saved when the program is back', true);
-    await page.setViewportSize({ width: 820, height: 1180 });
-    await settled(page);
-    await tidy(page, 'tablet');
-    await picture(page, '12-tablet');
-    check(`no errors in the page ${errors.join('\n')}`, errors.length === 0);
-  } catch (error) {
-    await picture(page, 'failed').catch(() => {});
-    console.log(errors.join('\n'));
-    throw error;
-  } finally {
-    server.process.removeAllListeners('exit');
-    server.process.kill('SIGKILL');
-    await browser.close();
-  }
-}
-
-main().catch((error) => { console.error(error.message); process.exit(1); });
+withPage({ program, project, executablePath, picture }, async (at) => {
+  const { page } = at;
+  await firstSession(page, at.server.url);
+  await paints(page);
+  await selects(page);
+  await polishes(page);
+  await lights(page);
+  await compares(page);
+  await exports(page);
+  await keyboardOnly(page);
+  await twoWindows(at.context, page, at.server.url);
+  const revision = (await state(page)).revision;
+  await page.reload();
+  await settled(page);
+  check('a reload shows the same', (await state(page)).revision === revision);
+  const { done } = await state(page);
+  await dies(page, at.server);
+  at.server = await serve(program, project, at.server.port);
+  await page.goto(at.server.url);
+  await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n + 1, done, { timeout: 20000 });
+  await settled(page);
+  check('what was drawn meanwhile is saved when the program is back', true);
+  await page.setViewportSize({ width: 820, height: 1180 });
+  await settled(page);
+  await tidy(page, 'tablet');
+  await picture(page, '12-tablet');
+}).catch((error) => { console.error(error.message); process.exit(1); });

@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The modules of src/web that need no browser: node --test tests/web
 import assert from 'node:assert/strict';
+import fs from 'node:fs';
 import test from 'node:test';
 import { clipFromRelative, cross, dot, ofPixel, plus, resized, rotation, unit } from '../../src/web/camera.js';
 import { Orbit } from '../../src/web/orbit.js';
 import { readPack } from '../../src/web/pack.js';
+import { mirrored, placeOnBall, radianceOf } from '../../src/web/editor/ball.js';
+import { pointAt, seen } from '../../src/web/editor/camera.js';
+import { actionOf, gestures, keyTable } from '../../src/web/editor/keys.js';
 
 const near = (a, b, most = 1e-5) => assert.ok(Math.abs(a - b) < most, `${a} is not ${b}`);
 
@@ -110,4 +114,55 @@ test('packs have arrays of their types', () => {
   assert.deepEqual([...pack.arrays.b], [-1, 2]);
   assert.deepEqual(pack.head.parts, ['', 'a']);
   assert.throws(() => readPack(bytes, 'shape'));
+});
+
+test('the editor sees a point where the pinhole equation has it, and finds it again', () => {
+  const camera = someCamera();
+  for (const p of [[0, 0, 0], [0.5, -0.3, 0.8], [-1, 1, 0]]) {
+    const [x, y, depth] = pixelOf(camera, p), at = seen(camera, p);
+    near(at.x, x);
+    near(at.y, y);
+    near(at.depth, depth);
+    pointAt(camera, at.x, at.y, at.depth).forEach((v, k) => near(v, p[k]));
+  }
+});
+
+test('light is seen on the ball where a mirror shows it', () => {
+  const r = someCamera().world_from_cam, axes = [0, 1, 2].map((k) => r.map((row) => row[k]));
+  for (const [x, y] of [[0, 0], [0.3, -0.5], [-0.6, 0.2]]) {
+    const d = mirrored(x, y, axes), back = placeOnBall(d, axes);
+    near(Math.hypot(...d), 1);
+    near(back.x, x);
+    near(back.y, y);
+  }
+  near(dot(mirrored(0, 0, axes), axes[2]), -1);  // the middle shows who looks
+  assert.ok(dot(mirrored(0.4, 0, axes), axes[0]) > 0 && dot(mirrored(0, 0.4, axes), axes[1]) > 0);
+});
+
+test('a map on the octahedron is read at its nodes', () => {
+  const side = 5, map = new Uint32Array(side * side).map((_, i) => (i + 1) | (24 << 27));
+  for (const [d, node] of [[[0, 0, 1], 12], [[1, 0, 0], 14], [[0, 1, 0], 22], [[-1, 0, 0], 10], [[0, 0, -1], 24]])
+    assert.equal(radianceOf(map, side, d)[0], node + 1, String(d));
+});
+
+test('no two tools have the same key', () => {
+  const all = keyTable.flatMap((group) => group.keys.flatMap((k) => k.keys));
+  assert.equal(new Set(all).size, all.length);
+  const key = (name, more = {}) => actionOf({key: name, shiftKey: false, ctrlKey: false, metaKey: false, altKey: false, ...more});
+  assert.equal(key('d'), 'tool:decal');
+  assert.equal(key('H', {shiftKey: true}), 'show-all');
+  assert.equal(key('h'), 'hide');
+  assert.ok(gestures.length > 5);
+});
+
+test('the editor asks for all its modules at once', () => {
+  const web = new URL('../../src/web/', import.meta.url), page = fs.readFileSync(new URL('editor/index.html', web), 'utf8');
+  const files = new Set(['editor/main.js']);
+  for (const file of files)
+    for (const [, to] of fs.readFileSync(new URL(file, web), 'utf8').matchAll(/^import .* from '(.*)'/gm))
+      files.add(new URL(to, new URL(file, web)).href.slice(web.href.length));
+  const asked = [...page.matchAll(/modulepreload" href="\/app\/(.*)"/g)].map(([, file]) => file);
+  files.delete('editor/main.js');
+  for (const file of ['renderer.js', 'shaders.js', 'camera.js', 'pack.js']) files.add(file);  // when an object is opened
+  assert.deepEqual(asked.sort(), [...files].sort());
 });

@@ -5,6 +5,7 @@
 //   GET  /api/state             what is open: history, parts, findings, jobs
 //   GET  /api/object            what does not change while it is open: views, cameras, frame
 //   GET  /api/photo/VIEW?width= a photograph, JPEG
+//   GET  /api/making            the object that is being made, PNG
 //   GET  /api/pack/KIND?key=    what the page draws, by a key of the state; or ?preview=TOKEN
 //   POST /api/upload?name=      bytes in, {"id"} out
 //   POST /api/edit              {"op", "params", "amend"}
@@ -111,10 +112,20 @@ class Editor : public HttpApp, private JobListener {
   void open_project(Session&, const std::filesystem::path&);
   void open_capture(Session&, const std::filesystem::path&);
   void show_library();
+  void show_making(const Image&);
   void publish(Session&);  // the present state, to everybody
   void publish(Json state);
   Json state() const;
   std::filesystem::path object_folder() const;
+
+  // packs.cpp: what the page draws. The last pack of each kind is kept.
+  struct KeptPack {
+    std::string key;
+    std::shared_ptr<const std::string> bytes;
+  };
+  void prepare_packs();  // in the background, before a page asks for them
+  std::shared_ptr<const std::string> pack_of(Session&, const std::string& kind);
+  std::shared_ptr<const std::string> kept_pack(const std::string& kind, const std::string& key) const;
 
   // sockets.cpp
   void on_progress(const std::string& job, const ProgressReport&) override;
@@ -129,10 +140,12 @@ class Editor : public HttpApp, private JobListener {
   std::atomic<bool> read_only_ = false;
   mutable std::mutex mutex_;  // of the members below
   Json state_, object_;
+  std::string making_;  // PNG
   std::deque<std::pair<std::string, std::shared_ptr<const EditPreview>>> previews_;
   std::set<std::string> exports_;  // names of files that may be downloaded
   std::filesystem::path exports_folder_;
   std::map<SocketPtr, Tab> tabs_;
+  std::map<std::string, KeptPack> packs_;  // by kind
   std::atomic<uint64_t> tokens_ = 0;
   std::unique_ptr<Worker> worker_;  // last: it uses the others
 };

@@ -146,6 +146,26 @@ TEST_F(EditorTest, TellsWhatIsUnderThePointer) {
   EXPECT_EQ(post("/api/pick", {{"camera", camera(0)}, {"pixel", {0, 0}}}).body, "null");
 }
 
+TEST_F(EditorTest, APackIsKeptByItsKeyAlone) {
+  const Json keys = state()["packs"];
+  const auto pack = [&](const std::string& key) {
+    HttpRequest r;
+    r.method = "GET";
+    r.path = "/api/pack/look";
+    r.query = "key=" + key;
+    return ask(std::move(r));
+  };
+  const HttpResponse before = pack(keys["look"]);
+  EXPECT_EQ(before.headers.size(), 1u);  // may be kept
+  post("/api/edit", {{"op", "material"}, {"params", {{"roughness", 0.9}}}});
+  EXPECT_NE(state()["packs"]["look"], keys["look"]);
+  const HttpResponse now = pack(state()["packs"]["look"]), late = pack(keys["look"]);
+  EXPECT_EQ(now.headers.size(), 1u);
+  EXPECT_TRUE(late.headers.empty());  // the look of that key is gone
+  EXPECT_TRUE(late.body == now.body && late.body != before.body);
+  EXPECT_EQ(get("/api/pack/color").status, 400);
+}
+
 TEST_F(EditorTest, ADecalIsSeenByItsCamera) {
   const Json decal = {{"pixel", {24, 24}}, {"width", 0.2}};
   const auto over = [&](const Json& place) {

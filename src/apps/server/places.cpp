@@ -6,6 +6,7 @@
 #include "core/base/hash.h"
 #include "core/base/json.h"
 #include "engine/capture/normalize.h"
+#include "engine/io/png_file.h"
 #include "engine/project/project.h"
 #include "engine/segment/sam.h"
 #include "engine/session/version.h"
@@ -117,6 +118,7 @@ void Editor::open_project(Session& session, const fs::path& path) {
               {"program", kVersion}};
   }
   publish(session);
+  prepare_packs();
 }
 
 fs::path Editor::object_folder() const {
@@ -179,6 +181,15 @@ void Editor::publish(Json state) {
   broadcast({{"type", "state"}, {"mode", state["mode"]}, {"revision", state.value("revision", "")}});
 }
 
+void Editor::show_making(const Image& picture) {
+  std::string png = encode_png(picture, 8);
+  {
+    const std::lock_guard lock(mutex_);
+    making_ = std::move(png);
+  }
+  broadcast({{"type", "making"}});
+}
+
 void Editor::reconstruct(JsonReader& j, const HttpRequest&, Reply reply) {
   constexpr double kLeast = 20, kMost = 7 * 24 * 3600;
   ReconstructRequest request;
@@ -192,9 +203,14 @@ void Editor::reconstruct(JsonReader& j, const HttpRequest&, Reply reply) {
     if (state().value("mode", "") != "capture") fail_usage("There is no capture open to make an object of.");
     if (!request.resume) request.capture = capture_;
     request.project = object_folder();
+    request.show = [this](const Image& picture) { show_making(picture); };
     Json now = state();
     now["mode"] = "reconstructing";
     publish(now);
+    {
+      const std::lock_guard lock(mutex_);
+      making_.clear();
+    }
     try {
       session.reconstruct(request, progress);
     } catch (const Error&) {

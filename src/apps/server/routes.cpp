@@ -44,6 +44,11 @@ void Editor::get(const HttpRequest& request, Reply reply) {
     const std::lock_guard lock(mutex_);
     return reply(json_response(object_));
   }
+  if (request.path == "/api/making") {
+    const std::lock_guard lock(mutex_);
+    return reply(making_.empty() ? error_response(404, "There is no picture of it yet.")
+                                 : HttpResponse{200, "image/png", making_});
+  }
   if (request.path.starts_with("/api/photo/")) return photo(request, std::move(reply));
   if (request.path.starts_with("/api/pack/")) return pack(request, std::move(reply));
   if (request.path.starts_with("/api/download/")) return download(request, std::move(reply));
@@ -65,18 +70,6 @@ void Editor::photo(const HttpRequest& request, Reply reply) {
     }));
     return false;
   });
-}
-
-void Editor::pack(const HttpRequest& request, Reply reply) {
-  const std::string kind = request.path.substr(std::string("/api/pack/").size());
-  const auto token = request.parameter("preview");
-  const bool keyed = request.parameter("key").has_value() && !token;
-  on_worker("pack", std::move(reply),
-            [kind, keyed, made = token ? kept(*token) : nullptr](Session& session, Progress&) {
-              HttpResponse r{200, "application/octet-stream", session.view_pack(kind, made.get())};
-              if (keyed) r.headers.emplace_back("Cache-Control", "private, max-age=86400");
-              return r;
-            });
 }
 
 void Editor::upload(const HttpRequest& request, Reply reply) {

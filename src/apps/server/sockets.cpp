@@ -2,8 +2,9 @@
 // The WebSocket of a window. In, as JSON: {"type": "hello", "token"}, first; {"type": "view", "seq",
 // "camera", "samples", "channel", "light", "as_photographed", "preview"}, which asks for a frame in place of
 // the one before; {"type": "rest"}, which asks for none. Out, as JSON: "welcome", "state", "progress",
-// "frame" when one is complete, "error"; and tiles, as bytes: length of the head (4 bytes, little-endian),
-// head (JSON, filled with spaces to a multiple of 4), RGBA.
+// "making" when there is a new picture of the object that is being made, "frame" when one is complete,
+// "error"; and tiles, as bytes: length of the head (4 bytes, little-endian), head (JSON, filled with spaces
+// to a multiple of 4), RGBA.
 #include "apps/server/edit_json.h"
 #include "apps/server/editor.h"
 #include "apps/server/guarded.h"

@@ -237,6 +237,10 @@ bool Project::has_base() const {
   return fs::exists(file("base/scene.json"), error);
 }
 
+std::string Project::base_key() const {
+  return has_base() ? content_hash(read_file(file("base/scene.json"))) : "";
+}
+
 Scene Project::base() const {
   if (!has_base())
     fail("Project {} holds no finished object; continue with `cei3d reconstruct --resume -o {}`.",

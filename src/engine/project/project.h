@@ -91,7 +91,8 @@ class Project {
 
   void save_base(const Scene&);  // the reconstruction's result, without layers
   bool has_base() const;
-  Scene base() const;  // error when the reconstruction was not finished
+  std::string base_key() const;  // changes with the base; empty: there is none
+  Scene base() const;            // error when the reconstruction was not finished
   // Base and the edits that are on, up to the cursor. Unchanged parts are kept in memory between calls.
   Scene scene() const;
   const SceneCache& scene_cache() const { return scenes_; }

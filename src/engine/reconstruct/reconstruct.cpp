@@ -57,7 +57,8 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
                            .seed = in.options.seed,
                            .light = in.options.light,
                            .light_color = in.options.light_color,
-                           .progress = progress};
+                           .progress = progress,
+                           .show = in.show};
   RunState state = saved ? std::move(saved->state) : RunState();
   state.scene.normalization = in.normalization;
   state.scene.up = in.capture.up;
@@ -69,13 +70,14 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
 
 Scene reconstruct(const Device& device, const Capture& capture, const ImageSource& images,
                   const Normalization& normalization, const ReconstructOptions& options,
-                  Checkpoints& checkpoints, Progress& progress) {
+                  Checkpoints& checkpoints, Progress& progress, ShowPicture show) {
   return reconstruct({.device = device,
                       .capture = capture,
                       .images = images,
                       .normalization = normalization,
                       .options = options,
-                      .preset = preset_by_name(options.preset)},
+                      .preset = preset_by_name(options.preset),
+                      .show = std::move(show)},
                      checkpoints, progress);
 }
 

@@ -2,6 +2,7 @@
 // From photographs to an editable object. The stages are in engine/reconstruct/stages.h.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -11,6 +12,12 @@
 #include "model/scene/scene.h"
 
 namespace cei3d {
+
+struct Image;
+
+// Gets what the object looks like while it is being made: display-encoded RGB over white, a side of at most
+// 160 pixels. Called by the run, which takes about a fortieth of its time to draw.
+using ShowPicture = std::function<void(const Image&)>;
 
 struct ReconstructOptions {
   std::string preset = "fast";  // "fast", "balanced" or "paper" (engine/reconstruct/presets.h)
@@ -41,8 +48,9 @@ class Checkpoints {
   virtual std::optional<State> latest() = 0;  // the state to resume from; none: start anew
 };
 
-// Error: interrupted, after saving a checkpoint, when progress.cancelled().
+// show: empty: nobody looks; a run by steps makes the same object either way. Error: interrupted, after
+// saving a checkpoint, when progress.cancelled().
 Scene reconstruct(const Device&, const Capture&, const ImageSource&, const Normalization&,
-                  const ReconstructOptions&, Checkpoints&, Progress&);
+                  const ReconstructOptions&, Checkpoints&, Progress&, ShowPicture show = {});
 
 }  // namespace cei3d

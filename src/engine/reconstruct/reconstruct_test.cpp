@@ -23,7 +23,7 @@ class AnyRun {
     options.iterations = 24;
     options.seed = 5;
   }
-  Scene run(Checkpoints& checkpoints, Progress& progress) {
+  Scene run(Checkpoints& checkpoints, Progress& progress, ShowPicture show = {}) {
     VirtualClock time(0.7);  // so that the geometry stage saves in its middle
     return reconstruct({.device = device_,
                         .capture = capture_,
@@ -31,7 +31,8 @@ class AnyRun {
                         .normalization = {},
                         .options = options,
                         .preset = preset,
-                        .clock = time.clock()},
+                        .clock = time.clock(),
+                        .show = std::move(show)},
                        checkpoints, progress);
   }
 
@@ -124,6 +125,21 @@ void expect_same_after(AnyRun& small, const Reference& reference, size_t stage, 
   } else {
     ScriptedProgress rest;
     expect_same(saved(small.run(checkpoints, rest)).tensors, reference.scene.tensors, where);
+  }
+}
+
+TEST(Reconstruct, IsSeenWhileItIsMadeAndIsTheSame) {
+  SmallRun small;
+  MemoryCheckpoints checkpoints;
+  ScriptedProgress progress;
+  std::vector<Image> pictures;
+  const Scene scene = small.run(checkpoints, progress, [&](const Image& p) { pictures.push_back(p); });
+  expect_same(saved(scene).tensors, uninterrupted().scene.tensors, "while somebody looks");
+  ASSERT_GT(pictures.size(), 1u);
+  for (const Image& p : pictures) {
+    EXPECT_LE(std::max(p.width, p.height), 160);
+    EXPECT_GT(p.at(0, 0)[0], 0.9f);                                    // the corner shows the white ground
+    EXPECT_LT(*std::min_element(p.data.begin(), p.data.end()), 0.8f);  // the object is darker
   }
 }
 

@@ -17,6 +17,7 @@ struct ReconstructInputs {
   Preset preset;
   Clock clock = steady_seconds;
   std::optional<Rates> rates{};  // of this machine; none: measured, if the run is timed
+  ShowPicture show{};            // empty: nobody looks
 };
 
 Scene reconstruct(const ReconstructInputs&, Checkpoints&, Progress&);

@@ -29,6 +29,7 @@ struct RunContext {
   std::optional<LightMotion> light;  // none: to be found
   LightColorPrior light_color;
   RunClock& progress;
+  ShowPicture show{};  // empty: nobody looks
 };
 
 struct Stage {

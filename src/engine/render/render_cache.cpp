@@ -30,12 +30,13 @@ std::shared_ptr<const Surface> surface_before(const Scene& scene, size_t version
 
 }  // namespace
 
-RenderCache::RenderCache(const Device& device, RenderCacheLimits limits)
+RenderCache::RenderCache(const Device& device, RenderCacheLimits limits, VertexLightFiles files)
     : device_(device),
       transports_(limits.transports),
       lights_(limits.lights),
       views_(limits.views),
-      seen_(limits.colors) {}
+      seen_(limits.colors),
+      files_(std::move(files)) {}
 
 std::shared_ptr<const Transport> RenderCache::transport(const Scene& scene, size_t version) {
   TransportKey key{surface_of_version(scene, version), surface_before(scene, version)};
@@ -49,8 +50,22 @@ std::shared_ptr<const VersionLight> RenderCache::version_light(const Scene& scen
   LightKey key{surface_of_version(scene, version), surface_before(scene, version), scene.albedo,
                scene.material, to_array(scene.light)};
   if (auto kept = lights_.find(key)) return kept;
-  const auto made = light_on_version(device_, scene, version, *transport(scene, version), before);
+  const auto made = made_light(scene, version, before);
   return lights_.put(std::move(key), made, bytes_of(*made));
+}
+
+std::shared_ptr<const VersionLight> RenderCache::made_light(const Scene& scene, size_t version,
+                                                            const VersionLight* before) {
+  if (version == 0)
+    if (auto stored = files_.find(scene.light, rest_materials(device_, scene)))
+      return light_on_version(device_, scene, version, std::move(*stored));
+  return light_on_version(device_, scene, version, *transport(scene, version), before);
+}
+
+SceneLight RenderCache::light_to_keep(const Scene& scene) {
+  SceneLight made = light(scene);
+  files_.put(scene.light, version_light(scene, 0, nullptr)->vertices);
+  return made;
 }
 
 SceneLight RenderCache::light(const Scene& scene) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Data that frames of one object share, kept in memory within limits: transport and light of each shape
-// version, traced views and the light on their hits. The key of a value is everything that it depends on, so
-// no value is ever stale, and a frame is the same bit for bit with the cache and without. For one thread at a
-// time; the values are immutable.
+// Data that frames of one object share, kept in memory within limits, and some of it in files: transport and
+// light of each shape version, traced views and the light on their hits. The key of a value is everything
+// that it depends on, so no value is ever stale, and a frame is the same bit for bit with the cache and
+// without. For one thread at a time; the values are immutable.
 #pragma once
 
 #include <memory>
@@ -10,6 +10,7 @@
 
 #include "engine/render/hit_memory.h"
 #include "engine/render/render.h"
+#include "engine/render/vertex_light_files.h"
 
 namespace cei3d {
 
@@ -27,9 +28,11 @@ struct TracedView {
 
 class RenderCache {
  public:
-  explicit RenderCache(const Device& device, RenderCacheLimits limits = {});
+  explicit RenderCache(const Device& device, RenderCacheLimits limits = {}, VertexLightFiles = {});
 
   SceneLight light(const Scene&);  // must not outlive the cache
+  // The same, kept in a file, too, as far as the shape is the reconstructed one.
+  SceneLight light_to_keep(const Scene&);
   // camera: unit frame. See trace_view().
   std::shared_ptr<TracedView> trace(const Scene&, const Camera& camera, int samples);
   // view: of the scene's present shape.
@@ -64,12 +67,14 @@ class RenderCache {
   };
   std::shared_ptr<const Transport> transport(const Scene&, size_t version);
   std::shared_ptr<const VersionLight> version_light(const Scene&, size_t version, const VersionLight* before);
+  std::shared_ptr<const VersionLight> made_light(const Scene&, size_t version, const VersionLight* before);
 
   const Device& device_;
   LruCache<TransportKey, const Transport> transports_;
   LruCache<LightKey, const VersionLight> lights_;
   LruCache<ViewKey, TracedView> views_;
   SeenMaterialsCache seen_;
+  VertexLightFiles files_;
   size_t hits_lit_ = 0, hits_kept_ = 0;
 };
 

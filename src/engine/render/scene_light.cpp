@@ -7,12 +7,6 @@
 namespace cei3d {
 namespace {
 
-// Vertex materials as reconstructed, in shape version 0.
-VertexMaterials rest_materials(const Device& device, const Scene& scene, const Surface& rest) {
-  const auto& positions = rest.mesh().positions;
-  return {scene.albedo->eval3(device, positions), scene.material.at(device, positions)};
-}
-
 // Extends them by the vertices that an edit has added.
 VertexMaterials with_added(VertexMaterials m, const std::vector<Vec3f>& colors, const Material& material) {
   m.albedo.insert(m.albedo.end(), colors.begin() + std::ptrdiff_t(m.albedo.size()), colors.end());
@@ -121,17 +115,30 @@ Transports scene_transports(const Scene& scene) {
   return out;
 }
 
+VertexMaterials rest_materials(const Device& device, const Scene& scene) {
+  const auto& positions = surface_of_version(scene, 0)->mesh().positions;
+  return {scene.albedo->eval3(device, positions), scene.material.at(device, positions)};
+}
+
 std::shared_ptr<const VersionLight> light_on_version(const Device& device, const Scene& scene, size_t k,
-                                                     const Transport& transport, const VersionLight* before) {
+                                                     VertexLight vertices) {
   auto out = std::make_shared<VersionLight>();
   out->surface = surface_of_version(scene, k);
-  out->vertices = before
-                      ? vertex_light_after(before->vertices, transport, scene.light,
-                                           with_added(before->vertices.made_of,
-                                                      scene.shape_versions[k]->colors, scene.material.mean()))
-                      : vertex_light(transport, scene.light, rest_materials(device, scene, *out->surface));
+  out->vertices = std::move(vertices);
   out->lighting = std::make_shared<const Lighting>(device, out->surface, scene.light, out->vertices);
   return out;
+}
+
+std::shared_ptr<const VersionLight> light_on_version(const Device& device, const Scene& scene, size_t k,
+                                                     const Transport& transport, const VersionLight* before) {
+  if (!before)
+    return light_on_version(device, scene, k,
+                            vertex_light(transport, scene.light, rest_materials(device, scene)));
+  return light_on_version(
+      device, scene, k,
+      vertex_light_after(
+          before->vertices, transport, scene.light,
+          with_added(before->vertices.made_of, scene.shape_versions[k]->colors, scene.material.mean())));
 }
 
 SceneLight::SceneLight(const Device& device, const Scene& scene, const Transports& transports)

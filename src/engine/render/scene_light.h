@@ -30,6 +30,10 @@ using VersionLights = std::vector<std::shared_ptr<const VersionLight>>;  // by v
 // Light on shape version k. before: light on version k - 1; null for version 0.
 std::shared_ptr<const VersionLight> light_on_version(const Device&, const Scene&, size_t k, const Transport&,
                                                      const VersionLight* before);
+// The same from the light at the vertices of version k.
+std::shared_ptr<const VersionLight> light_on_version(const Device&, const Scene&, size_t k, VertexLight);
+// Of the vertices of version 0, as reconstructed.
+VertexMaterials rest_materials(const Device&, const Scene&);
 
 // Everything that the materials of the vertices of a shape version depend on.
 struct SeenMaterialsKey {

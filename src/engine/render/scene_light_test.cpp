@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/base/file.h"
+#include "core/base/temp_folder.h"
 #include "core/math/rng.h"
 #include "engine/render/render_cache.h"
 #include "engine/render/sphere_scene.h"
@@ -276,6 +278,53 @@ TEST(RenderCache, ASecondFrameComputesNoLight) {
   EXPECT_EQ(frames.transport_count().missed, 1u);
   EXPECT_EQ(frames.transport_count().found, 1u);
   EXPECT_EQ(frames.view_count().missed, 1u);
+}
+
+class VertexLightFilesTest : public ::testing::Test {
+ protected:
+  Frame frame(VertexLightFiles files, const Scene& scene) {
+    RenderCache frames(device_, {}, std::move(files));
+    const auto light = frames.light_to_keep(scene);
+    Frame f = frames.shade(scene, light, *frames.trace(scene, camera_towards_origin({1, -3, 0.3}, 32), 1));
+    transports_ = frames.transport_count().missed;
+    return f;
+  }
+  size_t count() const {
+    std::error_code error;
+    std::filesystem::directory_iterator it(folder_.path(), error);
+    return size_t(std::distance(begin(it), end(it)));
+  }
+  const Device device_ = make_device();
+  TempFolder folder_;
+  size_t transports_ = 0;  // that the last frame computed
+};
+
+TEST_F(VertexLightFilesTest, TheNextProgramComputesNoTransportAndGivesTheSameBits) {
+  const Scene base = scene_with_residual(), edited = with_layer(base, some_edit(base, 0));
+  const VertexLightFiles files(folder_.path(), "object", true);
+  const Frame first = frame(files, base);
+  EXPECT_EQ(transports_, 1u);
+  EXPECT_TRUE(same_bits(frame(files, base), first));
+  EXPECT_EQ(transports_, 0u);
+  EXPECT_TRUE(same_bits(frame(files, edited), frame({}, edited)));
+  frame({folder_.path(), "another object", false}, base);
+  EXPECT_EQ(transports_, 1u);
+  EXPECT_EQ(count(), 1u);  // files that may not be written
+}
+
+TEST_F(VertexLightFilesTest, DamagedFilesAreComputedAgainAndOldOnesGo) {
+  Scene scene = scene_with_residual();
+  const VertexLightFiles files(folder_.path(), "object", true);
+  const Frame first = frame(files, scene);
+  const auto file = std::filesystem::directory_iterator(folder_.path())->path();
+  write_file_atomic(file, read_file(file).substr(0, 1000));
+  EXPECT_TRUE(same_bits(frame(files, scene), first));
+  EXPECT_EQ(transports_, 1u);
+  for (size_t i = 0; i < VertexLightFiles::kMost + 2; ++i) {
+    scene.light.lobes[0].mu.x += 0.1f;
+    files.put(scene.light, VertexLight());
+  }
+  EXPECT_EQ(count(), VertexLightFiles::kMost);
 }
 
 TEST(Transport, KeepsItsSurface) {

@@ -195,6 +195,18 @@ TEST_F(LookTest, KeysOfPacksChangeWithThePacks) {
   EXPECT_THAT(message([&] { session_.view_pack("color"); }), HasSubstr("no pack"));
 }
 
+// A browser keeps packs by their keys, also when another object is opened at the same address.
+TEST_F(LookTest, ObjectsHaveKeysOfTheirOwn) {
+  const Json keys = session_.view_keys();
+  Scene other = sphere_with_handlers();
+  other.material = Material{0.9f, 0.5f, 0};
+  Project::create(temp_.path() / "other", {}, three_views(), false).save_base(other);
+  Session session("cpu");
+  session.open(temp_.path() / "other", Session::Access::read);
+  for (const char* kind : {"shape", "look", "vertex_light"})
+    EXPECT_NE(session.view_keys()[kind], keys[kind]) << kind;
+}
+
 TEST_F(LookTest, TellsWhatIsUnderThePointer) {
   add_part("cap", {0, -kSphereRadius, 0}, 0.4f);
   const auto p = session_.pick(camera_of(0), {24, 24});

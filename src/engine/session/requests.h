@@ -52,6 +52,7 @@ struct ReconstructRequest {
   ReconstructOptions options;  // not read with `resume`: those of the project are used
   bool resume = false, replace = false;
   bool strict = false;  // refuse a capture of which images are missing
+  ShowPicture show{};
 };
 // The settings of a preset, for --list-settings.
 struct SettingsReport {

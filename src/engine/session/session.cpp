@@ -104,6 +104,10 @@ void Session::open(const fs::path& folder, Access access) {
   close();  // releases the lock first: it may be the same project
   const auto mode = access == Access::write ? Project::Mode::write : Project::Mode::read;
   project_ = std::make_unique<Project>(Project::open(folder, mode));
+  if (project_->has_base())
+    frames_ = std::make_unique<RenderCache>(
+        *device_, RenderCacheLimits(),
+        VertexLightFiles(folder / "cache", project_->base_key(), access == Access::write));
 }
 
 void Session::close() {

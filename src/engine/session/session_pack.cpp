@@ -8,6 +8,7 @@
 #include "engine/render/render_cache.h"
 #include "engine/session/edit_plan.h"
 #include "engine/session/session.h"
+#include "engine/session/version.h"
 #include "engine/view/view_light.h"
 #include "engine/view/view_mesh.h"
 #include "model/scene/aspects.h"
@@ -30,7 +31,10 @@ std::string Session::view_pack(const std::string& kind, const EditPreview* on_to
     const ViewMesh mesh = view_mesh(scene);
     if (kind == "shape") return view_shape(scene, mesh);
     if (kind == "look") return view_look(*device_, scene, mesh);
-    if (kind == "vertex_light") return view_vertex_light(frames_->light(scene).vertices(), mesh);
+    if (kind == "vertex_light") {
+      const SceneLight light = on_top ? frames_->light(scene) : frames_->light_to_keep(scene);
+      return view_vertex_light(light.vertices(), mesh);
+    }
     fail_usage("There is no pack '{}'.", kind);
   });
 }
@@ -38,7 +42,7 @@ std::string Session::view_pack(const std::string& kind, const EditPreview* on_to
 Json Session::view_keys() const {
   return threads_->run([&]() -> Json {
     const Scene scene = project().scene();
-    std::string shape, look;
+    std::string shape = kVersion + project().base_key(), look;
     for (const EditLayer& layer : scene.layers) {
       const Aspects changes = changed_by(layer);
       if (changes.shape) shape += layer.content;
@@ -46,11 +50,11 @@ Json Session::view_keys() const {
     }
     shape = content_hash(shape);
     const std::string light = key_of(scene.light);
-    return {{"tables", "1"},
+    return {{"tables", kVersion},
             {"shape", shape},
             {"look", content_hash(shape + look)},
             {"vertex_light", content_hash(shape + light)},
-            {"light", light}};
+            {"light", kVersion + light}};
   });
 }
 

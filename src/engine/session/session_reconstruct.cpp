@@ -139,8 +139,9 @@ ReconstructReport Session::run_reconstruction(const ReconstructRequest& request,
         {{"do", request.resume ? "resume" : "reconstruct"}, {"options", project().head().options}});
     RunLog log(progress, run / "log.jsonl");
     ProjectCheckpoints checkpoints(project());
-    const Scene scene = cei3d::reconstruct(*device_, project().capture(), CaptureImages(options.downscale),
-                                           project().head().normalization, options, checkpoints, log);
+    const Scene scene =
+        cei3d::reconstruct(*device_, project().capture(), CaptureImages(options.downscale),
+                           project().head().normalization, options, checkpoints, log, request.show);
     project().save_base(scene);
     return report_of(*device_, project(), scene, steady_seconds() - start);
   } catch (...) {

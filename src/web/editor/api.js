@@ -66,7 +66,7 @@ export async function upload(file, name) {
   return (await response.json()).id;
 }
 
-/** @typedef {{seq: number, x: number, y: number, width: number, height: number, frame: [number, number], samples: number, pixels: Uint8ClampedArray<ArrayBuffer>}} Tile */
+/** @typedef {import('./messages.js').TileHead & {pixels: Uint8ClampedArray<ArrayBuffer>}} Tile */
 
 /** @param {ArrayBuffer} bytes @returns {Tile} */
 function readTile(bytes) {

@@ -120,3 +120,17 @@ export class ViewCamera {
     };
   }
 }
+
+/** Where a camera sees a point; depth: along its axis. @param {CameraJson} c @param {Vec} p @returns {{x: number, y: number, depth: number}} */
+export function seen(c, p) {
+  const away = sub(p, c.center), r = c.world_from_cam;
+  const [x, y, z] = [0, 1, 2].map((k) => r[0][k] * away[0] + r[1][k] * away[1] + r[2][k] * away[2]);
+  return { x: (c.fx * x + c.skew * y) / z + c.cx, y: c.fy * y / z + c.cy, depth: z };
+}
+
+/** The point that a camera sees at a pixel. @param {CameraJson} c @param {number} x @param {number} y @param {number} depth @returns {Vec} */
+export function pointAt(c, x, y, depth) {
+  const v = (y - c.cy) / c.fy, u = (x - c.cx - c.skew * v) / c.fx;
+  const r = c.world_from_cam;
+  return /** @type {Vec} */ ([0, 1, 2].map((k) => c.center[k] + depth * (r[k][0] * u + r[k][1] * v + r[k][2])));
+}

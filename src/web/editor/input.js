@@ -11,7 +11,7 @@ const kTap = 6;  // pixels that a click may move
 const kTurn = 0.0065;  // radians a pixel
 
 export class Input {
-  /** @param {import('./stage.js').Stage} stage @param {() => any} tool @param {{undo: () => void, redo: () => void, turnLight: (degrees: number, done: boolean) => void, size: (factor: number) => void}} actions */
+  /** @param {import('./stage.js').Stage} stage @param {(p?: Point) => any} tool that a point is for @param {{undo: () => void, redo: () => void, turnLight: (degrees: number, done: boolean) => void, size: (factor: number) => void}} actions */
   constructor(stage, tool, actions) {
     this.stage = stage;
     this.tool = tool;
@@ -21,6 +21,8 @@ export class Input {
     /** @type {string | null} what the pressed pointer does */
     this.doing = null;
     this.space = false;
+    /** @type {any} the tool of the pressed pointer */
+    this.used = null;
     /** @type {{x: number, y: number} | null} pointer by keys, pixels of the frame */
     this.reticle = null;
     this.touches = { most: 0, moved: 0 };
@@ -35,8 +37,9 @@ export class Input {
     window.addEventListener('keyup', (e) => { if (e.key === ' ') this.space = false; });
   }
 
-  /** @param {PointerEvent} e @returns {Point} */
-  point(e) {
+  /** @param {PointerEvent | DragEvent} event @returns {Point} */
+  point(event) {
+    const e = /** @type {PointerEvent} */ (event);
     const r = this.stage.view.getBoundingClientRect(), { scale } = this.stage.size();
     const x = (e.clientX - r.left) * scale, y = (e.clientY - r.top) * scale;
     return {
@@ -55,13 +58,15 @@ export class Input {
     if (this.down.size === 1) this.touches = { most: 1, moved: 0 };
     if (this.down.size > 1) {
       this.touches.most = Math.max(this.touches.most, this.down.size);
-      if (this.doing === 'tool') this.tool().cancel?.();
+      if (this.doing === 'tool') this.used.cancel?.();
       this.doing = 'pinch';
       return;
     }
     this.start = { x: e.clientX, y: e.clientY, moved: false };
-    this.doing = this.choose(e, this.point(e));
-    if (this.doing === 'tool') this.tool().down?.(this.point(e));
+    const p = this.point(e);
+    this.used = this.tool(p);
+    this.doing = this.choose(e, p);
+    if (this.doing === 'tool') this.used.down?.(p);
   }
 
   /** @param {PointerEvent} e @param {Point} p */
@@ -69,8 +74,7 @@ export class Input {
     if (e.button === 1) return e.shiftKey ? 'pan' : 'orbit';
     if (e.button === 2) return e.shiftKey ? 'light' : e.ctrlKey ? 'size' : 'pan';
     if (e.altKey || this.space) return 'orbit';
-    const tool = this.tool();
-    return tool.down && (p.onObject || tool.anywhere) ? 'tool' : 'orbit';
+    return this.used.down && (p.onObject || this.used.takes?.(p)) ? 'tool' : 'orbit';
   }
 
   /** @param {PointerEvent} e */
@@ -87,7 +91,7 @@ export class Input {
     const { scale, width, height } = this.stage.size(), camera = this.stage.camera;
     if (this.doing === 'tool') {
       const events = e.getCoalescedEvents?.() ?? [];
-      for (const c of events.length ? events : [e]) this.tool().move?.(this.point(c));
+      for (const c of events.length ? events : [e]) this.used.move?.(this.point(c));
       return;
     }
     if (this.doing === 'orbit') camera.orbit(-dx * kTurn, -dy * kTurn);
@@ -124,7 +128,7 @@ export class Input {
       if (this.touches.moved < 2 * kTap) this.touches.most > 2 ? this.actions.redo() : this.actions.undo();
       return;
     }
-    if (doing === 'tool') return this.tool().up?.(p);
+    if (doing === 'tool') return this.used.up?.(p);
     if (doing === 'light') return this.actions.turnLight(0, true);
     if (this.start && !this.start.moved && e.type === 'pointerup') this.tool().click?.({ ...p, alt: p.alt || e.button === 2 });
   }

@@ -5,7 +5,8 @@ import { getBytes } from './api.js';
 
 /** @type {Record<string, string>} channels of the program that the renderer knows */
 const kChannels = { rgb: 'lit', albedo: 'albedo', normal: 'normal', roughness: 'roughness' };
-const kKinds = ['tables', 'shape', 'look', 'light', 'vertex_light'];
+const kLate = 1200;  // milliseconds
+const kSurface = ['shape', 'look'], kLight = ['tables', 'light', 'vertex_light'];
 
 export class Live {
   /** @param {HTMLCanvasElement} canvas @param {import('./store.js').Store} store @param {() => void} ready called when there is something new to draw */
@@ -19,72 +20,112 @@ export class Live {
     this.modules = null;
     /** @type {Record<string, string>} keys of what the renderer has */
     this.have = {};
+    /** @type {Set<string>} names of parts that are not shown */
+    this.hidden = new Set();
+    /** @type {import('../pack.js').Pack | null} maps of the light */
+    this.light = null;
     /** @type {string | null} the preview whose look the renderer has */
     this.previewed = null;
+    /** @type {{keys: Record<string, string>, packs: Map<string, Promise<ArrayBuffer>>} | null} packs that were asked for ahead */
+    this.ahead = null;
     this.off = new URLSearchParams(location.search).has('frames');  // for tests: only the program's frames
+    this.prepared = this.off ? Promise.resolve() : this.prepare();  // before there is an object: it takes a while
   }
 
   async begin() {
     this.have = {};
     this.previewed = null;
+    this.hidden.clear();
     if (this.off) return;
-    try {
-      this.modules ??= await Promise.all([import('../renderer.js'), import('../pack.js'), import('../camera.js')]);
-      this.renderer ??= new this.modules[0].Renderer(this.canvas);
-    } catch {
-      this.renderer = null;
-      return;
-    }
+    this.ahead = { keys: this.store.state.packs, packs: this.fetchMissing() };
+    await this.prepared;
+    this.renderer?.clear();
     await this.refresh();
   }
 
-  /** Fetches what has changed. @returns {Promise<void>} */
-  async refresh() {
-    const keys = this.store.state.packs;
-    if (!this.renderer || !keys) return;
-    let changed = false;
-    if (this.previewed) delete this.have.look;
-    this.previewed = null;
-    for (const kind of kKinds) {
-      if (this.have[kind] === keys[kind]) continue;
-      const bytes = await getBytes(`/api/pack/${kind}?key=${keys[kind]}`);
-      if (keys !== this.store.state.packs) return this.refresh();
-      this.set(kind, bytes);
-      this.have[kind] = keys[kind];
-      changed = true;
-    }
-    if (changed) this.ready();
+  async prepare() {
+    try {
+      this.modules = await Promise.all([import('../renderer.js'), import('../pack.js'), import('../camera.js')]);
+      this.renderer = new this.modules[0].Renderer(this.canvas);
+    } catch { /* there is no WebGL 2 */ }
   }
 
-  /** @param {string} kind @param {ArrayBuffer} bytes */
-  set(kind, bytes) { this.renderer.set(this.modules[1].readPack(bytes, kind)); }
+  /** Fetches what has changed, all at once. Where there is nothing yet and the light is late, the surface comes first. @returns {Promise<void>} */
+  async refresh() {
+    /** @type {Record<string, string>} */
+    const keys = this.store.state.packs;
+    if (!this.renderer || !keys) return;
+    if (this.previewed) delete this.have.look;
+    this.previewed = null;
+    const packs = this.ahead?.keys === keys ? this.ahead.packs : this.fetchMissing(), missing = [...packs.keys()];
+    this.ahead = null;
+    const late = !this.renderer.complete && await Promise.race([Promise.all(packs.values()).then(() => false), new Promise((resolve) => setTimeout(() => resolve(true), kLate))]);
+    const steps = late ? [kSurface, kLight].map((kinds) => kinds.filter((kind) => packs.has(kind))) : [missing];
+    for (const kinds of steps) {
+      const bytes = await Promise.all(kinds.map((kind) => packs.get(kind)));
+      if (keys !== this.store.state.packs) return this.refresh();
+      kinds.forEach((kind, i) => this.set(kind, /** @type {ArrayBuffer} */ (bytes[i]), keys[kind]));
+      if (kinds.length) this.ready();
+    }
+  }
+
+  /** @returns {Map<string, Promise<ArrayBuffer>>} packs on their way, by kind */
+  fetchMissing() {
+    /** @type {Record<string, string>} */
+    const keys = this.store.state.packs ?? {};
+    const packs = new Map(Object.keys(keys).filter((kind) => this.have[kind] !== keys[kind]).map((kind) => [kind, getBytes(`/api/pack/${kind}?key=${keys[kind]}`)]));
+    for (const pack of packs.values()) pack.catch(() => {});  // refresh() awaits each, if those before it arrive
+    return packs;
+  }
+
+  /** @param {string} kind @param {ArrayBuffer} bytes @param {string} key */
+  set(kind, bytes, key) {
+    const pack = this.modules[1].readPack(bytes, kind);
+    this.renderer.set(pack);
+    if (kind === 'light') this.light = pack;
+    this.have[kind] = key;
+  }
 
   /** Shows an edit of the look that is not kept. @param {string} token @returns {Promise<boolean>} whether it can */
   async preview(token) {
     if (!this.current()) return false;
     const bytes = await getBytes(`/api/pack/look?preview=${token}`);
-    this.set('look', bytes);
+    this.set('look', bytes, '');
     this.previewed = token;
     return true;
   }
 
-  current() {
+  /** @param {string[]} kinds */
+  has(kinds) {
+    /** @type {Record<string, string>} */
     const keys = this.store.state.packs;
-    return Boolean(this.renderer?.complete && keys && kKinds.every((kind) => this.have[kind] === keys[kind]));
+    return Boolean(this.renderer && keys && kinds.every((kind) => this.have[kind] === keys[kind] || (kind === 'look' && this.previewed)));
   }
 
-  /** @param {string} channel @param {{scale: number, env?: string}} light @param {string | null} preview @param {string | null} photo */
+  /** Whether what is drawn is the object as it is now. */
+  current() { return this.has([...kSurface, ...kLight]); }
+
+  /** Whether it has the surface and waits for the light: it can draw the albedo. */
+  unlit() { return Boolean(this.renderer && !this.renderer.complete && this.has(kSurface)); }
+
+  /** @param {string} channel @param {import('./light.js').Light} light @param {string | null} preview @param {string | null} photo */
   shows(channel, light, preview, photo) {
     const still = photo === null || this.store.object?.material?.light?.motion === 'world';
-    return channel in kChannels && light.scale === 1 && !light.env && preview === this.previewed && still && this.current();
+    return channel in kChannels && light.scale === 1 && !light.env && !light.sun && preview === this.previewed && still && this.current();
   }
 
   /** @param {any} camera @param {string} channel @param {{rotate: number}} light */
   draw(camera, channel, light) {
     const turn = this.modules[2].rotation(this.store.object.up, -light.rotate * Math.PI / 180);
-    this.renderer.draw({ camera, channel: kChannels[channel], room_from_object: turn, samples: 1, highlight: 0 });
+    this.renderer.draw({ camera, channel: this.renderer.complete ? kChannels[channel] : 'albedo', room_from_object: turn, samples: 1, highlight: 0, hidden: this.hiddenIndices() });
+  }
+
+  /** @returns {number[]} */
+  hiddenIndices() {
+    const names = this.renderer?.heads.get('look')?.parts ?? [];
+    return [...this.hidden].map((name) => names.indexOf(name)).filter((index) => index > 0);
   }
 
   /** Whether the object is at a pixel. @param {any} camera @param {number} x @param {number} y */
-  onObject(camera, x, y) { return this.renderer?.partAt(camera, x, y) >= 0; }
+  onObject(camera, x, y) { return this.renderer?.partAt(camera, x, y, this.hiddenIndices()) >= 0; }
 }

@@ -4,13 +4,16 @@
 import { hasKey, postJson } from './api.js';
 import { byId, complain, el, glyph, toast } from './dom.js';
 import { exportDialog, helpDialog } from './dialogs.js';
+import { BendTool } from './bend.js';
+import { DecalTool } from './decal.js';
 import { GrabTool } from './grab.js';
 import { Input } from './input.js';
 import { actionOf, keyOf } from './keys.js';
+import { LightTool } from './light.js';
 import { PaintTool } from './paint.js';
 import { HistoryPanel, PartsPanel, PhotoStrip } from './panels.js';
 import { Places } from './places.js';
-import { LightTool, MaterialTool, objectPanel } from './properties.js';
+import { MaterialTool, objectPanel } from './properties.js';
 import { PartOverlay, PartTool } from './select.js';
 import { channels, Stage } from './stage.js';
 import { Store } from './store.js';
@@ -21,8 +24,9 @@ const overlay = new PartOverlay(stage, store);
 const look = { name: 'look', label: 'Look', hint: 'Drag to turn, right button to move, wheel to zoom. B paints, P selects a part, ? shows all keys.' };
 const paint = new PaintTool(stage, store, false), erase = new PaintTool(stage, store, true);
 const light = new LightTool(stage, store, () => drawProperties());
+const parts = new PartTool(stage, store, overlay), decal = new DecalTool(stage, store), bend = new BendTool(stage, store);
 /** @type {any[]} */
-const tools = [look, paint, erase, new PartTool(stage, store, overlay), new GrabTool(stage, store), new MaterialTool(stage, store), light];
+const tools = [look, paint, erase, decal, parts, new GrabTool(stage, store), bend, new MaterialTool(stage, store), light];
 /** @type {any} */
 let tool = look;
 
@@ -32,6 +36,7 @@ function choose(name) {
   if (!next || (store.state.read_only && !['look', 'light'].includes(name))) return;
   if (next !== tool) tool.leave?.();
   tool = next;
+  if (tool.down) stage.hide([]);  // the program works on the whole object
   drawTools();
   drawOptions();
   drawProperties();
@@ -40,7 +45,14 @@ function choose(name) {
   stage.redraw();
 }
 
-const input = new Input(stage, () => tool, {
+/** The eraser of a pen erases, whatever was painted before it is kept. @param {import('./input.js').Point} [p] */
+function toolFor(p) {
+  if (!p?.erase || tool !== paint) return tool;
+  paint.keep();
+  return erase;
+}
+
+const input = new Input(stage, toolFor, {
   undo, redo,
   turnLight: (degrees, done) => { light.turn(degrees); if (done) choose('light'); },
   size: (factor) => tool.size?.(factor),
@@ -75,6 +87,7 @@ function undo() {
 function redo() { if (store.canRedo() && !store.state.read_only) store.change('redo'); }
 
 async function remove() {
+  if (tool.remove?.()) return;
   const part = store.part;
   if (!part) return toast('Select a part first; Delete removes it.');
   const done = await store.change('edit', { op: 'remove', params: { part } });
@@ -83,7 +96,7 @@ async function remove() {
 
 /** @param {string} name */
 function goToPhoto(name) {
-  const view = store.object.views.find((/** @type {any} */ v) => v.name === name);
+  const view = store.object.views.find((v) => v.name === name);
   if (!view) return;
   stage.camera.take(view.camera);
   stage.photo = name;
@@ -155,6 +168,9 @@ const actions = {
   undo, redo, remove, compare,
   'pick-color': () => paint.pickColor(),
   'swap-colors': () => paint.swap(),
+  lasso: () => { parts.by = 'lasso'; choose('part'); },
+  hide: () => { if (store.part) partsPanel.toggle(store.part); else toast('Select a part first; H hides it.'); },
+  'show-all': () => stage.hide([]),
   smaller: () => tool.size?.(1 / 1.15), larger: () => tool.size?.(1.15),
   softer: () => tool.hardness?.(-0.1), harder: () => tool.hardness?.(0.1),
   keep: () => (tool.keep ?? (() => {})).call(tool), drop: () => tool.drop ? tool.drop() : tool.cancel?.(),
@@ -188,10 +204,19 @@ window.addEventListener('keydown', (e) => {
 window.addEventListener('keyup', (e) => { if (e.key === '\\') { holding = false; drawPhoto(); } });
 window.addEventListener('beforeunload', (e) => { if (tools.some((t) => t.unsaved?.()) || store.saving > 0) e.preventDefault(); });
 for (const type of ['dragover', 'drop']) window.addEventListener(type, (e) => e.preventDefault());
-stage.view.addEventListener('drop', (/** @type {DragEvent} */ e) => { const file = e.dataTransfer?.files[0]; if (file && store.state.mode === 'project') { choose('light'); light.take(file); } });
+stage.view.addEventListener('drop', (/** @type {DragEvent} */ e) => { const file = e.dataTransfer?.files[0]; if (file && store.state.mode === 'project' && !store.state.read_only) take(file, input.point(e)); });
+
+/** A picture on the object is a decal, all else that is dropped a light. @param {File} file @param {import('./input.js').Point} at */
+function take(file, at) {
+  const isDecal = at.onObject && file.type.startsWith('image/') && !/\.(hdr|exr)$/i.test(file.name);
+  choose(isDecal ? 'decal' : 'light');
+  isDecal ? decal.take(file, at) : light.take(file);
+}
+stage.addEventListener('options', () => { drawOptions(); drawProperties(); });
+stage.addEventListener('hidden', () => { if (stage.live.hidden.size && tool.down) choose('look'); });
 
 new Places(store);
-new PartsPanel(store, { newPart: () => choose('part'), remove });
+const partsPanel = new PartsPanel(store, stage, { newPart: () => choose('part'), remove });
 new HistoryPanel(store, stage);
 byId('help').addEventListener('click', helpDialog);
 byId('back').addEventListener('click', async () => { try { await store.take(await postJson('close')); } catch (error) { complain(error); } });
@@ -226,4 +251,4 @@ if (!hasKey()) {
 }
 
 /** For tests: the pieces, and whether the picture is complete. */
-Object.assign(window, { cei3d: { store, stage, keepPaint: () => paint.keep(), settled: () => stage.settled() && store.saving === 0 && !tools.some((t) => t.unsaved?.()) } });
+Object.assign(window, { cei3d: { store, stage, paint, bend, keepPaint: () => paint.keep(), settled: () => stage.settled() && store.saving === 0 && !tools.some((t) => t.unsaved?.()) } });

@@ -10,7 +10,7 @@ import { postJson, upload } from './api.js';
 const kIdle = 900;  // milliseconds after the last stroke until they are kept
 
 /** What the brush is; shared by paint and eraser. */
-export const brush = { size: 26, hardness: 0.8, opacity: 1, color: '#d8342c', other: '#f2f2f2', target: 'albedo', material: '' };
+export const brush = { size: 26, hardness: 0.8, opacity: 1, color: '#d8342c', other: '#f2f2f2', target: 'albedo', material: '', pen: 'size' };
 
 export class PaintTool {
   /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store @param {boolean} erase */
@@ -33,6 +33,7 @@ export class PaintTool {
     /** @type {any} */
     this.at = null;
     this.timer = 0;
+    this.picking = false;  // the next click takes a color
     stage.addEventListener('moved', () => { this.at = null; this.keep(); this.saving = []; });
     stage.addEventListener('exact', () => { if (!this.busy) { this.saving = []; stage.redraw(); } });
     this.busy = 0;
@@ -51,6 +52,9 @@ export class PaintTool {
       el('label', {}, 'Color', el('input', { type: 'color', id: 'brush-color', value: brush.color, oninput: (/** @type {any} */ e) => this.setColor(e.target.value) })),
       el('button', { class: 'small', title: 'Swap the two colors (X)', onclick: () => this.swap() }, el('span', { class: 'swatch', id: 'other-color' }), ' Swap'),
       ...sliders, slider('Opacity', 'opacity', 0.05, 1),
+      el('button', { class: 'small', id: 'brush-pick', title: 'The next click takes the color there (I: at once)', 'aria-pressed': String(this.picking), onclick: () => { this.picking = !this.picking; this.stage.emit('options'); } }, 'Take color'),
+      el('label', {}, 'Pen', el('select', { id: 'brush-pen', title: 'What the pressure of a pen changes', onchange: (/** @type {any} */ e) => { brush.pen = e.target.value; } },
+        ...[['size', 'size'], ['opacity', 'opacity'], ['both', 'both'], ['none', 'nothing']].map(([v, t]) => el('option', { value: v, selected: brush.pen === v }, t)))),
       el('label', {}, 'As', el('select', { id: 'brush-target', onchange: (/** @type {any} */ e) => { this.keep(); brush.target = e.target.value; } },
         ...[['albedo', 'its own color'], ['appearance', 'seen color'], ['radiance', 'glow']].map(([v, t]) => el('option', { value: v, selected: brush.target === v }, t)))),
       el('label', {}, 'Material', el('select', { id: 'brush-material', onchange: (/** @type {any} */ e) => { this.keep(); brush.material = e.target.value; } },
@@ -79,11 +83,11 @@ export class PaintTool {
     this.enter();
   }
 
-  /** The albedo under the pointer becomes the color. */
-  async pickColor() {
-    if (!this.at) return;
+  /** The albedo under the pointer becomes the color. @param {any} [at] */
+  async pickColor(at = this.at) {
+    if (!at) return;
     try {
-      const point = await postJson('pick', { camera: this.stage.json(), pixel: [this.at.x, this.at.y] });
+      const point = await postJson('pick', { camera: this.stage.json(), pixel: [at.x, at.y] });
       if (point) this.setColor(point.albedo);
     } catch (error) { complain(error); }
   }
@@ -96,6 +100,11 @@ export class PaintTool {
 
   /** @param {any} p */
   down(p) {
+    if (this.picking) {
+      this.picking = false;
+      this.stage.emit('options');
+      return this.pickColor(p);
+    }
     clearTimeout(this.timer);
     const from = p.shift && this.last ? this.last : p;
     this.stroke = document.createElement('canvas');
@@ -119,7 +128,7 @@ export class PaintTool {
   }
 
   /** @param {any} p */
-  radius(p) { return Math.max(0.5, brush.size * this.stage.size().scale * (0.35 + 0.65 * p.pressure)); }
+  radius(p) { return Math.max(0.5, brush.size * this.stage.size().scale * (['size', 'both'].includes(brush.pen) ? 0.35 + 0.65 * p.pressure : 1)); }
 
   /** @param {any} p */
   dab(p) {
@@ -132,6 +141,7 @@ export class PaintTool {
       g.addColorStop(1, `${color}00`);
       c.fillStyle = g;
     }
+    c.globalAlpha = ['opacity', 'both'].includes(brush.pen) ? p.pressure : 1;
     c.beginPath();
     c.arc(p.x, p.y, r, 0, 2 * Math.PI);
     c.fill();
@@ -190,18 +200,9 @@ export class PaintTool {
     ++this.busy;
     try {
       const png = await new Promise((resolve) => pending.canvas.toBlob(resolve, 'image/png'));
-      for (;;) {
-        try {
-          const scribble = await upload(png, 'scribble.png');
-          const done = await this.store.change('edit', { op: 'paint', params: { strokes: [{ camera: pending.camera, scribble }], ...look } });
-          if (!done) this.saving = this.saving.filter((s) => s !== pending.canvas);
-          break;
-        } catch (error) {
-          if (/** @type {any} */ (error).status !== 0) throw error;
-          this.store.setLost(true);
-          await new Promise((resolve) => this.store.line.addEventListener('welcome', resolve, { once: true }));
-        }
-      }
+      const done = await this.store.change('edit', async () => (
+        { op: 'paint', params: { strokes: [{ camera: pending.camera, scribble: await upload(png, 'scribble.png') }], ...look } }));
+      if (!done) this.saving = this.saving.filter((s) => s !== pending.canvas);
     } catch (error) {
       this.saving = this.saving.filter((s) => s !== pending.canvas);
       complain(error);
@@ -255,4 +256,23 @@ export function ring(c, x, y, r) {
     c.arc(x, y, r, 0, 2 * Math.PI);
     c.stroke();
   }
+}
+
+/** @param {{x: number, y: number}[]} points */
+export function polygon(points) {
+  const path = new Path2D();
+  for (const { x, y } of points) path.lineTo(x, y);
+  path.closePath();
+  return path;
+}
+
+/** An outline that is seen on any ground. @param {CanvasRenderingContext2D} c @param {Path2D} path */
+export function dashed(c, path) {
+  for (const [color, dash] of /** @type {[string, number[]][]} */ ([['#000', []], ['#fff', [6, 6]]])) {
+    c.strokeStyle = color;
+    c.lineWidth = 1.5;
+    c.setLineDash(dash);
+    c.stroke(path);
+  }
+  c.setLineDash([]);
 }

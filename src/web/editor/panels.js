@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Lists beside the view: parts, history, photographs. */
-import { byId, el, glyph } from './dom.js';
+import { byId, el, glyph, toast } from './dom.js';
 import { getBlob } from './api.js';
 import { partColors } from './select.js';
 
@@ -10,40 +10,55 @@ const opNames = { paint: 'Paint', material: 'Material', light: 'Light', deform: 
 /** @type {Record<string, string>} */
 const opGlyphs = { paint: 'paint', material: 'material', light: 'light', deform: 'grab', remove: 'trash', part: 'part' };
 
-/** "roughness 0.40, gold" @param {any} e @returns {string} */
+/** "roughness 0.40, gold" @param {import('./store.js').Edit} e @returns {string} */
 export function describe(e) {
   const p = e.params, words = [];
-  if (e.op === 'paint') words.push(p.erase ? 'erased' : p.target === 'albedo' ? '' : p.target, e.strokes > 1 ? `${e.strokes} views` : '');
+  if (e.op === 'paint') words.push(p.erase ? 'erased' : p.target === 'albedo' ? '' : p.target, (e.strokes ?? 1) > 1 ? `${e.strokes} views` : '');
   if (p.name) words.push(p.name);
   if (p.part) words.push(p.part);
   if (p.material) words.push(p.material);
   for (const key of ['roughness', 'specular', 'metalness']) if (p[key] !== undefined) words.push(`${key} ${Number(p[key]).toFixed(2)}`);
   if (p.color) words.push(p.color);
   if (p.env) words.push(String(p.env).split('/').at(-1));
+  if (p.sun) words.push('sun');
+  if (p.more) words.push(`${1 + p.more.length} handles`);
+  if (p.pins) words.push(`${p.pins.length} ${p.pins.length === 1 ? 'pin' : 'pins'}`);
   if (p.rotate_degrees) words.push(`${Math.round(p.rotate_degrees)}°`);
   if (p.scale) words.push(`× ${Number(p.scale).toFixed(2)}`);
   return words.filter(Boolean).join(', ');
 }
 
 export class PartsPanel {
-  /** @param {import('./store.js').Store} store @param {{newPart: () => void, remove: () => void}} actions */
-  constructor(store, actions) {
+  /** @param {import('./store.js').Store} store @param {import('./stage.js').Stage} stage @param {{newPart: () => void, remove: () => void}} actions */
+  constructor(store, stage, actions) {
     this.store = store;
+    this.stage = stage;
     this.actions = actions;
+    stage.addEventListener('hidden', () => this.draw());
     store.on('state', () => this.draw());
     store.on('part', () => this.draw());
   }
 
+  /** @param {string} name */
+  toggle(name) {
+    const hidden = this.stage.live.hidden;
+    if (!this.stage.live.renderer) return toast('Parts can be hidden only where the page draws by WebGL 2.');
+    this.stage.hide(hidden.has(name) ? [...hidden].filter((n) => n !== name) : [...hidden, name]);
+  }
+
   draw() {
-    const { store } = this;
-    const rows = store.state.parts.map((/** @type {any} */ p, /** @type {number} */ i) => {
+    const { store } = this, hidden = this.stage.live.hidden;
+    const rows = store.state.parts.map((p, i) => {
       const on = store.part === p.name;
       const swatch = el('span', { class: 'swatch' });
       swatch.style.background = partColors[i % partColors.length];
-      return el('li', { class: on ? 'on' : '' }, el('div', { class: 'row' }, swatch,
+      const off = hidden.has(p.name);
+      return el('li', { class: `${on ? 'on' : ''} ${off ? 'off' : ''}` }, el('div', { class: 'row' }, swatch,
         el('button', { class: 'label', 'aria-pressed': String(on), title: on ? 'Selected; click again for the whole object' : `Select ${p.name}`,
           onclick: () => store.select(on ? null : p.name) }, p.name),
         el('span', { class: 'quiet' }, `${(100 * p.share).toFixed(1)} %`),
+        el('button', { title: `${off ? 'Show' : 'Hide'} ${p.name} (H)`, 'aria-label': `Hide ${p.name}`, 'aria-pressed': String(off), 'data-hide': p.name,
+          onclick: () => this.toggle(p.name) }, glyph(off ? 'hidden' : 'eye')),
         el('button', { title: `Remove ${p.name} (Delete)`, 'aria-label': `Remove ${p.name}`, disabled: store.state.read_only,
           onclick: () => { store.select(p.name); this.actions.remove(); } }, glyph('trash'))));
     });
@@ -80,7 +95,7 @@ export class HistoryPanel {
     });
   }
 
-  /** @param {any} e @param {number} index */
+  /** @param {import('./store.js').Edit} e @param {number} index */
   row(e, index) {
     const { store } = this, text = describe(e), locked = store.state.read_only;
     const url = this.thumbs.get(e.id);
@@ -94,7 +109,7 @@ export class HistoryPanel {
         onclick: () => store.change('toggle', { id: e.id }) }, glyph(e.enabled ? 'eye' : 'hidden'))));
   }
 
-  /** @param {any} e */
+  /** @param {import('./store.js').Edit} e */
   rename(e) {
     const input = el('input', { type: 'text', value: e.name ?? '', maxlength: '80', 'aria-label': `Name of ${e.id}` });
     const rows = [...byId('history').querySelectorAll('.label')];
@@ -112,8 +127,8 @@ export class HistoryPanel {
 
   draw() {
     const { store } = this, all = store.state.history;
-    const steps = all.filter((/** @type {any} */ e) => !e.set_aside), aside = all.filter((/** @type {any} */ e) => e.set_aside);
-    const rows = steps.map((/** @type {any} */ e, /** @type {number} */ i) => this.row(e, i)).reverse();
+    const steps = all.filter((e) => !e.set_aside), aside = all.filter((e) => e.set_aside);
+    const rows = steps.map((e, i) => this.row(e, i)).reverse();
     const start = el('li', { class: store.state.done === 0 ? 'on' : '' }, el('div', { class: 'row' }, el('span', { class: 'thumb' }),
       el('button', { class: 'label', disabled: store.state.read_only, onclick: () => store.change('goto', { done: 0 }) }, 'As reconstructed')));
     byId('history').replaceChildren(el('h2', { id: 'history-title' }, 'History'),
@@ -121,7 +136,7 @@ export class HistoryPanel {
     [...byId('history').querySelectorAll('li .label')].forEach((node, i) => { if (i < steps.length) node.dataset.id = steps[steps.length - 1 - i].id; });
   }
 
-  /** @param {any[]} aside */
+  /** @param {import('./store.js').Edit[]} aside */
   aside(aside) {
     return el('li', {}, el('details', {}, el('summary', {}, `${aside.length} set aside by later edits`),
       el('ul', { class: 'list' }, ...aside.map((e) => el('li', { class: 'undone' }, el('div', { class: 'row' },
@@ -141,14 +156,19 @@ export class PhotoStrip {
     this.urls = new Map();
     /** @type {any[]} */
     this.views = [];
+    /** @type {HTMLElement[]} buttons without pictures that are in sight */
+    this.wanted = [];
+    this.loading = false;
     store.on('mode', ({ mode }) => { if (mode === 'project') this.begin(); });
     stage.addEventListener('photo', () => this.mark());
+    stage.addEventListener('exact', () => this.loadWanted());
   }
 
   begin() {
     for (const url of this.urls.values()) URL.revokeObjectURL(url);
     this.urls.clear();
-    this.views = this.store.object.views.filter((/** @type {any} */ v) => v.photo);
+    this.wanted = [];
+    this.views = this.store.object.views.filter((v) => v.photo);
     const strip = byId('strip');
     if (this.views.length === 0) {
       strip.replaceChildren(el('p', {}, 'The photographs are not where they were when the object was made.'));
@@ -157,11 +177,20 @@ export class PhotoStrip {
     const seen = new IntersectionObserver((entries) => {
       for (const e of entries) if (e.isIntersecting) {
         seen.unobserve(e.target);
-        this.load(/** @type {HTMLElement} */ (e.target));
+        this.wanted.push(/** @type {HTMLElement} */ (e.target));
       }
+      if (this.stage.exact) this.loadWanted();
     }, { root: strip, rootMargin: '0px 400px' });
     strip.replaceChildren(...this.views.map((v) => el('button', { 'aria-label': `Photograph ${v.name}`, title: v.name, 'aria-pressed': 'false', 'data-view': v.name, onclick: () => this.go(v.name) })));
     for (const b of strip.children) seen.observe(b);
+  }
+
+  /** One after the other, so that they take neither connections nor the program's time from the object. */
+  async loadWanted() {
+    if (this.loading) return;
+    this.loading = true;
+    for (let button = this.wanted.shift(); button; button = this.wanted.shift()) await this.load(button);
+    this.loading = false;
   }
 
   /** @param {HTMLElement} button */

@@ -2,7 +2,7 @@
 // @ts-check
 /** What is shown when no object is open: a folder, a capture with what its check found, a reconstruction that runs. */
 import { byId, complain, el } from './dom.js';
-import { postJson } from './api.js';
+import { getBlob, postJson } from './api.js';
 
 /** @type {[string, string][]} first words of the program's stages, and what they are for */
 const stages = [['loading', 'Photographs'], ['start', 'Outline'], ['geometry', 'Shape'], ['polish', 'Polish'], ['surface', 'Surface'], ['appearance', 'Light, color and material'], ['finer', 'Finer surface'], ['residual', 'What is left']];
@@ -19,6 +19,7 @@ export class Places {
     this.store = store;
     this.seen = '';
     store.on('state', (state) => this.draw(state));
+    store.line.on('making', () => this.show());
     store.line.on('progress', (p) => { if (p.job === 'reconstruct') this.progress(p); });
   }
 
@@ -90,10 +91,23 @@ export class Places {
   /** @param {any} state */
   running(state) {
     return [el('h2', {}, `Making ${state.name}`),
+      el('img', { id: 'making-picture', alt: 'The object so far', width: 320, hidden: true }),
       el('progress', { max: 1, value: 0, id: 'making', 'aria-label': 'Reconstruction' }),
       el('p', { id: 'making-text', role: 'status' }, 'Starting'),
       el('ol', { class: 'stages', id: 'making-stages' }, ...stages.map(([key, text]) => el('li', { 'data-stage': key }, text))),
       el('div', { class: 'inline' }, el('button', { class: 'big', id: 'stop', onclick: () => postJson('cancel').catch(complain) }, 'Stop and keep what is done'))];
+  }
+
+  /** The object as it is now. */
+  async show() {
+    const picture = byId('making-picture');
+    if (!picture) return;
+    try {
+      const url = URL.createObjectURL(await getBlob('/api/making'));
+      URL.revokeObjectURL(picture.src);
+      picture.src = url;
+      picture.hidden = false;
+    } catch { /* the next one comes soon */ }
   }
 
   /** @param {any} p */

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Material and light: tools whose controls are in the panel. What is tried is shown at once; letting go keeps it. */
-import { complain, el, toast } from './dom.js';
-import { postJson, upload } from './api.js';
+/** Material: a tool whose controls are in the panel. What is tried is shown at once; letting go keeps it. */
+import { complain, el } from './dom.js';
+import { postJson } from './api.js';
 
 /** @type {[string, string, string][]} key, label, what it means */
 const sliders = [
@@ -47,7 +47,7 @@ export class MaterialTool {
         type: 'range', min: '0', max: '1', step: '0.01', value: String(values[key] ?? 0.5), 'data-key': key,
         oninput: (/** @type {any} */ e) => { output.textContent = Number(e.target.value).toFixed(2); this.try({ [key]: Number(e.target.value) }); },
         onchange: (/** @type {any} */ e) => this.keep({ [key]: Number(e.target.value) }),
-        ondblclick: () => this.keep({ [key]: this.store.object.material[key] }),
+        ondblclick: () => this.keep({ [key]: /** @type {Record<string, any>} */ (this.store.object.material)[key] }),
       }), output);
     };
     const tint = params.color ?? '#b0b0b0';
@@ -100,89 +100,6 @@ export class MaterialTool {
   leave() {
     ++this.number;
     if (this.stage.preview) this.stage.tryEdit(null);
-  }
-}
-
-export class LightTool {
-  /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store @param {() => void} changed */
-  constructor(stage, store, changed) {
-    this.stage = stage;
-    this.store = store;
-    this.changed = changed;
-    this.name = 'light';
-    this.label = 'Light';
-    this.hint = 'Turn the dial, or Shift and the right button; drop an .hdr or .exr on the view. Nothing is changed before Keep.';
-    this.file = '';
-  }
-
-  differs() { const l = this.stage.light; return l.rotate !== 0 || l.scale !== 1 || l.env !== undefined; }
-
-  panel() {
-    const l = this.stage.light, out = el('output', {}, `${Math.round(l.rotate)}°`), bright = el('output', {}, l.scale.toFixed(2));
-    return [
-      el('p', {}, this.file && l.env ? `Looking under ${this.file}.` : 'The object’s light, as edited so far.'),
-      el('label', { class: 'field' }, 'Turned', el('input', { type: 'range', min: '-180', max: '180', step: '1', value: String(l.rotate), id: 'light-rotate',
-        oninput: (/** @type {any} */ e) => { this.stage.light.rotate = Number(e.target.value); out.textContent = `${e.target.value}°`; this.stage.moved(); this.update(); },
-        ondblclick: () => this.set({ rotate: 0 }) }), out),
-      el('label', { class: 'field' }, 'Strength', el('input', { type: 'range', min: '-2', max: '2', step: '0.05', value: String(Math.log2(l.scale)), id: 'light-scale',
-        oninput: (/** @type {any} */ e) => { this.stage.light.scale = 2 ** Number(e.target.value); bright.textContent = this.stage.light.scale.toFixed(2); this.stage.moved(); this.update(); },
-        ondblclick: () => this.set({ scale: 1 }) }), bright),
-      el('div', { class: 'buttons' },
-        el('button', { onclick: () => this.choose() }, 'Environment…'),
-        el('button', { class: 'primary', id: 'light-keep', onclick: () => this.keep() }, 'Keep'),
-        el('button', { id: 'light-drop', onclick: () => this.drop() }, 'Drop')),
-    ];
-  }
-
-  update() { for (const id of ['light-keep', 'light-drop']) { const b = /** @type {any} */ (document.getElementById(id)); if (b) b.disabled = !this.differs(); } }
-
-  enter() { this.update(); }
-
-  /** @param {object} values */
-  set(values) {
-    Object.assign(this.stage.light, values);
-    this.stage.moved();
-    this.changed();
-    this.update();
-  }
-
-  /** @param {number} degrees */
-  turn(degrees) {
-    let rotate = this.stage.light.rotate + degrees;
-    if (rotate > 180) rotate -= 360;
-    if (rotate < -180) rotate += 360;
-    this.set({ rotate });
-  }
-
-  choose() {
-    const input = el('input', { type: 'file', accept: '.hdr,.exr,.npy,image/*' });
-    input.onchange = () => { if (input.files[0]) this.take(input.files[0]); };
-    input.click();
-  }
-
-  /** @param {File} file */
-  async take(file) {
-    try {
-      const env = await upload(file, file.name);
-      this.file = file.name;
-      this.set({ env });
-      toast(`Looking under ${file.name}; Keep makes it the object’s light.`);
-    } catch (error) { complain(error); }
-  }
-
-  async keep() {
-    if (!this.differs()) return;
-    const l = this.stage.light;
-    const done = await this.store.change('edit', { op: 'light', params: { rotate: l.rotate, scale: l.scale, ...(l.env ? { env: l.env } : {}) } });
-    if (done) this.drop();
-  }
-
-  drop() {
-    this.stage.light = { rotate: 0, scale: 1 };
-    this.file = '';
-    this.stage.moved();
-    this.changed();
-    this.update();
   }
 }
 

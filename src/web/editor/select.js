@@ -2,8 +2,8 @@
 // @ts-check
 /** Parts by clicks, and the overlay that shows a part. */
 import { complain, el, toast } from './dom.js';
-import { postForBlob, postJson } from './api.js';
-import { ring } from './paint.js';
+import { postForBlob, postJson, upload } from './api.js';
+import { dashed, polygon, ring } from './paint.js';
 
 /** Colors of parts, by their place in the list; names and outlines tell them apart, too. */
 export const partColors = ['#ffb454', '#6ea8ff', '#6fd08c', '#e58cff', '#ff8080', '#5fd7d7', '#d7c75f', '#b0a0ff'];
@@ -58,7 +58,7 @@ export class PartOverlay {
       this.stage.redraw();
       return;
     }
-    const index = this.store.state.parts.findIndex((/** @type {any} */ p) => p.name === part);
+    const index = this.store.state.parts.findIndex((p) => p.name === part);
     const color = partColors[Math.max(0, this.token ? this.store.state.parts.length : index) % partColors.length];
     try {
       const what = this.token ? { token: this.token } : { part };
@@ -82,9 +82,14 @@ export class PartTool {
     this.overlay = overlay;
     this.name = 'part';
     this.label = 'Part';
-    this.hint = 'Click on the part; Alt or the right button: not this. Enter keeps it, Esc drops it.';
+    this.hint = 'Click on the part; Alt or the right button: not this. Or draw around it with the lasso. Enter keeps it, Esc drops it.';
     this.segmenter = 'grow';
     this.how = 'new';
+    this.by = 'click';  // or 'lasso'
+    this.through = false;  // a lasso takes what lies behind, too
+    /** @type {{x: number, y: number}[]} outline that is being drawn, or was */
+    this.outline = [];
+    this.drawing = false;
     this.number = 0;
     /** @type {{x: number, y: number, out: boolean}[]} */
     this.clicks = [];
@@ -101,8 +106,13 @@ export class PartTool {
     stage.addEventListener('moved', () => { if (this.clicks.length) this.camera ??= null; });
   }
 
+  /** With the lasso a drag may begin beside the object. */
+  takes() { return this.by === 'lasso'; }
+
   clear() {
     this.clicks = [];
+    this.outline = [];
+    this.drawing = false;
     this.camera = null;
     this.token = null;
     ++this.number;
@@ -115,9 +125,13 @@ export class PartTool {
     const selected = this.store.part;
     const modes = [['new', 'New part'], ...(selected ? [['add', `Add to ${selected}`], ['subtract', `Take from ${selected}`], ['intersect', `Cut with ${selected}`]] : [])];
     return [
+      el('label', {}, 'By', el('select', { id: 'part-by', onchange: (/** @type {any} */ e) => { this.by = e.target.value; this.drop(); this.stage.emit('options'); } },
+        ...[['click', 'clicks'], ['lasso', 'lasso']].map(([v, t]) => el('option', { value: v, selected: this.by === v }, t)))),
+      ...(this.by === 'lasso' ? [el('label', {}, el('input', { type: 'checkbox', id: 'part-through', checked: this.through,
+        onchange: (/** @type {any} */ e) => { this.through = e.target.checked; this.preview(); } }), 'also what is not seen')] : []),
       el('label', {}, 'Makes', el('select', { id: 'part-how', onchange: (/** @type {any} */ e) => { this.how = e.target.value; this.preview(); } },
         ...modes.map(([v, t]) => el('option', { value: v, selected: this.how === v }, t)))),
-      ...(this.store.object?.segment ? [el('label', {}, 'Found by', el('select', { onchange: (/** @type {any} */ e) => { this.segmenter = e.target.value; this.preview(); } },
+      ...(this.store.object?.segment && this.by === 'click' ? [el('label', {}, 'Found by', el('select', { onchange: (/** @type {any} */ e) => { this.segmenter = e.target.value; this.preview(); } },
         el('option', { value: 'grow' }, 'color and creases'), el('option', { value: 'sam' }, 'network')))] : []),
       el('label', {}, 'Name', el('input', { type: 'text', id: 'part-name', placeholder: 'part', maxlength: '60', autocomplete: 'off' })),
       el('button', { class: 'primary', id: 'part-keep', onclick: () => this.keep() }, 'Keep'),
@@ -125,13 +139,59 @@ export class PartTool {
     ];
   }
 
+  /** Shift, Ctrl and both say what becomes of the selected part. @param {any} p */
+  chooseHow(p) {
+    if (!this.store.part || !(p.shift || p.ctrl)) return;
+    this.how = p.shift && p.ctrl ? 'intersect' : p.shift ? 'add' : 'subtract';
+    const select = /** @type {HTMLSelectElement | null} */ (document.getElementById('part-how'));
+    if (select) select.value = this.how;
+  }
+
   /** @param {any} p */
-  down(p) { this.pressed = p; }
+  down(p) {
+    this.pressed = p;
+    if (this.by !== 'lasso') return;
+    this.clear();
+    this.chooseHow(p);
+    this.camera = this.stage.json();
+    this.drawing = true;
+    this.outline = [{ x: p.x, y: p.y }];
+  }
+
   /** @param {any} p */
-  up(p) { this.click(this.pressed ?? p); }
+  move(p) {
+    this.at = p;
+    if (!this.drawing) return;
+    this.outline.push({ x: p.x, y: p.y });
+    this.stage.redraw();
+  }
+
+  /** @param {any} p */
+  up(p) {
+    if (this.by !== 'lasso') return this.click(this.pressed ?? p);
+    this.drawing = false;
+    if (this.outline.length < 8) return this.drop();
+    this.preview();
+  }
+
+  cancel() { if (this.drawing) this.drop(); }
+
+  /** What is inside the outline, white. @returns {Promise<Blob>} */
+  maskPicture() {
+    const { width, height } = this.stage.picture, canvas = document.createElement('canvas');
+    Object.assign(canvas, { width, height });
+    const c = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d'));
+    c.fillStyle = '#000';
+    c.fillRect(0, 0, width, height);
+    c.fillStyle = '#fff';
+    c.fill(polygon(this.outline));
+    return new Promise((resolve) => canvas.toBlob((blob) => resolve(/** @type {Blob} */ (blob)), 'image/png'));
+  }
+
   /** @param {any} p */
   click(p) {
-    if (!p.onObject) return;
+    if (!p.onObject || this.by === 'lasso') return;
+    if (!this.clicks.length) this.chooseHow(p);
     if (!this.camera) this.camera = this.stage.json();
     else if (JSON.stringify(this.camera) !== JSON.stringify(this.stage.json())) {
       toast('These clicks are for the view in which they began; keep the part, then add to it from here.');
@@ -146,6 +206,10 @@ export class PartTool {
   hover(p) { this.at = p; }
 
   undo() {
+    if (this.outline.length) {
+      this.drop();
+      return true;
+    }
     if (!this.clicks.length) return false;
     this.clicks.pop();
     if (this.clicks.length) this.preview();
@@ -156,13 +220,14 @@ export class PartTool {
 
   async preview() {
     const number = ++this.number;
-    if (!this.clicks.some((c) => !c.out)) return;
+    if (!this.outline.length && !this.clicks.some((c) => !c.out)) return;
     const of = (/** @type {boolean} */ out) => this.clicks.filter((c) => c.out === out).map((c) => [c.x, c.y]);
     const part = this.store.part, combine = this.how !== 'new' && part ? { [this.how]: part } : {};
     const name = /** @type {HTMLInputElement | null} */ (document.getElementById('part-name'))?.value.trim() ?? '';
     try {
-      const made = await postJson('preview', { op: 'part', params: {
-        camera: this.camera, positive: of(false), negative: of(true), segmenter: this.segmenter, ...combine, ...(name ? { name } : {}) } });
+      const what = this.outline.length ? { mask: await upload(await this.maskPicture(), 'mask.png'), in_view: !this.through }
+        : { positive: of(false), negative: of(true), segmenter: this.segmenter };
+      const made = await postJson('preview', { op: 'part', params: { camera: this.camera, ...what, ...combine, ...(name ? { name } : {}) } });
       if (number !== this.number) return;
       this.token = made.token;
       this.report = made.report;
@@ -174,7 +239,7 @@ export class PartTool {
   }
 
   async keep() {
-    if (!this.clicks.length) return;
+    if (!this.clicks.length && !this.outline.length) return;
     await this.preview();  // with the name as it is now
     const token = this.token;
     if (!token) return;
@@ -192,6 +257,7 @@ export class PartTool {
 
   /** @param {CanvasRenderingContext2D} c */
   draw(c) {
+    if (this.outline.length && (this.drawing || !this.overlay.mask)) dashed(c, polygon(this.outline));
     for (const k of this.clicks) {
       const r = 8;
       ring(c, k.x, k.y, r);

@@ -32,7 +32,7 @@ export class Stage extends EventTarget {
     this.exact = null;
     this.camera = new ViewCamera({ width: 1, height: 1, fx: 1, fy: 1, cx: 0.5, cy: 0.5, skew: 0, world_from_cam: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], center: [0, 0, -1] }, [0, 0, 0], [0, 0, 1], 1);
     this.channel = 'rgb';
-    /** @type {{rotate: number, scale: number, env?: string}} light that is looked under */
+    /** @type {import('./light.js').Light} light that is looked under */
     this.light = { rotate: 0, scale: 1 };
     /** @type {string | null} token of the edit that is previewed */
     this.preview = null;
@@ -43,6 +43,7 @@ export class Stage extends EventTarget {
     this.asked = null;
     this.timer = 0;
     this.waiting = 0;
+    this.fresh = false;  // the page has not drawn the object yet
     /** @type {(context: CanvasRenderingContext2D) => void} */
     this.drawTool = () => {};
     store.line.on('tile', (tile) => this.takeTile(tile));
@@ -64,6 +65,7 @@ export class Stage extends EventTarget {
     this.photo = null;
     byId('cover').classList.remove('done');
     this.picture.getContext('2d')?.clearRect(0, 0, this.picture.width, this.picture.height);
+    this.fresh = true;
     this.live.begin().catch(() => {});
     this.resized();
   }
@@ -98,13 +100,24 @@ export class Stage extends EventTarget {
 
   isLive() { return this.live.shows(this.channel, this.light, this.preview, this.photo); }
 
+  /** Shows all but some parts, which only the page's own picture can. @param {string[]} names */
+  hide(names) {
+    if (names.length === this.live.hidden.size && names.every((name) => this.live.hidden.has(name))) return;
+    this.live.hidden = new Set(names);
+    this.emit('hidden');
+    this.moved();
+  }
+
   /** The page can draw the object anew: below the exact frame, if there is one. */
   liveReady() {
-    if (!this.isLive()) return;
+    const first = !byId('cover').classList.contains('done');
+    if (!this.isLive() && !(first && this.live.unlit())) return;
+    // A driver's first picture takes long where it draws in software; that of the program is on its way.
+    if (this.fresh && this.isLive()) return;
     this.live.draw(this.json(), this.channel, this.light);
     byId('cover').classList.add('done');
     if (!this.exact) this.picture.style.opacity = '0';  // it is of the object before
-    if (this.asked?.kind === 'quick' || (!this.asked && !this.exact)) this.moved();
+    if (this.isLive() && (this.asked?.kind === 'quick' || (!this.asked && !this.exact))) this.moved();
   }
 
   /** Shows an edit that is not kept, or none. @param {string | null} token @param {boolean} [look] whether it changes nothing but the look */
@@ -126,6 +139,7 @@ export class Stage extends EventTarget {
       this.asked = null;
       this.picture.style.opacity = '0';
       cancelAnimationFrame(this.waiting);
+      this.fresh = false;
       this.waiting = requestAnimationFrame(() => {
         this.live.draw(this.json(), this.channel, this.light);
         byId('cover').classList.add('done');
@@ -145,12 +159,18 @@ export class Stage extends EventTarget {
     if (this.store.state.mode !== 'project') return;
     clearTimeout(this.timer);
     this.exact = null;
+    const kept = [...this.live.hidden].filter((name) => this.store.state.parts.some((p) => p.name === name));
+    if (kept.length < this.live.hidden.size) this.hide(kept);
     this.live.refresh().catch(() => {});
     this.asked = null;
     this.rest();
   }
 
   rest() {
+    if (this.live.hidden.size && this.live.renderer && (this.isLive() || !this.live.current())) {
+      if (this.isLive()) byId('badge').textContent = 'some parts hidden';
+      return;
+    }
     if (this.asked?.kind === 'quick') {
       this.timer = window.setTimeout(() => this.rest(), kRest);  // that one first
       return;
@@ -186,7 +206,7 @@ export class Stage extends EventTarget {
     context?.drawImage(this.back, tile.x, tile.y, tile.width, tile.height, tile.x, tile.y, tile.width, tile.height);
   }
 
-  /** @param {{seq: number, seconds: number}} frame */
+  /** @param {import('./messages.js').FrameNews} frame */
   finish({ seq, seconds }) {
     const asked = this.asked;
     if (!asked || seq !== asked.seq) return;
@@ -206,11 +226,20 @@ export class Stage extends EventTarget {
     byId('badge').textContent = `${asked.samples === 1 ? 'exact' : 'refined'}  ${seconds.toFixed(2)} s`;
     this.emit('exact');
     if (asked.samples === 1) this.ask('rest', 2);
-    else this.emit('settled');
+    else this.settle();
+  }
+
+  settle() {
+    if (this.fresh && this.isLive()) this.live.draw(this.json(), this.channel, this.light);  // so that it moves at once
+    this.fresh = false;
+    this.emit('settled');
   }
 
   /** Whether a picture is complete and nothing is under way. */
-  settled() { return this.asked === null && this.exact !== null && byId('badge').textContent.startsWith('refined'); }
+  settled() {
+    const badge = byId('badge').textContent ?? '';
+    return this.asked === null && (this.exact !== null ? badge.startsWith('refined') : badge === 'some parts hidden');
+  }
 
   /** Whether the object is at a pixel of the frame. @param {number} x @param {number} y */
   onObject(x, y) {

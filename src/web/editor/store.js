@@ -4,13 +4,18 @@
 import { ApiError, getJson, Line, postJson } from './api.js';
 import { complain } from './dom.js';
 
+/** @typedef {import('./messages.js').ProjectState} State of an open project; of other places it has `mode`, and what they show */
+/** @typedef {import('./messages.js').ObjectInfo} ObjectInfo */
+/** @typedef {State['history'][number]} Edit */
+/** @typedef {State['parts'][number]} Part */
+
 export class Store extends EventTarget {
   constructor() {
     super();
-    /** @type {any} */
-    this.state = { mode: 'opening', history: [], parts: [] };
-    /** @type {any} */
-    this.object = null;
+    /** @type {State} */
+    this.state = /** @type {any} */ ({ mode: 'opening', history: [], parts: [] });
+    /** @type {ObjectInfo} none before a project is open */
+    this.object = /** @type {any} */ (null);
     /** @type {string | null} name of the selected part */
     this.part = null;
     this.saving = 0;
@@ -55,7 +60,7 @@ export class Store extends EventTarget {
     state.history ??= [];
     state.parts ??= [];
     this.state = state;
-    if (this.part && !state.parts.some((/** @type {any} */ p) => p.name === this.part)) this.part = null;
+    if (this.part && !state.parts.some((/** @type {Part} */ p) => p.name === this.part)) this.part = null;
     if (before.mode !== state.mode || before.folder !== state.folder) this.emit('mode', state);
     this.emit('state', state);
     if (before.revision !== state.revision) this.emit('revision', { before, state });
@@ -69,7 +74,9 @@ export class Store extends EventTarget {
 
   /**
    * Changes the object. Waits for the changes before it; where the connection is lost it tries again when it is back.
-   * @param {string} route @param {object} [body] @returns {Promise<any>} the result; undefined: it failed and the user knows
+   * @param {string} route @param {object | (() => Promise<object>)} [body] a function is called before each try: it sends the files that the body
+   * names, which a program that was started anew does not have
+   * @returns {Promise<any>} the result; undefined: it failed and the user knows
    */
   change(route, body = {}) {
     ++this.saving;
@@ -82,11 +89,14 @@ export class Store extends EventTarget {
     return done;
   }
 
-  /** @param {string} route @param {any} body @returns {Promise<any>} */
-  async send(route, body) {
+  /** @param {string} route @param {any} make @returns {Promise<any>} */
+  async send(route, make) {
     const before = this.state;
     for (;;) {
+      /** @type {any} */
+      let body = {};
       try {
+        body = typeof make === 'function' ? await make() : make;
         const answer = await postJson(route, body, before.revision);
         await this.take(answer.state);
         return answer.result;
@@ -107,10 +117,10 @@ export class Store extends EventTarget {
     }
   }
 
-  /** Edits that are done, in order. @returns {any[]} */
+  /** Edits that are done, in order. @returns {Edit[]} */
   done() { return this.state.history.slice(0, this.state.done); }
-  /** The last edit that is done. @returns {any} */
+  /** The last edit that is done. @returns {Edit | undefined} */
   last() { return this.done().at(-1); }
   canUndo() { return this.state.done > 0; }
-  canRedo() { return this.state.history.some((/** @type {any} */ e) => !e.done && !e.set_aside); }
+  canRedo() { return this.state.history.some((e) => !e.done && !e.set_aside); }
 }

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the page draws. Packs are made once, before a page asks for them where there is time, and those that
+// are ready never wait for the worker.
+#include "apps/server/editor.h"
+#include "apps/server/guarded.h"
+#include "core/base/json.h"
+
+namespace cei3d {
+namespace {
+
+HttpResponse pack_response(const std::string& bytes, bool keyed) {
+  HttpResponse r{200, "application/octet-stream", bytes};
+  if (keyed) r.headers.emplace_back("Cache-Control", "private, max-age=86400");
+  return r;
+}
+
+}  // namespace
+
+void Editor::pack(const HttpRequest& request, Reply reply) {
+  const std::string kind = request.path.substr(std::string("/api/pack/").size());
+  const auto token = request.parameter("preview"), key = request.parameter("key");
+  const bool keyed = key && !token;
+  if (keyed)
+    if (const auto ready = kept_pack(kind, *key)) return reply(pack_response(*ready, true));
+  on_worker("pack", std::move(reply),
+            [this, kind, keyed, key, made = token ? kept(*token) : nullptr](Session& session, Progress&) {
+              if (made) return pack_response(session.view_pack(kind, made.get()), false);
+              const auto bytes = pack_of(session, kind);
+              return pack_response(*bytes, keyed && kept_pack(kind, *key));
+            });
+}
+
+void Editor::prepare_packs() {
+  for (const char* kind : {"shape", "look", "tables", "light", "vertex_light"})
+    worker_->background([this, kind](Session& session) {
+      guarded_response([&] { return pack_response(*pack_of(session, kind), false); });
+      return false;
+    });
+}
+
+std::shared_ptr<const std::string> Editor::pack_of(Session& session, const std::string& kind) {
+  const std::string key = session.view_keys().value(kind, "");
+  if (auto ready = kept_pack(kind, key)) return ready;
+  const auto made = std::make_shared<const std::string>(session.view_pack(kind));
+  const std::lock_guard lock(mutex_);
+  packs_[kind] = {key, made};
+  return made;
+}
+
+std::shared_ptr<const std::string> Editor::kept_pack(const std::string& kind, const std::string& key) const {
+  const std::lock_guard lock(mutex_);
+  const auto it = packs_.find(kind);
+  return it != packs_.end() && it->second.key == key ? it->second.bytes : nullptr;
+}
+
+}  // namespace cei3d

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/** Light: turned, scaled, replaced by an environment, with a sun. It is looked under at once; Keep makes it an edit. */
+import { drawBall, mirrored, radianceOf } from './ball.js';
+import { add, cross, dot, mul, unit } from './camera.js';
+import { complain, el, toast } from './dom.js';
+import { upload } from './api.js';
+import { rotation } from '../camera.js';
+
+/** @typedef {import('./camera.js').Vec} Vec */
+/** @typedef {{rotate: number, scale: number, env?: string, sun?: {direction: Vec, strength: number}}} Light what is looked under; sun: towards it, capture frame */
+
+const kBall = 120;  // pixels
+
+/** @param {string} label @param {object} attributes of the slider @param {string} text */
+function field(label, attributes, text) {
+  const out = el('output', {}, text);
+  return { out, node: el('label', { class: 'field' }, label, el('input', { type: 'range', ...attributes }), out) };
+}
+
+export class LightTool {
+  /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store @param {() => void} changed */
+  constructor(stage, store, changed) {
+    this.stage = stage;
+    this.store = store;
+    this.changed = changed;
+    this.name = 'light';
+    this.label = 'Light';
+    this.hint = 'Click on the ball to put a sun; turn with Shift and the right button; drop an .hdr or .exr on the view. Nothing is changed before Keep.';
+    this.file = '';
+    /** @type {File | null} */
+    this.env = null;
+    /** @type {HTMLCanvasElement | null} */
+    this.ball = null;
+    stage.addEventListener('moved', () => this.drawBall());
+    stage.addEventListener('exact', () => this.drawBall());
+  }
+
+  differs() { const l = this.stage.light; return l.rotate !== 0 || l.scale !== 1 || l.env !== undefined || l.sun !== undefined; }
+
+  panel() {
+    const l = this.stage.light;
+    const number = (/** @type {any} */ e) => Number(e.target.value);
+    const turned = field('Turned', { min: '-180', max: '180', step: '1', value: String(l.rotate), id: 'light-rotate',
+      oninput: (/** @type {any} */ e) => { this.show({ rotate: number(e) }); turned.out.textContent = `${e.target.value}°`; }, ondblclick: () => this.set({ rotate: 0 }) }, `${Math.round(l.rotate)}°`);
+    const bright = field('Strength', { min: '-2', max: '2', step: '0.05', value: String(Math.log2(l.scale)), id: 'light-scale',
+      oninput: (/** @type {any} */ e) => { this.show({ scale: 2 ** number(e) }); bright.out.textContent = this.stage.light.scale.toFixed(2); }, ondblclick: () => this.set({ scale: 1 }) }, l.scale.toFixed(2));
+    return [
+      el('p', {}, this.file && l.env ? `Looking under ${this.file}.` : 'The object’s light, as edited so far.'),
+      this.makeBall(), turned.node, bright.node, ...this.sunFields(),
+      el('div', { class: 'buttons' },
+        el('button', { onclick: () => this.choose() }, 'Environment…'),
+        el('button', { class: 'primary', id: 'light-keep', onclick: () => this.keep() }, 'Keep'),
+        el('button', { id: 'light-drop', onclick: () => this.drop() }, 'Drop')),
+    ];
+  }
+
+  /** Height above the horizon and turn about the up axis of the sun, degrees. */
+  sunAngles() {
+    const [a, b, up] = this.upright(), d = unit(this.stage.light.sun?.direction ?? add(a, up)), degrees = 180 / Math.PI;
+    return { around: Math.atan2(dot(d, b), dot(d, a)) * degrees, height: Math.asin(Math.max(-1, Math.min(1, dot(d, up)))) * degrees };
+  }
+
+  /** Two axes of the horizon, and up. @returns {[Vec, Vec, Vec]} */
+  upright() {
+    const up = unit(this.store.object.up), a = unit(cross(up, Math.abs(up[0]) < 0.9 ? [1, 0, 0] : [0, 1, 0]));
+    return [a, cross(up, a), up];
+  }
+
+  sunFields() {
+    const angles = this.sunAngles(), strength = this.stage.light.sun?.strength ?? 0;
+    const put = () => {
+      const [a, b, up] = this.upright(), t = angles.around * Math.PI / 180, h = angles.height * Math.PI / 180;
+      this.putSun(add(mul(add(mul(a, Math.cos(t)), mul(b, Math.sin(t))), Math.cos(h)), mul(up, Math.sin(h))));
+    };
+    const around = field('Sun around', { min: '-180', max: '180', step: '1', value: String(angles.around), id: 'sun-around',
+      oninput: (/** @type {any} */ e) => { angles.around = Number(e.target.value); put(); around.out.textContent = `${e.target.value}°`; } }, `${Math.round(angles.around)}°`);
+    const height = field('Sun height', { min: '-90', max: '90', step: '1', value: String(angles.height), id: 'sun-height',
+      oninput: (/** @type {any} */ e) => { angles.height = Number(e.target.value); put(); height.out.textContent = `${e.target.value}°`; } }, `${Math.round(angles.height)}°`);
+    const power = field('Sun', { min: '0', max: '8', step: '0.1', value: String(strength), id: 'sun-strength', title: 'In units of what the rest of the light gives; 0: no sun',
+      oninput: (/** @type {any} */ e) => { this.strengthen(Number(e.target.value)); power.out.textContent = Number(e.target.value).toFixed(1); }, ondblclick: () => this.strengthen(0) }, strength.toFixed(1));
+    return [power.node, around.node, height.node];
+  }
+
+  /** @param {Vec} direction */
+  putSun(direction) { this.show({ sun: { direction: unit(direction), strength: this.stage.light.sun?.strength || 1 } }); }
+
+  /** @param {number} strength */
+  strengthen(strength) {
+    const [a, , up] = this.upright();
+    this.show({ sun: strength > 0 ? { direction: this.stage.light.sun?.direction ?? unit(add(a, up)), strength } : undefined });
+  }
+
+  makeBall() {
+    const at = (/** @type {PointerEvent} */ e) => {
+      const r = /** @type {HTMLCanvasElement} */ (this.ball).getBoundingClientRect();
+      this.putSun(mirrored(2 * (e.clientX - r.left) / r.width - 1, 2 * (e.clientY - r.top) / r.height - 1, this.stage.camera.axes));
+    };
+    const ball = el('canvas', { class: 'ball', id: 'light-ball', width: kBall, height: kBall, 'aria-hidden': 'true', title: 'A mirror ball; a click puts the sun where it is seen',
+      onpointerdown: (/** @type {PointerEvent} */ e) => { ball.setPointerCapture(e.pointerId); at(e); },
+      onpointermove: (/** @type {PointerEvent} */ e) => { if (e.buttons & 1) at(e); },
+      onpointerup: () => this.changed() });
+    this.ball = ball;
+    requestAnimationFrame(() => this.drawBall());
+    return ball;
+  }
+
+  drawBall() {
+    if (!this.ball?.isConnected) return;
+    const { light, camera, live } = this.stage, pack = light.env ? null : live.light;
+    const turn = rotation(unit(this.store.object.up), -light.rotate * Math.PI / 180);
+    const level = pack ? pack.arrays.reflection.subarray(0, pack.head.reflection_side ** 2) : null;
+    drawBall(this.ball, camera.axes, (d) => {
+      if (!level || !pack) return [0.25, 0.25, 0.25];  // no map of it is here
+      const room = /** @type {Vec} */ (turn.map((row) => dot(/** @type {Vec} */ (row), d)));
+      return mul(radianceOf(/** @type {Uint32Array} */ (level), pack.head.reflection_side, room), light.scale);
+    }, light.sun?.direction ?? null);
+  }
+
+  update() { for (const id of ['light-keep', 'light-drop']) { const b = /** @type {any} */ (document.getElementById(id)); if (b) b.disabled = !this.differs(); } }
+
+  enter() { this.update(); }
+
+  /** @param {Partial<Light>} values */
+  show(values) {
+    Object.assign(this.stage.light, values);
+    this.stage.moved();
+    this.update();
+  }
+
+  /** @param {Partial<Light>} values */
+  set(values) {
+    this.show(values);
+    this.changed();
+  }
+
+  /** @param {number} degrees */
+  turn(degrees) {
+    let rotate = this.stage.light.rotate + degrees;
+    if (rotate > 180) rotate -= 360;
+    if (rotate < -180) rotate += 360;
+    this.set({ rotate });
+  }
+
+  choose() {
+    const input = el('input', { type: 'file', accept: '.hdr,.exr,.npy,image/*' });
+    input.onchange = () => { if (input.files[0]) this.take(input.files[0]); };
+    input.click();
+  }
+
+  /** @param {File} file */
+  async take(file) {
+    try {
+      const env = await upload(file, file.name);
+      this.file = file.name;
+      this.env = file;
+      this.set({ env });
+      toast(`Looking under ${file.name}; Keep makes it the object’s light.`);
+    } catch (error) { complain(error); }
+  }
+
+  async keep() {
+    if (!this.differs()) return;
+    const params = { ...this.stage.light }, { env } = this;
+    const done = await this.store.change('edit', async () => {
+      if (params.env && env) await upload(env, env.name);
+      return { op: 'light', params };
+    });
+    if (done) this.drop();
+  }
+
+  drop() {
+    this.stage.light = { rotate: 0, scale: 1 };
+    this.file = '';
+    this.stage.moved();
+    this.changed();
+    this.update();
+  }
+}

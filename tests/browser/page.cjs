@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// What browser tests do with the editor's page.
+const fs = require('node:fs');
+const path = require('node:path');
+const { chromium } = require('playwright-core');
+const { serve } = require('./serve.cjs');
+const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
+
+const began = Date.now();
+const say = (text) => console.log(`${((Date.now() - began) / 1000).toFixed(1)} s  ${text}`);
+
+function check(what, condition) {
+  if (!condition) throw new Error(`FAILED: ${what}`);
+  say(what);
+}
+
+const state = (page) => page.evaluate(() => globalThis.cei3d.store.state);
+/** @param {string} folder @returns {(page: any, name: string) => Promise<Buffer>} saves what the page shows */
+const picturesIn = (folder) => async (page, name) => page.screenshot({ path: path.join(folder, `${name}.png`) });
+
+async function accessible(page, name) {
+  await page.evaluate(axe);
+  const { violations } = await page.evaluate(() => window.axe.run(document, { runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa'] }));
+  for (const v of violations) console.log(v.id, v.help, v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160)));
+  check(`no violation of WCAG 2.2 AA: ${name}`, violations.length === 0);
+}
+
+/** No two of the page's areas overlap, and nothing is cut off. */
+async function tidy(page, name) {
+  const problems = await page.evaluate(() => {
+    const areas = ['.bar', '#tools', '#stage', '#panels', '#strip', '.status'].map((s) => [s, document.querySelector(s)]).filter(([, n]) => n && n.offsetParent !== null || n?.getBoundingClientRect().width > 0);
+    const out = [];
+    for (const [a, x] of areas) for (const [b, y] of areas) {
+      const p = x.getBoundingClientRect(), q = y.getBoundingClientRect();
+      if (a < b && p.left < q.right - 1 && q.left < p.right - 1 && p.top < q.bottom - 1 && q.top < p.bottom - 1) out.push(`${a} ${b}`);
+    }
+    if (document.documentElement.scrollWidth > innerWidth || document.documentElement.scrollHeight > innerHeight) out.push('the page scrolls');
+    return out;
+  });
+  check(`the page is tidy: ${name} ${problems}`, problems.length === 0);
+}
+
+/** Pixels of the picture: object or not, and colors. */
+const pixels = (page, list) => page.evaluate((at) => {
+  const c = document.getElementById('picture').getContext('2d');
+  return at.map(([x, y]) => [...c.getImageData(Math.round(x), Math.round(y), 1, 1).data]);
+}, list);
+
+/** The middle of the object's pixels, in pixels of the window. */
+const middle = (page) => page.evaluate(() => {
+  const canvas = document.getElementById('picture'), { width, height } = canvas;
+  const d = canvas.getContext('2d').getImageData(0, 0, width, height).data;
+  let n = 0, sx = 0, sy = 0;
+  for (let y = 0; y < height; y += 2) for (let x = 0; x < width; x += 2) if (d[4 * (y * width + x) + 3] > 200) { n += 1; sx += x; sy += y; }
+  const r = canvas.getBoundingClientRect(), s = r.width / width;
+  return { n, fx: sx / n, fy: sy / n, x: r.left + (sx / n) * s, y: r.top + (sy / n) * s };
+});
+
+async function drag(page, from, to, options = {}) {
+  await page.mouse.move(...from);
+  await page.mouse.down(options);
+  await page.mouse.move((from[0] + to[0]) / 2, (from[1] + to[1]) / 2, { steps: 4 });
+  await page.mouse.move(...to, { steps: 4 });
+  await page.mouse.up(options);
+}
+
+/** Moves a slider or chooses in a list, and lets go. */
+const put = (page, selector, value) => page.locator(selector).evaluate((node, v) => {
+  node.value = v;
+  for (const type of ['input', 'change']) node.dispatchEvent(new Event(type));
+}, String(value));
+
+/**
+ * Opens the project in a browser and runs a test in it; a page that complains is a failure.
+ * @param {{program: string, project: string, executablePath: string, picture: (page: any, name: string) => Promise<Buffer>}} what
+ * @param {(at: {page: any, context: any, server: any, errors: string[]}) => Promise<void>} test
+ */
+async function withPage({ program, project, executablePath, picture }, test) {
+  const at = { server: await serve(program, project), errors: [] };
+  const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
+  at.context = await browser.newContext({ viewport: { width: 1280, height: 720 }, acceptDownloads: true, colorScheme: 'dark', reducedMotion: 'reduce' });
+  at.page = await at.context.newPage();
+  at.page.on('pageerror', (error) => at.errors.push(String(error)));
+  at.page.on('console', (m) => { if (m.type() === 'error' && !/Failed to load resource|WebSocket connection/.test(m.text())) at.errors.push(m.text()); });
+  try {
+    await test(at);
+    check(`no errors in the page ${at.errors.join('\n')}`, at.errors.length === 0);
+  } catch (error) {
+    await picture(at.page, 'failed').catch(() => {});
+    console.log(at.errors.join('\n'));
+    throw error;
+  } finally {
+    at.server.process.removeAllListeners('exit');
+    at.server.process.kill('SIGKILL');
+    await browser.close();
+  }
+}
+
+module.exports = { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, put, withPage };

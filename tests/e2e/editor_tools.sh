@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: Apache-2.0
+# The editor's tools for parts, shape, light and decals in a browser, and the same edits by commands. Needs what `./run web`
+# installs.
+source "$(dirname "$0")/lib.sh"
+
+browser=$(command -v chromium-headless-shell || command -v chromium || command -v google-chrome || true)
+skip() { printf 'SKIP: the tools of the editor in a browser: %s\n' "$1"; exit 77; }
+command -v node >/dev/null || skip "no node"
+[[ -n $browser ]] || skip "no Chromium (chromium-headless-shell)"
+modules=build/web/node_modules
+[[ -d $modules/playwright-core && -d $modules/axe-core ]] || tools/install_web.sh 2>/dev/null ||
+  skip "no playwright-core and axe-core (./run web)"
+
+cp -r "$object" "$out/spot"
+cp -r "$object" "$out/again"
+NODE_PATH=$modules node tests/browser/tools.cjs "$program" "$out/spot" "$out/pictures" "$browser"
+python3 tests/browser/as_commands.py "$program" "$out/spot" "$out/again"
+cp -r "$sample" "$out/capture"
+NODE_PATH=$modules node tests/browser/making.cjs "$program" "$out/capture" "$out/pictures" "$browser"
