@@ -48,8 +48,11 @@ class Client:
 
 
 def contents(folder):
+    """Files and their bytes, without those of cache/, which the program may write at any time."""
     found = {}
-    for root, _, files in os.walk(folder):
+    for root, folders, files in os.walk(folder):
+        if root == folder and 'cache' in folders:
+            folders.remove('cache')
         for f in files:
             path = os.path.join(root, f)
             found[path] = open(path, 'rb').read()
