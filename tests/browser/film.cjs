@@ -20,12 +20,23 @@ function chunk(name, data) {
 
 const u24 = (...values) => Buffer.concat(values.map((v) => Buffer.from([v & 255, v >> 8 & 255, v >> 16 & 255])));
 
+/** The chunks of a WebP picture that are its pixels: frames may have no others. @param {Buffer} picture */
+function pixels(picture) {
+  const parts = [];
+  for (let at = 12; at < picture.length;) {
+    const end = at + 8 + picture.readUInt32LE(at + 4), padded = end + (end - at) % 2;
+    if (['VP8 ', 'VP8L'].includes(picture.toString('latin1', at, at + 4))) parts.push(picture.subarray(at, padded));
+    at = padded;
+  }
+  return Buffer.concat(parts);
+}
+
 /** An endless film. @param {{picture: Buffer, milliseconds: number}[]} frames pictures: WebP without alpha, all of one size */
 function film(frames, width, height) {
   const size = u24(width - 1, height - 1);
   const parts = [chunk('VP8X', Buffer.concat([Buffer.from([2, 0, 0, 0]), size])), chunk('ANIM', Buffer.alloc(6))];
   for (const { picture, milliseconds } of frames)
-    parts.push(chunk('ANMF', Buffer.concat([u24(0, 0), size, u24(milliseconds), Buffer.from([2]), picture.subarray(12)])));
+    parts.push(chunk('ANMF', Buffer.concat([u24(0, 0), size, u24(milliseconds), Buffer.from([2]), pixels(picture)])));
   return chunk('RIFF', Buffer.concat([Buffer.from('WEBP'), ...parts]));
 }
 
