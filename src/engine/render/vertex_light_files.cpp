@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/base/tensors.h"
+#include "model/geometry/shape/vec_tensors.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -15,25 +16,12 @@ namespace {
 constexpr const char* kPrefix = "vertex-light-";
 constexpr int kVersion = 1;  // raise it when the same object and light give other values
 
-Tensor tensor_of(const std::vector<Vec3f>& values) {
-  Tensor t;
-  t.shape = {int64_t(values.size()), 3};
-  for (const Vec3f& v : values) t.f32.insert(t.f32.end(), {v.x, v.y, v.z});
-  return t;
-}
-
 // Error: not so many finite values.
 std::vector<Vec3f> values_of(const Tensors& tensors, const char* name, size_t count) {
-  const auto it = tensors.find(name);
-  if (it == tensors.end() || it->second.f32.size() != 3 * count)
-    fail("The light at the vertices is of another object.");
-  std::vector<Vec3f> out;
-  const std::vector<float>& v = it->second.f32;
-  for (size_t i = 0; i < v.size(); i += 3) {
-    if (!std::isfinite(v[i] + v[i + 1] + v[i + 2])) fail("The light at the vertices is not finite.");
-    out.push_back({v[i], v[i + 1], v[i + 2]});
-  }
-  return out;
+  std::vector<Vec3f> values = vectors_from(tensors, name, int64_t(count));
+  for (const Vec3f& v : values)
+    if (!std::isfinite(v.x + v.y + v.z)) fail("The light at the vertices is not finite.");
+  return values;
 }
 
 void remove_oldest(const fs::path& folder, size_t keep) {
