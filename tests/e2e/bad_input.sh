@@ -30,11 +30,11 @@ refused 2 'geometry.loss.eikonal' reconstruct "$sample" -o "$out/project" --set 
 refused 2 '0 to 100' reconstruct "$sample" -o "$out/project" --set geometry.loss.eikonal=-1
 refused 2 'random:0.1' reconstruct "$sample" -o "$out/project" --split half
 absent "$out/project"
-cei3d reconstruct --list-settings --preset paper | grep -q '^geometry.sdf.hidden_layers = 8' || fail "the settings of a preset"
+cei3d reconstruct --list-settings --preset paper | grep '^geometry.sdf.hidden_layers = 8' >/dev/null || fail "the settings of a preset"
 fresh; rm "$out/capture/train/r_011.png"
 refused 1 'missing.*r_011' reconstruct "$out/capture" -o "$out/project" --iterations 1 --strict
 absent "$out/project"
-cei3d check "$out/capture" | grep -q 'warning: 1 of .* images are missing.*r_011' || fail 'no warning of r_011'
+cei3d check "$out/capture" | grep 'warning: 1 of .* images are missing.*r_011' >/dev/null || fail 'no warning of r_011'
 fresh; head -c 900 "$sample/train/r_013.png" >"$out/capture/train/r_013.png"
 spoiled 1 'r_013'
 fresh; sed -i 's/0.712988874/NaN/' "$out/capture/transforms_train.json"
