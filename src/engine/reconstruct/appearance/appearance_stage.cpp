@@ -32,7 +32,6 @@ LinearSplitOptions split_options(const AppearanceOptions& o, bool turning) {
     s.light_height = 32;
   }
   if (o.effort == Effort::brief && turning) {  // each solve takes twice as long
-    s.material_hits = s.max_hits;
     s.scan_step = 1.7f;
     s.refinements = 1;
   }
