@@ -22,7 +22,7 @@ wait_for_done "$out/twice" 8 120
 expect attempts "$(attempts "$out/twice")" 8
 
 echo "an undisturbed run here, one core an object"
-spots 3 40 2 >"$out/m.jsonl"
+spots 3 40 4 >"$out/m.jsonl"
 begin=$(date +%s)
 batch run "$out/m.jsonl" -o "$out/here" --jobs 2 --quiet
 echo "  $(seconds_since "$begin") s"
