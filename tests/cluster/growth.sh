@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# growth.sh PROGRAM FOLDER [OBJECTS]: times and memory of a catalog of many objects whose only step is a stub.
-set -euo pipefail
-readonly program=$1 out=$2 n=${3:-100000}
-rm -rf "$out"
-mkdir -p "$out"
+# growth.sh PROGRAM FOLDER [OBJECTS]: times and memory of a catalog of many objects whose only step is a stub; each stands in
+# the manifest, in the scripts of job arrays, in the status and in the index.
+source "$(dirname "$0")/lib.sh"
+readonly n=${3:-5000}
 measure() {
   local name=$1
   shift
@@ -24,5 +23,10 @@ measure 'work --claim, one process' "$program" batch work "$out/objects.jsonl" -
 measure 'status, all done' "$program" batch status "$out/catalog"
 measure 'index .html' "$program" batch index "$out/catalog" -o "$out/catalog/index.html"
 measure 'index .csv' "$program" batch index "$out/catalog" -o "$out/index.csv"
-printf 'objects done: %s; inodes: %s; ' "$("$program" batch status "$out/catalog" --json | python3 -c 'import json,sys; print(json.load(sys.stdin)["done"])')" "$(find "$out/catalog/items" | wc -l)"
+expect planned "$(wc -l <"$out/objects.jsonl")" "$n"
+expect "tasks of arrays" "$(sed -n 's/^#SBATCH --array=0-\([0-9]*\)$/\1/p' "$out"/catalog/slurm/*.sh | awk '{ n += $1 + 1 } END { print n }')" "$n"
+expect finished "$(count "$out/catalog" "done")" "$n"
+expect "objects in pages" "$(cat "$out"/catalog/index*.html | grep -c '<tr id="object-')" "$n"
+expect "lines of the table" "$(wc -l <"$out/index.csv")" $((n + 1))
+printf 'inodes: %s; ' "$(find "$out/catalog/items" | wc -l)"
 du -sh "$out/catalog" | cut -f1

@@ -1,69 +1,76 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# slurm.sh PROGRAM FOLDER: a catalog on a Slurm of two nodes on this machine, of which a node and the controller are
-# killed; the objects have the bits of an undisturbed run. As root.
-set -euo pipefail
-program=$(realpath "$1")
-readonly program out=$2
-command -v slurmctld >/dev/null || { echo "SKIP: Slurm is not installed (./run cluster)"; exit 77; }
-rm -rf "$out"
-mkdir -p "$out"
-cd "$(dirname "$0")/../.."
-fail() { printf 'FAILED: %s\n' "$*" >&2; squeue >&2 || true; tail -n 5 "$out"/*/slurm/*.log >&2 || true; exit 1; }
-count() { "$program" batch status "$1" --json | python3 -c 'import json,sys; print(json.load(sys.stdin)[sys.argv[1]])' "$2"; }
-wait_for_done() { # CATALOG N SECONDS
-  for ((i = 0; i < $3; ++i)); do
-    [[ $(count "$1" "done") == "$2" ]] && return
-    sleep 1
-  done
-  fail "$1: $(count "$1" "done") of $2 after $3 s"
-}
-scene() { grep -o '"[0-9a-f]\{16,\}"' "$1"/items/*/"$2"/project/base/scene.json; }
-same_bits() { # CATALOG CATALOG N
-  for ((k = 0; k < $3; ++k)); do
-    [[ $(scene "$1" "s$k") == "$(scene "$2" "s$k")" ]] || fail "s$k has other bits"
-  done
-}
-spots() { # N ITERATIONS DOWNSCALE
-  for ((k = 0; k < $1; ++k)); do
-    printf '{"id":"s%s","capture":"%s","options":{"iterations":%s,"downscale":%s,"joint":0,"seed":%s},"steps":["reconstruct"]}\n' \
-      "$k" "$PWD/samples/spot" "$2" "$3" "$((k + 1))"
-  done
-}
-
-tools/slurm_box.sh start "$out/box"
-export SLURM_CONF=$out/box/slurm.conf
-trap 'scancel -u root 2>/dev/null || true; tools/slurm_box.sh stop "$out/box"' EXIT
+# Catalogs on Slurm, of which two are submitted at once and a node and the controller are killed: objects have the bits of an
+# undisturbed run. As root.
+source "$(dirname "$0")/lib.sh"
+start_slurm
 
 echo "overhead: 20 stubs"
-for ((k = 0; k < 20; ++k)); do echo "{\"id\":\"t$k\",\"steps\":[\"stub\"]}"; done >"$out/stubs.jsonl"
+stubs 20 0 >"$out/m.jsonl"
 begin=$(date +%s%N)
-"$program" batch run "$out/stubs.jsonl" -o "$out/stubs" --engine slurm --threads 1 --memory 500M
-wait_for_done "$out/stubs" 20 60
+on_slurm "$out/stubs"
+wait_for_done "$out/stubs" 20 120
 echo "  $((($(date +%s%N) - begin) / 20000000)) ms an object"
 
-echo "an undisturbed run here, one core an object"
-spots 3 40 2 >"$out/m.jsonl"
-begin=$(date +%s)
-"$program" batch run "$out/m.jsonl" -o "$out/here" --jobs 2 --quiet
-echo "  $(($(date +%s) - begin)) s"
+echo "the same catalog is submitted twice at once"
+stubs 8 0.5 >"$out/m.jsonl"
+on_slurm "$out/twice" & first=$!
+on_slurm "$out/twice" & second=$!
+wait "$first"
+wait "$second"
+wait_for_done "$out/twice" 8 120
+expect attempts "$(attempts "$out/twice")" 8
 
-echo "a node and the controller are killed"
-"$program" batch run "$out/m.jsonl" -o "$out/nodes" --engine slurm --threads 1 --memory 1G
-for ((i = 0; i < 100; ++i)); do compgen -G "$out/nodes/items/*/*/work-*/project/base/*.ckpt.json" >/dev/null && break; sleep 0.5; done
+echo "an undisturbed run here, one core an object"
+spots 2 40 4 >"$out/m.jsonl"
 begin=$(date +%s)
-# The node with all that runs on it: its daemon, and the processes of its tasks.
-worker=$(cat "$out"/nodes/items/*/*/attempt-* | grep '"host":"n1"' | grep -o '"pid":[0-9]*' | cut -d: -f2 | head -1)
-[[ -n $worker ]] || fail "nothing runs on n1"
-script=$(ps -o ppid= -p "$worker" | tr -d ' ')
-step=$(ps -o ppid= -p "$script" | tr -d ' ')
-kill -9 "$(cat "$out/box/n1.pid")" "$step" "$script" "$worker"
+batch run "$out/m.jsonl" -o "$out/here" --jobs 2 --quiet
+echo "  $(seconds_since "$begin") s"
+
+wait_for_checkpoint() { # CATALOG: of s0
+  for ((i = 0; i < 3000; ++i)); do
+    compgen -G "$1/items/*/s0/work-*/project/base/*.ckpt.json" >/dev/null && return
+    sleep 0.1
+  done
+  fail "$1: no checkpoint"
+}
+
+recorded() { grep -o "\"$3\":\"*[a-z0-9]*" "$1"/items/*/s0/"attempt-$2" | sed 's/.*[:"]//'; } # CATALOG ATTEMPT KEY
+
+# Kills the node that works on s0 with all that runs on it: its daemon, and the processes of its task. Sets `node`.
+kill_node() { # CATALOG
+  local worker script step
+  worker=$(recorded "$1" 0001 pid)
+  node=$(recorded "$1" 0001 host)
+  script=$(ps -o ppid= -p "$worker" | tr -d ' ')
+  step=$(ps -o ppid= -p "$script" | tr -d ' ')
+  kill -9 "$(cat "$out/box/$node.pid")" "$step" "$script" "$worker"
+}
+
+echo "a node is killed, the other one goes on with its object"
+cp "$out/m.jsonl" "$out/two.jsonl"
+head -n 1 "$out/two.jsonl" >"$out/m.jsonl"
+on_slurm "$out/node"
+wait_for_checkpoint "$out/node"
+kill_node "$out/node"
+begin=$(date +%s)
+for ((i = 0; i < 600; ++i)); do compgen -G "$out/node/items/*/s0/attempt-0002" >/dev/null && break; sleep 0.1; done
+echo "  begun again after $(seconds_since "$begin") s"
+[[ $(recorded "$out/node" 0002 host) != "$node" ]] || fail "begun again on the node that was killed"
+wait_for_done "$out/node" 1 1200
+same_bits "$out/here" "$out/node" 1
+grep -h '"do": *"resume"' "$out"/node/items/*/s0/project/history.jsonl >/dev/null || fail "the object was begun anew"
+tools/slurm_box.sh node "$out/box" "$node"
+
+echo "the controller is killed"
+cp "$out/two.jsonl" "$out/m.jsonl"
+on_slurm "$out/controller"
+wait_for_checkpoint "$out/controller"
 kill -9 "$(cat "$out/box/slurmctld.pid")"
-sleep 2
+sleep 5
 tools/slurm_box.sh controller "$out/box"
-sleep 12
-tools/slurm_box.sh node "$out/box" n1
-wait_for_done "$out/nodes" 3 240
-echo "  done $(($(date +%s) - begin)) s after the kill; attempts $(cat "$out"/nodes/items/*/*/state.json | grep -o '"attempt":[0-9]*' | xargs)"
-same_bits "$out/here" "$out/nodes" 3
+wait_for_done "$out/controller" 2 1200
+same_bits "$out/here" "$out/controller" 2
+expect attempts "$(attempts "$out/controller")" 2
+
 echo "all fine"

@@ -45,7 +45,32 @@ set_aside() {
   [[ $(cei3d log "$project" | grep -c ' on ') == 6 ]] || fail "format 5: what was set aside is not done again"
 }
 
+# Formats without a stored project: what a program of their day left is opened if it can be read, else refused with the name of
+# the file; a newer format and none at all are refused. Nothing is changed.
+other_formats() { # NEWEST
+  local version
+  project=$out/other
+  cp -r "$formats/4/project" "$project"
+  numbered() { sed -i "s/\"version\": [0-9]*/\"version\": $1/" "$project/project.json"; }
+  for version in 1 2 3; do
+    numbered "$version"
+    cei3d info "$project" >/dev/null
+  done
+  sed -i '/"sphere_radius"/d; s/"output_activation": "none",/"output_activation": "none"/' "$project/base/scene.json"
+  all_files >"$out/before"
+  refused 1 'scene.json' render "$project" -o "$out/refused"
+  numbered 0
+  refused 1 'invalid format version 0' info "$project"
+  numbered $(($1 + 1))
+  refused 1 'newer' info "$project"
+  refused 1 'newer' edit "$project" material --roughness 0.9
+  numbered 3
+  all_files >"$out/after"
+  same "$out/before" "$out/after"
+}
+
 newest=$(sed -n 's/^inline constexpr int kProjectVersion = \([0-9]*\);$/\1/p' src/engine/project/project.h)
 [[ -d $formats/$newest ]] || fail "no project of format $newest is stored in $formats"
 for folder in "$formats"/*; do try_format "${folder##*/}"; done
 set_aside
+other_formats "$newest"

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -40,6 +41,15 @@ Json files_of(const Json& result) {
   return out;
 }
 
+// A picture below the folder of the object: of its figures, else the first one of a turntable; else null.
+Json thumbnail_of(const Json& result) {
+  if (result.contains("figures")) return "figures/thumbnail.png";
+  for (const auto& [step, found] : result.items())
+    if (step.starts_with("turntable/") && found.contains("picture"))
+      return step + "/" + found.at("picture").get<std::string>();
+  return nullptr;
+}
+
 Json row_of(const BatchItemStatus& item, const fs::path& catalog, const Json& tags) {
   const BatchState s = item.state.value_or(BatchState());
   Json j{{"id", item.id},
@@ -53,7 +63,7 @@ Json row_of(const BatchItemStatus& item, const fs::path& catalog, const Json& ta
   j["views"] = member_of(s.result, "check", "views");
   j["warnings"] = warnings_of(s.result);
   j["files"] = files_of(s.result);
-  if (s.result.contains("figures")) j["thumbnail"] = "figures/thumbnail.png";
+  j["thumbnail"] = thumbnail_of(s.result);
   j["seconds"] = s.seconds;
   j["peak_memory_gib"] = s.peak_memory_gib;
   j["attempt"] = s.attempt;
@@ -88,14 +98,22 @@ std::string field_of(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
+// Tags have columns of their own, called as in a manifest.
 std::string csv_of(const std::vector<Json>& rows) {
+  if (rows.empty()) return "";
   std::vector<std::string> columns;
   for (const auto& [key, value] : rows.front().items())
     if (!value.is_structured()) columns.push_back(key);
-  std::string out = csv_line(columns);
+  std::set<std::string> tags;
+  for (const Json& row : rows)
+    for (const auto& [name, value] : row.at("tags").items()) tags.insert(name);
+  std::vector<std::string> head = columns;
+  for (const std::string& tag : tags) head.push_back("tag." + tag);
+  std::string out = csv_line(head);
   for (const Json& row : rows) {
     std::vector<std::string> fields;
-    for (const std::string& c : columns) fields.push_back(row.contains(c) ? field_of(row.at(c)) : "");
+    for (const std::string& c : columns) fields.push_back(field_of(row.at(c)));
+    for (const std::string& tag : tags) fields.push_back(field_of(row.at("tags").value(tag, Json())));
     out += csv_line(fields);
   }
   return out;

@@ -42,14 +42,17 @@ fs::path page_file(const fs::path& out, size_t page) {
   return out.parent_path() / fmt::format("{}-{}{}", out.stem().string(), page + 1, out.extension().string());
 }
 
+constexpr const char* kViewerPage = ".html";
+
 std::string links(const Json& row, const fs::path& folder) {
   std::string out;
   for (const auto& [variant, files] : row.at("files").items()) {
     out += html_escaped(variant) + ":";
     for (const Json& file : files) {
-      const fs::path path = file.get<std::string>();
-      const std::string kind = path.extension() == ".html" ? "view" : path.extension().string().substr(1);
-      out += fmt::format(" <a href=\"{}\">{}</a>", address(folder / path), kind);
+      const fs::path path = file.get<std::string>(), ending = path.extension();
+      const std::string kind = ending == kViewerPage ? "view" : ending.string();
+      out += fmt::format(" <a href=\"{}\">{}</a>", address(folder / path),
+                         html_escaped(kind.starts_with(".") ? kind.substr(1) : kind));
     }
     out += "<br>";
   }
@@ -68,21 +71,38 @@ std::string remarks(const Json& row) {
   return out;
 }
 
+// The thumbnail leads to the object's viewer page, where there is one.
+std::string picture(const Json& row, const fs::path& folder) {
+  if (!row.at("thumbnail").is_string()) return "";
+  const std::string image = fmt::format("<img loading=\"lazy\" alt=\"{}\" src=\"{}\">",
+                                        html_escaped(row.at("id").get<std::string>()),
+                                        address(folder / row.at("thumbnail").get<std::string>()));
+  for (const auto& [variant, files] : row.at("files").items())
+    for (const Json& file : files)
+      if (const fs::path path = file.get<std::string>(); path.extension() == kViewerPage)
+        return fmt::format("<a href=\"{}\">{}</a>", address(folder / path), image);
+  return image;
+}
+
+// The figure of the worst view, and which one it is.
+std::string worst(const Json& row) {
+  std::string out = number(row.at("psnr_worst"), 1);
+  if (row.at("worst_view").is_string() && !out.empty())
+    out += fmt::format("<br><small>{}</small>", html_escaped(row.at("worst_view").get<std::string>()));
+  return out;
+}
+
 std::string table_row(const Json& row, const fs::path& page_folder) {
   const fs::path folder = fs::path(row.at("folder").get<std::string>()).lexically_relative(page_folder);
-  const std::string id = row.at("id"), state = row.at("state");
-  std::string picture;
-  if (row.contains("thumbnail"))
-    picture = fmt::format("<img loading=\"lazy\" alt=\"{}\" src=\"{}\">", html_escaped(id),
-                          address(folder / row.at("thumbnail").get<std::string>()));
+  const std::string id = html_escaped(row.at("id")), state = row.at("state");
   return fmt::format(
-      "<tr><td>{}<td><b>{}</b><br><small>{}</small><td class=\"{}\">{}<td class=n>{}<td class=n>{}<td "
+      "<tr id=\"{}\"><td>{}<td><b>{}</b><br><small>{}</small><td class=\"{}\">{}<td class=n>{}<td "
+      "class=n>{}<td "
       "class=n>{}"
       "<td class=n>{}<td class=n>{}<td>{}<td>{}</tr>\n",
-      picture, html_escaped(id), row.at("material").is_string() ? html_escaped(row.at("material")) : "",
-      state, state, number(row.at("psnr_worst"), 1), number(row.at("psnr"), 1),
-      number(row.at("psnr_alone"), 1), number(row.at("vertices"), 0), number(row.at("seconds"), 0),
-      links(row, folder), remarks(row));
+      id, picture(row, folder), id, row.at("material").is_string() ? html_escaped(row.at("material")) : "",
+      state, state, worst(row), number(row.at("psnr"), 1), number(row.at("psnr_alone"), 1),
+      number(row.at("vertices"), 0), number(row.at("seconds"), 0), links(row, folder), remarks(row));
 }
 
 std::string summary(const std::vector<Json>& rows) {

@@ -91,7 +91,10 @@ Json run_turntable(const BatchItem& item, const std::string& source, const Batch
   r.cameras = Turntable{item.frames};
   tools.session.render(r, tools.progress);
   tools.session.close();
-  return Json::object();
+  std::string first;
+  for (const auto& file : fs::directory_iterator(out / "rgb"))
+    if (const std::string name = file.path().filename().string(); first.empty() || name < first) first = name;
+  return {{"picture", "rgb/" + first}};
 }
 
 Json run_stub(const BatchItem& item, const BatchStepTools& tools) {

@@ -95,8 +95,15 @@ class Try {
           "`cei3d batch retry` tries again.");
   }
 
+  Failure lost() const {
+    if (machine_is_in_the_way(catalog_, item_))
+      return {BatchOutcome::again, BatchCause::machine,
+              "The catalog is out of reach: its file system is gone, or its disk is full."};
+    return {BatchOutcome::again, BatchCause::none, "Another worker has taken over."};
+  }
+
   void end(Failure f, double seconds) {
-    if (attempt_.lost()) f = {BatchOutcome::again, BatchCause::none, "Another worker has taken over."};
+    if (attempt_.lost()) f = lost();
     if (f.cause == BatchCause::memory && ++state_.memory_doublings > 1) f.outcome = BatchOutcome::failed;
     state_.outcome = f.outcome;
     state_.cause = f.cause;

@@ -1,0 +1,34 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# catalog_throughput.sh PROGRAM FOLDER [OBJECTS]: objects an hour of a catalog of small objects on this machine, whose cores are
+# two Slurm nodes of one core, or are given to one object each, or all to one object after another. As root, with nothing else
+# running; the bits of all three are compared.
+source "$(dirname "$0")/../tests/cluster/lib.sh"
+readonly n=${3:-24}
+spots "$n" 40 4 >"$out/m.jsonl"
+
+# measure WHAT COMMAND...: sets `rate`, objects an hour.
+measure() {
+  local begin
+  begin=$(date +%s%N)
+  "${@:2}"
+  rate=$(awk -v n="$n" -v ns="$(($(date +%s%N) - begin))" 'BEGIN { printf "%.1f", n * 3600e9 / ns }')
+  printf '%-44s%8s objects an hour\n' "$1" "$rate"
+}
+on_nodes() {
+  on_slurm "$out/nodes"
+  wait_for_done "$out/nodes" "$n" 3600
+}
+share() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.1f %%", 100 * a / b }'; }
+
+batch run "$out/m.jsonl" -o "$out/warm" --jobs 2 --quiet --dry-run # reads the manifest: files are in memory for all
+measure "all cores for one object after another" batch run "$out/m.jsonl" -o "$out/one" --jobs 1 --threads "$(nproc)" --quiet
+one=$rate
+measure "one core an object, $(nproc) at once" batch run "$out/m.jsonl" -o "$out/many" --jobs "$(nproc)" --threads 1 --quiet
+many=$rate
+start_slurm
+measure "two Slurm nodes of one core" on_nodes
+echo "one core an object against all cores for one: $(share "$many" "$one")"
+echo "Slurm against one core an object here: $(share "$rate" "$many")"
+same_bits "$out/many" "$out/nodes" "$n"
+same_bits "$out/many" "$out/one" "$n"
