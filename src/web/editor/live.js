@@ -76,10 +76,12 @@ export class Live {
   fetchMissing() {
     /** @type {Record<string, string>} */
     const keys = this.store.state.packs ?? {};
-    const packs = new Map(Object.keys(keys).filter((kind) => this.have[kind] !== keys[kind]).map((kind) => [kind, getBytes(`/api/pack/${kind}?key=${keys[kind]}`)]));
+    const packs = new Map(Object.keys(keys).filter((kind) => this.have[kind] !== keys[kind]).map((kind) => [kind, getBytes(`/api/pack/${kind}?key=${keys[kind]}${this.packed()}`)]));
     for (const pack of packs.values()) pack.catch(() => {});  // refresh() awaits each, if those before it arrive
     return packs;
   }
+
+  packed() { return this.store.line.far ? '&packed=1' : ''; }
 
   /** @param {string} kind @param {ArrayBuffer} bytes @param {string} key */
   set(kind, bytes, key) {
@@ -93,7 +95,7 @@ export class Live {
   /** Shows an edit of the look that is not kept. @param {string} token @returns {Promise<boolean>} whether it can */
   async preview(token) {
     if (!this.current()) return false;
-    const bytes = await getBytes(`/api/pack/look?preview=${token}`);
+    const bytes = await getBytes(`/api/pack/look?preview=${token}${this.packed()}`);
     this.set('look', bytes, '');
     this.previewed = token;
     return true;

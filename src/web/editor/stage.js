@@ -193,7 +193,7 @@ export class Stage extends EventTarget {
     this.back.height = height;
     this.store.line.send({
       type: 'view', seq: this.seq, camera: this.camera.json(width, height), samples, channel: this.channel,
-      light: this.light, as_photographed: this.photo !== null, ...(this.preview ? { preview: this.preview } : {}),
+      light: this.light, as_photographed: this.photo !== null, ...(this.preview ? { preview: this.preview } : {}), ...(this.store.line.far ? { packed: true } : {}),
     });
   }
 
