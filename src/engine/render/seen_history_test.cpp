@@ -105,7 +105,7 @@ TEST(SeenHistory, SmallEditsTakeLittleRoom) {
   const Device device = make_device();
   Scene scene = sphere_scene();
   for (int i = 0; i < 50; ++i)
-    scene = with_layer(scene, paint(scene, std::to_string(i), {0, 0, 1}, 0.06f, uint64_t(i)));
+    scene = with_layer(scene, paint(scene, std::to_string(i), {1, 0, 0}, 0.06f, uint64_t(i)));
   const SeenHistory none(rest_materials(device, scene)), history = none.through(device, scene, 49, 0);
   EXPECT_LT(history.bytes(), 2 * none.bytes());
 }
