@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // editor.cjs PROGRAM PROJECT PICTURES CHROMIUM: a first session in the live editor, in a browser, with what can go wrong.
 const fs = require('node:fs');
-const { serve, settled } = require('./serve.cjs');
+const { settled } = require('./serve.cjs');
 const { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, withPage } = require('./page.cjs');
 
 const [program, project, pictures, executablePath] = process.argv.slice(2);
@@ -173,7 +173,14 @@ async function twoWindows(context, page, url) {
   await other.keyboard.press('Control+z');
   await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n - 1, before, { timeout: 20000 });
   check('undo in one window is seen in the other', (await state(other)).revision === (await state(page)).revision);
+  // What happens while a window is not connected is known when it is back, without a full state.
+  const asked = [];
+  other.on('request', (r) => asked.push(new URL(r.url()).pathname));
+  await other.evaluate(() => { const { line } = globalThis.cei3d.store; line.wait = 3000; line.socket.close(); });
   await page.evaluate(() => globalThis.cei3d.store.change('redo'));
+  check('a window without connection does not know', (await state(other)).done === before - 1);
+  await other.waitForFunction((n) => globalThis.cei3d.store.state.done === n && !globalThis.cei3d.store.lost, before, { timeout: 20000 });
+  check('a window that was away for a while gets what it missed', asked.filter((p) => p === '/api/state').length === 1);
   await settled(page);
   await other.close();
 }
@@ -186,11 +193,7 @@ async function dies(page, server) {
   await page.mouse.move(at.x - 15, at.y + 12);
   await page.mouse.down();
   await page.mouse.move(at.x, at.y + 12, { steps: 3 });
-  const gone = new Promise((resolve) => server.process.on('exit', resolve));
-  server.process.removeAllListeners('exit');
-  server.process.on('exit', () => {});
-  process.kill(server.process.pid, 'SIGKILL');
-  await Promise.race([gone, page.waitForTimeout(300)]);
+  await server.kill();
   await page.mouse.move(at.x + 15, at.y + 12, { steps: 3 });
   await page.mouse.up();
   await page.waitForFunction(() => !document.getElementById('banner').hidden, null, { timeout: 10000 });
@@ -233,7 +236,7 @@ withPage({ program, project, executablePath, picture }, async (at) => {
   check('a reload shows the same', (await state(page)).revision === revision);
   const { done } = await state(page);
   await dies(page, at.server);
-  at.server = await serve(program, project, at.server.port);
+  await at.restart();
   await page.goto(at.server.url);
   await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n + 1, done, { timeout: 20000 });
   await settled(page);

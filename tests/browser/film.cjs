@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // film.cjs PROGRAM PROJECT CHROMIUM OUT.webp: a short film of the editor for the README, with real edits of a copy of PROJECT.
 const fs = require('node:fs');
-const os = require('node:os');
-const path = require('node:path');
-const { chromium } = require('playwright-core');
-const { serve, settled } = require('./serve.cjs');
+const { withEditor, settled } = require('./serve.cjs');
 const { middle, put } = require('./page.cjs');
 
-const [program, original, executablePath, out] = process.argv.slice(2);
+const [program, project, executablePath, out] = process.argv.slice(2);
 const kMost = 1e6;  // bytes
 
 /** A chunk of RIFF. @param {string} name @param {Buffer} data */
@@ -65,8 +62,17 @@ class Camera {
   }
 }
 
+/** Photographs of the strip come after the picture is complete. */
+const photographs = (page) => page.waitForFunction(() => {
+  const strip = document.getElementById('strip').getBoundingClientRect();
+  const inSight = [...document.querySelectorAll('#strip button')].filter((b) => b.getBoundingClientRect().left < strip.right);
+  return inSight.length > 0 && inSight.every((b) => b.querySelector('img')?.complete);
+}, null, { timeout: 60000 });
+
 async function play(page, camera) {
   const still = async (milliseconds) => { await settled(page); await camera.shoot(milliseconds); };
+  await settled(page);
+  await photographs(page);
   await still(900);
   for (let i = 0; i < 12; ++i) {
     await page.evaluate(() => { const { stage } = globalThis.cei3d; stage.camera.orbit(0.06, 0.01); stage.moved(); });
@@ -99,28 +105,15 @@ async function play(page, camera) {
   await still(1500);
 }
 
-async function main() {
-  const project = path.join(fs.mkdtempSync(path.join(os.tmpdir(), 'cei3d-film-')), 'spot');
-  fs.cpSync(original, project, { recursive: true });
-  const server = await serve(program, project);
-  const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
-  try {
-    const context = await browser.newContext({ viewport: { width: 1180, height: 720 }, deviceScaleFactor: 0.6, colorScheme: 'dark', reducedMotion: 'reduce' });
-    const page = await context.newPage(), converter = await context.newPage();
-    await page.bringToFront();
-    await page.goto(server.url);
-    const camera = new Camera(page, converter);
-    await play(page, camera);
-    const bytes = film(camera.frames, camera.width, camera.height);
-    fs.writeFileSync(out, bytes);
-    console.log(`${out}: ${camera.frames.length} frames of ${camera.width} x ${camera.height}, ${Math.round(bytes.length / 1000)} kB`);
-    if (bytes.length > kMost) throw new Error('The film is too large for the README.');
-  } finally {
-    server.process.removeAllListeners('exit');
-    server.process.kill('SIGKILL');
-    await browser.close();
-    fs.rmSync(path.dirname(project), { recursive: true });
-  }
-}
-
-main().catch((error) => { console.error(error); process.exit(1); });
+withEditor({ program, project, executablePath, copy: true }, async ({ server, browser }) => {
+  const context = await browser.newContext({ viewport: { width: 1180, height: 720 }, deviceScaleFactor: 0.6, colorScheme: 'dark', reducedMotion: 'reduce' });
+  const page = await context.newPage(), converter = await context.newPage();
+  await page.bringToFront();
+  await page.goto(server.url);
+  const camera = new Camera(page, converter);
+  await play(page, camera);
+  const bytes = film(camera.frames, camera.width, camera.height);
+  fs.writeFileSync(out, bytes);
+  console.log(`${out}: ${camera.frames.length} frames of ${camera.width} x ${camera.height}, ${Math.round(bytes.length / 1000)} kB`);
+  if (bytes.length > kMost) throw new Error('The film is too large for the README.');
+}).catch((error) => { console.error(error); process.exit(1); });

@@ -3,21 +3,14 @@
 // it is changed. Times of the page are with software rendering, as everything headless.
 const { execFileSync } = require('node:child_process');
 const fs = require('node:fs');
-const os = require('node:os');
 const path = require('node:path');
 const zlib = require('node:zlib');
-const { chromium } = require('playwright-core');
-const { serve, settled } = require('./serve.cjs');
+const { withEditor, settled, megabytes, median } = require('./serve.cjs');
 
 const [program, original, executablePath] = process.argv.slice(2);
-const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'cei3d-measure-'));
-const project = path.join(folder, 'object');
-fs.cpSync(original, project, { recursive: true });
 
 const row = (what, value) => console.log(`| ${what} | ${value} |`);
 const ms = (t) => `${Math.round(t)} ms`;
-const median = (list) => [...list].sort((a, b) => a - b)[Math.floor(list.length / 2)];
-const megabytes = (pid) => Number(/VmRSS:\s*(\d+)/.exec(fs.readFileSync(`/proc/${pid}/status`, 'utf8'))[1]) / 1024;
 
 function bundle() {
   let raw = 0, packed = 0;
@@ -121,7 +114,7 @@ async function edits(page) {
   row('undo to right picture of the page; to exact frame', `${ms(median(undo))}; ${ms(median(undo) + median(picture))}`);
 }
 
-async function paints(page) {
+async function paints(page, project) {
   await page.keyboard.press('b');
   const box = await page.locator('#view').boundingBox();
   const times = [];
@@ -138,7 +131,7 @@ async function paints(page) {
   row('paint kept, from the last dab', ms(median(times)));
   const id = fs.readdirSync(path.join(project, 'edits')).find((n) => n.endsWith('-paint'));
   const stroke = JSON.parse(fs.readFileSync(path.join(project, 'edits', id, 'edit.json'))).params.strokes[0];
-  const camera = path.join(folder, 'camera.json'), copy = path.join(folder, 'copy');
+  const camera = path.join(path.dirname(project), 'camera.json'), copy = path.join(path.dirname(project), 'copy');
   fs.writeFileSync(camera, JSON.stringify({ cameras: [{ ...stroke.camera, name: 'own' }] }));
   fs.cpSync(original, copy, { recursive: true });
   const t = Date.now();
@@ -146,37 +139,24 @@ async function paints(page) {
   row('the same by the command line', ms(Date.now() - t));
 }
 
-async function main() {
-  const t = Date.now();
-  const server = await serve(program, project);
-  const up = Date.now() - t;
-  const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
-  try {
-    const page = await browser.newPage({ viewport: { width: 868, height: 674 } });
-    const start = Date.now();
-    await page.goto(server.url);
-    await page.waitForFunction(() => document.getElementById('cover').classList.contains('done'), null, { polling: 10 });
-    const first = Date.now() - start;
-    await page.waitForFunction(() => globalThis.cei3d.stage.live.current(), null, { polling: 10 });
-    const lit = Date.now() - start;
-    await page.waitForFunction(() => globalThis.cei3d.stage.exact !== null, null, { polling: 10 });
-    const exact = Date.now() - start;
-    await settled(page);
-    console.log('| | |\n|---|---|');
-    row('`open` to address', ms(up));
-    row('page to first picture; to its own lit picture; to exact frame; refined', [first, lit, exact, Date.now() - start].map(ms).join('; '));
-    await look(page);
-    await frames(page);
-    await edits(page);
-    await paints(page);
-    row('memory of the program; of the page’s scripts', `${Math.round(megabytes(server.process.pid))} MB; ${Math.round((await page.evaluate(() => performance.memory.usedJSHeapSize)) / 1e6)} MB`);
-    bundle();
-  } finally {
-    server.process.removeAllListeners('exit');
-    server.process.kill('SIGKILL');
-    await browser.close();
-    fs.rmSync(folder, { recursive: true });
-  }
-}
-
-main().catch((error) => { console.error(error); process.exit(1); });
+withEditor({ program, project: original, executablePath, copy: true }, async (at) => {
+  const { server, project } = at, page = await at.browser.newPage({ viewport: { width: 868, height: 674 } });
+  const start = Date.now();
+  await page.goto(server.url);
+  await page.waitForFunction(() => document.getElementById('cover').classList.contains('done'), null, { polling: 10 });
+  const first = Date.now() - start;
+  await page.waitForFunction(() => globalThis.cei3d.stage.live.current(), null, { polling: 10 });
+  const lit = Date.now() - start;
+  await page.waitForFunction(() => globalThis.cei3d.stage.exact !== null, null, { polling: 10 });
+  const exact = Date.now() - start;
+  await settled(page);
+  console.log('| | |\n|---|---|');
+  row('`open` to address', ms(1000 * at.seconds));
+  row('page to first picture; to its own lit picture; to exact frame; refined', [first, lit, exact, Date.now() - start].map(ms).join('; '));
+  await look(page);
+  await frames(page);
+  await edits(page);
+  await paints(page, project);
+  row('memory of the program; of the page’s scripts', `${Math.round(megabytes(server.process.pid))} MB; ${Math.round((await page.evaluate(() => performance.memory.usedJSHeapSize)) / 1e6)} MB`);
+  bundle();
+}).catch((error) => { console.error(error); process.exit(1); });

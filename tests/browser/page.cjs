@@ -2,8 +2,7 @@
 // What browser tests do with the editor's page.
 const fs = require('node:fs');
 const path = require('node:path');
-const { chromium } = require('playwright-core');
-const { serve } = require('./serve.cjs');
+const { withEditor } = require('./serve.cjs');
 const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
 const began = Date.now();
@@ -73,27 +72,24 @@ const put = (page, selector, value) => page.locator(selector).evaluate((node, v)
 /**
  * Opens the project in a browser and runs a test in it; a page that complains is a failure.
  * @param {{program: string, project: string, executablePath: string, picture: (page: any, name: string) => Promise<Buffer>}} what
- * @param {(at: {page: any, context: any, server: any, errors: string[]}) => Promise<void>} test
+ * @param {(at: {page: any, context: any, server: import('./serve.cjs').Server, restart: () => Promise<void>, errors: string[]}) => Promise<void>} test
  */
 async function withPage({ program, project, executablePath, picture }, test) {
-  const at = { server: await serve(program, project), errors: [] };
-  const browser = await chromium.launch({ executablePath, args: ['--no-sandbox'] });
-  at.context = await browser.newContext({ viewport: { width: 1280, height: 720 }, acceptDownloads: true, colorScheme: 'dark', reducedMotion: 'reduce' });
-  at.page = await at.context.newPage();
-  at.page.on('pageerror', (error) => at.errors.push(String(error)));
-  at.page.on('console', (m) => { if (m.type() === 'error' && !/Failed to load resource|WebSocket connection/.test(m.text())) at.errors.push(m.text()); });
-  try {
-    await test(at);
-    check(`no errors in the page ${at.errors.join('\n')}`, at.errors.length === 0);
-  } catch (error) {
-    await picture(at.page, 'failed').catch(() => {});
-    console.log(at.errors.join('\n'));
-    throw error;
-  } finally {
-    at.server.process.removeAllListeners('exit');
-    at.server.process.kill('SIGKILL');
-    await browser.close();
-  }
+  await withEditor({ program, project, executablePath }, async (editor) => {
+    const at = /** @type {any} */ (Object.assign(editor, { errors: [] }));
+    at.context = await at.browser.newContext({ viewport: { width: 1280, height: 720 }, acceptDownloads: true, colorScheme: 'dark', reducedMotion: 'reduce' });
+    at.page = await at.context.newPage();
+    at.page.on('pageerror', (error) => at.errors.push(String(error)));
+    at.page.on('console', (m) => { if (m.type() === 'error' && !/Failed to load resource|WebSocket connection/.test(m.text())) at.errors.push(m.text()); });
+    try {
+      await test(at);
+      check(`no errors in the page ${at.errors.join('\n')}`, at.errors.length === 0);
+    } catch (error) {
+      await picture(at.page, 'failed').catch(() => {});
+      console.log(at.errors.join('\n'));
+      throw error;
+    }
+  });
 }
 
 module.exports = { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, put, withPage };

@@ -140,4 +140,5 @@ def main(program, object_folder, folder):
         process.kill()
 
 
-main(*sys.argv[1:])
+if __name__ == '__main__':
+    main(*sys.argv[1:])

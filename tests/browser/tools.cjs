@@ -50,6 +50,24 @@ async function lassos(page) {
   check('with Ctrl it takes from it', less.share < more.share && (await last(page)).params.subtract === 'patch');
 }
 
+async function names(page) {
+  const { done } = await state(page);
+  const shown = () => page.textContent('#parts .label');
+  await page.click('[data-rename="patch"]');
+  await page.fill('#parts input', 'nose');
+  await accessible(page, 'a part gets a name');
+  await page.keyboard.press('Escape');
+  check('Esc leaves the name', (await shown()) === 'patch');
+  await page.click('[data-rename="patch"]');
+  await page.fill('#parts input', 'nose');
+  await page.keyboard.press('Enter');
+  await page.waitForFunction(() => document.querySelector('#parts .label')?.textContent === 'nose', null, { timeout: 10000 });
+  const now = await state(page);
+  check('a part has the name that it was given, and commands know it', now.done === done && now.history.at(-1).name === 'nose' && now.parts[0].name === 'patch');
+  const ball = await page.locator('#parts .swatch').evaluate((node) => [node.style.background, node.title]);
+  check(`its color and material are beside it: ${ball[1]}`, ball[0].includes('radial-gradient') && /roughness 0\.\d\d/.test(ball[1]));
+}
+
 async function hides(page) {
   const at = await middle(page);
   await page.keyboard.press('v');
@@ -186,6 +204,7 @@ withPage({ program, project, executablePath, picture }, async ({ page, server })
   await page.goto(server.url);
   await settled(page);
   await lassos(page);
+  await names(page);
   await hides(page);
   await shines(page);
   await lays(page);

@@ -9,6 +9,7 @@ import { readPack } from '../../src/web/pack.js';
 import { mirrored, placeOnBall, radianceOf } from '../../src/web/editor/ball.js';
 import { pointAt, seen } from '../../src/web/editor/camera.js';
 import { actionOf, gestures, keyTable } from '../../src/web/editor/keys.js';
+import { lookText, partLooks, swatch } from '../../src/web/editor/looks.js';
 
 const near = (a, b, most = 1e-5) => assert.ok(Math.abs(a - b) < most, `${a} is not ${b}`);
 
@@ -153,6 +154,21 @@ test('no two tools have the same key', () => {
   assert.equal(key('H', {shiftKey: true}), 'show-all');
   assert.equal(key('h'), 'hide');
   assert.ok(gestures.length > 5);
+});
+
+test('a part looks as its vertices do on average', () => {
+  const root = (v) => Math.round(65535 * Math.sqrt(v));
+  // Two vertices of the part, linear 0.1 and 0.3, and one beside it; nothing is left of a part that another one covers.
+  const albedo = new Uint16Array([...[0.1, 0.3, 0.9].flatMap((v) => [root(v), root(v), 0, 0])]);
+  const material = new Uint8Array([51, 127, 255, 1, 153, 127, 255, 1, 0, 0, 0, 0]);
+  const looks = partLooks({ head: { parts: ['', 'ear', 'covered'] }, arrays: { albedo, material } });
+  assert.deepEqual([...looks.keys()], ['ear']);
+  const ear = looks.get('ear');
+  assert.equal(ear.color, 'rgb(124 124 0)');  // of linear 0.2, IEC 61966-2-1
+  near(ear.roughness, 0.4);
+  near(ear.metalness, 1);
+  assert.equal(lookText(ear), 'roughness 0.40, metalness 1.00');
+  assert.ok(swatch(ear).includes('rgb(124 124 0)'));
 });
 
 test('the editor asks for all its modules at once', () => {

@@ -6,17 +6,14 @@
 //   GET  /api/object            what does not change while it is open: views, cameras, frame
 //   GET  /api/photo/VIEW?width= a photograph, JPEG
 //   GET  /api/making            the object that is being made, PNG
-//   GET  /api/pack/KIND?key=    what the page draws, by a key of the state; or ?preview=TOKEN
-//   POST /api/upload?name=      bytes in, {"id"} out
-//   POST /api/edit              {"op", "params", "amend"}
-//   POST /api/preview           the same, not stored: {"token", "report"}; then /api/commit {"token"}
-//   POST /api/pick              {"camera", "pixel"}: the surface there, or null
-//   POST /api/decal             {"camera", "decal", "size"}: the camera whose picture the decal is, or null
-//   POST /api/mask              {"camera", "part" or "token"}: PNG
-//   POST /api/undo redo toggle goto rename restore forget
-//   POST /api/export            {"file", ...}; then GET /api/download/FILE
-//   POST /api/open close reconstruct cancel
-//   /socket                     frames and news, see sockets.cpp
+//   GET  /api/pack/KIND?key=    what the page draws, by a key of the state; or ?preview=TOKEN; &packed: by
+//   gzip POST /api/upload?name=      bytes in, {"id"} out POST /api/edit              {"op", "params",
+//   "amend"} POST /api/preview           the same, not stored: {"token", "report"}; then /api/commit
+//   {"token"} POST /api/pick              {"camera", "pixel"}: the surface there, or null POST /api/decal
+//   {"camera", "decal", "size"}: the camera whose picture the decal is, or null POST /api/mask {"camera",
+//   "part" or "token"}: PNG POST /api/undo redo toggle goto rename restore forget POST /api/export {"file",
+//   ...}; then GET /api/download/FILE POST /api/open close reconstruct cancel /socket frames and news, see
+//   sockets.cpp
 //
 // A change may carry If-Match: REVISION and is refused with 409 when the history is another one by now.
 #pragma once
@@ -46,6 +43,7 @@ struct EditorOptions {
   std::filesystem::path app;  // folder to read the page from; empty: the embedded one
   std::string device = "auto";
   int threads = 0;
+  size_t news_kept = 1000;  // messages to all windows, for those that were not connected when they were sent
 };
 
 class Editor : public HttpApp, private JobListener {
@@ -129,7 +127,8 @@ class Editor : public HttpApp, private JobListener {
 
   // sockets.cpp
   void on_progress(const std::string& job, const ProgressReport&) override;
-  void broadcast(const Json&);
+  void broadcast(Json);
+  void welcome(const SocketPtr&, const Json& hello);
   void show_view(const SocketPtr&, const std::string& tab, const Json& message);
 
   EditorOptions options_;
@@ -145,7 +144,10 @@ class Editor : public HttpApp, private JobListener {
   std::set<std::string> exports_;  // names of files that may be downloaded
   std::filesystem::path exports_folder_;
   std::map<SocketPtr, Tab> tabs_;
-  std::map<std::string, KeptPack> packs_;  // by kind
+  const std::string run_ = new_token().substr(0, 16);  // names this run of the program
+  uint64_t event_ = 0;                                 // number of the last of the news
+  std::deque<std::string> news_;                       // the last ones, in order
+  std::map<std::string, KeptPack> packs_;              // by kind
   std::atomic<uint64_t> tokens_ = 0;
   std::unique_ptr<Worker> worker_;  // last: it uses the others
 };

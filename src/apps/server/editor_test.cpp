@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "apps/server/test_editor.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
@@ -166,6 +168,23 @@ TEST_F(EditorTest, APackIsKeptByItsKeyAlone) {
   EXPECT_EQ(get("/api/pack/color").status, 400);
 }
 
+TEST_F(EditorTest, OverALongLineItSendsLess) {
+  HttpRequest r;
+  r.method = "GET";
+  r.path = "/api/pack/shape";
+  const HttpResponse plain = ask(r);
+  r.query = "packed=1";
+  const HttpResponse packed = ask(r);
+  EXPECT_TRUE(std::any_of(packed.headers.begin(), packed.headers.end(), [](const auto& h) {
+    return h == std::pair<std::string, std::string>("Content-Encoding", "gzip");
+  }));
+  EXPECT_EQ(packed.body.substr(0, 2), "\x1f\x8b");
+  EXPECT_LT(packed.body.size(), 0.8 * double(plain.body.size()));
+  // The last four bytes are the size of what is packed.
+  const auto* end = reinterpret_cast<const unsigned char*>(packed.body.data() + packed.body.size() - 4);
+  EXPECT_EQ(end[0] + (end[1] << 8) + (end[2] << 16) + (size_t(end[3]) << 24), plain.body.size());
+}
+
 TEST_F(EditorTest, ADecalIsSeenByItsCamera) {
   const Json decal = {{"pixel", {24, 24}}, {"width", 0.2}};
   const auto over = [&](const Json& place) {
@@ -254,10 +273,60 @@ TEST_F(EditorTest, AWindowGetsItsFrameInTilesAndHearsOfChanges) {
   EXPECT_EQ(bytes.size(), 4 + head + 4 * kSize * kSize);
   EXPECT_EQ((unsigned char)bytes[4 + head + 4 * (24 * kSize + 24) + 3], 255);  // the ball is opaque
   post("/api/edit", {{"op", "material"}, {"params", {{"roughness", 0.3}}}});
-  EXPECT_EQ(socket->count("state"), 1u);
+  EXPECT_EQ(socket->count("state"), 2u);  // the first with the welcome
   editor_->received(socket, "{\"type\": \"view\"}");
   EXPECT_EQ(socket->count("error"), 1u);
   editor_->closed(socket);
+}
+
+// A window that says hello; what it got before, if it was there: the run and the number of the last of the
+// news.
+std::shared_ptr<FakeSocket> window(Editor& editor, const Json& before = Json::object()) {
+  const auto socket = std::make_shared<FakeSocket>();
+  Json hello = {{"type", "hello"}, {"token", kTestToken}};
+  hello.update(before);
+  editor.opened(socket);
+  editor.received(socket, hello.dump());
+  return socket;
+}
+
+Json last_news(const FakeSocket& socket, const Json& run) {
+  return {{"run", run}, {"after", socket.texts.back()["event"]}};
+}
+
+TEST_F(EditorTest, AWindowThatWasAwayGetsWhatItMissed) {
+  const auto there = window(*editor_), leaves = window(*editor_);
+  const Json run = leaves->texts[0]["run"];
+  EXPECT_EQ(leaves->texts[0]["complete"], false);
+  EXPECT_EQ(leaves->texts[1]["type"], "state");
+  post("/api/edit", {{"op", "material"}, {"params", {{"roughness", 0.3}}}});
+  editor_->closed(leaves);
+  for (const double scale : {2.0, 3.0}) post("/api/edit", {{"op", "light"}, {"params", {{"scale", scale}}}});
+  const auto back = window(*editor_, last_news(*leaves, run));
+  EXPECT_EQ(back->texts[0]["complete"], true);
+  std::vector<Json> all = leaves->texts, others = there->texts;
+  all.insert(all.end(), back->texts.begin() + 1, back->texts.end());
+  EXPECT_EQ(std::vector<Json>(all.begin() + 2, all.end()),
+            std::vector<Json>(others.begin() + 2, others.end()));
+  EXPECT_GE(back->texts.size(), 3u);
+  EXPECT_EQ(window(*editor_, last_news(*back, run))->texts.size(), 1u);  // nothing was missed
+  EXPECT_EQ(window(*editor_, last_news(*back, "another"))->texts[0]["complete"], false);
+  for (const Json& after : {Json(-1), Json("x"), Json(1e30)})
+    EXPECT_EQ(window(*editor_, {{"run", run}, {"after", after}})->texts[0]["complete"], false) << after;
+}
+
+TEST_F(EditorTest, AWindowThatWasAwayForLongIsToldTheState) {
+  start(false, 2);
+  const auto leaves = window(*editor_);
+  const Json run = leaves->texts[0]["run"];
+  post("/api/edit", {{"op", "light"}, {"params", {{"scale", 2}}}});
+  editor_->closed(leaves);
+  for (int i = 0; i < 3; ++i)
+    post("/api/edit", {{"op", "light"}, {"params", {{"scale", 3}}}, {"amend", true}});
+  const auto back = window(*editor_, last_news(*leaves, run));
+  EXPECT_EQ(back->texts[0]["complete"], false);
+  ASSERT_EQ(back->texts.size(), 2u);
+  EXPECT_EQ(back->texts[1]["revision"], state()["revision"]);
 }
 
 TEST_F(EditorTest, AWindowWithoutTheKeyIsClosed) {

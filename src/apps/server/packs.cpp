@@ -4,12 +4,14 @@
 #include "apps/server/editor.h"
 #include "apps/server/guarded.h"
 #include "core/base/json.h"
+#include "engine/io/gzip.h"
 
 namespace cei3d {
 namespace {
 
-HttpResponse pack_response(const std::string& bytes, bool keyed) {
-  HttpResponse r{200, "application/octet-stream", bytes};
+HttpResponse pack_response(const std::string& bytes, bool keyed, bool packed) {
+  HttpResponse r{200, "application/octet-stream", packed ? gzip(bytes, Packing::fast) : bytes};
+  if (packed) r.headers.emplace_back("Content-Encoding", "gzip");
   if (keyed) r.headers.emplace_back("Cache-Control", "private, max-age=86400");
   return r;
 }
@@ -19,21 +21,21 @@ HttpResponse pack_response(const std::string& bytes, bool keyed) {
 void Editor::pack(const HttpRequest& request, Reply reply) {
   const std::string kind = request.path.substr(std::string("/api/pack/").size());
   const auto token = request.parameter("preview"), key = request.parameter("key");
-  const bool keyed = key && !token;
+  const bool keyed = key && !token, packed = request.parameter("packed").has_value();
   if (keyed)
-    if (const auto ready = kept_pack(kind, *key)) return reply(pack_response(*ready, true));
+    if (const auto ready = kept_pack(kind, *key)) return reply(pack_response(*ready, true, packed));
   on_worker("pack", std::move(reply),
-            [this, kind, keyed, key, made = token ? kept(*token) : nullptr](Session& session, Progress&) {
-              if (made) return pack_response(session.view_pack(kind, made.get()), false);
+            [=, this, made = token ? kept(*token) : nullptr](Session& session, Progress&) {
+              if (made) return pack_response(session.view_pack(kind, made.get()), false, packed);
               const auto bytes = pack_of(session, kind);
-              return pack_response(*bytes, keyed && kept_pack(kind, *key));
+              return pack_response(*bytes, keyed && kept_pack(kind, *key), packed);
             });
 }
 
 void Editor::prepare_packs() {
   for (const char* kind : {"shape", "look", "tables", "light", "vertex_light"})
     worker_->background([this, kind](Session& session) {
-      guarded_response([&] { return pack_response(*pack_of(session, kind), false); });
+      guarded_response([&] { return pack_response(*pack_of(session, kind), false, false); });
       return false;
     });
 }

@@ -1,50 +1,67 @@
 // SPDX-License-Identifier: Apache-2.0
-// The WebSocket of a window. In, as JSON: {"type": "hello", "token"}, first; {"type": "view", "seq",
-// "camera", "samples", "channel", "light", "as_photographed", "preview"}, which asks for a frame in place of
-// the one before; {"type": "rest"}, which asks for none. Out, as JSON: "welcome", "state", "progress",
-// "making" when there is a new picture of the object that is being made, "frame" when one is complete,
-// "error"; and tiles, as bytes: length of the head (4 bytes, little-endian), head (JSON, filled with spaces
-// to a multiple of 4), RGBA.
+// The WebSocket of a window. In, as JSON: {"type": "hello", "token", "run", "after"}, first; {"type": "view",
+// "seq", "camera", "samples", "channel", "light", "as_photographed", "preview", "packed"}, which asks for a
+// frame in place of the one before; {"type": "rest"}, which asks for none. Out, as JSON: "welcome", news,
+// "frame" when one is complete, "error"; and tiles, as bytes: length of the head (4 bytes, little-endian),
+// head (JSON, filled with spaces to a multiple of 4), RGBA, by gzip where the window asks for it: over a long
+// line.
+//
+// News go to all windows: "state", "progress", "making" when there is a new picture of the object that is
+// being made. They have numbers, "event". A window that comes back names the run of the program and the last
+// number that it got, and is sent what it missed; where that is not there any more ("complete": false) it is
+// told the present state.
+#include <algorithm>
+
 #include "apps/server/edit_json.h"
 #include "apps/server/editor.h"
 #include "apps/server/guarded.h"
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "engine/io/gzip.h"
 #include "engine/session/tiled_frame.h"
 
 namespace cei3d {
 namespace {
 
-std::string tile_message(const FrameTile& tile, uint64_t seq, const Camera& camera, int samples) {
+std::string tile_message(const FrameTile& tile, uint64_t seq, const FrameRequest& request, bool packed) {
   std::string head = Json{
       {"seq", seq},
       {"x", tile.box.x0},
       {"y", tile.box.y0},
       {"width", tile.box.width},
       {"height", tile.box.height},
-      {"frame", {camera.width, camera.height}},
-      {"samples",
-       samples}}.dump();
+      {"frame", {request.camera.width, request.camera.height}},
+      {"samples", request.samples},
+      {"packed", packed}}.dump();
   head.resize((head.size() + 3) / 4 * 4, ' ');
   std::string bytes;
   for (int i = 0; i < 4; ++i) bytes += char(head.size() >> (8 * i) & 255);
   bytes += head;
-  bytes.append(reinterpret_cast<const char*>(tile.rgba.data()), tile.rgba.size());
-  return bytes;
+  const std::string_view pixels(reinterpret_cast<const char*>(tile.rgba.data()), tile.rgba.size());
+  return packed ? bytes + gzip(pixels, Packing::fast) : bytes.append(pixels);
+}
+
+Json state_news(const Json& state) {
+  return {{"type", "state"}, {"mode", state["mode"]}, {"revision", state.value("revision", "")}};
 }
 
 // A frame for a window, which the worker computes tile by tile.
 class FrameJob {
  public:
-  FrameJob(SocketPtr socket, FrameRequest request, std::shared_ptr<const EditPreview> preview, uint64_t seq)
-      : socket_(std::move(socket)), request_(std::move(request)), preview_(std::move(preview)), seq_(seq) {}
+  FrameJob(SocketPtr socket, FrameRequest request, std::shared_ptr<const EditPreview> preview, uint64_t seq,
+           bool packed)
+      : socket_(std::move(socket)),
+        request_(std::move(request)),
+        preview_(std::move(preview)),
+        seq_(seq),
+        packed_(packed) {}
 
   bool step(Session& session) {
     try {
       if (!frame_) frame_ = session.frame(request_, preview_.get());
       if (const auto tile = frame_->next())
-        socket_->send_picture(tile_message(*tile, seq_, request_.camera, request_.samples), seq_);
+        socket_->send_picture(tile_message(*tile, seq_, request_, packed_), seq_);
       if (frame_->tiles_left() > 0) return true;
       socket_->send(Json{{"type", "frame"}, {"seq", seq_}, {"seconds", steady_seconds() - start_}}.dump());
     } catch (const std::exception& e) {
@@ -58,6 +75,7 @@ class FrameJob {
   FrameRequest request_;
   std::shared_ptr<const EditPreview> preview_;
   uint64_t seq_;
+  bool packed_;
   std::shared_ptr<TiledFrame> frame_;
   double start_ = steady_seconds();
 };
@@ -92,11 +110,7 @@ void Editor::received(const SocketPtr& socket, const std::string& text) {
     if (type != "hello" || !j.contains("token") || !j["token"].is_string() ||
         !guard_.knows(j["token"].get<std::string>()))
       return socket->close();
-    {
-      const std::lock_guard lock(mutex_);
-      tabs_[socket].trusted = true;
-    }
-    return socket->send(Json{{"type", "welcome"}}.dump());
+    return welcome(socket, j);
   }
   if (type == "rest") return worker_->drop_frame(tab.name);
   try {
@@ -107,14 +121,33 @@ void Editor::received(const SocketPtr& socket, const std::string& text) {
   }
 }
 
+void Editor::welcome(const SocketPtr& socket, const Json& hello) {
+  const bool same_run = hello.contains("run") && hello["run"] == run_ && hello.contains("after") &&
+                        hello["after"].is_number_unsigned();
+  const std::lock_guard lock(mutex_);
+  const uint64_t after = same_run ? hello["after"].get<uint64_t>() : 0;
+  const uint64_t missed = event_ - std::min(after, event_);
+  const bool complete = same_run && missed <= news_.size();
+  tabs_[socket].trusted = true;
+  socket->send(Json{
+      {"type", "welcome"}, {"run", run_}, {"event", event_ - (complete ? missed : 0)}, {"complete", complete}}
+                   .dump());
+  if (complete)
+    for (size_t i = news_.size() - missed; i < news_.size(); ++i) socket->send(news_[i]);
+  else
+    socket->send(state_news(state_).dump());
+}
+
 void Editor::show_view(const SocketPtr& socket, const std::string& tab, const Json& message) {
   JsonReader reader(message, "The view");
   reader.has("type");
   const auto seq = reader.require<uint64_t>("seq");
   FrameRequest request = frame_request(reader, uploads_);
   const auto token = reader.optional<std::string>("preview");
+  const bool packed = reader.optional("packed", false);
   reader.finish();
-  auto job = std::make_shared<FrameJob>(socket, std::move(request), token ? kept(*token) : nullptr, seq);
+  auto job =
+      std::make_shared<FrameJob>(socket, std::move(request), token ? kept(*token) : nullptr, seq, packed);
   worker_->frame(tab, [job](Session& session) { return job->step(session); });
 }
 
@@ -128,9 +161,12 @@ void Editor::on_progress(const std::string& job, const ProgressReport& r) {
              {"message", r.message}});
 }
 
-void Editor::broadcast(const Json& message) {
-  const std::string text = message.dump(-1, ' ', false, Json::error_handler_t::replace);
+void Editor::broadcast(Json message) {
   const std::lock_guard lock(mutex_);
+  message["event"] = ++event_;
+  const std::string text = message.dump(-1, ' ', false, Json::error_handler_t::replace);
+  news_.push_back(text);
+  if (news_.size() > options_.news_kept) news_.pop_front();
   for (const auto& [socket, tab] : tabs_)
     if (tab.trusted) socket->send(text);
 }

@@ -22,13 +22,14 @@ class EditorTest : public ::testing::Test {
     start();
   }
   std::filesystem::path folder() const { return temp_.path() / "ball"; }
-  void start(bool read_only = false) {
+  void start(bool read_only = false, size_t news_kept = 1000) {
     editor_.reset();
     EditorOptions options;
     options.path = folder();
     options.read_only = read_only;
     options.device = "cpu";
     options.threads = 2;
+    options.news_kept = news_kept;
     editor_ = std::make_unique<Editor>(options, Guard(kTestToken));
     editor_->wait_until_idle();
   }

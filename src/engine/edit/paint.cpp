@@ -2,9 +2,11 @@
 #include "engine/edit/paint.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/base/clock.h"
 #include "core/base/error.h"
+#include "core/math/color.h"
 #include "core/math/quantile.h"
 #include "engine/edit/albedo_branch.h"
 #include "engine/edit/material.h"
@@ -54,6 +56,7 @@ struct Paint {
   std::vector<Hit> hits;
   std::vector<Vec3f> targets;   // #hits, linear albedo
   std::vector<uint8_t> inside;  // #hits, 1 in the painted region, 0 just beside it
+  std::vector<float> weights;   // #hits, that the color has there
   float pixel = 1e9f;           // of the finest scribble, on the surface, unit frame
 };
 
@@ -75,7 +78,35 @@ void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
     paint.hits.push_back(h);
     paint.targets.push_back(s.targets[i]);
     paint.inside.push_back(s.coverage[i] >= s.min_alpha);
+    paint.weights.push_back(s.min_alpha < 0.5f ? s.coverage[i] : 1);
   }
+}
+
+// The one color of all targets, as far as 8 bits and the weights of the paint show; none: there are several.
+std::optional<Vec3f> only_color(const Paint& paint) {
+  constexpr float kStep = 1.5f / 255;
+  Vec3f sum{0, 0, 0};
+  float weight = 0;
+  for (size_t i = 0; i < paint.targets.size(); ++i) {
+    sum += paint.targets[i] * square(paint.weights[i]);
+    weight += square(paint.weights[i]);
+  }
+  const Vec3f mean = sum / weight;
+  for (size_t i = 0; i < paint.targets.size(); ++i)
+    for (int c = 0; c < 3; ++c) {
+      const float error = abs(srgb_from_linear(paint.targets[i][c]) - srgb_from_linear(mean[c]));
+      if (!(error * paint.weights[i] < kStep)) return std::nullopt;
+    }
+  return mean;
+}
+
+// The color of the paint where it is a field of its own.
+std::shared_ptr<const Field> branch_of(const Device& device, const Paint& paint, const PaintRequest& request,
+                                       Progress& progress) {
+  if (request.color) return uniform_branch(*request.color);
+  if (!request.learn_one_color)
+    if (const auto color = only_color(paint)) return uniform_branch(*color);
+  return fit_branch(device, samples_of(paint), request.branch, request.seed, progress);
 }
 
 // Replaces the targets by the albedos that give them under the light, after the change of material; returns
@@ -198,15 +229,12 @@ PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& 
     result.layer.everywhere = true;
     result.layer.albedo = relearn_all(device, scene, request, paint, regions, progress);
   } else {
-    if (!request.erase)
-      result.layer.albedo =
-          request.color ? uniform_branch(*request.color)
-                        : fit_branch(device, samples_of(paint), request.branch, request.seed, progress);
+    if (!request.erase) result.layer.albedo = branch_of(device, paint, request, progress);
     result.layer.region = std::move(regions.front());
     result.layer.also.assign(std::make_move_iterator(regions.begin() + 1),
                              std::make_move_iterator(regions.end()));
   }
-  if (result.layer.albedo) measure_branch(device, *result.layer.albedo, paint, report);
+  if (result.layer.albedo) measure_branch(device, *result.layer.albedo.use(), paint, report);
   report.trace_seconds = traced - start;
   report.train_seconds = steady_seconds() - traced;
   return result;

@@ -34,6 +34,7 @@ struct PaintRequest {
   // null: the painted colors are display colors of the albedo. Else: of the radiance under this light.
   const SceneLight* seen_in = nullptr;
   BranchOptions branch{};        // of the fit of the painted colors
+  bool learn_one_color = false;  // by a network, too; else paint of one color needs none
   MaterialChange material{};     // where the weight of the paint is above kMaterialWeight
   std::optional<Vec3f> color{};  // linear; instead of the scribbles' colors
 };

@@ -35,13 +35,14 @@ std::vector<float> existing_scores(const Scene& scene, const std::string& part) 
   const EditLayer& layer = part_layer(scene, part);
   const std::vector<uint8_t> inside = inside_layer(scene, layer, hits);
   std::vector<float> scores(inside.begin(), inside.end());
-  if (layer.region.scored().empty()) return scores;
+  const ScoredPoints scored = layer.region.scored();
+  if (scored.empty()) return scores;
   for (size_t i = 0; i < scores.size(); ++i) {
     if (!scene.shape_versions.empty() &&
         scene.shape_versions.back()->born_in(hits[i].triangle) > layer.shape_version)
       continue;
     const SurfacePoint p = in_version(scene.shape_versions, hits[i], layer.shape_version);
-    scores[i] = layer.region.scored().score(p.position, p.normal);
+    scores[i] = scored.score(p.position, p.normal);
   }
   return scores;
 }

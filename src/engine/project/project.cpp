@@ -298,7 +298,7 @@ void Project::collect_garbage() {
       fs::remove_all(p, error);
   remove_temporaries(folder_);
   remove_temporaries(file("base"));
-  store_.remove_all_but(keep);
+  store_.remove_all_but(keep, [this](const std::string& object) { layers_->keep(object); });
 }
 
 }  // namespace cei3d

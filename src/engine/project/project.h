@@ -17,6 +17,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -24,6 +25,7 @@
 #include <vector>
 
 #include "core/base/json.h"
+#include "core/base/shelf.h"
 #include "engine/project/lock.h"
 #include "engine/project/scene_cache.h"
 #include "engine/project/stack.h"
@@ -59,7 +61,8 @@ struct TrainingState {
 };
 
 // For one thread at a time: reading fills caches. The scenes that it returns are immutable and may be used
-// from any number of threads, also after the project was changed or closed.
+// from any number of threads, also after the project was changed or closed. Their layers read what memory has
+// no room for from the folder again.
 class Project {
  public:
   enum class Mode { read, write };
@@ -96,6 +99,7 @@ class Project {
   // Base and the edits that are on, up to the cursor. Unchanged parts are kept in memory between calls.
   Scene scene() const;
   const SceneCache& scene_cache() const { return scenes_; }
+  const Shelf& layer_shelf() const { return *layers_; }  // what the layers of scenes keep in memory
 
   // Adds an edit at the cursor, or in place of the last edit that is done. record.id must be
   // stack().next_id(record.op), which is also the layer's.
@@ -135,16 +139,21 @@ class Project {
   std::filesystem::path edit_file(const std::string& id) const {
     return folder_ / "edits" / id / "edit.json";
   }
-  std::vector<StoredResult> results_of(const std::string& id) const;
+  struct StoredEdit;
+  struct StoredEdits;
+  // What edit.json says, read anew when the file has changed. Valid until the next call for that edit.
+  const StoredEdit& stored(const std::string& id) const;
+  StoredEdit read_stored(const std::string& id) const;
   std::vector<std::string> edit_objects(const std::string& id) const;
-  Aspects depends_of(const std::string& id) const;
-  std::string result_key(Aspects depends, const std::vector<StoredResult>& before) const;
+  class ResultKeys;
+  std::string base_object() const;
   Resolved resolve(const Stack&) const;
   Json store_result(const std::string& key, const EditLayer& layer);
   EditLayer load_result(const StoredResult&) const;
   Scene with_results(const Scene& base, std::span<const StoredResult>) const;  // the base and those
   void collect_garbage();
 
+  static constexpr size_t kMaxLayerBytes = size_t(128) << 20;  // of the layers' regions and networks
   std::filesystem::path folder_;
   ProjectLock lock_;
   ProjectHead head_;
@@ -157,6 +166,8 @@ class Project {
   mutable std::string loaded_key_;
   mutable Scene loaded_base_;
   mutable SceneCache scenes_;
+  mutable std::shared_ptr<StoredEdits> stored_;
+  std::shared_ptr<Shelf> layers_ = std::make_shared<Shelf>(kMaxLayerBytes);
 };
 
 }  // namespace cei3d

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The edits of a project: records, results, and the scene made of them.
 #include <algorithm>
+#include <map>
 #include <optional>
 
 #include "core/base/hash.h"
@@ -41,11 +42,22 @@ struct Project::StoredResult {
   std::string file;    // that names it
   std::string key;     // hash of what it depends on
   std::string object;  // its tensors
-  Json head;
+  std::string head;    // JSON
   Aspects changes;
+  std::string fingerprint;  // of object and head
 
   bool fits(const std::string& k) const { return key == kAnyKey || key == k; }
-  std::string fingerprint() const { return content_hash(object + head.dump()); }
+};
+
+struct Project::StoredEdit {
+  fs::file_time_type time;  // of the file, and its bytes
+  uintmax_t bytes = 0;
+  Aspects depends;
+  std::vector<StoredResult> results;
+};
+
+struct Project::StoredEdits {
+  std::map<std::string, StoredEdit> of;  // by id
 };
 
 // Results of the active edits, in order, up to the first that must be remade.
@@ -54,68 +66,100 @@ struct Project::Resolved {
   std::string stale, stale_key;  // of that edit; empty: there is none
 };
 
-std::vector<Project::StoredResult> Project::results_of(const std::string& id) const {
+Project::StoredEdit Project::read_stored(const std::string& id) const {
   return read_json_file(edit_file(id), [&](const Json& j) {
     const std::string file = edit_file(id).string();
-    std::vector<StoredResult> results;
+    StoredEdit edit;
+    if (j.contains("depends")) edit.depends = aspects_from_json(j.at("depends"));
     const auto add = [&](const std::string& key, const Json& r, std::optional<Aspects> changes) {
       JsonReader result(r, "A result in " + file);
-      results.push_back({file, key, result.require<std::string>("object"), result.member("head"),
-                         changes ? *changes : aspects_from_json(result.array("changes"))});
+      const auto object = result.require<std::string>("object");
+      const std::string head = result.member("head").dump();
+      edit.results.push_back({file, key, object, head,
+                              changes ? *changes : aspects_from_json(result.array("changes")),
+                              content_hash(object + head)});
       result.finish();
     };
     if (j.contains("result"))
       add(kAnyKey, j.at("result"), Aspects{.look = true});
     else
       for (const auto& [key, r] : j.at("results").items()) add(key, r, std::nullopt);
-    return results;
+    return edit;
   });
+}
+
+const Project::StoredEdit& Project::stored(const std::string& id) const {
+  if (!stored_) stored_ = std::make_shared<StoredEdits>();
+  std::error_code error;
+  const auto time = fs::last_write_time(edit_file(id), error);
+  const uintmax_t bytes = error ? 0 : fs::file_size(edit_file(id), error);
+  const auto known = stored_->of.find(id);
+  if (!error && known != stored_->of.end() && known->second.time == time && known->second.bytes == bytes)
+    return known->second;
+  StoredEdit& edit = stored_->of[id] = read_stored(id);
+  edit.time = time;
+  edit.bytes = error ? 0 : bytes;
+  return edit;
 }
 
 std::vector<std::string> Project::edit_objects(const std::string& id) const {
   std::vector<std::string> objects;
-  for (const StoredResult& r : results_of(id)) objects.push_back(r.object);
+  for (const StoredResult& r : stored(id).results) objects.push_back(r.object);
   return objects;
 }
 
-std::string Project::result_key(Aspects depends, const std::vector<StoredResult>& before) const {
-  std::string parts = read_json_file(file("base/scene.json"), object_of);
-  for (const StoredResult& r : before)
-    if (meet(r.changes, depends)) parts += r.fingerprint();
-  return content_hash(parts);
-}
+// Keys of results in the order of their edits. What they are hashes of grows with the edits, for each set of
+// aspects by itself.
+class Project::ResultKeys {
+ public:
+  explicit ResultKeys(std::string base) : base_(std::move(base)) {}
 
-Aspects Project::depends_of(const std::string& id) const {
-  return read_json_file(edit_file(id), [](const Json& j) {
-    return j.contains("depends") ? aspects_from_json(j.at("depends")) : Aspects{};
-  });
-}
+  // before: those of the call before, and more.
+  std::string key(Aspects depends, const std::vector<StoredResult>& before) {
+    const int set = depends.shape + 2 * depends.look + 4 * depends.light + 8 * depends.parts;
+    auto& [parts, taken] = grown_.try_emplace(set, base_, 0).first->second;
+    for (; taken < before.size(); ++taken)
+      if (meet(before[taken].changes, depends)) parts += before[taken].fingerprint;
+    return content_hash(parts);
+  }
+
+ private:
+  std::string base_;
+  std::map<int, std::pair<std::string, size_t>> grown_;
+};
+
+std::string Project::base_object() const { return read_json_file(file("base/scene.json"), object_of); }
 
 Project::Resolved Project::resolve(const Stack& stack) const {
   Resolved out;
+  ResultKeys keys(stack.active().empty() ? "" : base_object());
   for (const std::string& id : stack.active()) {
-    const std::string key = result_key(depends_of(id), out.results);
-    std::vector<StoredResult> all = results_of(id);
+    const StoredEdit& edit = stored(id);
+    const std::string key = keys.key(edit.depends, out.results);
+    const std::vector<StoredResult>& all = edit.results;
     const auto it = std::find_if(all.begin(), all.end(), [&](const StoredResult& r) { return r.fits(key); });
     if (it == all.end()) {
       out.stale = id;
       out.stale_key = key;
       break;
     }
-    out.results.push_back(std::move(*it));
+    out.results.push_back(*it);
   }
   return out;
 }
 
 EditLayer Project::load_result(const StoredResult& r) const {
-  EditLayer layer = load_layer(store_.get(r.object), r.head, "A result in " + r.file);
-  layer.content = r.fingerprint();
+  const auto read = [store = store_, object = r.object, head = r.head, file = r.file] {
+    return load_layer(store.get(object), Json::parse(head), "A result in " + file);
+  };
+  EditLayer layer = shelved(read(), layers_, r.object, read);
+  layer.content = r.fingerprint;
   return layer;
 }
 
 Scene Project::with_results(const Scene& base, std::span<const StoredResult> results) const {
   std::vector<std::string> keys;
-  for (const StoredResult& r : results) keys.push_back(r.fingerprint());
+  for (const StoredResult& r : results) keys.push_back(r.fingerprint);
   return scenes_.scene(loaded_key_, base, keys, [&](size_t i) { return load_result(results[i]); });
 }
 
@@ -164,6 +208,7 @@ void Project::add_result(const Stack& stack, const std::string& id, const EditLa
     j.at("report")["note"] =
         fmt::format("remade by version {} of the operation, first made by version {}", op_version, first);
   write_json_file(edit_file(id), j);
+  stored_->of.erase(id);
 }
 
 void Project::add_edit(const EditRecord& record, const EditLayer& layer, Place place) {
@@ -180,16 +225,18 @@ void Project::add_edit(const EditRecord& record, const EditLayer& layer, Place p
     write_file_atomic(folder / name, bytes);
     inputs[name] = content_hash(bytes);
   }
-  write_json_file(edit_file(record.id),
-                  {{"id", record.id},
-                   {"op", record.op},
-                   {"op_version", record.op_version},
-                   {"time", utc_text("%Y-%m-%dT%H:%M:%SZ")},
-                   {"params", record.params},
-                   {"inputs", std::move(inputs)},
-                   {"depends", to_json(record.depends)},
-                   {"report", record.report},
-                   {"results", store_result(result_key(record.depends, resolve(below).results), layer)}});
+  write_json_file(
+      edit_file(record.id),
+      {{"id", record.id},
+       {"op", record.op},
+       {"op_version", record.op_version},
+       {"time", utc_text("%Y-%m-%dT%H:%M:%SZ")},
+       {"params", record.params},
+       {"inputs", std::move(inputs)},
+       {"depends", to_json(record.depends)},
+       {"report", record.report},
+       {"results",
+        store_result(ResultKeys(base_object()).key(record.depends, resolve(below).results), layer)}});
   save_stack(next);
   guard.keep();
   collect_garbage();
@@ -199,7 +246,7 @@ void Project::add_edit(const EditRecord& record, const EditLayer& layer, Place p
 EditRecord Project::edit(const std::string& id) const {
   if (!stack_.contains(id))
     fail_usage("Project {} has no edit '{}'; `cei3d log` lists them.", folder_.string(), id);
-  const Aspects depends = depends_of(id);
+  const Aspects depends = stored(id).depends;
   return read_json_file(edit_file(id), [&](const Json& j) {
     EditRecord r;
     JsonReader reader(j, edit_file(id).string());

@@ -53,13 +53,16 @@ Tensors ObjectStore::get(const std::string& hash) const {
   return tensors_from_bytes(bytes, file.string());
 }
 
-void ObjectStore::remove_all_but(const std::set<std::string>& keep) {
+void ObjectStore::remove_all_but(const std::set<std::string>& keep,
+                                 const std::function<void(const std::string&)>& before) {
   std::error_code error;
   std::vector<fs::path> garbage;
   for (fs::recursive_directory_iterator it(root_, error), end; !error && it != end; it.increment(error)) {
     if (!it->is_regular_file(error)) continue;
     const std::string hash = it->path().parent_path().filename().string() + it->path().stem().string();
-    if (!keep.count(hash)) garbage.push_back(it->path());
+    if (keep.count(hash)) continue;
+    if (before) before(hash);
+    garbage.push_back(it->path());
   }
   for (const fs::path& file : garbage) {
     fs::remove(file, error);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <set>
 #include <string>
 
@@ -18,7 +19,9 @@ class ObjectStore {
   std::string put(const Tensors&);  // returns the hash; an existing file is not written again
   // Errors: the object is missing, or its bytes do not match its hash.
   Tensors get(const std::string& hash) const;
-  void remove_all_but(const std::set<std::string>& keep);
+  // before: is called before an object is removed.
+  void remove_all_but(const std::set<std::string>& keep,
+                      const std::function<void(const std::string&)>& before = {});
 
  private:
   std::filesystem::path path(const std::string& hash) const;

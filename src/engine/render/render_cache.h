@@ -73,7 +73,7 @@ class RenderCache {
   LruCache<TransportKey, const Transport> transports_;
   LruCache<LightKey, const VersionLight> lights_;
   LruCache<ViewKey, TracedView> views_;
-  SeenMaterialsCache seen_;
+  SeenHistories seen_;
   VertexLightFiles files_;
   size_t hits_lit_ = 0, hits_kept_ = 0;
 };

@@ -2,7 +2,8 @@
 #include "engine/render/scene_light.h"
 
 #include <algorithm>
-#include <cstring>
+#include <numeric>
+#include <optional>
 
 namespace cei3d {
 namespace {
@@ -33,27 +34,6 @@ std::vector<std::vector<uint32_t>> triangle_ids(const ShapeVersions& versions) {
   for (size_t k = versions.size() - 1; k > 0; --k)
     for (const uint32_t t : ids[k]) ids[k - 1].push_back(versions[k]->before[t]);
   return ids;
-}
-
-// Whether the layer was made while that shape version was the present one, or before.
-bool was_on(const EditLayer& l, int version) {
-  return l.shape_version <= version && !(l.reshape && max(l.shape_version, 0) + 1 > version);
-}
-
-// The scene after that layer was added, reduced to what affects that shape version.
-Scene as_of(Scene scene, int layer, int version) {
-  scene.layers.resize(size_t(layer) + 1);
-  std::erase_if(scene.layers, [&](const EditLayer& l) { return !was_on(l, version); });
-  if (!scene.shape_versions.empty()) scene.shape_versions.resize(size_t(version) + 1);
-  return scene;
-}
-
-bool same_bits(const Vec3f& a, const Vec3f& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
-
-bool same_materials(const SeenMaterials& a, const SeenMaterials& b) {
-  if (a == b || !a || !b) return a == b;
-  return std::equal(a->albedo.begin(), a->albedo.end(), b->albedo.begin(), b->albedo.end(), same_bits) &&
-         a->material == b->material;
 }
 
 size_t version_count(const Scene& scene) { return std::max<size_t>(scene.shape_versions.size(), 1); }
@@ -90,7 +70,7 @@ class Comparison {
     const int version = now_.groups.keys[b].first;
     return before_->groups.keys[a].first == version &&
            before_->lights[size_t(version)] == now_.lights[size_t(version)] &&
-           same_materials(before_->seen[a], now_.seen[b]);
+           before_->seen[a] == now_.seen[b];
   }
 
   const LitHits* before_;
@@ -148,35 +128,31 @@ SceneLight::SceneLight(const Device& device, const Scene& scene, const Transport
         light_on_version(device, scene, k, *transports.at(k), k == 0 ? nullptr : lights_.back().get()));
 }
 
-SceneLight::SceneLight(const Device& device, const Scene& scene, VersionLights lights,
-                       SeenMaterialsCache* seen)
+SceneLight::SceneLight(const Device& device, const Scene& scene, VersionLights lights, SeenHistories* seen)
     : device_(device), scene_(scene), lights_(std::move(lights)), seen_(seen) {
   if (!scene.shape_versions.empty()) triangles_ = triangle_ids(scene.shape_versions);
   for (size_t l = 0; l < scene.layers.size(); ++l)
     if (scene.layers[l].everywhere) everywhere_ = int(l);
 }
 
-// Materials of the vertices of that shape version; null: as reconstructed.
-SeenMaterials SceneLight::materials_as_of(int layer, int version) const {
-  SeenMaterialsKey key{surface_of_version(scene_, size_t(version)), scene_.albedo, scene_.material, {}};
-  bool changed = false, stored = seen_;
-  for (int l = 0; l <= layer; ++l) {
-    const EditLayer& layer_l = scene_.layers[size_t(l)];
-    if (!was_on(layer_l, version)) continue;
-    changed = changed || layer_l.albedo || layer_l.erase || layer_l.erase_material || layer_l.tint ||
-              !layer_l.material.empty();
-    stored = stored && !layer_l.content.empty();
-    key.layers += layer_l.content + " ";
-  }
-  if (!changed) return nullptr;
-  if (stored)
-    if (const SeenMaterials kept = seen_->find(key)) return kept;
-  Appearance look = appearance_at(device_, as_of(scene_, layer, version), vertex_hits(key.surface->mesh()));
-  const auto made_of = std::make_shared<const VertexMaterials>(
-      VertexMaterials{std::move(look.albedo), std::move(look.material)});
-  if (stored)
-    seen_->put(std::move(key), made_of, made_of->albedo.size() * (sizeof(Vec3f) + sizeof(Material)));
-  return made_of;
+// The history of the materials of that shape version, up to that layer.
+SeenHistory SceneLight::history_of(int version, int last) const {
+  const SeenHistoryKey key{surface_of_version(scene_, size_t(version)), scene_.albedo, scene_.material};
+  const auto known = seen_ ? seen_->find(key) : nullptr;
+  const auto made = std::make_shared<const SeenHistory>(
+      (known ? *known : SeenHistory(lights_[size_t(version)]->vertices.made_of))
+          .through(device_, scene_, last, version));
+  if (seen_) seen_->put(key, made, made->bytes());
+  return *made;
+}
+
+SceneLight::Histories SceneLight::histories_of(const HitGroups& groups) const {
+  std::map<int, int> last;  // layer, by shape version
+  for (const auto& [version, layer] : groups.keys)
+    last[version] = last.contains(version) ? max(last[version], layer) : layer;
+  Histories out;
+  for (const auto& [version, layer] : last) out.emplace(version, history_of(version, layer));
+  return out;
 }
 
 HitGroups SceneLight::groups_of(std::span<const Hit> hits, std::span<const int> layers) const {
@@ -196,10 +172,9 @@ HitGroups SceneLight::groups_of(std::span<const Hit> hits, std::span<const int> 
 
 // which: indices of hits of that group.
 void SceneLight::light_group(uint32_t group, std::span<const uint32_t> which, std::span<const Hit> hits,
-                             LitHits& out) const {
+                             const VertexMaterials& seen, LitHits& out) const {
   const auto version = size_t(out.groups.keys[group].first);
   const Lighting& lighting = *lights_[version]->lighting;
-  const VertexMaterials none, &seen = out.seen[group] ? *out.seen[group] : none;
   if (which.size() == hits.size() && triangles_.empty()) {  // all hits, with unchanged triangles
     out.terms = lighting.terms({hits, out.look.material}, seen);
     return;
@@ -217,13 +192,37 @@ void SceneLight::light_group(uint32_t group, std::span<const uint32_t> which, st
   for (size_t j = 0; j < which.size(); ++j) out.terms[which[j]] = part[j];
 }
 
+// changed: hits by group.
+void SceneLight::light_groups(const Histories& histories, const std::vector<std::vector<uint32_t>>& changed,
+                              std::span<const Hit> hits, LitHits& out) const {
+  std::vector<uint32_t> order(changed.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto& keys = out.groups.keys;
+  std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return keys[a] < keys[b]; });
+  std::optional<SeenHistory::Walk> walk;
+  int walked = -1;  // shape version
+  for (const uint32_t group : order) {
+    if (changed[group].empty()) continue;
+    const auto [version, layer] = keys[group];
+    const SeenHistory& history = histories.at(version);
+    if (out.seen[group] == history.id(-1)) {
+      light_group(group, changed[group], hits, {}, out);
+      continue;
+    }
+    if (walked != version) walk.emplace(history);
+    walked = version;
+    light_group(group, changed[group], hits, walk->after(layer), out);
+  }
+}
+
 LitHits SceneLight::light_hits(std::span<const Hit> hits, Appearance look, const LitHits* before) const {
   LitHits out;
   out.terms.resize(hits.size());
   out.look = std::move(look);
   out.lights = lights_;
   out.groups = groups_of(hits, out.look.layer);
-  for (const auto& [version, layer] : out.groups.keys) out.seen.push_back(materials_as_of(layer, version));
+  const Histories histories = histories_of(out.groups);
+  for (const auto& [version, layer] : out.groups.keys) out.seen.push_back(histories.at(version).id(layer));
   const Comparison comparison(before, out);
   std::vector<std::vector<uint32_t>> changed(out.groups.keys.size());  // hits by group
   for (uint32_t i = 0; i < hits.size(); ++i) {
@@ -234,8 +233,7 @@ LitHits SceneLight::light_hits(std::span<const Hit> hits, Appearance look, const
     out.terms[i] = before->terms[i];
     ++out.kept;
   }
-  for (uint32_t group = 0; group < changed.size(); ++group)
-    if (!changed[group].empty()) light_group(group, changed[group], hits, out);
+  light_groups(histories, changed, hits, out);
   return out;
 }
 

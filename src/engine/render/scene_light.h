@@ -5,19 +5,18 @@
 // in a reflection has the albedo and material that it had when the reflecting point was last edited.
 #pragma once
 
+#include <map>
 #include <memory>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "core/base/lru_cache.h"
 #include "engine/render/lighting.h"
+#include "engine/render/seen_history.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {
 
 using Transports = std::vector<std::shared_ptr<const Transport>>;  // by shape version
-using SeenMaterials = std::shared_ptr<const VertexMaterials>;      // of the vertices of a shape version
 
 // The light on one shape version. Depends on the layers only through the shape and the light.
 struct VersionLight {
@@ -35,16 +34,6 @@ std::shared_ptr<const VersionLight> light_on_version(const Device&, const Scene&
 // Of the vertices of version 0, as reconstructed.
 VertexMaterials rest_materials(const Device&, const Scene&);
 
-// Everything that the materials of the vertices of a shape version depend on.
-struct SeenMaterialsKey {
-  std::shared_ptr<const Surface> surface;
-  std::shared_ptr<const Field> albedo;
-  MaterialField material;
-  std::string layers;  // EditLayer::content of all layers, one after the other
-  bool operator==(const SeenMaterialsKey&) const = default;
-};
-using SeenMaterialsCache = LruCache<SeenMaterialsKey, const VertexMaterials>;
-
 // Hits grouped by the shape version that lights them and the last layer that affects them (-1: none).
 struct HitGroups {
   std::vector<std::pair<int, int>> keys;  // version, layer
@@ -57,8 +46,8 @@ struct LitHits {
   Appearance look;
   VersionLights lights;
   HitGroups groups;
-  std::vector<SeenMaterials> seen;  // by group: materials seen in reflections; null: as reconstructed
-  size_t kept = 0;                  // hits whose terms were taken over
+  std::vector<SeenId> seen;  // by group: materials seen in reflections
+  size_t kept = 0;           // hits whose terms were taken over
 
   Shading shading() const;  // includes unlit paint
 };
@@ -67,9 +56,8 @@ class SceneLight {
  public:
   // transports: scene_transports(); they can be shared by several lights.
   SceneLight(const Device&, const Scene&, const Transports& transports);
-  // lights: light_on_version() of each shape version. seen: cache of vertex materials; may be null, else it
-  // must outlive this.
-  SceneLight(const Device&, const Scene&, VersionLights lights, SeenMaterialsCache* seen);
+  // lights: light_on_version() of each shape version. seen: may be null, else it must outlive this.
+  SceneLight(const Device&, const Scene&, VersionLights lights, SeenHistories* seen);
 
   // At the vertices of the scene's present surface.
   const VertexLight& vertices() const { return lights_.back()->vertices; }
@@ -83,15 +71,20 @@ class SceneLight {
 
  private:
   HitGroups groups_of(std::span<const Hit> hits, std::span<const int> layers) const;
+  // seen: materials seen in reflections; empty: as reconstructed.
   void light_group(uint32_t group, std::span<const uint32_t> which, std::span<const Hit> hits,
-                   LitHits& out) const;
-  SeenMaterials materials_as_of(int layer, int version) const;
+                   const VertexMaterials& seen, LitHits& out) const;
+  using Histories = std::map<int, SeenHistory>;  // by shape version
+  void light_groups(const Histories&, const std::vector<std::vector<uint32_t>>& changed,
+                    std::span<const Hit> hits, LitHits& out) const;
+  Histories histories_of(const HitGroups&) const;
+  SeenHistory history_of(int version, int last) const;
 
   const Device& device_;
   Scene scene_;
   int everywhere_ = -1;  // the last layer that has no region
   VersionLights lights_;
-  SeenMaterialsCache* seen_ = nullptr;
+  SeenHistories* seen_ = nullptr;
   std::vector<std::vector<uint32_t>> triangles_;  // [version][present triangle]: its id in that version
 };
 

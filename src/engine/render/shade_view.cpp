@@ -149,6 +149,12 @@ std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const Sce
   return out;
 }
 
+Appearance appearance(const Device& device, const Scene& scene, std::span<const Hit> hits,
+                      const HitMemory& memory) {
+  if (!memory.lit || !memory.shown) return appearance_at(device, scene, hits);
+  return appearance_after(device, scene, hits, *memory.shown, memory.lit->look);
+}
+
 Vec3f sent(const Shading& shading, const std::vector<Vec3f>& residual, size_t hit) {
   const Vec3f sum = shading.diffuse[hit] + shading.specular[hit] + residual[hit];
   return {std::max(sum.x, 0.0f), std::max(sum.y, 0.0f), std::max(sum.z, 0.0f)};
@@ -158,8 +164,9 @@ Vec3f sent(const Shading& shading, const std::vector<Vec3f>& residual, size_t hi
 
 Frame shade_view(const Device& device, const Scene& scene, const SceneLight& light, const GBuffer& g,
                  HitMemory& memory) {
-  memory.lit =
-      light.light_hits(g.hits, appearance_at(device, scene, g.hits), memory.lit ? &*memory.lit : nullptr);
+  memory.lit = light.light_hits(g.hits, appearance(device, scene, g.hits, memory),
+                                memory.lit ? &*memory.lit : nullptr);
+  memory.shown.emplace(scene);
   const Appearance& look = memory.lit->look;
   const Shading shading = memory.lit->shading();
   const std::vector<Vec3f> residual = residuals(device, scene, light, shading, g.hits, memory);

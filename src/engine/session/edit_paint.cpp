@@ -93,6 +93,7 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
   if (params.has("set")) {
     check_settings(branch_settings().infos(), params.member("set"));
     branch_settings().put(params.member("set"), request.branch);
+    request.learn_one_color = true;
   }
   const Effects effects = effects_from_params(params);
   request.material = effects.change;
@@ -137,7 +138,7 @@ Aspects depends(const Json& stored) {
 }  // namespace
 
 // Version 2: several strokes; version 3: materials, also erased ones; version 4: cameras of their own,
-// labeled handler points.
-const EditOp kPaintOp{"paint", 4, make, depends, migrate};
+// labeled handler points; version 5: paint of one color without a network.
+const EditOp kPaintOp{"paint", 5, make, depends, migrate};
 
 }  // namespace cei3d

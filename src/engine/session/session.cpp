@@ -16,6 +16,7 @@
 #include "engine/render/render_cache.h"
 #include "engine/session/object_summary.h"
 #include "engine/session/version.h"
+#include "engine/session/vertex_look.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -112,6 +113,7 @@ void Session::open(const fs::path& folder, Access access) {
 
 void Session::close() {
   project_.reset();
+  vertex_look_.reset();
   frames_ = std::make_unique<RenderCache>(*device_);
 }
 

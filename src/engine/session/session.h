@@ -24,6 +24,7 @@ class RenderCache;
 class Threads;
 class Stack;
 class TiledFrame;
+struct Appearance;
 struct EditPlan;
 struct EditPreview;
 struct Scene;
@@ -121,12 +122,15 @@ class Session {
   EditPlan plan(const PartCommand&) const;
   PaintStroke laid_decal(const PaintStroke&) const;  // with camera and scribble instead of the decal
   void move_to(const Stack& next, Json event, Progress&);
+  const Appearance& look_of_vertices(const Scene&);
   ReconstructReport run_reconstruction(const ReconstructRequest&, Progress&);
 
   std::unique_ptr<Device> device_;
   std::unique_ptr<Threads> threads_;
   std::unique_ptr<Project> project_;
   std::unique_ptr<RenderCache> frames_;  // of the open project
+  struct VertexLook;
+  std::unique_ptr<VertexLook> vertex_look_;  // of the last look that was packed; null: none
 };
 
 }  // namespace cei3d

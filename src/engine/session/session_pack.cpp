@@ -9,6 +9,7 @@
 #include "engine/session/edit_plan.h"
 #include "engine/session/session.h"
 #include "engine/session/version.h"
+#include "engine/session/vertex_look.h"
 #include "engine/view/view_light.h"
 #include "engine/view/view_mesh.h"
 #include "model/scene/aspects.h"
@@ -23,6 +24,15 @@ std::string key_of(const SgMixture& light) {
 
 }  // namespace
 
+const Appearance& Session::look_of_vertices(const Scene& scene) {
+  const std::vector<Hit> hits = vertex_hits(scene.surface->mesh());
+  Appearance look = vertex_look_
+                        ? appearance_after(*device_, scene, hits, vertex_look_->key, vertex_look_->look)
+                        : appearance_at(*device_, scene, hits);
+  vertex_look_ = std::make_unique<VertexLook>(VertexLook{AppearanceKey(scene), std::move(look)});
+  return vertex_look_->look;
+}
+
 std::string Session::view_pack(const std::string& kind, const EditPreview* on_top) {
   return threads_->run([&]() -> std::string {
     if (kind == "tables") return view_tables();
@@ -30,7 +40,7 @@ std::string Session::view_pack(const std::string& kind, const EditPreview* on_to
     if (kind == "light") return view_light(*device_, scene.light);
     const ViewMesh mesh = view_mesh(scene);
     if (kind == "shape") return view_shape(scene, mesh);
-    if (kind == "look") return view_look(*device_, scene, mesh);
+    if (kind == "look") return view_look(scene, mesh, look_of_vertices(scene));
     if (kind == "vertex_light") {
       const SceneLight light = on_top ? frames_->light(scene) : frames_->light_to_keep(scene);
       return view_vertex_light(light.vertices(), mesh);

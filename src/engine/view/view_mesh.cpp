@@ -114,10 +114,12 @@ std::string view_shape(const Scene& scene, const ViewMesh& view) {
 }
 
 std::string view_look(const Device& device, const Scene& scene, const ViewMesh& view) {
-  const std::vector<Hit> hits = vertex_hits(scene.surface->mesh());
-  const Appearance look = appearance_at(device, scene, hits);
+  return view_look(scene, view, appearance_at(device, scene, vertex_hits(scene.surface->mesh())));
+}
+
+std::string view_look(const Scene& scene, const ViewMesh& view, const Appearance& look) {
   Pack pack("look");
-  const PartsOfHits parts = parts_of(scene, hits);
+  const PartsOfHits parts = parts_of(scene, vertex_hits(scene.surface->mesh()));
   pack["parts"] = parts.names;
   std::vector<uint16_t> albedo;
   std::vector<uint8_t> material;

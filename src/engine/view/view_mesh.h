@@ -11,6 +11,7 @@
 
 #include "core/compute/device.h"
 #include "engine/render/vertex_light.h"
+#include "model/scene/appearance.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {
@@ -33,6 +34,8 @@ std::string view_shape(const Scene&, const ViewMesh&);
 // material u8 [#V, 4]: roughness, specular, metalness in 255ths, and the part, an index in the head's list of
 // part names, 0 for none. Where parts overlap the later one counts.
 std::string view_look(const Device&, const Scene&, const ViewMesh&);
+// look: appearance_at() of vertex_hits() of the present surface.
+std::string view_look(const Scene&, const ViewMesh&, const Appearance& look);
 
 // "vertex_light": openness u8 [#V, 4], VertexLight::visibility in 255ths; bounce u32 [#V, 1],
 // VertexLight::bounce with a shared exponent. light: at the vertices of the present surface,

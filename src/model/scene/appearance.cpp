@@ -139,7 +139,7 @@ void eval_fields(const Device& device, const Scene& scene, Routes& routes) {
     std::vector<Vec3f> x;
     for (const Op* op : ops[l]) x.push_back(op->position);
     const std::vector<Vec3f> color =
-        (l < scene.layers.size() ? *scene.layers[l].albedo : *scene.albedo).eval3(device, x);
+        l < scene.layers.size() ? scene.layers[l].albedo->eval3(device, x) : scene.albedo->eval3(device, x);
     for (size_t i = 0; i < x.size(); ++i) ops[l][i]->color = color[i];
   }
 }

@@ -33,6 +33,23 @@ struct Appearance {
 // whatever else is in the batch.
 Appearance appearance_at(const Device&, const Scene&, std::span<const Hit> hits);
 
+// What an appearance depends on besides the hits.
+struct AppearanceKey {
+  explicit AppearanceKey(const Scene&);
+
+  std::shared_ptr<const Field> albedo;
+  MaterialField material;
+  std::shared_ptr<const ShapeVersion> shape;
+  bool has_residual = false;
+  std::vector<uint64_t> layers;  // names each layer together with those below it; 0: it has no name
+  int last_global = -1;          // the last layer that is not confined to its regions; -1: none
+};
+
+// appearance_at() where that of the same hits in another scene is known: evaluates only those in layers that
+// one of the two scenes has alone. The same bit for bit.
+Appearance appearance_after(const Device&, const Scene&, std::span<const Hit> hits,
+                            const AppearanceKey& before_key, const Appearance& before);
+
 // The vertices of a mesh as hits of one of their triangles, seen along the normal, for evaluation at
 // vertices. A vertex without triangles gets triangle 0. mesh: the scene's present surface, with normals.
 std::vector<Hit> vertex_hits(const Mesh& mesh);

@@ -90,7 +90,7 @@ Expected one_by_one(const Scene& s, const Hit& hit) {
     const EditLayer& layer = s.layers[l];
     if (!layer.everywhere && !layer.region.contains(hit.position, hit.normal)) continue;
     if (!layer.everywhere) e.layer = l;
-    if (layer.albedo) e.albedo = value_at(*layer.albedo, hit.position);
+    if (layer.albedo) e.albedo = value_at(*layer.albedo.use(), hit.position);
     if (layer.tint) e.albedo = tinted(*layer.tint, e.albedo);
     if (layer.erase_material) e.material = s.material.mean();
     e.material = changed(e.material, layer.material);
@@ -187,6 +187,53 @@ TEST(Appearance, AReplacingTintLeavesNothingOfWhatIsBelow) {
   s.layers.push_back(flat);
   for (const Vec3f a : appearance_at(make_device(), s, random_hits(200)).albedo)
     EXPECT_TRUE(same_bits(a, {0.2f, 0.4f, 0.1f}));
+}
+
+bool same(const Appearance& a, const Appearance& b) {
+  if (a.layer != b.layer || a.material != b.material || a.unlit != b.unlit) return false;
+  for (size_t i = 0; i < a.albedo.size(); ++i)
+    if (!same_bits(a.albedo[i], b.albedo[i])) return false;
+  return a.albedo.size() == b.albedo.size();
+}
+
+// Scenes that share layers, lose some, get others, and layers without a name.
+std::vector<Scene> related_scenes() {
+  Scene whole = layered_scene();
+  for (EditLayer& l : whole.layers) l.content = l.id;
+  EditLayer glow = layer("0005-paint", ball({-0.2f, 0, 0.1f}, 0.3f)), nameless = glow;
+  glow.content = "glow";
+  glow.albedo = nameless.albedo = random_field(6);
+  glow.unlit = true;
+  std::vector<Scene> scenes(6, whole);
+  scenes[0].layers.resize(1);
+  scenes[1].layers.resize(3);
+  scenes[2].layers = {whole.layers[0], whole.layers[2], glow};
+  scenes[3].layers = {whole.layers[0], whole.layers[2], nameless};
+  scenes[4].layers.erase(scenes[4].layers.begin());
+  return scenes;
+}
+
+TEST(Appearance, AfterAnotherSceneHasTheBitsOfOneMadeAnew) {
+  const Device device = make_device();
+  const std::vector<Hit> hits = random_hits(2000);
+  const std::vector<Scene> scenes = related_scenes();
+  for (const Scene& before : scenes)
+    for (const Scene& after : scenes)
+      EXPECT_TRUE(same(
+          appearance_after(device, after, hits, AppearanceKey(before), appearance_at(device, before, hits)),
+          appearance_at(device, after, hits)));
+}
+
+TEST(Appearance, LayersOnAShelfGiveTheSameBits) {
+  const Device device = make_device();
+  const std::vector<Hit> hits = random_hits(2000);
+  const Scene scene = layered_scene();
+  Scene there = scene;
+  const auto shelf = std::make_shared<Shelf>(1);  // room for one value
+  for (EditLayer& l : there.layers) l = shelved(l, shelf, l.id, [l] { return l; });
+  for (int round = 0; round < 2; ++round)
+    EXPECT_TRUE(same(appearance_at(device, there, hits), appearance_at(device, scene, hits)));
+  EXPECT_GT(shelf->reads(), 3u);
 }
 
 TEST(Appearance, OfNothingIsNothing) {

@@ -92,7 +92,7 @@ void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
   if (!layer.also.empty()) head["also"] = save_further(layer.also, tensors);
   if (layer.shape_version != kLatestVersion) head["pose"] = layer.shape_version;
   if (!layer.part.empty()) head["part"] = layer.part;
-  save_field(layer.albedo, "albedo", tensors, head);
+  save_field(layer.albedo.share(), "albedo", tensors, head);
   if (layer.unlit) head["unlit"] = true;
   if (layer.erase) head["erase"] = true;
   if (layer.erase_material) head["erase_material"] = true;
@@ -128,6 +128,20 @@ EditLayer load_layer(const Tensors& tensors, const Json& head, const std::string
     reader.finish();
     return layer;
   });
+}
+
+EditLayer shelved(EditLayer layer, const std::shared_ptr<Shelf>& shelf, const std::string& name,
+                  std::function<EditLayer()> read) {
+  const auto shared = std::make_shared<const std::function<EditLayer()>>(std::move(read));
+  layer.region = layer.region.shelved(shelf, name, [shared] { return (*shared)().region; });
+  for (size_t i = 0; i < layer.also.size(); ++i)
+    layer.also[i] = layer.also[i].shelved(shelf, name, [shared, i] { return (*shared)().also.at(i); });
+  const std::shared_ptr<const Field> albedo = layer.albedo.share();
+  if (!albedo) return layer;
+  size_t bytes = sizeof(Field);
+  for (const Param& p : albedo->params().all()) bytes += p.value.size() * sizeof(float);
+  layer.albedo = Shelved<Field>(shelf, name, bytes, albedo, [shared] { return (*shared)().albedo.share(); });
+  return layer;
 }
 
 }  // namespace cei3d

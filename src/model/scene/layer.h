@@ -2,12 +2,14 @@
 // One edit: a region, and what it replaces there. Every member but the id is optional.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/json_fwd.h"
+#include "core/base/shelf.h"
 #include "core/base/tensors.h"
 #include "model/field/field.h"
 #include "model/geometry/shape/region.h"
@@ -29,12 +31,12 @@ struct EditLayer {
   // Shape version that region and branch refer to: the number of changes of shape before the edit.
   // kLatestVersion: the present one, filled in by with_layer(). Stored as "pose".
   int shape_version = kLatestVersion;
-  std::string part;                     // name of the part that the region defines; empty: none
-  std::shared_ptr<const Field> albedo;  // 3 outputs in [0, 1], linear; null: albedo of the layers below
-  bool unlit = false;                   // the color is shown without light
-  bool erase = false;                   // restores the base's albedo
-  bool erase_material = false;          // restores the base's material
-  std::optional<Tint> tint;             // recolors the albedo that results from the members above
+  std::string part;             // name of the part that the region defines; empty: none
+  Shelved<Field> albedo;        // 3 outputs in [0, 1], linear; null: albedo of the layers below
+  bool unlit = false;           // the color is shown without light
+  bool erase = false;           // restores the base's albedo
+  bool erase_material = false;  // restores the base's material
+  std::optional<Tint> tint;     // recolors the albedo that results from the members above
   MaterialChange material;
   std::optional<SgMixture> light;          // replaces the object's light, everywhere
   std::shared_ptr<const Reshape> reshape;  // null: no change of shape
@@ -50,5 +52,10 @@ struct EditLayer {
 void save_layer(const EditLayer&, Tensors& tensors, Json& head);
 EditLayer load_layer(const Tensors& tensors, const Json& head,
                      const std::string& what = "The description of the edit");
+
+// The same layer, whose regions and color network, which are nearly all of it, may be dropped from memory.
+// name: of what read() reads the layer from.
+EditLayer shelved(EditLayer, const std::shared_ptr<Shelf>&, const std::string& name,
+                  std::function<EditLayer()> read);
 
 }  // namespace cei3d

@@ -68,12 +68,20 @@ export async function upload(file, name) {
 
 /** @typedef {import('./messages.js').TileHead & {pixels: Uint8ClampedArray<ArrayBuffer>}} Tile */
 
-/** @param {ArrayBuffer} bytes @returns {Tile} */
+/** @param {ArrayBuffer} bytes @returns {Tile} whose pixels may be packed */
 function readTile(bytes) {
   const length = new DataView(bytes).getUint32(0, true);
   const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
-  return { ...head, pixels: new Uint8ClampedArray(bytes, 4 + length, 4 * head.width * head.height) };
+  return { ...head, pixels: new Uint8ClampedArray(bytes, 4 + length) };
 }
+
+/** @param {Tile} tile @returns {Promise<Tile>} */
+async function unpacked(tile) {
+  const stream = new Blob([tile.pixels]).stream().pipeThrough(new DecompressionStream('gzip'));
+  return { ...tile, pixels: new Uint8ClampedArray(await new Response(stream).arrayBuffer()) };
+}
+
+const kFar = 15;  // milliseconds there and back from which what is sent is packed
 
 /** The WebSocket; opens itself again after 1, 2, 4 seconds. */
 export class Line extends EventTarget {
@@ -84,6 +92,12 @@ export class Line extends EventTarget {
     this.socket = null;
     this.ready = false;
     this.timer = 0;
+    /** What is known of the program's news: the run of the program and the number of the last one. @type {{run: string, after: number} | null} */
+    this.heard = null;
+    this.far = false;  // over a long line
+    /** @type {Promise<void>} messages that wait for a tile ahead of them */
+    this.order = Promise.resolve();
+    this.packed = 0;  // tiles that are being unpacked
     this.open();
     // The address of a program that was started anew, pasted into the same window.
     window.addEventListener('hashchange', () => {
@@ -96,12 +110,16 @@ export class Line extends EventTarget {
   open() {
     const socket = new WebSocket(`${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}/socket`);
     socket.binaryType = 'arraybuffer';
-    let opened = false;
+    let opened = false, asked = 0;
     socket.onopen = () => {
       opened = true;
-      socket.send(JSON.stringify({ type: 'hello', token: key }));
+      asked = performance.now();
+      socket.send(JSON.stringify({ type: 'hello', token: key, ...this.heard }));
     };
-    socket.onmessage = ({ data }) => this.take(data);
+    socket.onmessage = ({ data }) => {
+      if (!this.ready) this.far = performance.now() - asked > kFar;
+      this.take(data);
+    };
     socket.onclose = () => {
       if (this.ready) this.emit('lost', null);
       else if (opened) this.emit('stranger', null);
@@ -113,14 +131,28 @@ export class Line extends EventTarget {
     this.socket = socket;
   }
 
-  /** @param {string | ArrayBuffer} data */
+  /** Messages are passed on in their order. @param {string | ArrayBuffer} data */
   take(data) {
-    if (typeof data !== 'string') return this.emit('tile', readTile(data));
-    const message = JSON.parse(data);
+    if (typeof data === 'string') {
+      const message = JSON.parse(data);
+      if (this.packed === 0) this.pass(message);
+      else this.order = this.order.then(() => this.pass(message));
+      return;
+    }
+    const tile = readTile(data);
+    if (!tile.packed) return this.emit('tile', tile);
+    ++this.packed;
+    const pixels = unpacked(tile);
+    this.order = this.order.then(async () => this.emit('tile', await pixels)).catch(() => {}).finally(() => { --this.packed; });
+  }
+
+  /** @param {any} message */
+  pass(message) {
     if (message.type === 'welcome') {
       this.ready = true;
       this.wait = 1000;
-    }
+      this.heard = { run: message.run, after: message.event };
+    } else if (message.event && this.heard) this.heard.after = message.event;
     this.emit(message.type, message);
   }
 

@@ -72,6 +72,28 @@ export function complain(error) {
 }
 
 /**
+ * A field for a new name in the place of a node. Enter and leaving it keep the name, Esc does not.
+ * @param {Element} node @param {string} name @param {string} label @param {(name: string | null) => void} done null: it stays as it is
+ */
+export function nameInPlace(node, name, label, done) {
+  const input = el('input', { type: 'text', value: name, maxlength: '80', 'aria-label': label });
+  const finish = (/** @type {boolean} */ keep) => {
+    input.onblur = null;
+    input.blur();
+    const now = input.value.trim();
+    done(keep && now !== name ? now : null);
+  };
+  input.onkeydown = (/** @type {KeyboardEvent} */ k) => {
+    k.stopPropagation();
+    if (k.key === 'Enter' || k.key === 'Escape') finish(k.key === 'Enter');
+  };
+  input.onblur = () => finish(true);
+  node.replaceWith(input);
+  input.focus();
+  input.select();
+}
+
+/**
  * Opens the one dialog. @param {string} title @param {...(Node | string)} content @returns {HTMLDialogElement}
  */
 export function openDialog(title, ...content) {

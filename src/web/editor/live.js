@@ -2,6 +2,7 @@
 // @ts-check
 /** The object drawn in the page, with the program's own shading. Without WebGL 2 it shows nothing, and the program's frames do. */
 import { getBytes } from './api.js';
+import { partLooks } from './looks.js';
 
 /** @type {Record<string, string>} channels of the program that the renderer knows */
 const kChannels = { rgb: 'lit', albedo: 'albedo', normal: 'normal', roughness: 'roughness' };
@@ -24,6 +25,8 @@ export class Live {
     this.hidden = new Set();
     /** @type {import('../pack.js').Pack | null} maps of the light */
     this.light = null;
+    /** @type {Map<string, import('./looks.js').Look>} how parts look, by name */
+    this.looks = new Map();
     /** @type {string | null} the preview whose look the renderer has */
     this.previewed = null;
     /** @type {{keys: Record<string, string>, packs: Map<string, Promise<ArrayBuffer>>} | null} packs that were asked for ahead */
@@ -73,23 +76,26 @@ export class Live {
   fetchMissing() {
     /** @type {Record<string, string>} */
     const keys = this.store.state.packs ?? {};
-    const packs = new Map(Object.keys(keys).filter((kind) => this.have[kind] !== keys[kind]).map((kind) => [kind, getBytes(`/api/pack/${kind}?key=${keys[kind]}`)]));
+    const packs = new Map(Object.keys(keys).filter((kind) => this.have[kind] !== keys[kind]).map((kind) => [kind, getBytes(`/api/pack/${kind}?key=${keys[kind]}${this.packed()}`)]));
     for (const pack of packs.values()) pack.catch(() => {});  // refresh() awaits each, if those before it arrive
     return packs;
   }
+
+  packed() { return this.store.line.far ? '&packed=1' : ''; }
 
   /** @param {string} kind @param {ArrayBuffer} bytes @param {string} key */
   set(kind, bytes, key) {
     const pack = this.modules[1].readPack(bytes, kind);
     this.renderer.set(pack);
     if (kind === 'light') this.light = pack;
+    if (kind === 'look') this.looks = partLooks(pack);
     this.have[kind] = key;
   }
 
   /** Shows an edit of the look that is not kept. @param {string} token @returns {Promise<boolean>} whether it can */
   async preview(token) {
     if (!this.current()) return false;
-    const bytes = await getBytes(`/api/pack/look?preview=${token}`);
+    const bytes = await getBytes(`/api/pack/look?preview=${token}${this.packed()}`);
     this.set('look', bytes, '');
     this.previewed = token;
     return true;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Lists beside the view: parts, history, photographs. */
-import { byId, el, glyph, toast } from './dom.js';
+import { byId, el, glyph, nameInPlace, toast } from './dom.js';
 import { getBlob } from './api.js';
+import { lookText, swatch } from './looks.js';
 import { partColors } from './select.js';
 
 /** @type {Record<string, string>} */
@@ -34,7 +35,7 @@ export class PartsPanel {
     this.store = store;
     this.stage = stage;
     this.actions = actions;
-    stage.addEventListener('hidden', () => this.draw());
+    for (const type of ['hidden', 'looks']) stage.addEventListener(type, () => this.draw());
     store.on('state', () => this.draw());
     store.on('part', () => this.draw());
   }
@@ -46,17 +47,32 @@ export class PartsPanel {
     this.stage.hide(hidden.has(name) ? [...hidden].filter((n) => n !== name) : [...hidden, name]);
   }
 
+  /** The name that the user gave the edit that made the part, or the one that commands know. @param {import('./store.js').Part} p */
+  title(p) { return this.store.done().filter((e) => e.op === 'part' && e.params.name === p.name && e.name).at(-1)?.name ?? p.name; }
+
+  /** How the part looks, in a frame of the color in which it is shown when it is selected. @param {string} name @param {number} index */
+  ball(name, index) {
+    const look = this.stage.live.looks.get(name), node = el('span', { class: 'swatch part', title: look ? lookText(look) : undefined });
+    node.style.background = look ? swatch(look) : 'none';
+    node.style.borderColor = partColors[index % partColors.length];
+    return node;
+  }
+
+  /** @param {import('./store.js').Part} p @param {Element} label */
+  rename(p, label) {
+    nameInPlace(label, this.title(p), `Name of ${p.name}`, (name) => { if (name === null) this.draw(); else this.store.change('rename', { id: p.edit, name }); });
+  }
+
   draw() {
     const { store } = this, hidden = this.stage.live.hidden;
+    if (document.activeElement?.matches('#parts input')) return;  // a name is being typed
     const rows = store.state.parts.map((p, i) => {
-      const on = store.part === p.name;
-      const swatch = el('span', { class: 'swatch' });
-      swatch.style.background = partColors[i % partColors.length];
-      const off = hidden.has(p.name);
-      return el('li', { class: `${on ? 'on' : ''} ${off ? 'off' : ''}` }, el('div', { class: 'row' }, swatch,
-        el('button', { class: 'label', 'aria-pressed': String(on), title: on ? 'Selected; click again for the whole object' : `Select ${p.name}`,
-          onclick: () => store.select(on ? null : p.name) }, p.name),
+      const on = store.part === p.name, off = hidden.has(p.name), title = this.title(p);
+      const label = el('button', { class: 'label', 'aria-pressed': String(on), title: on ? 'Selected; click again for the whole object' : `Select ${p.name}`,
+        onclick: () => store.select(on ? null : p.name), ondblclick: () => { if (!store.state.read_only) this.rename(p, label); } }, title);
+      return el('li', { class: `${on ? 'on' : ''} ${off ? 'off' : ''}` }, el('div', { class: 'row' }, this.ball(p.name, i), label,
         el('span', { class: 'quiet' }, `${(100 * p.share).toFixed(1)} %`),
+        el('button', { title: `Rename ${title}`, 'aria-label': `Rename ${title}`, 'data-rename': p.name, disabled: store.state.read_only, onclick: () => this.rename(p, label) }, glyph('pencil')),
         el('button', { title: `${off ? 'Show' : 'Hide'} ${p.name} (H)`, 'aria-label': `Hide ${p.name}`, 'aria-pressed': String(off), 'data-hide': p.name,
           onclick: () => this.toggle(p.name) }, glyph(off ? 'hidden' : 'eye')),
         el('button', { title: `Remove ${p.name} (Delete)`, 'aria-label': `Remove ${p.name}`, disabled: store.state.read_only,
@@ -111,18 +127,8 @@ export class HistoryPanel {
 
   /** @param {import('./store.js').Edit} e */
   rename(e) {
-    const input = el('input', { type: 'text', value: e.name ?? '', maxlength: '80', 'aria-label': `Name of ${e.id}` });
-    const rows = [...byId('history').querySelectorAll('.label')];
-    const label = rows.find((r) => r.dataset.id === e.id) ?? null;
-    const finish = (/** @type {boolean} */ keep) => { if (keep && input.value !== (e.name ?? '')) this.store.change('rename', { id: e.id, name: input.value.trim() }); else this.draw(); };
-    input.onkeydown = (/** @type {KeyboardEvent} */ k) => {
-      k.stopPropagation();
-      if (k.key === 'Enter') { input.onblur = null; finish(true); }
-      if (k.key === 'Escape') { input.onblur = null; finish(false); }
-    };
-    input.onblur = () => finish(true);
-    (label ?? rows[0])?.replaceWith(input);
-    input.focus();
+    const label = [...byId('history').querySelectorAll('.label')].find((r) => r.dataset.id === e.id);
+    if (label) nameInPlace(label, e.name ?? '', `Name of ${e.id}`, (name) => { if (name === null) this.draw(); else this.store.change('rename', { id: e.id, name }); });
   }
 
   draw() {

@@ -110,6 +110,7 @@ export class Stage extends EventTarget {
 
   /** The page can draw the object anew: below the exact frame, if there is one. */
   liveReady() {
+    this.emit('looks');
     const first = !byId('cover').classList.contains('done');
     if (!this.isLive() && !(first && this.live.unlit())) return;
     // A driver's first picture takes long where it draws in software; that of the program is on its way.
@@ -192,7 +193,7 @@ export class Stage extends EventTarget {
     this.back.height = height;
     this.store.line.send({
       type: 'view', seq: this.seq, camera: this.camera.json(width, height), samples, channel: this.channel,
-      light: this.light, as_photographed: this.photo !== null, ...(this.preview ? { preview: this.preview } : {}),
+      light: this.light, as_photographed: this.photo !== null, ...(this.preview ? { preview: this.preview } : {}), ...(this.store.line.far ? { packed: true } : {}),
     });
   }
 

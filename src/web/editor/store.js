@@ -22,7 +22,11 @@ export class Store extends EventTarget {
     this.lost = false;
     this.line = new Line();
     this.stranger = false;  // a program answers that does not know this page's key
-    this.line.on('welcome', () => { this.stranger = false; this.setLost(false); });
+    this.line.on('welcome', ({ complete }) => {
+      this.stranger = false;
+      this.setLost(false);
+      if (!complete) this.refresh();  // else the news that were missed say what is to be done
+    });
     this.line.on('stranger', () => { this.stranger = true; this.setLost(true); });
     this.line.on('lost', () => this.setLost(true));
     this.line.on('state', () => this.refresh());
@@ -39,7 +43,6 @@ export class Store extends EventTarget {
   setLost(lost) {
     this.lost = lost;
     this.emit('saving');
-    if (!lost) this.refresh();
   }
 
   async refresh() {

@@ -41,6 +41,7 @@ Region::Region(Points points, Projector projector) {
   if (data->max_reach > 0) data->index = PointIndex(points.positions, data->max_reach);
   data->points = std::move(points);
   data->projector = std::move(projector);
+  box_ = box_of(*data);
   data_ = std::move(data);
 }
 
@@ -54,51 +55,85 @@ size_t Region::Points::edited_count() const {
   return edited.empty() ? positions.size() : size_t(std::count(edited.begin(), edited.end(), 1));
 }
 
-bool Region::any_is_edited(Vec3f position, Vec3f normal) const {
-  const Data& d = *data_;
-  return d.index.any_within(position, d.max_reach, [&](size_t i) {
-    const Vec3f gap = d.points.positions[i] - position;
-    return dot(gap, gap) < square(d.points.reach[i]) && dot(d.points.normals[i], normal) > 0 &&
-           d.points.is_edited(i);
+// With all that the points reach.
+std::optional<Region::Box> Region::box_of(const Data& d) {
+  constexpr float kRounding = 1.001f;
+  if (d.points.positions.empty()) return std::nullopt;
+  Box box{d.points.positions[0], d.points.positions[0]};
+  for (const Vec3f p : d.points.positions)
+    for (int c = 0; c < 3; ++c) {
+      box.least[c] = min(box.least[c], p[c]);
+      box.most[c] = max(box.most[c], p[c]);
+    }
+  const float reach = kRounding * d.max_reach;
+  return Box{box.least - Vec3f{reach, reach, reach}, box.most + Vec3f{reach, reach, reach}};
+}
+
+size_t Region::Data::bytes() const {
+  // Of the points themselves and, in the index, of their copy, ids and buckets.
+  constexpr size_t kPoint = 3 * sizeof(Vec3f) + sizeof(float) + 1 + 3 * sizeof(uint32_t);
+  return sizeof(Data) + kPoint * points.positions.size() +
+         sizeof(float) * (projector.alpha.data.size() + projector.depth.data.size());
+}
+
+Region Region::shelved(const std::shared_ptr<Shelf>& shelf, const std::string& name,
+                       const std::function<Region()>& read) const {
+  Region out = *this;
+  if (!box_) return out;
+  const std::shared_ptr<const Data> data = data_.share();
+  out.data_ = Shelved<Data>(shelf, name, data->bytes(), data, [read] { return read().data_.share(); });
+  return out;
+}
+
+bool Region::Data::any_is_edited(Vec3f position, Vec3f normal) const {
+  return index.any_within(position, max_reach, [&](size_t i) {
+    const Vec3f gap = points.positions[i] - position;
+    return dot(gap, gap) < square(points.reach[i]) && dot(points.normals[i], normal) > 0 &&
+           points.is_edited(i);
   });
 }
 
-bool Region::nearest_is_edited(Vec3f position, Vec3f normal) const {
-  const Data& d = *data_;
+bool Region::Data::nearest_is_edited(Vec3f position, Vec3f normal) const {
   float nearest = std::numeric_limits<float>::infinity();
   bool edited = false;
-  d.index.any_within(position, d.max_reach, [&](size_t i) {
-    const Vec3f gap = d.points.positions[i] - position;
+  index.any_within(position, max_reach, [&](size_t i) {
+    const Vec3f gap = points.positions[i] - position;
     const float distance = dot(gap, gap);
-    if (distance < nearest && distance < square(d.points.reach[i]) && dot(d.points.normals[i], normal) > 0) {
+    if (distance < nearest && distance < square(points.reach[i]) && dot(points.normals[i], normal) > 0) {
       nearest = distance;
-      edited = d.points.is_edited(i);
+      edited = points.is_edited(i);
     }
     return false;
   });
   return edited;
 }
 
+bool Region::Data::contains(Vec3f position, Vec3f normal) const {
+  if (!scored.empty()) return scored.score(position, normal) >= 0.5f;
+  if (projector.empty()) return nearest_is_edited(position, normal);
+  if (!projector.covers(position, normal)) return false;
+  return points.positions.empty() || any_is_edited(position, normal);
+}
+
 bool Region::contains(Vec3f position, Vec3f normal) const {
-  const Data& d = *data_;
-  if (!d.scored.empty()) return d.scored.score(position, normal) >= 0.5f;
-  if (d.projector.empty()) return nearest_is_edited(position, normal);
-  if (!d.projector.covers(position, normal)) return false;
-  return d.points.positions.empty() || any_is_edited(position, normal);
+  return (!box_ || box_->contains(position)) && data_->contains(position, normal);
 }
 
 float Region::weight(Vec3f position, Vec3f normal) const {
-  if (!contains(position, normal)) return 0;
-  const Projector& projector = data_->projector;
+  if (box_ && !box_->contains(position)) return 0;
+  const auto data = data_.use();
+  if (!data->contains(position, normal)) return 0;
+  const Projector& projector = data->projector;
   if (!projector.soft()) return 1;
   const Vec3d p = projector.camera.project(to_double(position));
   return projector.alpha_at(p.x, p.y);
 }
 
 void Region::save(Tensors& tensors, Json& head) const {
-  const Points& points = data_->points;
-  const Projector& projector = data_->projector;
-  const ScoredPoints& scored = data_->scored;
+  const auto data = data_.use();
+  const Points& points = data->points;
+  const Projector& projector = data->projector;
+  const ScoredPoints& scored = data->scored;
   if (!scored.empty()) return scored.save(tensors, head["scored"]);
   head["points"] = points.positions.size();
   tensors["region/positions"] = tensor_of(points.positions);

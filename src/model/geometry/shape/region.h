@@ -11,11 +11,14 @@
 // A part of the object is a third kind: scored points (model/geometry/shape/scored_points.h).
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/base/json.h"
+#include "core/base/shelf.h"
 #include "core/math/vec.h"
 #include "model/geometry/shape/point_index.h"
 #include "model/geometry/shape/projector.h"
@@ -42,9 +45,14 @@ class Region {
   bool contains(Vec3f position, Vec3f normal) const;
   // Share of the edit at a point: 1 inside, 0 outside, the mask's alpha where the mask is soft.
   float weight(Vec3f position, Vec3f normal) const;
-  const Points& points() const { return data_->points; }
-  const Projector& projector() const { return data_->projector; }
-  const ScoredPoints& scored() const { return data_->scored; }  // empty: not a part
+  Points points() const { return data_->points; }
+  Projector projector() const { return data_->projector; }
+  ScoredPoints scored() const { return data_->scored; }  // empty: not a part
+
+  // The same region, whose data may be dropped from memory; read() gives it again. Parts, of which there are
+  // few, and regions without points stay in memory.
+  Region shelved(const std::shared_ptr<Shelf>&, const std::string& name,
+                 const std::function<Region()>& read) const;
 
   // Writes tensors "region/..." and the rest to the head. Errors of load(): missing tensors or keys, sizes
   // that disagree.
@@ -52,18 +60,32 @@ class Region {
   static Region load(const Tensors& tensors, const Json& head, const std::string& what = "A region");
 
  private:
-  // Of the labeled points within reach on the same side.
-  bool nearest_is_edited(Vec3f position, Vec3f normal) const;
-  bool any_is_edited(Vec3f position, Vec3f normal) const;
-
   struct Data {
     Points points;
     Projector projector;
     ScoredPoints scored;
     PointIndex index;
     float max_reach = 0;
+
+    bool contains(Vec3f position, Vec3f normal) const;
+    size_t bytes() const;
+
+   private:
+    // Of the labeled points within reach on the same side.
+    bool nearest_is_edited(Vec3f position, Vec3f normal) const;
+    bool any_is_edited(Vec3f position, Vec3f normal) const;
   };
-  std::shared_ptr<const Data> data_ = std::make_shared<const Data>();  // copies of a region share it
+  struct Box {
+    Vec3f least, most;
+    bool contains(Vec3f p) const {
+      return p.x >= least.x && p.y >= least.y && p.z >= least.z && p.x <= most.x && p.y <= most.y &&
+             p.z <= most.z;
+    }
+  };
+  static std::optional<Box> box_of(const Data&);
+
+  Shelved<Data> data_ = std::make_shared<const Data>();  // copies of a region share it
+  std::optional<Box> box_;                               // outside is nothing of the region; none: not known
 };
 
 }  // namespace cei3d

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+// @ts-check
+/** How parts look: the mean color and material of their vertices, for the swatches of the list. */
+
+/** @typedef {{color: string, roughness: number, metalness: number}} Look color: as CSS has it */
+
+/** Display-encoded from linear, 0 to 255. @param {number} v */
+const byteOf = (v) => Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
+
+/** By name of the part; parts that later ones cover wholly have none. @param {import('../pack.js').Pack} pack "look" @returns {Map<string, Look>} */
+export function partLooks({ head, arrays }) {
+  const names = /** @type {string[]} */ (head.parts), { albedo, material } = arrays;
+  const sums = names.map(() => ({ n: 0, rgb: [0, 0, 0], roughness: 0, metalness: 0 }));
+  for (let v = 0; v < material.length / 4; ++v) {
+    const sum = sums[material[4 * v + 3]];
+    ++sum.n;
+    for (let c = 0; c < 3; ++c) sum.rgb[c] += (albedo[4 * v + c] / 65535) ** 2;  // its square roots are sent
+    sum.roughness += material[4 * v] / 255;
+    sum.metalness += material[4 * v + 2] / 255;
+  }
+  /** @type {Map<string, Look>} */
+  const looks = new Map();
+  sums.forEach(({ n, rgb, roughness, metalness }, i) => {
+    if (i > 0 && n > 0) looks.set(names[i], { color: `rgb(${rgb.map((s) => byteOf(s / n)).join(' ')})`, roughness: roughness / n, metalness: metalness / n });
+  });
+  return looks;
+}
+
+/** A small ball: the highlight is as wide as the surface is rough, and of a metal it has the metal's color. @param {Look} look @returns {string} CSS */
+export function swatch({ color, roughness, metalness }) {
+  const shine = metalness > 0.5 ? `color-mix(in srgb, ${color} 45%, white)` : 'white';
+  return `radial-gradient(circle at 35% 30%, ${shine}, ${color} ${Math.round(12 + 70 * roughness)}%)`;
+}
+
+/** @param {Look} look */
+export const lookText = ({ roughness, metalness }) => `roughness ${roughness.toFixed(2)}${metalness > 0.05 ? `, metalness ${metalness.toFixed(2)}` : ''}`;
