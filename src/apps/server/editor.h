@@ -6,14 +6,18 @@
 //   GET  /api/object            what does not change while it is open: views, cameras, frame
 //   GET  /api/photo/VIEW?width= a photograph, JPEG
 //   GET  /api/making            the object that is being made, PNG
-//   GET  /api/pack/KIND?key=    what the page draws, by a key of the state; or ?preview=TOKEN; &packed: by
-//   gzip POST /api/upload?name=      bytes in, {"id"} out POST /api/edit              {"op", "params",
-//   "amend"} POST /api/preview           the same, not stored: {"token", "report"}; then /api/commit
-//   {"token"} POST /api/pick              {"camera", "pixel"}: the surface there, or null POST /api/decal
-//   {"camera", "decal", "size"}: the camera whose picture the decal is, or null POST /api/mask {"camera",
-//   "part" or "token"}: PNG POST /api/undo redo toggle goto rename restore forget POST /api/export {"file",
-//   ...}; then GET /api/download/FILE POST /api/open close reconstruct cancel /socket frames and news, see
-//   sockets.cpp
+//   GET  /api/pack/KIND?key=    what the page draws, by a key of the state; or ?preview=TOKEN
+//                               &packed: by gzip
+//   POST /api/upload?name=      bytes in, {"id"} out
+//   POST /api/edit              {"op", "params", "amend"}
+//   POST /api/preview           the same, not stored: {"token", "report"}; then /api/commit {"token"}
+//   POST /api/pick              {"camera", "pixel"}: the surface there, or null
+//   POST /api/decal             {"camera", "decal", "size"}: the camera whose picture the decal is, or null
+//   POST /api/mask              {"camera", "part" or "token"}: PNG
+//   POST /api/undo redo toggle goto rename restore forget
+//   POST /api/export            {"file", ...}; then GET /api/download/FILE
+//   POST /api/open close reconstruct cancel
+//   /socket                     frames and news, see sockets.cpp
 //
 // A change may carry If-Match: REVISION and is refused with 409 when the history is another one by now.
 #pragma once

@@ -13,9 +13,9 @@ bool is_global(const EditLayer& l) { return l.everywhere || l.reshape; }
 
 // Of the first layers that both have.
 size_t common_layers(const AppearanceKey& a, const AppearanceKey& b) {
-  const size_t most = std::min(a.layers.size(), b.layers.size());
+  const size_t count = std::min(a.layers.size(), b.layers.size());
   size_t n = 0;
-  while (n < most && a.layers[n] != 0 && a.layers[n] == b.layers[n]) ++n;
+  while (n < count && a.layers[n] != 0 && a.layers[n] == b.layers[n]) ++n;
   return n;
 }
 

@@ -62,11 +62,11 @@ std::optional<Region::Box> Region::box_of(const Data& d) {
   Box box{d.points.positions[0], d.points.positions[0]};
   for (const Vec3f p : d.points.positions)
     for (int c = 0; c < 3; ++c) {
-      box.least[c] = min(box.least[c], p[c]);
-      box.most[c] = max(box.most[c], p[c]);
+      box.min[c] = min(box.min[c], p[c]);
+      box.max[c] = max(box.max[c], p[c]);
     }
   const float reach = kRounding * d.max_reach;
-  return Box{box.least - Vec3f{reach, reach, reach}, box.most + Vec3f{reach, reach, reach}};
+  return Box{box.min - Vec3f{reach, reach, reach}, box.max + Vec3f{reach, reach, reach}};
 }
 
 size_t Region::Data::bytes() const {

@@ -76,10 +76,9 @@ class Region {
     bool any_is_edited(Vec3f position, Vec3f normal) const;
   };
   struct Box {
-    Vec3f least, most;
+    Vec3f min, max;
     bool contains(Vec3f p) const {
-      return p.x >= least.x && p.y >= least.y && p.z >= least.z && p.x <= most.x && p.y <= most.y &&
-             p.z <= most.z;
+      return p.x >= min.x && p.y >= min.y && p.z >= min.z && p.x <= max.x && p.y <= max.y && p.z <= max.z;
     }
   };
   static std::optional<Box> box_of(const Data&);
