@@ -66,6 +66,7 @@ echo "the controller is killed"
 cp "$out/two.jsonl" "$out/m.jsonl"
 on_slurm "$out/controller"
 wait_for_checkpoint "$out/controller"
+sleep 6 # the controller writes down within 5 s that a job runs; it loses jobs that began after that
 kill -9 "$(cat "$out/box/slurmctld.pid")"
 sleep 5
 tools/slurm_box.sh controller "$out/box"
