@@ -15,9 +15,9 @@ measure() {
   rate=$(awk -v n="$n" -v ns="$(($(date +%s%N) - begin))" 'BEGIN { printf "%.1f", n * 3600e9 / ns }')
   printf '%-44s%8s objects an hour\n' "$1" "$rate"
 }
-on_nodes() {
-  on_slurm "$out/nodes"
-  wait_for_done "$out/nodes" "$n" 3600
+on_nodes() { # CATALOG OPTIONS...
+  on_slurm "$out/$1" "${@:2}"
+  wait_for_done "$out/$1" "$n" 3600
 }
 share() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.1f %%", 100 * a / b }'; }
 
@@ -27,8 +27,10 @@ one=$rate
 measure "one core an object, $(nproc) at once" batch run "$out/m.jsonl" -o "$out/many" --jobs "$(nproc)" --threads 1 --quiet
 many=$rate
 start_slurm
-measure "two Slurm nodes of one core" on_nodes
+measure "two Slurm nodes of one core" on_nodes nodes
+alone=$rate
+measure "the same, four objects a task (--pack 4)" on_nodes packed --pack 4
 echo "one core an object against all cores for one: $(share "$many" "$one")"
-echo "Slurm against one core an object here: $(share "$rate" "$many")"
-same_bits "$out/many" "$out/nodes" "$n"
+echo "Slurm against one core an object here: $(share "$alone" "$many"), packed $(share "$rate" "$many")"
+for catalog in nodes packed; do same_bits "$out/many" "$out/$catalog" "$n"; done
 same_bits "$out/many" "$out/one" "$n"
