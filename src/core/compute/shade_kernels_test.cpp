@@ -66,6 +66,12 @@ struct LobeScene {
     d.launch<SgIrradiance>({planes(), kPoints, normals.data(), out.data()}, kPoints);
     return out;
   }
+  // Of points that get no light the adjoint stands for a free slope, because the forward pass clamps at zero.
+  void leave_out_dark_points(const Device& d) {
+    const std::vector<float> e = irradiance(d);
+    for (size_t i = 0; i < e.size(); ++i)
+      if (e[i] <= 0) y1[i] = 0;
+  }
   std::vector<float> reflection(const Device& d) const {
     std::vector<float> out(3 * kPoints);
     d.launch<SgReflection>({planes(), kPoints, points(), out.data()}, kPoints);
@@ -194,11 +200,7 @@ void expect_slope_along_the_sphere(const LobeScene& scene, std::vector<float> Lo
 TEST(ShadeKernels, AdjointEqualsDifferencesOfTheForwardPass) {
   const Device device = make_device("cpu/scalar");
   LobeScene s;
-  // Points that get no light are clamped at zero, where the adjoint stands for a free slope: leave them out
-  // of the loss.
-  const auto e = s.irradiance(device);
-  for (size_t i = 0; i < e.size(); ++i)
-    if (e[i] <= 0) s.y1[i] = 0;
+  s.leave_out_dark_points(device);
   const std::vector<float> g = s.gradient(device);
   for (const int row : {3, 4, 5, 6})  // axes: next test
     for (const int k : {0, 7, 31}) {
@@ -218,9 +220,7 @@ TEST(ShadeKernels, AdjointEqualsDifferencesOfTheForwardPass) {
 TEST(ShadeKernels, AdjointOfAnAxisEqualsDifferencesAlongTheSphere) {
   const Device device = make_device("cpu/scalar");
   LobeScene s;
-  const auto e = s.irradiance(device);
-  for (size_t i = 0; i < e.size(); ++i)
-    if (e[i] <= 0) s.y1[i] = 0;
+  s.leave_out_dark_points(device);
   const std::vector<float> g = s.gradient(device);
   for (const size_t k : {2, 13, 30})
     expect_slope_along_the_sphere(s, &LobeScene::lobes, kLobes, k, vector_at(g, kLobes, k), 0.02);
