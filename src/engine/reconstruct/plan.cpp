@@ -18,7 +18,7 @@ constexpr double kPolishStep = 68;     // a step of polishing, in Rates::sdf_ste
 constexpr double kResidualStep = 8;    // a training step of the correction network, in Rates::sdf_step
 constexpr double kFullSplit = 2e7, kBriefSplit = 1.2e7;  // the linear separation, in Rates::hit_shaded
 // Fit of lobes and descents, in Rates::albedo_step.
-constexpr double kFullDescent = 2500, kBriefDescent = 750;
+constexpr double kFullDescent = 7000, kBriefDescent = 750;
 constexpr double kJointStep = 95;   // a step of the joint descent, in Rates::sdf_step
 constexpr double kJointHits = 0.3;  // shading of the pixels that judge it, in those of the appearance stage
 constexpr double kRefinementStep = 2;  // a step of a refinement, in Rates::albedo_step
@@ -26,7 +26,7 @@ constexpr double kReserve = 3;         // reading and writing files, in times of
 
 // Minimum shares of all steps; fewer are not worth the time.
 constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinResidualShare = 0.13,
-                 kMinJointShare = 0.25;
+                 kMinJointShare = 0.25, kMinTrialShare = 0.25;
 constexpr size_t kUntimedResidualHits = 1000000;
 
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
@@ -49,7 +49,9 @@ constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // minimum sha
 
 // Seconds.
 struct Costs {
-  double trials, surface, full_appearance, brief_appearance, refinement, finer_mesh;
+  double trial_step;      // of the three trials
+  double trials_besides;  // start shapes and the first fits to them
+  double surface, full_appearance, brief_appearance, refinement, finer_mesh;
   double look;      // of a polishing round
   double polish;    // all steps of a round
   double joint;     // all steps of it, hits and judgement
@@ -63,7 +65,8 @@ Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
   const auto mesh = [&](const MeshingOptions& m) { return kMesh * r.mesh * square(double(m.resolution)); };
   const TrialOptions& trial = preset.trial;
   Costs c{};
-  c.trials = r.trial_step * (3 * (trial.geometry.prefit_steps + kGeometryStep * trial.steps) + kStartShapes);
+  c.trial_step = r.trial_step * 3 * kGeometryStep;
+  c.trials_besides = r.trial_step * (3 * trial.geometry.prefit_steps + kStartShapes);
   c.surface = mesh(preset.meshing) + hits * r.hit_traced;
   c.full_appearance = kFullSplit * r.hit_shaded + hits * hit + kFullDescent * r.albedo_step;
   c.brief_appearance = kBriefSplit * r.hit_shaded + brief_hits * hit + kBriefDescent * r.albedo_step;
@@ -84,7 +87,7 @@ bool has_finer_meshing(const Preset& preset) {
 Plan untimed_plan(const ReconstructOptions& options, const Preset& preset) {
   Plan p;
   p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
-  p.choose_start = p.iterations >= preset.trials_from_iterations;
+  p.trial_steps = p.iterations >= preset.trials_from_iterations ? preset.trial.steps : 0;
   p.polish_rounds = p.iterations >= preset.polish_from_iterations ? 2 : 0;
   p.polish_steps = preset.polish_steps / 2;
   p.joint_steps = p.polish_rounds > 0 ? preset.joint_steps / 2 : 0;
@@ -162,6 +165,12 @@ bool leave_one_out(const Costs& c, Plan& p) {
   return true;
 }
 
+// Short trials tell the start shapes apart, too; a bad start costs more than most stages bring.
+int affordable_trial_steps(double seconds, int wanted, const Costs& c) {
+  const double steps = std::min((seconds - c.trials_besides) / c.trial_step, double(wanted));
+  return steps < kMinTrialShare * wanted ? 0 : int(steps);
+}
+
 Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, bool joint_wanted) {
   Plan p;
   plan_polish(t, preset, c, p);
@@ -173,7 +182,7 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, b
   p.reserve = std::max(kReserve * c.surface, kReserveShare * t);
   while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
   p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
-  p.choose_start = c.trials <= kTrialsShare * p.geometry;
+  p.trial_steps = affordable_trial_steps(kTrialsShare * p.geometry, preset.trial.steps, c);
   return p;
 }
 
@@ -188,7 +197,7 @@ Plan plan_of(const ReconstructOptions& options, const Preset& given, size_t pixe
 }
 
 Json to_json(const Plan& p) {
-  return {{"choose_start", p.choose_start},
+  return {{"trial_steps", p.trial_steps},
           {"geometry", p.geometry},
           {"iterations", p.iterations},
           {"polish_rounds", p.polish_rounds},

@@ -11,13 +11,13 @@ namespace cei3d {
 
 // Of a run by steps all seconds are 0: no limit, the step counts decide.
 struct Plan {
-  bool choose_start = false;  // short trainings compare three start shapes; else the visual hull
-  double geometry = 0;        // s, the comparison of starts included
-  int iterations = 0;         // steps of the geometry stage where `geometry` is 0
-  int polish_rounds = 0;      // of polishing
-  double look = 0;            // s that a round takes to make a mesh and estimate light and material briefly
-  double polish = 0;          // s of a round's descent after that, at most
-  int polish_steps = 0;       // of a round's descent, at most
+  int trial_steps = 0;    // of each training that tries one of three start shapes; 0: the visual hull
+  double geometry = 0;    // s, the comparison of starts included
+  int iterations = 0;     // steps of the geometry stage where `geometry` is 0
+  int polish_rounds = 0;  // of polishing
+  double look = 0;        // s that a round takes to make a mesh and estimate light and material briefly
+  double polish = 0;      // s of a round's descent after that, at most
+  int polish_steps = 0;   // of a round's descent, at most
   Effort effort = Effort::full;  // of the appearance stage
   double appearance = 0;         // s of the appearance stage
   int refinements = 0;           // of the albedo, each on another random subset of the pixels

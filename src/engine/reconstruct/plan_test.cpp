@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <set>
+#include <vector>
+
 #include "engine/reconstruct/test_rates.h"
 
 namespace cei3d {
@@ -48,7 +52,7 @@ TEST(Plan, DependsOnTheMachinesSpeedAlone) {
     EXPECT_EQ(here.polish_rounds, there.polish_rounds);
     EXPECT_EQ(here.refinements, there.refinements);
     EXPECT_EQ(here.has_finer_mesh, there.has_finer_mesh);
-    EXPECT_EQ(here.choose_start, there.choose_start);
+    EXPECT_NEAR(here.trial_steps, there.trial_steps, 1);
     EXPECT_EQ(here.effort, there.effort);
     EXPECT_NEAR(double(here.residual_hits), double(there.residual_hits), 1);
     EXPECT_NEAR(3 * here.geometry, there.geometry, 1e-6 * there.geometry);
@@ -59,12 +63,24 @@ TEST(Plan, AFasterMachineLeavesNothingOutThatASlowerOneDoes) {
   for (const double seconds : {30.0, 60.0, 180.0, 300.0, 900.0}) {
     const Plan slow = plan_for("fast", seconds, 13000000, 2),
                quick = plan_for("fast", seconds, 13000000, 0.5);
+    EXPECT_GE(quick.trial_steps, slow.trial_steps);
     EXPECT_GE(quick.polish_rounds, slow.polish_rounds);
     EXPECT_GE(quick.refinements, slow.refinements);
     EXPECT_GE(quick.has_finer_mesh, slow.has_finer_mesh);
     EXPECT_GE(quick.residual_hits, slow.residual_hits);
     EXPECT_GE(quick.effort, slow.effort);
   }
+}
+
+// A start is chosen by shorter trials where there is less time, before it is not chosen at all.
+TEST(Plan, ASlowerMachineTriesStartsMoreBriefly) {
+  std::vector<int> steps;
+  for (double slowness = 0.5; slowness < 40; slowness *= 1.2)
+    steps.push_back(plan_for("fast", 600, 3000000, slowness).trial_steps);
+  EXPECT_TRUE(std::is_sorted(steps.rbegin(), steps.rend()));
+  EXPECT_EQ(steps.front(), preset_by_name("fast").trial.steps);
+  EXPECT_EQ(steps.back(), 0);
+  EXPECT_GT(std::set<int>(steps.begin(), steps.end()).size(), 4u);
 }
 
 TEST(Plan, ByStepsKnowsNoClock) {

@@ -59,7 +59,8 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
   TrialOptions trial = run.preset.trial;
   trial.light = state.scene.light_frame = first_light_frame(run);
   state.light_frame_known = run.light || trial.light.motion != LightMotion::world;
-  const StartShape start = run.plan.choose_start
+  if (run.plan.trial_steps > 0) trial.steps = run.plan.trial_steps;
+  const StartShape start = run.plan.trial_steps > 0
                                ? choose_start(run.device, pixels, trial, run.seed, run.progress)
                                : start_shape(pixels, Start::hull, run.seed, trial.shapes, run.progress);
   const double chosen = run.progress.now();
@@ -289,7 +290,7 @@ struct Budgets {
 };
 
 Budgets budgets_of(const Plan& p) {
-  const double start = p.choose_start ? 0.2 : 0.01;  // share of the geometry stage
+  const double start = p.trial_steps > 0 ? 0.2 : 0.01;  // share of the geometry stage
   if (p.geometry > 0)
     return {.start = start * p.geometry,
             .geometry = (1 - start) * p.geometry,
@@ -300,7 +301,7 @@ Budgets budgets_of(const Plan& p) {
             .joint = p.joint,
             .finer_mesh = p.finer_mesh,
             .residual = p.residual};
-  return {.start = kStartSteps + (p.choose_start ? kTrialsSteps : 0),
+  return {.start = kStartSteps + (p.trial_steps > 0 ? kTrialsSteps : 0),
           .geometry = double(p.iterations),
           .polish = kLookSteps + kPolishStepLength * p.polish_steps,
           .surface = kSurfaceSteps,

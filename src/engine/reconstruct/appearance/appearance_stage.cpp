@@ -40,12 +40,17 @@ LinearSplitOptions split_options(const AppearanceOptions& o, bool turning) {
 
 constexpr float kAllMetal = 0.97f;  // mean metalness
 
-// Steps of the joint descent. Metals gain 0.5 dB by more steps, because their images show only the light;
-// dielectrics hardly gain.
-int joint_steps_for(const Material& mean, bool brief) {
-  if (mean.metalness > kAllMetal) return brief ? 120 : 400;
-  return mean.metalness > 0.05f ? (brief ? 60 : 200) : (brief ? 30 : 100);
+bool all_metal(const MaterialField& material) { return material.mean().metalness > kAllMetal; }
+
+// Steps of the joint descent (docs/notebook/0023).
+int joint_steps_for(const MaterialField& material, bool brief) {
+  if (all_metal(material)) return brief ? 120 : 400;
+  return material.varying() ? (brief ? 60 : 600) : (brief ? 30 : 400);
 }
+
+// Rate of the albedo in the joint descent, of its full rates. Nothing but the albedo holds the light of
+// metals: at full rates both wander.
+float joint_albedo_rate(const MaterialField& material) { return all_metal(material) ? 0.1f : 1.0f; }
 
 // Descent on the fields of albedo and material under a fixed light, then on all three. bouncing: initial
 // albedo of the vertices for bounces, #V.
@@ -153,11 +158,11 @@ class Descent {
         d_a = g.d_albedo;
       });
     };
-    albedo_trainer_.step(device_, points_, loss, 0.1f * rate);
+    albedo_trainer_.step(device_, points_, loss, joint_albedo_rate(result_.material) * rate);
     const ShadingGrads slopes = lighting_->grad(batch, light, albedo, d_radiance);
     descent.step(device_, batch, slopes.d_sky_irradiance, slopes.d_sky_reflection, rate);
     result_.light = descent.light();
-    if (materials_) descend_materials(positions, slopes.d_material, 0.1f * rate);
+    if (materials_) descend_materials(positions, slopes.d_material, rate);
   }
 
   void descend_materials(const std::vector<Vec3f>& positions, const std::vector<Material>& d_material,
@@ -249,14 +254,13 @@ void descend_on_appearance(const Device& device, const AppearanceInput& input,
                            AppearanceResult& result, Progress& progress) {
   const double start = steady_seconds();
   const bool brief = options.effort == Effort::brief;
-  const Material mean = result.material.mean();
   Descent descent(device, input, transport_of(input, progress), options,
                   Field(options.albedo, options.seed + 100), vertex_albedo, result, progress);
   descent.fit_albedo(options.albedo_steps >= 0 ? options.albedo_steps : brief ? 300 : 800, 1);
   // The strength of the light is determined only by reflections of dielectrics.
-  const bool all_metal = mean.metalness > kAllMetal;
-  descent.fit_jointly(options.joint_steps >= 0 ? options.joint_steps : joint_steps_for(mean, brief),
-                      !all_metal);
+  const bool keep_power = !all_metal(result.material);
+  descent.fit_jointly(
+      options.joint_steps >= 0 ? options.joint_steps : joint_steps_for(result.material, brief), keep_power);
   result.albedo = std::make_shared<const Field>(descent.take_albedo());
   progress.log(Json{{"stage", "descent"}, {"seconds", steady_seconds() - start}}.dump());
 }
