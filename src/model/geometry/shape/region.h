@@ -19,6 +19,7 @@
 
 #include "core/base/json.h"
 #include "core/base/shelf.h"
+#include "core/math/box.h"
 #include "core/math/vec.h"
 #include "model/geometry/shape/point_index.h"
 #include "model/geometry/shape/projector.h"
@@ -45,6 +46,7 @@ class Region {
   bool contains(Vec3f position, Vec3f normal) const;
   // Share of the edit at a point: 1 inside, 0 outside, the mask's alpha where the mask is soft.
   float weight(Vec3f position, Vec3f normal) const;
+  bool may_meet(const Box& box) const { return !box_ || box_->meets(box); }  // false: no point is in both
   Points points() const { return data_->points; }
   Projector projector() const { return data_->projector; }
   ScoredPoints scored() const { return data_->scored; }  // empty: not a part
@@ -74,12 +76,6 @@ class Region {
     // Of the labeled points within reach on the same side.
     bool nearest_is_edited(Vec3f position, Vec3f normal) const;
     bool any_is_edited(Vec3f position, Vec3f normal) const;
-  };
-  struct Box {
-    Vec3f min, max;
-    bool contains(Vec3f p) const {
-      return p.x >= min.x && p.y >= min.y && p.z >= min.z && p.x <= max.x && p.y <= max.y && p.z <= max.z;
-    }
   };
   static std::optional<Box> box_of(const Data&);
 
