@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "core/math/color.h"
+#include "engine/render/render.h"
+#include "engine/render/sphere_scene.h"
+
 namespace cei3d {
 namespace {
 
@@ -48,6 +52,27 @@ TEST(LivePicture, IsNotDrawnWhereNobodyLooks) {
     ADD_FAILURE() << "nobody looks";
     return Image();
   });
+}
+
+TEST(LitPicture, IsTheFrameOfTheObject) {
+  const Device device = make_device();
+  const Scene scene = sphere_scene();
+  const Camera camera = camera_towards_origin({2.4, 0.3, 0.5}, 48);
+  const Lighting lighting(device, scene.surface, scene.light,
+                          scene.albedo->eval3(device, scene.surface->mesh().positions),
+                          scene.material.mean());
+  const Image got = lit_picture(
+      device, {*scene.sdf, scene.surface, lighting, *scene.albedo, scene.material, nullptr}, camera);
+  const Image frame = shade_view(device, scene, trace_view(device, scene, camera, 2)).rgb;
+  int object = 0;
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) {
+      const float* p = frame.at(x, y);
+      object += p[3] == 1;
+      for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(got.at(x, y)[c], srgb_from_linear(p[c]) * p[3] + 1 - p[3], 1e-5f) << x << ' ' << y;
+    }
+  EXPECT_GT(object, 300);
 }
 
 }  // namespace
