@@ -37,8 +37,8 @@ struct Chunk {
 };
 
 // What encloses those of the hits that are in a shape version.
-Box box_in_version(const Scene& scene, std::span<const Hit> hits, int version) {
-  Box box;
+AxisBox box_in_version(const Scene& scene, std::span<const Hit> hits, int version) {
+  AxisBox box;
   for (const Hit& h : hits)
     if (scene.shape_versions.empty() || scene.shape_versions.back()->born_in(h.triangle) <= version)
       box.add(in_version(scene.shape_versions, h, version).position);
@@ -47,7 +47,7 @@ Box box_in_version(const Scene& scene, std::span<const Hit> hits, int version) {
 
 // The layers that can affect any of the hits, the topmost first.
 std::vector<int> layers_near(const Scene& scene, std::span<const Hit> hits) {
-  std::map<int, Box> boxes;  // by shape version
+  std::map<int, AxisBox> boxes;  // by shape version
   std::vector<int> near;
   for (int l = int(scene.layers.size()) - 1; l >= 0; --l) {
     const EditLayer& layer = scene.layers[size_t(l)];

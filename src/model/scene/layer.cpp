@@ -83,7 +83,7 @@ float EditLayer::weight(Vec3f position, Vec3f normal) const {
   return w;
 }
 
-bool EditLayer::may_meet(const Box& box) const {
+bool EditLayer::may_meet(const AxisBox& box) const {
   return everywhere || region.may_meet(box) ||
          std::any_of(also.begin(), also.end(), [&](const Region& r) { return r.may_meet(box); });
 }

@@ -46,7 +46,8 @@ struct EditLayer {
   // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. The material changes
   // where the weight is above kMaterialWeight.
   float weight(Vec3f position, Vec3f normal) const;
-  bool may_meet(const Box&) const;  // in the shape version of the region; false: the weight is 0 in the box
+  bool may_meet(
+      const AxisBox&) const;  // in the shape version of the region; false: the weight is 0 in the box
 };
 
 // Errors of loading: missing tensors or keys, sizes that disagree.

@@ -56,13 +56,13 @@ size_t Region::Points::edited_count() const {
 }
 
 // With all that the points reach.
-std::optional<Box> Region::box_of(const Data& d) {
+std::optional<AxisBox> Region::box_of(const Data& d) {
   constexpr float kRounding = 1.001f;
   if (d.points.positions.empty()) return std::nullopt;
-  Box box;
+  AxisBox box;
   for (const Vec3f p : d.points.positions) box.add(p);
   const float reach = kRounding * d.max_reach;
-  return Box{box.min - Vec3f{reach, reach, reach}, box.max + Vec3f{reach, reach, reach}};
+  return AxisBox{box.min - Vec3f{reach, reach, reach}, box.max + Vec3f{reach, reach, reach}};
 }
 
 size_t Region::Data::bytes() const {

@@ -8,7 +8,7 @@
 
 namespace cei3d {
 
-struct Box {
+struct AxisBox {
   static constexpr float kFar = std::numeric_limits<float>::infinity();
   Vec3f min{kFar, kFar, kFar}, max{-kFar, -kFar, -kFar};  // empty by default
 
@@ -19,7 +19,7 @@ struct Box {
     }
   }
   bool contains(Vec3f p) const { return meets({p, p}); }
-  bool meets(const Box& b) const {  // borders belong to a box
+  bool meets(const AxisBox& b) const {  // borders belong to a box
     return min.x <= b.max.x && min.y <= b.max.y && min.z <= b.max.z && max.x >= b.min.x && max.y >= b.min.y &&
            max.z >= b.min.z;
   }

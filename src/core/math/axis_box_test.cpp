@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "core/math/box.h"
+#include "core/math/axis_box.h"
 
 #include <gtest/gtest.h>
 
@@ -8,21 +8,21 @@
 namespace cei3d {
 namespace {
 
-Box box_of(std::initializer_list<Vec3f> points) {
-  Box box;
+AxisBox box_of(std::initializer_list<Vec3f> points) {
+  AxisBox box;
   for (const Vec3f p : points) box.add(p);
   return box;
 }
 
-TEST(Box, HoldsWhatWasAddedAndWhatIsBetween) {
-  const Box box = box_of({{1, 5, -2}, {3, 4, 0}});
+TEST(AxisBox, HoldsWhatWasAddedAndWhatIsBetween) {
+  const AxisBox box = box_of({{1, 5, -2}, {3, 4, 0}});
   for (const Vec3f p : {Vec3f{1, 5, -2}, {3, 4, 0}, {2, 4.5f, -1}, {1, 4, 0}}) EXPECT_TRUE(box.contains(p));
   for (const Vec3f p : {Vec3f{0.9f, 4.5f, -1}, {2, 5.1f, -1}, {2, 4.5f, 0.1f}, {NAN, 4.5f, -1}})
     EXPECT_FALSE(box.contains(p));
 }
 
-TEST(Box, MeetsWhatHasAPointInCommon) {
-  const Box box = box_of({{0, 0, 0}, {2, 2, 2}});
+TEST(AxisBox, MeetsWhatHasAPointInCommon) {
+  const AxisBox box = box_of({{0, 0, 0}, {2, 2, 2}});
   for (int axis = 0; axis < 3; ++axis)
     for (const float at : {-3.0f, -1.0f, 0.5f, 2.0f, 2.5f}) {
       Vec3f a{0.5f, 0.5f, 0.5f}, b{1.5f, 1.5f, 1.5f};
@@ -32,9 +32,9 @@ TEST(Box, MeetsWhatHasAPointInCommon) {
     }
 }
 
-TEST(Box, AnEmptyOneMeetsNothing) {
-  EXPECT_FALSE(Box().meets(box_of({{-9, -9, -9}, {9, 9, 9}})));
-  EXPECT_FALSE(Box().contains({0, 0, 0}));
+TEST(AxisBox, AnEmptyOneMeetsNothing) {
+  EXPECT_FALSE(AxisBox().meets(box_of({{-9, -9, -9}, {9, 9, 9}})));
+  EXPECT_FALSE(AxisBox().contains({0, 0, 0}));
   EXPECT_TRUE(box_of({{NAN, 0, 0}, {1, 1, 1}, {0, NAN, NAN}}).contains({0.5f, 0.5f, 1}));
 }
 
