@@ -61,6 +61,7 @@ stage.drawTool = (/** @type {CanvasRenderingContext2D} */ context) => {
   overlay.draw(context);
   tool.draw?.(context);
   input.drawReticle(context);
+  for (const b of byId('options').querySelectorAll('button.of-trial')) b.disabled = !tool.tries?.();
 };
 
 function drawTools() {
@@ -70,7 +71,7 @@ function drawTools() {
   }, glyph(t.name), el('span', {}, t.label))));
 }
 
-function drawOptions() { byId('options').replaceChildren(...(tool.options?.() ?? [])); tool.enter?.(); }
+function drawOptions() { byId('options').replaceChildren(...(tool.options?.() ?? [])); tool.enter?.(); stage.redraw(); }
 
 function drawProperties() {
   if (document.activeElement?.closest('#properties') && /** @type {any} */ (document.activeElement).type === 'range' && tool !== light) return;

@@ -80,7 +80,7 @@ export class PartsPanel {
     });
     byId('parts').replaceChildren(
       el('h2', { id: 'parts-title' }, 'Parts', el('button', { class: 'small', disabled: store.state.read_only, onclick: this.actions.newPart }, 'New')),
-      rows.length ? el('ul', { class: 'list' }, ...rows) : el('p', {}, 'None yet. With P, click on the object.'));
+      rows.length ? el('ul', { class: 'list' }, ...rows) : el('p', {}, 'None yet. Press P and click on the object to select one.'));
   }
 }
 
