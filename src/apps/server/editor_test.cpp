@@ -115,6 +115,22 @@ TEST_F(EditorTest, TheHistoryIsThatOfTheProject) {
   EXPECT_FALSE(session.log()[1].enabled);
 }
 
+TEST_F(EditorTest, SaysWhichPhotographsAreThere) {
+  const std::filesystem::path photo = temp_.path() / "photo.png";
+  Capture capture = three_views();
+  capture.views[0].image_path = photo;
+  capture.views[1].image_path = temp_.path() / "gone.png";
+  write_file_atomic(photo, encode_png(square_scribble({0.8f, 0.1f, 0.1f}, 6), 8));
+  editor_.reset();
+  std::filesystem::remove_all(folder());
+  Project::create(folder(), {}, capture, false).save_base(sphere_with_handlers());
+  start();
+  const Json views = Json::parse(get("/api/object").body)["views"];
+  EXPECT_EQ(views[0]["photo"], true);
+  EXPECT_EQ(views[1]["photo"], false);
+  EXPECT_EQ(views[2]["photo"], false);
+}
+
 TEST_F(EditorTest, AChangeToAnotherHistoryIsRefused) {
   const std::string before = state()["revision"];
   const Json rough = {{"op", "material"}, {"params", {{"roughness", 0.3}}}};

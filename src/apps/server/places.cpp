@@ -33,10 +33,11 @@ Json entry_json(const LogEntry& e) {
 
 Json views_json(const std::vector<View>& views) {
   Json list = Json::array();
+  std::error_code error;
   for (const View& v : views)
     list.push_back({{"name", v.name},
                     {"split", split_name(v.split)},
-                    {"photo", !v.image_path.empty()},
+                    {"photo", fs::is_regular_file(v.image_path, error)},
                     {"camera", camera_json(v.camera)}});
   return list;
 }

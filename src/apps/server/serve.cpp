@@ -24,6 +24,7 @@ void serve(const ServeOptions& options, const std::function<void(const Address&)
         "this "
         "machine's own address is safer; if you mean it, name this machine with --allow-host, too.",
         options.http.host);
+  give_back_freed_memory();
   Guard guard(new_token(), options.allowed_hosts);
   const std::string token = guard.token();
   Editor editor(options.editor, std::move(guard));

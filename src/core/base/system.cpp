@@ -2,6 +2,7 @@
 #include "core/base/system.h"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <stdlib.h>
 #include <sys/file.h>
 #include <sys/resource.h>
@@ -84,6 +85,15 @@ fs::path make_temporary_folder() {
   if (!::mkdtemp(name.data()))
     fail("Cannot make a temporary folder like {}: {}.", name, std::strerror(errno));
   return name;
+}
+
+void give_back_freed_memory() {
+#ifdef __GLIBC__
+  constexpr int kBlock = 256 << 10, kRest = 1 << 20, kArenas = 2;  // bytes, bytes, number
+  ::mallopt(M_MMAP_THRESHOLD, kBlock);
+  ::mallopt(M_TRIM_THRESHOLD, kRest);
+  ::mallopt(M_ARENA_MAX, kArenas);
+#endif
 }
 
 std::optional<FileLock> FileLock::take(const fs::path& file) {

@@ -2,8 +2,11 @@
 #include "core/base/system.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <array>
+#include <fstream>
+#include <memory>
 #include <vector>
 
 #include "core/base/bytes.h"
@@ -35,6 +38,31 @@ TEST(System, SaysWhatTheMachineIs) {
   const double thread = thread_seconds(), process = process_seconds();
   EXPECT_GE(thread_seconds(), thread);
   EXPECT_GE(process_seconds(), process);
+}
+
+double resident_megabytes() {
+  std::ifstream file("/proc/self/statm");
+  double size = 0, resident = 0;
+  file >> size >> resident;
+  return resident * double(::sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+TEST(System, FreedMemoryGoesBack) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "has an allocator of its own";
+#endif
+  give_back_freed_memory();
+  const double before = resident_megabytes();
+  std::vector<std::unique_ptr<std::string>> small;
+  for (int round = 0; round < 3; ++round) {
+    std::vector<std::string> large;
+    for (int i = 0; i < 100; ++i) {
+      large.emplace_back(size_t(700) << 10, 'x');
+      small.push_back(std::make_unique<std::string>(100, 'y'));  // stays, between large ones
+    }
+    EXPECT_GT(resident_megabytes(), before + 60);
+  }
+  EXPECT_LT(resident_megabytes(), before + 10);
 }
 
 TEST(TempFolder, GoesWithWhatIsInIt) {

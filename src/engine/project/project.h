@@ -153,7 +153,7 @@ class Project {
   Scene with_results(const Scene& base, std::span<const StoredResult>) const;  // the base and those
   void collect_garbage();
 
-  static constexpr size_t kMaxLayerBytes = size_t(128) << 20;  // of the layers' regions and networks
+  static constexpr size_t kMaxLayerBytes = size_t(32) << 20;  // of the layers' regions and networks
   std::filesystem::path folder_;
   ProjectLock lock_;
   ProjectHead head_;

@@ -53,6 +53,7 @@ struct Project::StoredEdit {
   fs::file_time_type time;  // of the file, and its bytes
   uintmax_t bytes = 0;
   Aspects depends;
+  std::string record;  // JSON of the rest; as text it takes a quarter of the memory
   std::vector<StoredResult> results;
 };
 
@@ -84,6 +85,9 @@ Project::StoredEdit Project::read_stored(const std::string& id) const {
       add(kAnyKey, j.at("result"), Aspects{.look = true});
     else
       for (const auto& [key, r] : j.at("results").items()) add(key, r, std::nullopt);
+    Json rest = j;
+    for (const char* key : {"result", "results"}) rest.erase(key);  // "result" is from format 1
+    edit.record = rest.dump();
     return edit;
   });
 }
@@ -246,21 +250,19 @@ void Project::add_edit(const EditRecord& record, const EditLayer& layer, Place p
 EditRecord Project::edit(const std::string& id) const {
   if (!stack_.contains(id))
     fail_usage("Project {} has no edit '{}'; `cei3d log` lists them.", folder_.string(), id);
-  const Aspects depends = stored(id).depends;
-  return read_json_file(edit_file(id), [&](const Json& j) {
-    EditRecord r;
-    JsonReader reader(j, edit_file(id).string());
-    r.depends = depends;
-    r.id = reader.require<std::string>("id");
-    r.op = reader.require<std::string>("op");
-    r.op_version = reader.require<int>("op_version");
-    r.params = reader.member("params");
-    r.report = reader.member("report");
-    // Read elsewhere; "result" is from format 1.
-    for (const char* key : {"time", "inputs", "depends", "result", "results"}) reader.has(key);
-    reader.finish();
-    return r;
-  });
+  const StoredEdit& edit = stored(id);
+  const Json j = Json::parse(edit.record);
+  EditRecord r;
+  JsonReader reader(j, edit_file(id).string());
+  r.depends = edit.depends;
+  r.id = reader.require<std::string>("id");
+  r.op = reader.require<std::string>("op");
+  r.op_version = reader.require<int>("op_version");
+  r.params = reader.member("params");
+  r.report = reader.member("report");
+  for (const char* key : {"time", "inputs", "depends"}) reader.has(key);  // read elsewhere
+  reader.finish();
+  return r;
 }
 
 std::vector<std::pair<std::string, std::string>> Project::edit_inputs(const std::string& id) const {

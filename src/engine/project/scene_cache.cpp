@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/project/scene_cache.h"
 
+#include <set>
 #include <vector>
 
 #include "core/base/hash.h"
@@ -37,11 +38,28 @@ Scene SceneCache::scene(const std::string& base_key, const Scene& base,
       break;
     }
   for (; done < keys.size(); ++done) {
-    scene = with_layer(std::move(scene), layer(done));
-    scenes_.put(keys[done], std::make_shared<const Scene>(scene), own_bytes(scene));
-    ++layers_added_;
+    scene = with_layer(std::move(scene), kept(layer_keys[done], done, layer));
+    if (scene.layers.back().reshape || done + 1 == keys.size())
+      scenes_.put(keys[done], std::make_shared<const Scene>(scene), own_bytes(scene));
   }
+  drop_others(layer_keys);
   return scene;
+}
+
+const EditLayer& SceneCache::kept(const std::string& key, size_t i,
+                                  const std::function<EditLayer(size_t)>& layer) {
+  const auto known = layers_.find(key);
+  if (known != layers_.end()) return known->second;
+  ++layers_loaded_;
+  return layers_.emplace(key, layer(i)).first->second;
+}
+
+// Of layers that this stack does not have, a few stay for the next one.
+void SceneCache::drop_others(std::span<const std::string> layer_keys) {
+  constexpr size_t kFew = 64;
+  if (layers_.size() <= layer_keys.size() + kFew) return;
+  const std::set<std::string> used(layer_keys.begin(), layer_keys.end());
+  std::erase_if(layers_, [&](const auto& l) { return !used.contains(l.first); });
 }
 
 }  // namespace cei3d

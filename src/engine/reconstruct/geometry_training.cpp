@@ -16,9 +16,6 @@ namespace {
 constexpr double kCheckpointSeconds = 30, kReportSeconds = 2;
 // Between evaluations on held-out pixels: at least 2 s, and 40 times as long as the last one took.
 constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
-// Between pictures: at least 3 s, and 40 times as long as the last one took.
-constexpr double kPictureSeconds = 3, kPictureShare = 40;
-constexpr int kPictureSide = 160;
 constexpr int kEvaluationBatches = 2;  // pixels of an evaluation, in batches of the training
 
 class Training {
@@ -45,7 +42,7 @@ class Training {
       fail("training diverged at step {}: the loss is not a number", state_.step);
     if (elapsed() > next_evaluation_) evaluate(u, sum);
     if (elapsed() > next_report_) report(u, sum);
-    if (run_.show && elapsed() > next_picture_) show();
+    run_.live.offer([&](const Camera& camera) { return state_.geometry->render_radiance(camera, 1); });
     ++state_.step;
     if (elapsed() - last_save_ > kCheckpointSeconds) save(checkpoint);
   }
@@ -83,16 +80,6 @@ class Training {
     next_report_ = elapsed() + kReportSeconds;
   }
 
-  // The first view as the networks see it now.
-  void show() {
-    const double begin = elapsed();
-    const Camera whole = run_.normalization.unit_from_capture(run_.capture.views.front().camera);
-    const int n = (std::max(whole.width, whole.height) + kPictureSide - 1) / kPictureSide;
-    run_.show(state_.geometry->render_radiance(scaled(whole, n), 1));
-    const double end = elapsed();
-    next_picture_ = end + std::max(kPictureSeconds, kPictureShare * (end - begin));
-  }
-
   const RunContext& run_;
   RunState& state_;
   const PixelStore& judged_;
@@ -100,8 +87,7 @@ class Training {
   double begin_;        // start of the training on the clock of the run, as if it had not been interrupted
   double seconds_ = 0;  // of the schedule; 0: by steps
   // By elapsed().
-  double next_evaluation_ = kEvaluationSeconds, next_report_ = kReportSeconds, next_picture_ = 0,
-         last_save_ = 0;
+  double next_evaluation_ = kEvaluationSeconds, next_report_ = kReportSeconds, last_save_ = 0;
   double psnr_ = 0;
 };
 

@@ -47,6 +47,7 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
   std::optional<SavedRun> saved = read_saved(in, preset, views.train, checkpoints);
   const Json rates = rates_of(in, preset, views.train, saved, progress);
   if (saved) progress.resume_at(saved->position.elapsed);
+  LivePicture live(views.train.cameras().front(), in.show, in.clock);
   const RunContext context{.device = in.device,
                            .capture = in.capture,
                            .images = in.images,
@@ -58,7 +59,7 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
                            .light = in.options.light,
                            .light_color = in.options.light_color,
                            .progress = progress,
-                           .show = in.show};
+                           .live = live};
   RunState state = saved ? std::move(saved->state) : RunState();
   state.scene.normalization = in.normalization;
   state.scene.up = in.capture.up;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/base/json.h"
+#include "engine/reconstruct/live_picture.h"
 #include "engine/reconstruct/plan.h"
 #include "engine/reconstruct/run_clock.h"
 #include "engine/reconstruct/run_state.h"
@@ -29,7 +30,7 @@ struct RunContext {
   std::optional<LightMotion> light;  // none: to be found
   LightColorPrior light_color;
   RunClock& progress;
-  ShowPicture show{};  // empty: nobody looks
+  LivePicture& live;
 };
 
 struct Stage {

@@ -134,6 +134,9 @@ void polish(const RunContext& run, RunState& state, int round) {
   options.clock = run.progress.clock();
   options.seed = run.seed + uint64_t(round);
   options.first_step = (int64_t(round) + 1) << 24;
+  options.look = [&] {
+    run.live.offer([&](const Camera& camera) { return geometry.render_radiance(camera, 1); });
+  };
   polish_surface(run.device, geometry, all.input(turns.get()), appearance, options, run.progress);
   check_cancelled(run.progress);
   run.progress.log(Json{{"stage", "polish"}, {"look_seconds", state.look_seconds}}.dump());
@@ -184,6 +187,15 @@ AppearanceInput appearance_input(const RunContext& run, RunState& state, const L
   return input;
 }
 
+// turns: must outlive the result.
+LookAtAppearance shown_on(const RunContext& run, const Scene& scene, const LightTurns* turns) {
+  return [&run, &scene, turns](const Lighting& lighting, const Field& albedo, const MaterialField& material) {
+    run.live.offer([&](const Camera& camera) {
+      return lit_picture(run.device, {*scene.sdf, scene.surface, lighting, albedo, material, turns}, camera);
+    });
+  };
+}
+
 void find_hits(const RunContext& run, RunState& state) {
   if (state.hits.hits.empty()) state.hits = scene_hits(run, state.scene, {run.preset.max_hits});
 }
@@ -206,7 +218,9 @@ void estimate_appearance(const RunContext& run, RunState& state, const Stage::Ch
   find_hits(run, state);
   const Turns turns = light_turns(run, state, scene.surface, state.hits);
   AppearanceResult made{scene.light, scene.material, nullptr, {}};
-  descend_on_appearance(run.device, appearance_input(run, state, turns.get()), appearance_options(run),
+  AppearanceOptions options = appearance_options(run);
+  options.look = shown_on(run, scene, turns.get());
+  descend_on_appearance(run.device, appearance_input(run, state, turns.get()), options,
                         state.separated_albedo, made, run.progress);
   check_cancelled(run.progress);
   state.hits = {};
@@ -225,8 +239,10 @@ void refine(const RunContext& run, RunState& state, uint64_t subset) {
   const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, subset});
   AppearanceResult result{scene.light, scene.material, scene.albedo, {}};
   const Turns turns = light_turns(run, state, scene.surface, hits);
-  refine_albedo(run.device, {scene.surface, hits.samples(turns.get())}, appearance_options(run), result,
-                run.progress, run.preset.refinement_steps);
+  AppearanceOptions options = appearance_options(run);
+  options.look = shown_on(run, scene, turns.get());
+  refine_albedo(run.device, {scene.surface, hits.samples(turns.get())}, options, result, run.progress,
+                run.preset.refinement_steps);
   check_cancelled(run.progress);
   scene.albedo = std::move(result.albedo);
 }
@@ -240,7 +256,7 @@ void descend_on_all(const RunContext& run, RunState& state, const Stage::Checkpo
   const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, kJointSubset});
   const Turns turns = light_turns(run, state, scene.surface, hits);
   JointStageOptions options{run.preset.joint, plan.joint_steps, kJointDescentShare * plan.joint,
-                            run.progress.clock()};
+                            run.progress.clock(), shown_on(run, scene, turns.get())};
   options.descent.seed = run.seed;
   JointObject made =
       descend_jointly(run.device, {scene.surface, hits.samples(turns.get())}, run.views.train,

@@ -188,6 +188,13 @@ class ScriptedProgress : public Progress {
     return stopped_;
   }
 
+  int all_checks() const {
+    const std::lock_guard lock(mutex_);
+    int all = 0;
+    for (const auto& [stage, count] : checks) all += count;
+    return all;
+  }
+
   std::vector<std::string> stages;
   std::vector<double> fractions;
   std::vector<Json> lines;

@@ -135,15 +135,14 @@ SceneLight::SceneLight(const Device& device, const Scene& scene, VersionLights l
     if (scene.layers[l].everywhere) everywhere_ = int(l);
 }
 
-// The history of the materials of that shape version, up to that layer.
-SeenHistory SceneLight::history_of(int version, int last) const {
+// The history of the materials of that shape version, up to that layer or a later one.
+std::shared_ptr<const SeenHistory> SceneLight::history_of(int version, int last) const {
   const SeenHistoryKey key{surface_of_version(scene_, size_t(version)), scene_.albedo, scene_.material};
-  const auto known = seen_ ? seen_->find(key) : nullptr;
-  const auto made = std::make_shared<const SeenHistory>(
-      (known ? *known : SeenHistory(lights_[size_t(version)]->vertices.made_of))
-          .through(device_, scene_, last, version));
-  if (seen_) seen_->put(key, made, made->bytes());
-  return *made;
+  auto history = seen_ ? seen_->find(key) : nullptr;
+  if (history && history->reaches(scene_, last)) return history;
+  if (!history) history = std::make_shared<const SeenHistory>(lights_[size_t(version)]->vertices.made_of);
+  history = std::make_shared<const SeenHistory>(history->through(device_, scene_, last, version));
+  return seen_ ? seen_->put(key, history, history->bytes()) : history;
 }
 
 SceneLight::Histories SceneLight::histories_of(const HitGroups& groups) const {
@@ -204,7 +203,7 @@ void SceneLight::light_groups(const Histories& histories, const std::vector<std:
   for (const uint32_t group : order) {
     if (changed[group].empty()) continue;
     const auto [version, layer] = keys[group];
-    const SeenHistory& history = histories.at(version);
+    const SeenHistory& history = *histories.at(version);
     if (out.seen[group] == history.id(-1)) {
       light_group(group, changed[group], hits, {}, out);
       continue;
@@ -222,7 +221,7 @@ LitHits SceneLight::light_hits(std::span<const Hit> hits, Appearance look, const
   out.lights = lights_;
   out.groups = groups_of(hits, out.look.layer);
   const Histories histories = histories_of(out.groups);
-  for (const auto& [version, layer] : out.groups.keys) out.seen.push_back(histories.at(version).id(layer));
+  for (const auto& [version, layer] : out.groups.keys) out.seen.push_back(histories.at(version)->id(layer));
   const Comparison comparison(before, out);
   std::vector<std::vector<uint32_t>> changed(out.groups.keys.size());  // hits by group
   for (uint32_t i = 0; i < hits.size(); ++i) {

@@ -74,11 +74,11 @@ class SceneLight {
   // seen: materials seen in reflections; empty: as reconstructed.
   void light_group(uint32_t group, std::span<const uint32_t> which, std::span<const Hit> hits,
                    const VertexMaterials& seen, LitHits& out) const;
-  using Histories = std::map<int, SeenHistory>;  // by shape version
+  using Histories = std::map<int, std::shared_ptr<const SeenHistory>>;  // by shape version
   void light_groups(const Histories&, const std::vector<std::vector<uint32_t>>& changed,
                     std::span<const Hit> hits, LitHits& out) const;
   Histories histories_of(const HitGroups&) const;
-  SeenHistory history_of(int version, int last) const;
+  std::shared_ptr<const SeenHistory> history_of(int version, int last) const;
 
   const Device& device_;
   Scene scene_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/render/seen_history.h"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <numeric>
@@ -13,7 +14,10 @@
 namespace cei3d {
 namespace {
 
-bool same_bits(const Vec3f& a, const Vec3f& b) { return std::memcmp(&a, &b, sizeof a) == 0; }
+template <class T>
+bool same_bits(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
 
 // The share of a vertex in a SeenId.
 SeenId share_of(uint32_t vertex, const Vec3f& albedo, const Material& m) {
@@ -23,6 +27,20 @@ SeenId share_of(uint32_t vertex, const Vec3f& albedo, const Material& m) {
     id.b = mixed(id.b + std::bit_cast<uint32_t>(x));
   }
   return id;
+}
+
+// Keeps one of them where all are the same.
+template <class T>
+void collapse(std::vector<T>& values) {
+  const auto as_first = [&](const T& v) { return same_bits(v, values.front()); };
+  if (!std::all_of(values.begin(), values.end(), as_first)) return;
+  values.resize(std::min<size_t>(values.size(), 1));
+  values.shrink_to_fit();
+}
+
+template <class T>
+const T& value_of(const std::vector<T>& values, size_t k) {
+  return values[values.size() == 1 ? 0 : k];
 }
 
 // Whether the layer was made while that shape version was the present one, or before.
@@ -96,6 +114,9 @@ class Maker {
       change.values.albedo.push_back(look.albedo[k]);
       change.values.material.push_back(look.material[k]);
     }
+    collapse(change.values.albedo);
+    collapse(change.values.material);
+    change.vertices.shrink_to_fit();
   }
 
   const Device& device_;
@@ -107,43 +128,47 @@ class Maker {
 
 }  // namespace
 
-SeenHistory::SeenHistory(VertexMaterials as_reconstructed) : rest_(std::move(as_reconstructed)) {
-  for (uint32_t v = 0; v < rest_.albedo.size(); ++v) {
-    const SeenId share = share_of(v, rest_.albedo[v], rest_.material[v]);
+size_t SeenChange::bytes() const {
+  return sizeof(SeenChange) + content.size() + vertices.size() * sizeof(uint32_t) +
+         values.albedo.size() * sizeof(Vec3f) + values.material.size() * sizeof(Material);
+}
+
+SeenHistory::SeenHistory(VertexMaterials as_reconstructed)
+    : rest_(std::make_shared<const VertexMaterials>(std::move(as_reconstructed))),
+      bytes_(rest_->albedo.size() * (sizeof(Vec3f) + sizeof(Material))) {
+  for (uint32_t v = 0; v < rest_->albedo.size(); ++v) {
+    const SeenId share = share_of(v, rest_->albedo[v], rest_->material[v]);
     id_ = {id_.a + share.a, id_.b + share.b};
   }
 }
 
-SeenHistory SeenHistory::through(const Device& device, const Scene& scene, int last, int version) const {
-  const size_t wanted = size_t(last + 1);
-  size_t known = 0;
-  while (known < std::min(wanted, changes_.size()) && !changes_[known]->content.empty() &&
-         changes_[known]->content == scene.layers[known].content)
-    ++known;
-  SeenHistory out = *this;
-  out.changes_.resize(known);
-  if (known == wanted) return out;
-  Maker maker(device, scene, version, Walk(out).after(int(known) - 1));
-  for (size_t l = 0; l < known; ++l) maker.skip(scene.layers[l]);
-  for (size_t l = known; l < wanted; ++l)
-    out.changes_.push_back(maker.next(scene.layers[l], out.id(int(l) - 1)));
-  return out;
+size_t SeenHistory::common_layers(const Scene& scene, int last) const {
+  const size_t most = std::min(size_t(last + 1), changes_.size());
+  size_t n = 0;
+  while (n < most && !changes_[n]->content.empty() && changes_[n]->content == scene.layers[n].content) ++n;
+  return n;
 }
 
-size_t SeenHistory::bytes() const {
-  constexpr size_t kVertex = sizeof(Vec3f) + sizeof(Material);
-  size_t bytes = rest_.albedo.size() * kVertex;
-  for (const auto& change : changes_)
-    bytes += sizeof(SeenChange) + change->vertices.size() * (kVertex + sizeof(uint32_t));
-  return bytes;
+SeenHistory SeenHistory::through(const Device& device, const Scene& scene, int last, int version) const {
+  const size_t wanted = size_t(last + 1), known = common_layers(scene, last);
+  SeenHistory out = *this;
+  if (known == wanted) return out;
+  for (; out.changes_.size() > known; out.changes_.pop_back()) out.bytes_ -= out.changes_.back()->bytes();
+  Maker maker(device, scene, version, Walk(out).after(int(known) - 1));
+  for (size_t l = 0; l < known; ++l) maker.skip(scene.layers[l]);
+  for (size_t l = known; l < wanted; ++l) {
+    out.changes_.push_back(maker.next(scene.layers[l], out.id(int(l) - 1)));
+    out.bytes_ += out.changes_.back()->bytes();
+  }
+  return out;
 }
 
 const VertexMaterials& SeenHistory::Walk::after(int layer) {
   for (; int(next_) <= layer; ++next_) {
     const SeenChange& change = *history_.changes_[next_];
     for (size_t k = 0; k < change.vertices.size(); ++k) {
-      now_.albedo[change.vertices[k]] = change.values.albedo[k];
-      now_.material[change.vertices[k]] = change.values.material[k];
+      now_.albedo[change.vertices[k]] = value_of(change.values.albedo, k);
+      now_.material[change.vertices[k]] = value_of(change.values.material, k);
     }
   }
   return now_;

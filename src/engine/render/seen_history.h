@@ -24,23 +24,27 @@ struct SeenId {
 struct SeenChange {
   std::string content;             // EditLayer::content
   std::vector<uint32_t> vertices;  // whose materials it changes
-  VertexMaterials values;          // #vertices, with the layer
+  VertexMaterials values;          // #vertices, with the layer; one where all are the same
   SeenId id;                       // of all vertices, with the layer
+
+  size_t bytes() const;
 };
 
 class SeenHistory {
  public:
   explicit SeenHistory(VertexMaterials as_reconstructed);
-  // The same followed by the changes of the scene's layers up to `last`; changes of other layers are dropped.
+  // Whether it has the changes of the scene's layers up to `last`. It may have those of later ones, too.
+  bool reaches(const Scene& scene, int last) const { return common_layers(scene, last) == size_t(last + 1); }
+  // One that has them, which goes on from the layers that the two have in common.
   SeenHistory through(const Device&, const Scene&, int last, int version) const;
 
   SeenId id(int layer) const { return layer < 0 ? id_ : changes_[size_t(layer)]->id; }
-  size_t bytes() const;
+  size_t bytes() const { return bytes_; }
 
   // The materials after a layer. Layers are asked for in ascending order.
   class Walk {
    public:
-    explicit Walk(const SeenHistory& history) : history_(history), now_(history.rest_) {}
+    explicit Walk(const SeenHistory& history) : history_(history), now_(*history.rest_) {}
     const VertexMaterials& after(int layer);
 
    private:
@@ -50,9 +54,12 @@ class SeenHistory {
   };
 
  private:
-  VertexMaterials rest_;
+  size_t common_layers(const Scene&, int last) const;  // of the first ones
+
+  std::shared_ptr<const VertexMaterials> rest_;
   SeenId id_;
   std::vector<std::shared_ptr<const SeenChange>> changes_;  // by layer
+  size_t bytes_ = 0;
 };
 
 // Everything that a history depends on besides the layers.

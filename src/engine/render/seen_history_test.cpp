@@ -101,6 +101,21 @@ TEST(SeenHistory, GoesOnFromWhatTwoScenesHaveInCommon) {
   EXPECT_TRUE(same(SeenHistory::Walk(there).after(2), brute_force(device, other)));
 }
 
+// As tiles of a frame ask for it, each up to the last layer that it shows.
+TEST(SeenHistory, KnowsWhatFewerLayersNeed) {
+  const Device device = make_device();
+  const Scene scene = edited_sphere();
+  Scene other = first_layers(scene, 3);
+  other = with_layer(other, paint(other, "h", {0, -1, 0}, 0.5f, 11));
+  const SeenHistory history = SeenHistory(rest_materials(device, scene)).through(device, scene, 4, 0);
+  for (int last = -1; last < 6; ++last) EXPECT_EQ(history.reaches(scene, last), last <= 4) << last;
+  for (int last = -1; last < 4; ++last) EXPECT_EQ(history.reaches(other, last), last <= 2) << last;
+  const SeenHistory longer = history.through(device, scene, 5, 0);
+  EXPECT_EQ(longer.bytes(), SeenHistory(rest_materials(device, scene)).through(device, scene, 5, 0).bytes());
+  SeenHistory::Walk walk(history);
+  EXPECT_TRUE(same(walk.after(1), brute_force(device, first_layers(scene, 2))));
+}
+
 TEST(SeenHistory, SmallEditsTakeLittleRoom) {
   const Device device = make_device();
   Scene scene = sphere_scene();

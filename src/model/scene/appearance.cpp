@@ -2,6 +2,7 @@
 #include "model/scene/appearance.h"
 
 #include <algorithm>
+#include <map>
 
 #include "core/base/parallel.h"
 
@@ -35,6 +36,28 @@ struct Chunk {
   std::vector<int> materials;  // layers that change the material of each hit, topmost first
 };
 
+// What encloses those of the hits that are in a shape version.
+AxisBox box_in_version(const Scene& scene, std::span<const Hit> hits, int version) {
+  AxisBox box;
+  for (const Hit& h : hits)
+    if (scene.shape_versions.empty() || scene.shape_versions.back()->born_in(h.triangle) <= version)
+      box.add(in_version(scene.shape_versions, h, version).position);
+  return box;
+}
+
+// The layers that can affect any of the hits, the topmost first.
+std::vector<int> layers_near(const Scene& scene, std::span<const Hit> hits) {
+  std::map<int, AxisBox> boxes;  // by shape version
+  std::vector<int> near;
+  for (int l = int(scene.layers.size()) - 1; l >= 0; --l) {
+    const EditLayer& layer = scene.layers[size_t(l)];
+    const int version = max(layer.shape_version, 0);
+    if (!boxes.contains(version)) boxes[version] = box_in_version(scene, hits, version);
+    if (layer.reshape || layer.may_meet(boxes[version])) near.push_back(l);
+  }
+  return near;
+}
+
 // Walks through the layers of one hit, from the topmost down until nothing below can have an effect.
 class Walk {
  public:
@@ -45,9 +68,9 @@ class Walk {
     shaped_ = scene.shape_versions.back()->shaped_in(hit.triangle);
   }
 
-  Route route() {
+  Route route(std::span<const int> layers) {
     r_.material_begin = uint32_t(chunk_.materials.size());
-    for (int l = int(scene_.layers.size()) - 1; l >= 0; --l) visit(l, scene_.layers[l]);
+    for (const int l : layers) visit(l, scene_.layers[size_t(l)]);
     r_.material_end = uint32_t(chunk_.materials.size());
     return r_;
   }
@@ -121,8 +144,9 @@ struct Routes {
       : at(hits.size()), chunks((hits.size() + kGrain - 1) / kGrain) {
     if (scene.layers.empty()) return;
     parallel_ranges(int(hits.size()), kGrain, [&](int begin, int end) {
+      const std::vector<int> near = layers_near(scene, hits.subspan(size_t(begin), size_t(end - begin)));
       for (int i = begin; i < end; ++i)
-        at[i] = Walk(scene, hits[i], uint32_t(i), chunks[begin / kGrain]).route();
+        at[i] = Walk(scene, hits[i], uint32_t(i), chunks[begin / kGrain]).route(near);
     });
   }
 };

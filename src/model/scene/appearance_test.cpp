@@ -126,6 +126,35 @@ MaterialChange random_change(uint64_t seed) {
   return c;
 }
 
+// Many small layers, most of them away from the hits of a batch.
+TEST(Appearance, IsThatOfTheLayersNearTheHits) {
+  Scene s;
+  s.albedo = random_field(1);
+  for (uint64_t l = 0; l < 60; ++l) {
+    Rng rng(7, 3, l);
+    s.layers.push_back(
+        layer("x", ball({2 * rng.uniform() - 1, 2 * rng.uniform() - 1, 0.1f}, 0.1f + 0.2f * rng.uniform())));
+    s.layers.back().albedo = random_field(10 + l % 3);
+    s.layers.back().material = random_change(l);
+  }
+  const std::vector<Hit> all = random_hits(4000);
+  int edited = 0;
+  for (const float x : {-1.0f, -0.5f, 0.0f, 0.5f}) {
+    std::vector<Hit> hits;
+    for (const Hit& h : all)
+      if (h.position.x >= x && h.position.x < x + 0.25f && h.position.y > 0) hits.push_back(h);
+    const Appearance got = appearance_at(make_device(), s, hits);
+    for (size_t i = 0; i < hits.size(); ++i) {
+      const Expected e = one_by_one(s, hits[i]);
+      ASSERT_EQ(got.layer[i], e.layer);
+      ASSERT_EQ(got.material[i], e.material);
+      ASSERT_TRUE(same_bits(got.albedo[i], e.albedo));
+      edited += e.layer >= 0;
+    }
+  }
+  EXPECT_GT(edited, 200);
+}
+
 TEST(Appearance, ScaledAndBlendedMaterialsAreAppliedFromTheBottomUp) {
   const std::vector<Hit> hits = random_hits(500);
   for (uint64_t stack = 0; stack < 20; ++stack) {

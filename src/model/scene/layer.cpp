@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/scene/layer.h"
 
+#include <algorithm>
+
 #include "core/base/json_reader.h"
 #include "model/scene/stored.h"
 
@@ -81,6 +83,11 @@ float EditLayer::weight(Vec3f position, Vec3f normal) const {
   return w;
 }
 
+bool EditLayer::may_meet(const AxisBox& box) const {
+  return everywhere || region.may_meet(box) ||
+         std::any_of(also.begin(), also.end(), [&](const Region& r) { return r.may_meet(box); });
+}
+
 // Members with their default value are not written, so that edits of the first format, which knew only region
 // and albedo, are stored as before.
 void save_layer(const EditLayer& layer, Tensors& tensors, Json& head) {
@@ -132,6 +139,7 @@ EditLayer load_layer(const Tensors& tensors, const Json& head, const std::string
 
 EditLayer shelved(EditLayer layer, const std::shared_ptr<Shelf>& shelf, const std::string& name,
                   std::function<EditLayer()> read) {
+  constexpr size_t kSmallField = 4096;  // bytes; paint of one color has some hundreds
   const auto shared = std::make_shared<const std::function<EditLayer()>>(std::move(read));
   layer.region = layer.region.shelved(shelf, name, [shared] { return (*shared)().region; });
   for (size_t i = 0; i < layer.also.size(); ++i)
@@ -140,6 +148,7 @@ EditLayer shelved(EditLayer layer, const std::shared_ptr<Shelf>& shelf, const st
   if (!albedo) return layer;
   size_t bytes = sizeof(Field);
   for (const Param& p : albedo->params().all()) bytes += p.value.size() * sizeof(float);
+  if (bytes <= kSmallField) return layer;
   layer.albedo = Shelved<Field>(shelf, name, bytes, albedo, [shared] { return (*shared)().albedo.share(); });
   return layer;
 }

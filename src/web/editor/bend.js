@@ -18,7 +18,7 @@ export class BendTool {
     this.store = store;
     this.name = 'bend';
     this.label = 'Bend';
-    this.hint = 'Click to set handles and pins, then drag handles or use the sliders. Enter keeps it, Esc drops it, Delete takes a point away.';
+    this.hint = 'Click to set handles and pins, then drag handles or use the sliders. Enter keeps it, Esc discards it, Delete takes a point away.';
     this.reach = 0.25;  // of the object's radius
     this.sets = 'handle';
     /** @type {BendPoint[]} */
@@ -31,14 +31,17 @@ export class BendTool {
     this.again = false;
   }
 
+  /** Whether there is something to keep or discard. */
+  tries() { return this.points.length > 0; }
+
   options() {
     return [
       el('label', {}, 'A click sets', el('select', { id: 'bend-sets', onchange: (/** @type {any} */ e) => { this.sets = e.target.value; } },
         ...[['handle', 'a handle'], ['pin', 'a pin']].map(([v, t]) => el('option', { value: v, selected: this.sets === v }, t)))),
       el('label', {}, 'Reach', el('input', { type: 'range', min: '0.03', max: '1', step: 'any', value: String(this.reach), id: 'bend-reach',
         oninput: (/** @type {any} */ e) => { this.reach = Number(e.target.value); this.preview(); } })),
-      el('button', { class: 'primary', id: 'bend-keep', onclick: () => this.keep() }, 'Keep'),
-      el('button', { onclick: () => this.drop() }, 'Drop'),
+      el('button', { class: 'primary of-trial', id: 'bend-keep', onclick: () => this.keep() }, 'Keep'),
+      el('button', { class: 'of-trial', onclick: () => this.drop() }, 'Discard'),
     ];
   }
 

@@ -15,7 +15,7 @@ export class DecalTool {
     this.store = store;
     this.name = 'decal';
     this.label = 'Decal';
-    this.hint = 'Drop a picture on the object, or choose one and click where it shall lie. Drag moves it, [ ] scale it, Enter presses it in, Esc drops it.';
+    this.hint = 'Drop a picture on the object, or choose one and click where it shall lie. Drag moves it, [ ] scale it, Enter presses it in, Esc discards it.';
     this.width = 0.5;  // of the object's radius
     this.turn = 0;  // degrees, clockwise
     /** @type {{id: string, file: Blob, name: string, bitmap: ImageBitmap} | null} */
@@ -31,13 +31,16 @@ export class DecalTool {
     this.timer = 0;
   }
 
+  /** Whether there is something to keep or discard. */
+  tries() { return this.place !== null; }
+
   options() {
     const slider = (/** @type {string} */ label, /** @type {'width' | 'turn'} */ key, /** @type {number} */ min, /** @type {number} */ max) =>
       el('label', {}, label, el('input', { type: 'range', id: `decal-${key}`, min: String(min), max: String(max), step: 'any', value: String(this[key]),
         oninput: (/** @type {any} */ e) => { this[key] = Number(e.target.value); this.locate(); }, onchange: () => this.preview() }));
     return [
       el('button', { id: 'decal-choose', onclick: () => this.choose() }, 'Picture…'), slider('Size', 'width', 0.02, 2), slider('Turned', 'turn', -180, 180),
-      el('button', { class: 'primary', id: 'decal-keep', onclick: () => this.keep() }, 'Press in'), el('button', { onclick: () => this.drop() }, 'Drop'),
+      el('button', { class: 'primary of-trial', id: 'decal-keep', onclick: () => this.keep() }, 'Press in'), el('button', { class: 'of-trial', onclick: () => this.drop() }, 'Discard'),
     ];
   }
 

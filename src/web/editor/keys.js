@@ -27,7 +27,7 @@ export const keyTable = [
     { keys: ['Shift+['], action: 'softer', text: 'Softer brush' },
     { keys: ['Shift+]'], action: 'harder', text: 'Harder brush' },
     { keys: ['Enter'], action: 'keep', text: 'Keep what is previewed' },
-    { keys: ['Escape'], action: 'drop', text: 'Drop what is previewed' },
+    { keys: ['Escape'], action: 'drop', text: 'Discard what is previewed' },
   ] },
   { title: 'History', keys: [
     { keys: ['Mod+Z'], action: 'undo', text: 'Undo' },

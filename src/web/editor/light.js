@@ -51,7 +51,7 @@ export class LightTool {
       el('div', { class: 'buttons' },
         el('button', { onclick: () => this.choose() }, 'Environment…'),
         el('button', { class: 'primary', id: 'light-keep', onclick: () => this.keep() }, 'Keep'),
-        el('button', { id: 'light-drop', onclick: () => this.drop() }, 'Drop')),
+        el('button', { id: 'light-drop', onclick: () => this.drop() }, 'Discard')),
     ];
   }
 

@@ -61,6 +61,7 @@ stage.drawTool = (/** @type {CanvasRenderingContext2D} */ context) => {
   overlay.draw(context);
   tool.draw?.(context);
   input.drawReticle(context);
+  for (const b of byId('options').querySelectorAll('button.of-trial')) b.disabled = !tool.tries?.();
 };
 
 function drawTools() {
@@ -70,7 +71,7 @@ function drawTools() {
   }, glyph(t.name), el('span', {}, t.label))));
 }
 
-function drawOptions() { byId('options').replaceChildren(...(tool.options?.() ?? [])); tool.enter?.(); }
+function drawOptions() { byId('options').replaceChildren(...(tool.options?.() ?? [])); tool.enter?.(); stage.redraw(); }
 
 function drawProperties() {
   if (document.activeElement?.closest('#properties') && /** @type {any} */ (document.activeElement).type === 'range' && tool !== light) return;
@@ -125,7 +126,8 @@ stage.addEventListener('photo', drawPhoto);
 stage.addEventListener('resized', drawPhoto);
 
 function compare() {
-  if (!stage.photo && strip.views.length) strip.next(1);
+  if (!strip.views.length) return;
+  if (!stage.photo) strip.next(1);
   comparing = !comparing;
   drawActions();
   drawPhoto();
@@ -149,7 +151,8 @@ function drawActions() {
     el('button', { class: 'icon', id: 'redo', 'aria-label': 'Redo', title: `Redo (${keyOf('redo')})`, disabled: locked || !store.canRedo(), onclick: redo }, glyph('redo')),
     el('select', { 'aria-label': 'Channel', title: `What the picture shows (${keyOf('channel')})`, id: 'channel', onchange: (/** @type {any} */ e) => setChannel(e.target.value) },
       ...channels.map(([value, text]) => el('option', { value, selected: value === stage.channel }, text))),
-    el('button', { id: 'compare', 'aria-pressed': String(comparing), title: `Compare with a photograph (${keyOf('compare')})`, onclick: compare }, 'Compare'),
+    el('button', { id: 'compare', 'aria-pressed': String(comparing), disabled: !strip.views.length,
+      title: strip.views.length ? `Compare with a photograph (${keyOf('compare')})` : 'The photographs are not where they were when the object was made', onclick: compare }, 'Compare'),
     el('button', { class: 'primary', id: 'export', title: `Export (${keyOf('export')})`, onclick: () => exportDialog(store, stage) }, 'Export'));
 }
 

@@ -80,7 +80,7 @@ export class PartsPanel {
     });
     byId('parts').replaceChildren(
       el('h2', { id: 'parts-title' }, 'Parts', el('button', { class: 'small', disabled: store.state.read_only, onclick: this.actions.newPart }, 'New')),
-      rows.length ? el('ul', { class: 'list' }, ...rows) : el('p', {}, 'None yet. With P, click on the object.'));
+      rows.length ? el('ul', { class: 'list' }, ...rows) : el('p', {}, 'None yet. Press P and click on the object to select one.'));
   }
 }
 
@@ -88,36 +88,45 @@ export class HistoryPanel {
   /** @param {import('./store.js').Store} store @param {import('./stage.js').Stage} stage */
   constructor(store, stage) {
     this.store = store;
-    /** @type {Map<string, string>} pictures of what edits did, by id */
+    /** @type {Map<string, string>} pictures of what edits did, by id; '': of the object before them */
     this.thumbs = new Map();
     store.on('state', () => this.draw());
+    store.on('mode', () => {  // another object
+      for (const url of this.thumbs.values()) URL.revokeObjectURL(url);
+      this.thumbs.clear();
+    });
     stage.addEventListener('exact', () => this.keepThumb(stage));
   }
 
   /** @param {import('./stage.js').Stage} stage */
   keepThumb(stage) {
-    const last = this.store.last();
-    if (!last || this.thumbs.has(last.id) || stage.preview) return;
+    const id = this.store.last()?.id ?? '';
+    if (this.thumbs.has(id) || stage.preview || stage.channel !== 'rgb') return;
     const small = document.createElement('canvas'), c = small.getContext('2d');
     small.width = 80;
     small.height = 60;
     const { width: w, height: h } = stage.picture, s = Math.max(80 / w, 60 / h);
     c?.drawImage(stage.picture, (80 - w * s) / 2, (60 - h * s) / 2, w * s, h * s);
-    this.thumbs.set(last.id, small.toDataURL('image/webp', 0.8));
+    this.thumbs.set(id, '');
     small.toBlob((blob) => {
       if (!blob) return;
-      this.thumbs.set(last.id, URL.createObjectURL(blob));
+      this.thumbs.set(id, URL.createObjectURL(blob));
       this.draw();
     });
+  }
+
+  /** @param {string} id @param {string} otherwise name of a glyph */
+  thumb(id, otherwise) {
+    const url = this.thumbs.get(id);
+    return url ? el('img', { class: 'thumb', src: url, alt: '' }) : el('span', { class: 'thumb' }, glyph(otherwise));
   }
 
   /** @param {import('./store.js').Edit} e @param {number} index */
   row(e, index) {
     const { store } = this, text = describe(e), locked = store.state.read_only;
-    const url = this.thumbs.get(e.id);
     const now = index === store.state.done - 1 && e.done;
     return el('li', { class: [now ? 'on' : '', e.enabled ? '' : 'off', e.done ? '' : 'undone'].join(' ') }, el('div', { class: 'row' },
-      url?.startsWith('blob:') ? el('img', { class: 'thumb', src: url, alt: '' }) : el('span', { class: 'thumb' }, glyph(opGlyphs[e.op] ?? 'paint')),
+      this.thumb(e.id, opGlyphs[e.op] ?? 'paint'),
       el('button', { class: 'label', disabled: locked, title: e.done ? 'Go back to this step' : 'Go forward to this step', 'aria-current': now ? 'step' : undefined,
         onclick: () => store.change('goto', { done: index + 1 }) }, e.name || `${opNames[e.op] ?? e.op}`, ' ', el('span', { class: 'quiet' }, text)),
       el('button', { 'aria-label': `Rename ${e.id}`, title: 'Rename', disabled: locked, onclick: () => this.rename(e) }, glyph('pencil')),
@@ -135,8 +144,9 @@ export class HistoryPanel {
     const { store } = this, all = store.state.history;
     const steps = all.filter((e) => !e.set_aside), aside = all.filter((e) => e.set_aside);
     const rows = steps.map((e, i) => this.row(e, i)).reverse();
-    const start = el('li', { class: store.state.done === 0 ? 'on' : '' }, el('div', { class: 'row' }, el('span', { class: 'thumb' }),
-      el('button', { class: 'label', disabled: store.state.read_only, onclick: () => store.change('goto', { done: 0 }) }, 'As reconstructed')));
+    const start = el('li', { class: store.state.done === 0 ? 'on' : '' }, el('div', { class: 'row' }, this.thumb('', 'look'),
+      el('button', { class: 'label', disabled: store.state.read_only, title: 'Go back to the object before all edits', 'aria-current': store.state.done === 0 ? 'step' : undefined,
+        onclick: () => store.change('goto', { done: 0 }) }, 'As reconstructed')));
     byId('history').replaceChildren(el('h2', { id: 'history-title' }, 'History'),
       el('ul', { class: 'list tall' }, ...rows, start, ...(aside.length ? [this.aside(aside)] : [])));
     [...byId('history').querySelectorAll('li .label')].forEach((node, i) => { if (i < steps.length) node.dataset.id = steps[steps.length - 1 - i].id; });

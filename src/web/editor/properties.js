@@ -56,7 +56,7 @@ export class MaterialTool {
       ...sliders.map(row),
       el('label', { class: 'field wide' }, 'Color', el('span', { class: 'inline' }, el('input', { type: 'color', value: tint, id: 'material-color',
         oninput: (/** @type {any} */ e) => this.try({ color: e.target.value, ...this.replaced() }), onchange: (/** @type {any} */ e) => this.keep({ color: e.target.value, ...this.replaced() }) }),
-        el('label', {}, el('input', { type: 'checkbox', id: 'material-replace', checked: params.replace === true }), ' plain'))),
+        el('label', { title: 'The color takes the place of the texture; else it tints it' }, el('input', { type: 'checkbox', id: 'material-replace', checked: params.replace === true }), ' no texture'))),
       el('label', { class: 'field' }, 'Preset', el('select', { id: 'material-preset', onchange: (/** @type {any} */ e) => { if (e.target.value) this.keep({ material: e.target.value }, true); } },
         el('option', { value: '' }, 'choose'), ...(this.store.object?.presets ?? []).map((/** @type {string} */ n) => el('option', { value: n, selected: params.material === n }, n)))),
     ];

@@ -82,7 +82,7 @@ export class PartTool {
     this.overlay = overlay;
     this.name = 'part';
     this.label = 'Part';
-    this.hint = 'Click on the part; Alt or the right button: not this. Or draw around it with the lasso. Enter keeps it, Esc drops it.';
+    this.hint = 'Click on the part; Alt or the right button: not this. Or draw around it with the lasso. Enter keeps it, Esc discards it.';
     this.segmenter = 'grow';
     this.how = 'new';
     this.by = 'click';  // or 'lasso'
@@ -121,6 +121,9 @@ export class PartTool {
 
   leave() { this.clear(); }
 
+  /** Whether there is something to keep or discard. */
+  tries() { return this.clicks.length > 0 || this.outline.length > 0; }
+
   options() {
     const selected = this.store.part;
     const modes = [['new', 'New part'], ...(selected ? [['add', `Add to ${selected}`], ['subtract', `Take from ${selected}`], ['intersect', `Cut with ${selected}`]] : [])];
@@ -134,8 +137,8 @@ export class PartTool {
       ...(this.store.object?.segment && this.by === 'click' ? [el('label', {}, 'Found by', el('select', { onchange: (/** @type {any} */ e) => { this.segmenter = e.target.value; this.preview(); } },
         el('option', { value: 'grow' }, 'color and creases'), el('option', { value: 'sam' }, 'network')))] : []),
       el('label', {}, 'Name', el('input', { type: 'text', id: 'part-name', placeholder: 'part', maxlength: '60', autocomplete: 'off' })),
-      el('button', { class: 'primary', id: 'part-keep', onclick: () => this.keep() }, 'Keep'),
-      el('button', { onclick: () => this.drop() }, 'Drop'),
+      el('button', { class: 'primary of-trial', id: 'part-keep', onclick: () => this.keep() }, 'Keep'),
+      el('button', { class: 'of-trial', onclick: () => this.drop() }, 'Discard'),
     ];
   }
 

@@ -208,7 +208,7 @@ export class Stage extends EventTarget {
   }
 
   /** @param {import('./messages.js').FrameNews} frame */
-  finish({ seq, seconds }) {
+  finish({ seq }) {
     const asked = this.asked;
     if (!asked || seq !== asked.seq) return;
     this.asked = null;
@@ -224,7 +224,7 @@ export class Stage extends EventTarget {
     }
     this.exact = this.back;
     this.back = document.createElement('canvas');
-    byId('badge').textContent = `${asked.samples === 1 ? 'exact' : 'refined'}  ${seconds.toFixed(2)} s`;
+    byId('badge').textContent = asked.samples === 1 ? 'exact' : 'refined';
     this.emit('exact');
     if (asked.samples === 1) this.ask('rest', 2);
     else this.settle();

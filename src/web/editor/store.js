@@ -29,7 +29,7 @@ export class Store extends EventTarget {
     });
     this.line.on('stranger', () => { this.stranger = true; this.setLost(true); });
     this.line.on('lost', () => this.setLost(true));
-    this.line.on('state', () => this.refresh());
+    this.line.on('state', (news) => this.hear(news));
     /** @type {Promise<any>} */
     this.queue = Promise.resolve();
   }
@@ -43,6 +43,12 @@ export class Store extends EventTarget {
   setLost(lost) {
     this.lost = lost;
     this.emit('saving');
+  }
+
+  /** The answer to a change of this window, which may be on its way, brings the same state. @param {{mode: string, revision: string}} news */
+  async hear({ mode, revision }) {
+    await this.queue;
+    if (mode !== 'project' || this.state.mode !== mode || this.state.revision !== revision) await this.refresh();
   }
 
   async refresh() {

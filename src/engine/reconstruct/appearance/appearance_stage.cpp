@@ -87,6 +87,7 @@ class Descent {
         });
       };
       albedo_trainer_.step(device_, points_, loss, rate * std::pow(0.1f, float(step) / float(steps)));
+      look();
       if (step % 50 == 0) progress_.report({"albedo", 0.5 * step / steps, -1, ""});
     }
   }
@@ -102,6 +103,7 @@ class Descent {
       else
         lighting_->set_lobes(result_.light);
       joint_step(light, std::pow(0.1f, float(step) / float(steps)));
+      look();
       if (step % 50 == 0) progress_.report({"light and albedo", 0.5 + 0.5 * step / steps, -1, ""});
     }
   }
@@ -111,6 +113,10 @@ class Descent {
  private:
   // With a turning light a refresh takes many times as long.
   static constexpr int kRefresh = 25, kTurningRefresh = 100;
+
+  void look() const {
+    if (options_.look) options_.look(*lighting_, albedo_, result_.material);
+  }
 
   void learn_materials(const Field& field) {
     materials_ = std::make_shared<Field>(field);

@@ -3,10 +3,12 @@
 // [paper sec. 4.2; docs/method.md#appearance-stage]
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "core/base/progress.h"
 #include "engine/reconstruct/appearance/linear_split.h"
+#include "engine/render/lighting.h"
 #include "model/field/field.h"
 #include "model/light/sg_mixture.h"
 #include "model/scene/material_field.h"
@@ -18,6 +20,10 @@ struct AppearanceInput {
   SurfaceSamples samples;                           // pixels wholly on the object
   std::shared_ptr<const Transport> transport = {};  // of the surface; null: it is computed
 };
+
+// Is called between steps of a descent with what it has reached, and changes nothing.
+using LookAtAppearance =
+    std::function<void(const Lighting&, const Field& albedo, const MaterialField& material)>;
 
 enum class Effort { brief, full };  // brief: fewer samples and steps, half the time
 
@@ -34,6 +40,7 @@ struct AppearanceOptions {
   FieldConfig materials;       // MaterialField::kOutputs outputs, sigmoid
   int batch = 4096;            // pixels per step, kPixelPoints points each
   float network_rate = 2e-3f;  // Adam rate of the field's layers
+  LookAtAppearance look{};     // may be empty
 };
 
 struct AppearanceResult {

@@ -4,6 +4,8 @@
 // keeps the silhouettes. See docs/method.md#polishing.
 #pragma once
 
+#include <functional>
+
 #include "core/base/clock.h"
 #include "core/base/progress.h"
 #include "engine/reconstruct/appearance/appearance_stage.h"
@@ -21,6 +23,7 @@ struct PolishOptions {
   double from = 0.66;
   uint64_t seed = 1;
   int64_t first_step = int64_t(1) << 24;  // index of the first step, which keys the random rays
+  std::function<void()> look{};           // is called after each step, and changes nothing; may be empty
 };
 
 // input: the surface of the stage, and its hits. appearance: of that surface; light and material are fixed,

@@ -67,6 +67,7 @@ class JointDescent {
   // rate: times all rates.
   JointLoss step(int step, float rate);
   const JointObject& object() const { return object_; }
+  const Lighting& lighting() const { return *lighting_; }  // of the last step
 
  private:
   friend struct JointDescentProbe;  // the gradient test sees gradients before they are used

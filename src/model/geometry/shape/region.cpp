@@ -56,17 +56,13 @@ size_t Region::Points::edited_count() const {
 }
 
 // With all that the points reach.
-std::optional<Region::Box> Region::box_of(const Data& d) {
+std::optional<AxisBox> Region::box_of(const Data& d) {
   constexpr float kRounding = 1.001f;
   if (d.points.positions.empty()) return std::nullopt;
-  Box box{d.points.positions[0], d.points.positions[0]};
-  for (const Vec3f p : d.points.positions)
-    for (int c = 0; c < 3; ++c) {
-      box.min[c] = min(box.min[c], p[c]);
-      box.max[c] = max(box.max[c], p[c]);
-    }
+  AxisBox box;
+  for (const Vec3f p : d.points.positions) box.add(p);
   const float reach = kRounding * d.max_reach;
-  return Box{box.min - Vec3f{reach, reach, reach}, box.max + Vec3f{reach, reach, reach}};
+  return AxisBox{box.min - Vec3f{reach, reach, reach}, box.max + Vec3f{reach, reach, reach}};
 }
 
 size_t Region::Data::bytes() const {

@@ -19,6 +19,7 @@
 
 #include "core/base/json.h"
 #include "core/base/shelf.h"
+#include "core/math/axis_box.h"
 #include "core/math/vec.h"
 #include "model/geometry/shape/point_index.h"
 #include "model/geometry/shape/projector.h"
@@ -45,6 +46,7 @@ class Region {
   bool contains(Vec3f position, Vec3f normal) const;
   // Share of the edit at a point: 1 inside, 0 outside, the mask's alpha where the mask is soft.
   float weight(Vec3f position, Vec3f normal) const;
+  bool may_meet(const AxisBox& box) const { return !box_ || box_->meets(box); }  // false: no point is in both
   Points points() const { return data_->points; }
   Projector projector() const { return data_->projector; }
   ScoredPoints scored() const { return data_->scored; }  // empty: not a part
@@ -75,16 +77,10 @@ class Region {
     bool nearest_is_edited(Vec3f position, Vec3f normal) const;
     bool any_is_edited(Vec3f position, Vec3f normal) const;
   };
-  struct Box {
-    Vec3f min, max;
-    bool contains(Vec3f p) const {
-      return p.x >= min.x && p.y >= min.y && p.z >= min.z && p.x <= max.x && p.y <= max.y && p.z <= max.z;
-    }
-  };
-  static std::optional<Box> box_of(const Data&);
+  static std::optional<AxisBox> box_of(const Data&);
 
   Shelved<Data> data_ = std::make_shared<const Data>();  // copies of a region share it
-  std::optional<Box> box_;                               // outside is nothing of the region; none: not known
+  std::optional<AxisBox> box_;                           // outside is nothing of the region; none: not known
 };
 
 }  // namespace cei3d
