@@ -72,15 +72,22 @@ TEST(Plan, AFasterMachineLeavesNothingOutThatASlowerOneDoes) {
   }
 }
 
-// A start is chosen by shorter trials where there is less time, before it is not chosen at all.
+// A start is chosen by shorter trials where there is less time, before it is not chosen at all. Not always
+// shorter ones on a slower machine: where a stage is left out, the others get more time.
 TEST(Plan, ASlowerMachineTriesStartsMoreBriefly) {
+  const int all = preset_by_name("fast").trial.steps;
   std::vector<int> steps;
-  for (double slowness = 0.5; slowness < 40; slowness *= 1.2)
+  for (double slowness = 0.5; slowness < 40; slowness *= 1.05)
     steps.push_back(plan_for("fast", 600, 3000000, slowness).trial_steps);
-  EXPECT_TRUE(std::is_sorted(steps.rbegin(), steps.rend()));
-  EXPECT_EQ(steps.front(), preset_by_name("fast").trial.steps);
+  EXPECT_EQ(steps.front(), all);
   EXPECT_EQ(steps.back(), 0);
-  EXPECT_GT(std::set<int>(steps.begin(), steps.end()).size(), 4u);
+  const auto none = std::find(steps.begin(), steps.end(), 0);
+  for (auto s = steps.begin(); s != none; ++s) {
+    EXPECT_GE(4 * *s, all);
+    EXPECT_LE(*s, all);
+  }
+  EXPECT_LT(*std::prev(none), all / 2);
+  EXPECT_GT(std::set<int>(steps.begin(), none).size(), 4u);
 }
 
 TEST(Plan, ByStepsKnowsNoClock) {
