@@ -62,6 +62,15 @@ same_bits "$out/here" "$out/node" 1
 grep -h '"do": *"resume"' "$out"/node/items/*/s0/project/history.jsonl >/dev/null || fail "the object was begun anew"
 tools/slurm_box.sh node "$out/box" "$node"
 
+echo "the controller is killed before it has written a job down; the same command again"
+stubs 4 3 >"$out/m.jsonl"
+on_slurm "$out/lost"
+kill -9 "$(cat "$out/box/slurmctld.pid")"
+sleep 2
+tools/slurm_box.sh controller "$out/box"
+on_slurm "$out/lost"
+wait_for_done "$out/lost" 4 200
+
 echo "the controller is killed"
 cp "$out/two.jsonl" "$out/m.jsonl"
 on_slurm "$out/controller"

@@ -11,7 +11,7 @@ begin=$(date +%s)
 batch run "$out/m.jsonl" -o "$out/here" --jobs 1 --quiet
 echo "  $(seconds_since "$begin") s"
 
-echo "tasks of one minute, which Slurm asks to save after 10 to 40 s; longer must no stage between two checkpoints take"
+echo "tasks of one minute, which Slurm asks to save after 10 to 40 s: no stage between two checkpoints may take longer"
 begin=$(date +%s)
 on_slurm "$out/limit" --limit 1m
 wait_for_done "$out/limit" 1 1500

@@ -134,7 +134,7 @@ void polish(const RunContext& run, RunState& state, int round) {
   options.clock = run.progress.clock();
   options.seed = run.seed + uint64_t(round);
   options.first_step = (int64_t(round) + 1) << 24;
-  options.look = [&] {
+  options.show = [&] {
     run.live.offer([&](const Camera& camera) { return geometry.render_radiance(camera, 1); });
   };
   polish_surface(run.device, geometry, all.input(turns.get()), appearance, options, run.progress);
@@ -188,7 +188,7 @@ AppearanceInput appearance_input(const RunContext& run, RunState& state, const L
 }
 
 // turns: must outlive the result.
-LookAtAppearance shown_on(const RunContext& run, const Scene& scene, const LightTurns* turns) {
+ShowAppearance shown_on(const RunContext& run, const Scene& scene, const LightTurns* turns) {
   return [&run, &scene, turns](const Lighting& lighting, const Field& albedo, const MaterialField& material) {
     run.live.offer([&](const Camera& camera) {
       return lit_picture(run.device, {*scene.sdf, scene.surface, lighting, albedo, material, turns}, camera);
@@ -219,7 +219,7 @@ void estimate_appearance(const RunContext& run, RunState& state, const Stage::Ch
   const Turns turns = light_turns(run, state, scene.surface, state.hits);
   AppearanceResult made{scene.light, scene.material, nullptr, {}};
   AppearanceOptions options = appearance_options(run);
-  options.look = shown_on(run, scene, turns.get());
+  options.show = shown_on(run, scene, turns.get());
   descend_on_appearance(run.device, appearance_input(run, state, turns.get()), options,
                         state.separated_albedo, made, run.progress);
   check_cancelled(run.progress);
@@ -240,7 +240,7 @@ void refine(const RunContext& run, RunState& state, uint64_t subset) {
   AppearanceResult result{scene.light, scene.material, scene.albedo, {}};
   const Turns turns = light_turns(run, state, scene.surface, hits);
   AppearanceOptions options = appearance_options(run);
-  options.look = shown_on(run, scene, turns.get());
+  options.show = shown_on(run, scene, turns.get());
   refine_albedo(run.device, {scene.surface, hits.samples(turns.get())}, options, result, run.progress,
                 run.preset.refinement_steps);
   check_cancelled(run.progress);

@@ -87,7 +87,7 @@ class Descent {
         });
       };
       albedo_trainer_.step(device_, points_, loss, rate * std::pow(0.1f, float(step) / float(steps)));
-      look();
+      show();
       if (step % 50 == 0) progress_.report({"albedo", 0.5 * step / steps, -1, ""});
     }
   }
@@ -103,7 +103,7 @@ class Descent {
       else
         lighting_->set_lobes(result_.light);
       joint_step(light, std::pow(0.1f, float(step) / float(steps)));
-      look();
+      show();
       if (step % 50 == 0) progress_.report({"light and albedo", 0.5 + 0.5 * step / steps, -1, ""});
     }
   }
@@ -114,8 +114,8 @@ class Descent {
   // With a turning light a refresh takes many times as long.
   static constexpr int kRefresh = 25, kTurningRefresh = 100;
 
-  void look() const {
-    if (options_.look) options_.look(*lighting_, albedo_, result_.material);
+  void show() const {
+    if (options_.show) options_.show(*lighting_, albedo_, result_.material);
   }
 
   void learn_materials(const Field& field) {

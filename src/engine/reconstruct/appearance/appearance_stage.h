@@ -21,8 +21,8 @@ struct AppearanceInput {
   std::shared_ptr<const Transport> transport = {};  // of the surface; null: it is computed
 };
 
-// Is called between steps of a descent with what it has reached, and changes nothing.
-using LookAtAppearance =
+// Called after each step of a descent with what it has reached; changes nothing.
+using ShowAppearance =
     std::function<void(const Lighting&, const Field& albedo, const MaterialField& material)>;
 
 enum class Effort { brief, full };  // brief: fewer samples and steps, half the time
@@ -40,7 +40,7 @@ struct AppearanceOptions {
   FieldConfig materials;       // MaterialField::kOutputs outputs, sigmoid
   int batch = 4096;            // pixels per step, kPixelPoints points each
   float network_rate = 2e-3f;  // Adam rate of the field's layers
-  LookAtAppearance look{};     // may be empty
+  ShowAppearance show{};       // may be empty
 };
 
 struct AppearanceResult {

@@ -111,7 +111,7 @@ void polish_surface(const Device& device, GeometryStage& stage, const Appearance
     const double time = options.seconds > 0 ? (options.clock() - start) / options.seconds : 0;
     if (time >= 1) break;
     polish.step(step, std::max(time, double(step) / options.steps));
-    if (options.look) options.look();
+    if (options.show) options.show();
     if (step % 20 == 0) progress.report({"surface by its reflections", double(step) / options.steps, -1, ""});
   }
 }

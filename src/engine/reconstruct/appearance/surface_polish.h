@@ -23,7 +23,7 @@ struct PolishOptions {
   double from = 0.66;
   uint64_t seed = 1;
   int64_t first_step = int64_t(1) << 24;  // index of the first step, which keys the random rays
-  std::function<void()> look{};           // is called after each step, and changes nothing; may be empty
+  std::function<void()> show{};           // called after each step; changes nothing; may be empty
 };
 
 // input: the surface of the stage, and its hits. appearance: of that surface; light and material are fixed,

@@ -32,7 +32,7 @@ JointObject descend_jointly(const Device& device, const AppearanceInput& input, 
     if (u >= 1) break;
     const JointLoss loss = descent.step(
         step, float(std::min(1.0, (u + 1.0 / options.steps) / kWarmUp) * std::pow(kLastRate, u)));
-    if (options.look) options.look(descent.lighting(), descent.object().albedo, descent.object().material);
+    if (options.show) options.show(descent.lighting(), descent.object().albedo, descent.object().material);
     sum.color += loss.color, sum.eikonal += loss.eikonal, sum.mask += loss.mask;
     if (++summed < 50) continue;
     progress.report({"joint descent", u, -1, ""});

@@ -13,7 +13,7 @@ struct JointStageOptions {
   int steps = 400;     // at rates that rise at first and then decay to a tenth
   double seconds = 0;  // > 0: time limit
   Clock clock = steady_seconds;
-  LookAtAppearance look{};  // may be empty
+  ShowAppearance show{};  // may be empty
 };
 
 // Error: interrupted.
