@@ -2,7 +2,7 @@
 // editor.cjs PROGRAM PROJECT PICTURES CHROMIUM: a first session in the live editor, in a browser, with what can go wrong.
 const fs = require('node:fs');
 const { settled } = require('./serve.cjs');
-const { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, withPage } = require('./page.cjs');
+const { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, likeness, withPage } = require('./page.cjs');
 
 const [program, project, pictures, executablePath] = process.argv.slice(2);
 fs.mkdirSync(pictures, { recursive: true });
@@ -38,24 +38,7 @@ async function firstSession(page, url) {
 /** What the page draws while something moves is nearly the program's own frame. */
 async function drawsItself(page) {
   await page.waitForFunction(() => globalThis.cei3d.stage.live.current(), null, { timeout: 30000 });
-  const psnr = await page.evaluate(() => {
-    const { stage } = globalThis.cei3d, { width, height } = stage.picture;
-    stage.live.draw(stage.json(), stage.channel, stage.light);
-    const pixels = (source) => {
-      const copy = document.createElement('canvas');
-      copy.width = width;
-      copy.height = height;
-      const c = copy.getContext('2d');
-      c.fillStyle = '#fff';
-      c.fillRect(0, 0, width, height);
-      c.drawImage(source, 0, 0);
-      return c.getImageData(0, 0, width, height).data;
-    };
-    const a = pixels(stage.live.canvas), b = pixels(stage.picture);
-    let sum = 0;
-    for (let i = 0; i < a.length; ++i) if (i % 4 !== 3) sum += (a[i] - b[i]) ** 2;
-    return 10 * Math.log10(255 ** 2 / (sum / (0.75 * a.length)));
-  });
+  const psnr = await likeness(page);
   check(`the page draws what the program does: ${psnr.toFixed(1)} dB`, psnr > 34);
 }
 

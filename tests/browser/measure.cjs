@@ -6,6 +6,7 @@ const fs = require('node:fs');
 const path = require('node:path');
 const zlib = require('node:zlib');
 const { withEditor, settled, megabytes, median } = require('./serve.cjs');
+const { likeness } = require('./page.cjs');
 
 const [program, original, executablePath] = process.argv.slice(2);
 
@@ -27,26 +28,6 @@ function bundle() {
   visit(path.join(__dirname, '../../src/web'));
   row('size of the page, raw and gzipped', `${Math.round(raw / 1000)} kB, ${Math.round(packed / 1000)} kB`);
 }
-
-/** PSNR of what the page draws against the program's refined frame of the same camera, on white, 8 bits. */
-const likeness = (page) => page.evaluate(() => {
-  const { stage } = globalThis.cei3d, { width, height } = stage.picture;
-  stage.live.draw(stage.json(), stage.channel, stage.light);
-  const copy = document.createElement('canvas');
-  const pixels = (source) => {
-    copy.width = width;
-    copy.height = height;
-    const c = copy.getContext('2d');
-    c.fillStyle = '#fff';
-    c.fillRect(0, 0, width, height);
-    c.drawImage(source, 0, 0);
-    return c.getImageData(0, 0, width, height).data;
-  };
-  const a = pixels(stage.live.canvas), b = pixels(stage.picture);
-  let sum = 0;
-  for (let i = 0; i < a.length; ++i) if (i % 4 !== 3) sum += (a[i] - b[i]) ** 2;
-  return 10 * Math.log10(255 ** 2 / (sum / (3 * a.length / 4)));
-});
 
 async function look(page) {
   const views = await page.evaluate(() => globalThis.cei3d.store.object.views.map((v) => v.name));

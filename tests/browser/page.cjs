@@ -69,6 +69,26 @@ const put = (page, selector, value) => page.locator(selector).evaluate((node, v)
   for (const type of ['input', 'change']) node.dispatchEvent(new Event(type));
 }, String(value));
 
+/** PSNR of what the page draws against the program's refined frame of the same camera, on white, 8 bits. */
+const likeness = (page) => page.evaluate(() => {
+  const { stage } = globalThis.cei3d, { width, height } = stage.picture;
+  stage.live.draw(stage.json(), stage.channel, stage.light);
+  const copy = document.createElement('canvas');
+  const pixels = (source) => {
+    copy.width = width;
+    copy.height = height;
+    const c = copy.getContext('2d');
+    c.fillStyle = '#fff';
+    c.fillRect(0, 0, width, height);
+    c.drawImage(source, 0, 0);
+    return c.getImageData(0, 0, width, height).data;
+  };
+  const a = pixels(stage.live.canvas), b = pixels(stage.picture);
+  let sum = 0;
+  for (let i = 0; i < a.length; ++i) if (i % 4 !== 3) sum += (a[i] - b[i]) ** 2;
+  return 10 * Math.log10(255 ** 2 / (sum / (3 * a.length / 4)));
+});
+
 /**
  * Opens the project in a browser and runs a test in it; a page that complains is a failure.
  * @param {{program: string, project: string, executablePath: string, picture: (page: any, name: string) => Promise<Buffer>}} what
@@ -92,4 +112,4 @@ async function withPage({ program, project, executablePath, picture }, test) {
   });
 }
 
-module.exports = { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, put, withPage };
+module.exports = { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, put, likeness, withPage };

@@ -35,6 +35,9 @@ TEST(AxisBox, MeetsWhatHasAPointInCommon) {
 TEST(AxisBox, AnEmptyOneMeetsNothing) {
   EXPECT_FALSE(AxisBox().meets(box_of({{-9, -9, -9}, {9, 9, 9}})));
   EXPECT_FALSE(AxisBox().contains({0, 0, 0}));
+}
+
+TEST(AxisBox, LeavesOutWhatIsNotANumber) {
   EXPECT_TRUE(box_of({{NAN, 0, 0}, {1, 1, 1}, {0, NAN, NAN}}).contains({0.5f, 0.5f, 1}));
 }
 

@@ -12,6 +12,7 @@
 #include "engine/edit/deform.h"
 #include "engine/edit/point_distance.h"
 #include "engine/render/render.h"
+#include "model/field/test_learned_field.h"
 #include "model/geometry/mesh/surface_nets.h"
 #include "model/geometry/mesh/test_meshes.h"
 #include "model/geometry/shape/trace_field.h"
@@ -62,34 +63,13 @@ class FieldDeform : public testing::Test {
   static void SetUpTestSuite() {
     const Device device = make_device();
     auto* s = new Scene;
-    FieldConfig sdf;
-    sdf.encoding = {0, 8, 8, 64, 14};
-    sdf.width = 32;
-    sdf.activation = Activation::softplus;
-    sdf.outputs = 1;
-    sdf.sphere_radius = kRadius;
-    Field field(sdf, 1);
-    FieldTrainer trainer(field, {});
-    constexpr int kSteps = 200, kPoints = 2048;
-    for (int step = 0; step < kSteps; ++step) {
-      std::vector<Vec3f> x;
-      for (uint64_t i = 0; i < kPoints; ++i) {
-        Rng rng(3, uint64_t(step), i);
-        const Vec3f d = normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()});
-        x.push_back(d * (kRadius + (i % 4 ? 0.03f : 0.2f) * rng.normal()));
-      }
-      const auto loss = [&](int begin, int end, const float* out, float* d_out) {
-        for (int i = begin; i < end; ++i)
-          d_out[i - begin] = 2 * (out[i - begin] - (length(x[size_t(i)]) - kRadius)) / kPoints;
-      };
-      trainer.step(device, x, loss, std::pow(0.02f, float(step) / kSteps));
-    }
-    s->sdf = std::make_shared<const Field>(field);
+    s->sdf = std::make_shared<const Field>(
+        learned_distances(device, kRadius, 0.03f, [](Vec3f x) { return length(x) - kRadius; }));
     FieldConfig albedo;
     albedo.encoding.levels = 3;
     albedo.output_activation = Activation::sigmoid;
     s->albedo = std::make_shared<Field>(albedo, 2);
-    Mesh mesh = extract_mesh(device, field, {64});
+    Mesh mesh = extract_mesh(device, *s->sdf, {64});
     std::vector<uint8_t> visibility(mesh.positions.size() * (kSkyDirections / 8), 0xff);
     s->surface = std::make_shared<Surface>(std::move(mesh), std::move(visibility));
     scene_ = s;

@@ -11,45 +11,31 @@
 #include "engine/export/gltf_asset.h"
 #include "engine/export/obj.h"
 #include "engine/export/tangents.h"
+#include "engine/export/test_ball.h"
 #include "engine/io/png_file.h"
 #include "engine/io/webp_file.h"
-#include "model/geometry/mesh/test_meshes.h"
 #include "model/geometry/unwrap/raster.h"
 
 namespace cei3d {
 namespace {
 
-constexpr float kRadius = 0.5f;
 constexpr int kTexels = 128;
-
-std::shared_ptr<const Field> color_field() {
-  FieldConfig c;
-  c.encoding.frequencies = 1;
-  c.output_activation = Activation::sigmoid;
-  return std::make_shared<Field>(c, 3);
-}
 
 // An untrained distance field is a ball up to what its last layer adds; without that layer it is one exactly.
 std::shared_ptr<const Field> ball_field() {
   FieldConfig c;
   c.outputs = 1;
   c.width = 16;
-  c.sphere_radius = kRadius;
+  c.sphere_radius = kBallRadius;
   auto field = std::make_shared<Field>(c, 1);
   for (auto& p : field->params().all()) std::fill(p.value.begin(), p.value.end(), 0.0f);
   return field;
 }
 
-// A ball whose upper half is rough metal, in a capture whose frame is not the unit sphere's.
+// A ball whose upper half is rough metal.
 Scene ball() {
-  Scene s;
-  s.normalization = {{1, 2, 3}, 2};
-  Mesh mesh = sphere_mesh(kRadius, 5);
-  std::vector<uint8_t> free_sky(mesh.positions.size() * kSkyDirections / 8, 0xff);
-  s.surface = std::make_shared<const Surface>(std::move(mesh), std::move(free_sky));
-  s.albedo = color_field();
+  Scene s = test_ball(5, {.frequencies = 1});
   s.sdf = ball_field();
-  s.material = Material{.roughness = 0.4f};
   EditLayer layer;
   layer.id = "0001-material";
   layer.part = "the top";
@@ -100,7 +86,7 @@ TEST_F(MakeAsset, IsTheSurfaceInTheFrameOfTheCapture) {
   EXPECT_GT(made_->report.error, 0);
   EXPECT_LT(made_->report.error, 0.02);
   for (const Vec3f p : made_->asset.mesh.positions)
-    EXPECT_NEAR(length(p - Vec3f{1, 2, 3}), kRadius / 2, 1e-4);
+    EXPECT_NEAR(length(p - Vec3f{1, 2, 3}), kBallRadius / 2, 1e-4);
 }
 
 // Of the fine surface, not of the flat faces.
@@ -122,7 +108,7 @@ TEST_F(MakeAsset, ColorsAreThoseOfTheFieldAtTheSurfacePoint) {
   std::vector<Vec3f> points;
   std::vector<size_t> texels;
   for_each_point([&](size_t texel, Vec3f direction, const auto&, float, float) {
-    points.push_back(direction * kRadius);
+    points.push_back(direction * kBallRadius);
     texels.push_back(texel);
   });
   const std::vector<Vec3f> wanted = scene.albedo->eval3(make_device(), points);

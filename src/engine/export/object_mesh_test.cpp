@@ -7,31 +7,12 @@
 #include <set>
 
 #include "core/base/error.h"
-#include "model/geometry/mesh/test_meshes.h"
+#include "engine/export/test_ball.h"
 
 namespace cei3d {
 namespace {
 
-constexpr float kRadius = 0.5f;
-
-std::shared_ptr<const Field> color_field() {
-  FieldConfig c;
-  c.encoding.levels = 4;
-  c.output_activation = Activation::sigmoid;
-  return std::make_shared<Field>(c, 3);
-}
-
-// A ball whose sky is free everywhere, in a capture whose frame is not the unit sphere's.
-Scene ball() {
-  Scene s;
-  s.normalization = {{1, 2, 3}, 2};
-  Mesh mesh = sphere_mesh(kRadius, 2);
-  std::vector<uint8_t> free_sky(mesh.positions.size() * kSkyDirections / 8, 0xff);
-  s.surface = std::make_shared<const Surface>(std::move(mesh), std::move(free_sky));
-  s.albedo = color_field();
-  s.material = Material{.roughness = 0.4f};
-  return s;
-}
+Scene ball() { return test_ball(2, {.levels = 4}); }
 
 bool above(Vec3f p) { return p.z > 0.1f; }
 

@@ -11,6 +11,7 @@
 #include "core/math/rotation.h"
 #include "engine/reconstruct/joint/joint_stage.h"
 #include "engine/reconstruct/joint/test_ball.h"
+#include "model/field/test_learned_field.h"
 #include "model/geometry/mesh/surface_nets.h"
 
 namespace cei3d {
@@ -27,31 +28,8 @@ float patch(Vec3f d) {
 }
 
 Field ball_field(const Device& device, bool with_patch) {
-  FieldConfig c;
-  c.encoding = {0, 8, 8, 64, 14};
-  c.width = 32;
-  c.activation = Activation::softplus;
-  c.outputs = 1;
-  c.sphere_radius = kSphereRadius;
-  Field field(c, 1);
-  FieldTrainer trainer(field, {});
-  constexpr int kSteps = 250, kPoints = 4096;
-  for (int step = 0; step < kSteps; ++step) {
-    std::vector<Vec3f> x;
-    for (uint64_t i = 0; i < kPoints; ++i) {
-      Rng rng(3, uint64_t(step), i);
-      const Vec3f d = normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()});
-      x.push_back(d * (kSphereRadius + (i % 4 ? 0.02f : 0.15f) * rng.normal()));
-    }
-    const auto loss = [&](int begin, int end, const float* out, float* d_out) {
-      for (int i = begin; i < end; ++i) {
-        const float want = length(x[size_t(i)]) - kSphereRadius - (with_patch ? patch(x[size_t(i)]) : 0);
-        d_out[i - begin] = 2 * (out[i - begin] - want) / kPoints;
-      }
-    };
-    trainer.step(device, x, loss, std::pow(0.01f, float(step) / kSteps));
-  }
-  return field;
+  return learned_distances(device, kSphereRadius, 0.02f,
+                           [&](Vec3f x) { return length(x) - kSphereRadius - (with_patch ? patch(x) : 0); });
 }
 
 class JointRecovery : public testing::Test {
