@@ -13,7 +13,7 @@ namespace cei3d {
 
 namespace {
 
-constexpr double kCheckpointSeconds = 30, kReportSeconds = 2;
+constexpr double kReportSeconds = 2;
 // Between evaluations on held-out pixels: at least 2 s, and 40 times as long as the last one took.
 constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
 constexpr int kEvaluationBatches = 2;  // pixels of an evaluation, in batches of the training

@@ -10,7 +10,8 @@ namespace cei3d {
 namespace {
 
 constexpr int kVersion = 2;  // version 1: the geometry stage alone, its tensors without a prefix
-const std::string kGeometry = "geometry/", kScene = "scene/", kSeparatedAlbedo = "separated_albedo";
+const std::string kGeometry = "geometry/", kScene = "scene/", kDescent = "descent/",
+                  kSeparatedAlbedo = "separated_albedo";
 
 void add_prefixed(const std::string& prefix, Tensors from, Tensors& to) {
   for (auto& [name, tensor] : from) to[prefix + name] = std::move(tensor);
@@ -71,6 +72,8 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
   add_prefixed(kScene, std::move(scene), tensors);
   head["scene"] = std::move(scene_head);
   if (!state.separated_albedo.empty()) tensors[kSeparatedAlbedo] = tensor_of(state.separated_albedo);
+  head["descent_step"] = state.descent.step;
+  add_prefixed(kDescent, state.descent.tensors, tensors);
 }
 
 RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry& make_geometry) {
@@ -82,6 +85,7 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   state.polish_deadline = reader.require<double>("polish_deadline");
   state.look_seconds = reader.require<double>("look_seconds");
   state.light_frame_known = reader.optional("light_frame_known", false);
+  state.descent = {reader.optional<int64_t>("descent_step", 0), without_prefix(kDescent, tensors)};
   const bool has_geometry = reader.require<bool>("has_geometry");
   const Json& scene = reader.member("scene");
   reader.finish();

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/base/json.h"
+#include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/geometry/geometry_stage.h"
 #include "engine/reconstruct/reconstruct.h"
 #include "engine/reconstruct/surface_and_hits.h"
@@ -26,6 +27,7 @@ struct RunState {
 
   // Between the stages of light and appearance: LinearSplit::albedo, #V of scene.surface; else empty.
   std::vector<Vec3f> separated_albedo;
+  DescentState descent;  // of the appearance, in the middle of its stage
 
   // Hits of these stages on scene.surface, and its transport. Not in checkpoints: they are recomputed.
   ObjectHits hits;

@@ -33,6 +33,8 @@ struct RunContext {
   LivePicture& live;
 };
 
+constexpr double kCheckpointSeconds = 30;  // between checkpoints within a stage that makes them
+
 struct Stage {
   using Checkpoint = std::function<void()>;
 

@@ -213,16 +213,24 @@ void estimate_light(const RunContext& run, RunState& state, const Stage::Checkpo
   state.separated_albedo = std::move(made.split.albedo);
 }
 
-void estimate_appearance(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+void estimate_appearance(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
   Scene& scene = state.scene;
   find_hits(run, state);
   const Turns turns = light_turns(run, state, scene.surface, state.hits);
   AppearanceResult made{scene.light, scene.material, nullptr, {}};
   AppearanceOptions options = appearance_options(run);
   options.show = shown_on(run, scene, turns.get());
+  double last_save = run.progress.now();
+  const auto save = [&](DescentState descent) {
+    state.descent = std::move(descent);
+    checkpoint();
+    last_save = run.progress.now();
+  };
+  const auto due = [&] { return run.progress.now() - last_save > kCheckpointSeconds; };
   descend_on_appearance(run.device, appearance_input(run, state, turns.get()), options,
-                        state.separated_albedo, made, run.progress);
+                        state.separated_albedo, made, run.progress, {state.descent, due, save});
   check_cancelled(run.progress);
+  state.descent = {};
   state.hits = {};
   state.transport = nullptr;
   state.separated_albedo.clear();

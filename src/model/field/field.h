@@ -105,6 +105,10 @@ class FieldTrainer {
   void update(const Device& device, float rate = 1);
   std::span<const float> gradient(const Param& param) const;  // accumulated since the last update
 
+  // Adam's moments; the field is not in them.
+  void save(Tensors& out, const std::string& prefix) const;
+  void load(const Tensors& in, const std::string& prefix);
+
  private:
   struct State;
   template <class Chunk>

@@ -35,6 +35,11 @@ FieldTrainer::FieldTrainer(Field& field, const Options& options)
 }
 FieldTrainer::~FieldTrainer() = default;
 
+void FieldTrainer::save(Tensors& out, const std::string& prefix) const {
+  state_->optimizer.save(out, prefix);
+}
+void FieldTrainer::load(const Tensors& in, const std::string& prefix) { state_->optimizer.load(in, prefix); }
+
 // Adds the gradients of all chunks of points. chunk(pass, first point, number of points): reads the outputs
 // of the pass and writes all of its d_output().
 template <class Chunk>

@@ -26,20 +26,29 @@ std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& 
   return field;
 }
 
-void save_light(const SgMixture& light, Tensors& tensors, Json& head) {
-  head["light"] = {{"lobes", light.lobes.size()}};
+Tensor tensor_of(const SgMixture& light) {
   Tensor t{{int64_t(light.lobes.size()), 7}, std::vector<float>(7 * light.lobes.size()), {}};
   if (!light.lobes.empty()) std::memcpy(t.f32.data(), light.lobes.data(), t.f32.size() * sizeof(float));
-  tensors["light"] = std::move(t);
+  return t;
+}
+
+SgMixture light_from(const Tensors& tensors, const std::string& name, int64_t lobes) {
+  SgMixture light;
+  light.lobes.resize(size_t(lobes));
+  const Tensor& t = floats_from(tensors, name, lobes, 7);
+  if (!light.lobes.empty()) std::memcpy(light.lobes.data(), t.f32.data(), t.f32.size() * sizeof(float));
+  return light;
+}
+
+void save_light(const SgMixture& light, Tensors& tensors, Json& head) {
+  head["light"] = {{"lobes", light.lobes.size()}};
+  tensors["light"] = tensor_of(light);
 }
 
 SgMixture load_light(const Tensors& tensors, JsonReader head) {
-  SgMixture light;
-  light.lobes.resize(size_t(rows_from(head.member("lobes"))));
+  const int64_t lobes = rows_from(head.member("lobes"));
   head.finish();
-  const Tensor& t = floats_from(tensors, "light", int64_t(light.lobes.size()), 7);
-  if (!light.lobes.empty()) std::memcpy(light.lobes.data(), t.f32.data(), t.f32.size() * sizeof(float));
-  return light;
+  return light_from(tensors, "light", lobes);
 }
 
 }  // namespace cei3d

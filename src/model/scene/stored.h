@@ -18,6 +18,9 @@ namespace cei3d {
 void save_field(const std::shared_ptr<const Field>&, const std::string& name, Tensors& tensors, Json& head);
 std::shared_ptr<const Field> load_field(const std::string& name, const Tensors& tensors, JsonReader& head);
 
+Tensor tensor_of(const SgMixture&);
+SgMixture light_from(const Tensors&, const std::string& name, int64_t lobes);
+
 // head["light"] and tensor "light".
 void save_light(const SgMixture&, Tensors& tensors, Json& head);
 SgMixture load_light(const Tensors& tensors, JsonReader light_head);

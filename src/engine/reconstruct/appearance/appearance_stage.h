@@ -21,7 +21,7 @@ struct AppearanceInput {
   std::shared_ptr<const Transport> transport = {};  // of the surface; null: it is computed
 };
 
-// Called after each step of a descent with what it has reached; changes nothing.
+// Called between steps of a descent with what it has reached; changes nothing.
 using ShowAppearance =
     std::function<void(const Lighting&, const Field& albedo, const MaterialField& material)>;
 
@@ -53,10 +53,23 @@ struct AppearanceResult {
 // The linear separation, and from it lobes of light and a field of materials. The result has no albedo field.
 AppearanceResult separate_light(const Device&, const AppearanceInput&, const AppearanceOptions&, Progress&);
 
+// A descent on the appearance between two of its steps.
+struct DescentState {
+  int64_t step = 0;
+  Tensors tensors;  // none: it is not begun
+};
+struct DescentStore {
+  DescentState from{};          // to go on from
+  std::function<bool()> due{};  // asked between steps; may be empty
+  std::function<void(DescentState)>
+      save{};  // called where it is due, and before an interruption; may be empty
+};
+
 // Fits the albedo field under the separated light, then descends on albedo, material and light. result: light
 // and material of separate_light(). vertex_albedo: LinearSplit::albedo.
 void descend_on_appearance(const Device&, const AppearanceInput&, const AppearanceOptions&,
-                           const std::vector<Vec3f>& vertex_albedo, AppearanceResult& result, Progress&);
+                           const std::vector<Vec3f>& vertex_albedo, AppearanceResult& result, Progress&,
+                           const DescentStore& = {});
 
 // Both.
 AppearanceResult fit_appearance(const Device&, AppearanceInput, const AppearanceOptions&, Progress&);

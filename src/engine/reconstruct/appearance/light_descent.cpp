@@ -136,6 +136,19 @@ SgMixture LightDescent::light() const {
   return out;
 }
 
+void LightDescent::save(Tensors& out, const std::string& prefix) const {
+  params_.save(out, prefix);
+  optimizer_.save(out, prefix + "/adam");
+  out[prefix + "/first_power"] = {{3}, {first_power_.x, first_power_.y, first_power_.z}, {}};
+}
+
+void LightDescent::load(const Tensors& in, const std::string& prefix) {
+  params_.load(in, prefix);
+  optimizer_.load(in, prefix + "/adam");
+  const std::vector<float>& power = require_tensor(in, prefix + "/first_power", {3}).f32;
+  first_power_ = {power[0], power[1], power[2]};
+}
+
 // Axes: along the sphere. Sharpness: at constant power, so that the peak color follows it.
 void LightDescent::set_gradient(const std::vector<float>& lobes, const std::vector<float>& d_lobes) {
   const std::span<float> d_axes = optimizer_.gradient(*axes_), d_logs = optimizer_.gradient(*logs_);

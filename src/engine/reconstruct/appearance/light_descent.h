@@ -27,6 +27,9 @@ class LightDescent {
             std::span<const Vec3f> d_reflected, float rate);
   SgMixture light() const;
 
+  void save(Tensors& out, const std::string& prefix) const;
+  void load(const Tensors& in, const std::string& prefix);  // into a descent on as many lobes
+
  private:
   std::vector<float> lobe_planes() const;
   void set_gradient(const std::vector<float>& lobes, const std::vector<float>& d_lobes);

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/appearance/appearance_descent.h"
+
+#include <cmath>
+
+#include "core/base/cancel.h"
+#include "core/math/rng.h"
+#include "engine/reconstruct/appearance/display_loss.h"
+#include "engine/reconstruct/appearance/pixel_points.h"
+#include "model/geometry/shape/vec_tensors.h"
+#include "model/scene/stored.h"
+
+namespace cei3d {
+
+namespace {
+
+// Steps between two computations of visibility and bounces. With a turning light one takes many times as
+// long.
+constexpr int kRefresh = 25, kTurningRefresh = 100;
+
+std::vector<Vec3f> rows_of(const std::vector<Material>& materials) {
+  std::vector<Vec3f> rows;
+  for (const Material& m : materials) rows.push_back({m.roughness, m.specular, m.metalness});
+  return rows;
+}
+std::vector<Material> materials_of(const std::vector<Vec3f>& rows) {
+  std::vector<Material> materials;
+  for (const Vec3f r : rows) materials.push_back({r.x, r.y, r.z});
+  return materials;
+}
+
+}  // namespace
+
+AppearanceDescent::AppearanceDescent(const Device& device, const AppearanceInput& input,
+                                     std::shared_ptr<const Transport> transport,
+                                     const AppearanceOptions& options, Field albedo,
+                                     const std::vector<Vec3f>& bouncing, AppearanceResult& result,
+                                     Progress& progress)
+    : device_(device),
+      input_(input),
+      transport_(std::move(transport)),
+      options_(options),
+      result_(result),
+      progress_(progress),
+      albedo_(std::move(albedo)),
+      albedo_trainer_(albedo_, {.network_rate = options.network_rate}) {
+  if (result.material.varying()) learn_materials(*result.material.varying());
+  relit_.albedo = bouncing;
+}
+
+void AppearanceDescent::run(const DescentSchedule& schedule, const DescentStore& store) {
+  if (store.from.tensors.empty())
+    relight(std::move(relit_.albedo));
+  else
+    load(store.from, schedule);
+  fit_albedo(schedule, store);
+  fit_jointly(schedule, store);
+}
+
+// The radiance of a sample is linear in its albedo.
+void AppearanceDescent::fit_albedo(const DescentSchedule& schedule, const DescentStore& store) {
+  if (step_ >= schedule.albedo) return;
+  const SurfaceSamples& samples = input_.samples;
+  const std::vector<Material> materials = result_.material.at(device_, positions_of(samples.hits));
+  const std::vector<ShadingTerms<float>> terms = lighting_->terms({samples.hits, materials, samples.turned});
+  for (; step_ < schedule.albedo; ++step_) {
+    const double u = double(step_) / schedule.albedo;
+    between_steps(store, "albedo", 0.5 * u);
+    choose_batch();
+    const auto loss = [&](int begin, int end, const float* out, float* d_out) {
+      for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
+        d_a = sample_grad(samples, batch_[i], terms[batch_[i]], a, 1 / float(options_.batch)).d_albedo;
+      });
+    };
+    albedo_trainer_.step(device_, points_, loss, schedule.albedo_rate * std::pow(0.1f, float(u)));
+  }
+}
+
+// Visibility and bounces are recomputed now and then.
+void AppearanceDescent::fit_jointly(const DescentSchedule& schedule, const DescentStore& store) {
+  const int refresh = input_.samples.turned.turns ? kTurningRefresh : kRefresh;
+  if (!light_) light_.emplace(result_.light, schedule.keep_power);
+  for (; step_ < schedule.albedo + schedule.joint; ++step_) {
+    const int64_t step = step_ - schedule.albedo;
+    const double u = double(step) / schedule.joint;
+    between_steps(store, "light and albedo", 0.5 + 0.5 * u);
+    if (step % refresh == 0)
+      relight(albedo_.eval3(device_, input_.surface->mesh().positions));
+    else
+      lighting_->set_lobes(result_.light);
+    joint_step(std::pow(0.1f, float(u)), schedule.joint_albedo_rate);
+  }
+}
+
+// done: of all steps, in [0, 1].
+void AppearanceDescent::between_steps(const DescentStore& store, const char* what, double done) const {
+  const bool stop = progress_.cancelled();
+  if (store.save && (stop || (store.due && store.due()))) store.save(state());
+  if (stop) check_cancelled(progress_);
+  if (options_.show) options_.show(*lighting_, albedo_, result_.material);
+  if (step_ % 50 == 0) progress_.report({what, done, -1, ""});
+}
+
+void AppearanceDescent::learn_materials(const Field& field) {
+  materials_ = std::make_shared<Field>(field);
+  result_.material = {result_.material.mean(), materials_};
+  material_trainer_ = std::make_unique<FieldTrainer>(*materials_, FieldTrainer::Options{});
+}
+
+void AppearanceDescent::relight(std::vector<Vec3f> albedo) {
+  relit_ = {std::move(albedo), result_.material.at(device_, input_.surface->mesh().positions), result_.light};
+  light_up();
+}
+
+void AppearanceDescent::light_up() {
+  lighting_ = std::make_unique<Lighting>(
+      device_, input_.surface, relit_.light,
+      turned_vertex_lights(*transport_, relit_.light, {relit_.albedo, relit_.materials},
+                           input_.samples.turned.turns));
+}
+
+void AppearanceDescent::choose_batch() {
+  batch_.resize(options_.batch);
+  points_.clear();
+  const SurfaceSamples& s = input_.samples;
+  for (int i = 0; i < options_.batch; ++i) {
+    batch_[i] = Rng(options_.seed, uint64_t(step_), uint64_t(i)).below(uint32_t(s.hits.size()));
+    const float footprint = s.footprints.empty() ? 0 : s.footprints[batch_[i]];
+    for (const Vec3f p : pixel_points(s.hits[batch_[i]], footprint)) points_.push_back(p);
+  }
+}
+
+void AppearanceDescent::joint_step(float rate, float albedo_rate) {
+  choose_batch();
+  std::vector<Hit> hits(options_.batch);
+  for (int i = 0; i < options_.batch; ++i) hits[i] = input_.samples.hits[batch_[i]];
+  const std::vector<uint16_t> views = views_of(input_.samples.turned, batch_);
+  const std::vector<Vec3f> positions = positions_of(hits);
+  const std::vector<Material> materials = result_.material.at(device_, positions);
+  const HitBatch batch{hits, materials, {input_.samples.turned.turns, views}};
+  const std::vector<IncidentLight<float>> light = lighting_->incident_light(batch);
+  const std::vector<ShadingTerms<float>> terms = lighting_->terms(batch, light);
+  std::vector<Vec3f> albedo(hits.size()), d_radiance(hits.size());
+  const auto loss = [&](int begin, int end, const float* out, float* d_out) {
+    for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
+      const SampleGrad g = sample_grad(input_.samples, batch_[i], terms[i], a, 1 / float(options_.batch));
+      albedo[i] = a;
+      d_radiance[i] = g.d_radiance;
+      d_a = g.d_albedo;
+    });
+  };
+  albedo_trainer_.step(device_, points_, loss, albedo_rate * rate);
+  const ShadingGrads slopes = lighting_->grad(batch, light, albedo, d_radiance);
+  light_->step(device_, batch, slopes.d_sky_irradiance, slopes.d_sky_reflection, rate);
+  result_.light = light_->light();
+  if (materials_) descend_materials(positions, slopes.d_material, rate);
+}
+
+void AppearanceDescent::descend_materials(const std::vector<Vec3f>& positions,
+                                          const std::vector<Material>& d_material, float rate) {
+  constexpr int kOutputs = MaterialField::kOutputs;
+  const auto loss = [&](int begin, int end, const float* out, float* d_out) {
+    for (int i = begin; i < end; ++i)
+      material_of_grad(out + kOutputs * (i - begin), d_material[size_t(i)], d_out + kOutputs * (i - begin));
+  };
+  material_trainer_->step(device_, positions, loss, rate);
+}
+
+DescentState AppearanceDescent::state() const {
+  DescentState s{step_, {}};
+  albedo_.params().save(s.tensors, "albedo");
+  albedo_trainer_.save(s.tensors, "albedo_adam");
+  if (materials_) {
+    materials_->params().save(s.tensors, "materials");
+    material_trainer_->save(s.tensors, "materials_adam");
+  }
+  if (light_) light_->save(s.tensors, "light");
+  s.tensors["relit_albedo"] = tensor_of(relit_.albedo);
+  s.tensors["relit_materials"] = tensor_of(rows_of(relit_.materials));
+  s.tensors["relit_light"] = tensor_of(relit_.light);
+  return s;
+}
+
+void AppearanceDescent::load(const DescentState& s, const DescentSchedule& schedule) {
+  const auto vertices = int64_t(input_.surface->mesh().positions.size());
+  step_ = s.step;
+  albedo_.params().load(s.tensors, "albedo");
+  albedo_trainer_.load(s.tensors, "albedo_adam");
+  if (materials_) {
+    materials_->params().load(s.tensors, "materials");
+    material_trainer_->load(s.tensors, "materials_adam");
+  }
+  relit_ = {vectors_from(s.tensors, "relit_albedo", vertices),
+            materials_of(vectors_from(s.tensors, "relit_materials", vertices)),
+            light_from(s.tensors, "relit_light", int64_t(result_.light.lobes.size()))};
+  if (step_ >= schedule.albedo && s.tensors.contains("light/axes")) {
+    light_.emplace(result_.light, schedule.keep_power);
+    light_->load(s.tensors, "light");
+    result_.light = light_->light();
+  }
+  light_up();
+}
+
+}  // namespace cei3d

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Descent on the fields of albedo and material under a fixed light, then on all three.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/reconstruct/appearance/appearance_stage.h"
+#include "engine/reconstruct/appearance/light_descent.h"
+#include "engine/render/lighting.h"
+
+namespace cei3d {
+
+// Rates are those of the begin, of the full rates; they fall to a tenth.
+struct DescentSchedule {
+  int albedo = 0, joint = 0;    // steps, one after the other
+  float albedo_rate = 1;        // of the albedo on its own
+  float joint_albedo_rate = 1;  // of the albedo while all descend
+  bool keep_power = false;      // see LightDescent
+};
+
+class AppearanceDescent {
+ public:
+  // result: light and material to begin with; gets those that were reached. bouncing: albedo of the vertices
+  // for bounces, until the joint descent takes its own, #V.
+  AppearanceDescent(const Device&, const AppearanceInput&, std::shared_ptr<const Transport>,
+                    const AppearanceOptions&, Field albedo, const std::vector<Vec3f>& bouncing,
+                    AppearanceResult& result, Progress&);
+
+  // Error: interrupted, after its state was stored.
+  void run(const DescentSchedule&, const DescentStore&);
+  Field take_albedo() { return std::move(albedo_); }
+
+ private:
+  void fit_albedo(const DescentSchedule&, const DescentStore&);
+  void fit_jointly(const DescentSchedule&, const DescentStore&);
+  void between_steps(const DescentStore&, const char* what, double done) const;
+  void learn_materials(const Field&);
+  void relight(std::vector<Vec3f> albedo);
+  void light_up();
+  void choose_batch();
+  void joint_step(float rate, float albedo_rate);
+  void descend_materials(const std::vector<Vec3f>& positions, const std::vector<Material>& d_material,
+                         float rate);
+  DescentState state() const;
+  void load(const DescentState&, const DescentSchedule&);
+
+  const Device& device_;
+  const AppearanceInput& input_;
+  std::shared_ptr<const Transport> transport_;
+  AppearanceOptions options_;
+  AppearanceResult& result_;
+  Progress& progress_;
+  Field albedo_;
+  FieldTrainer albedo_trainer_;
+  std::shared_ptr<Field> materials_;  // null: one material, held constant
+  std::unique_ptr<FieldTrainer> material_trainer_;
+  std::optional<LightDescent> light_;  // in the joint descent
+
+  // What visibility, bounces and reflections were last computed from, at the vertices.
+  struct {
+    std::vector<Vec3f> albedo;
+    std::vector<Material> materials;
+    SgMixture light;
+  } relit_;
+  std::unique_ptr<Lighting> lighting_;
+
+  int64_t step_ = 0;  // steps that are done, of both descents
+  std::vector<uint32_t> batch_;
+  std::vector<Vec3f> points_;  // kPixelPoints of each pixel
+};
+
+}  // namespace cei3d
