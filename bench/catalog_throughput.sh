@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # catalog_throughput.sh PROGRAM FOLDER [OBJECTS]: objects an hour of a catalog of small objects on this machine, whose cores are
 # two Slurm nodes of one core, or are given to one object each, or all to one object after another. As root, with nothing else
-# running; the bits of all three are compared.
+# running; the bits of all are compared.
 source "$(dirname "$0")/../tests/cluster/lib.sh"
 readonly n=${3:-24}
 spots "$n" 40 4 >"$out/m.jsonl"
@@ -23,15 +23,13 @@ on_nodes() { # CATALOG OPTIONS...
 share() { awk -v a="$1" -v b="$2" 'BEGIN { printf "%.1f %%", 100 * a / b }'; }
 
 batch run "$out/m.jsonl" -o "$out/warm" --jobs 2 --quiet --dry-run # reads the manifest: files are in memory for all
-measure "all cores for one object after another" batch run "$out/m.jsonl" -o "$out/one" --jobs 1 --threads "$(nproc)" --quiet
-one=$rate
 measure "one core an object, $(nproc) at once" batch run "$out/m.jsonl" -o "$out/many" --jobs "$(nproc)" --threads 1 --quiet
 many=$rate
 start_slurm
 measure "two Slurm nodes of one core" on_nodes nodes
-alone=$rate
+echo "Slurm against one core an object here: $(share "$rate" "$many")"
 measure "the same, four objects a task (--pack 4)" on_nodes packed --pack 4
-echo "one core an object against all cores for one: $(share "$many" "$one")"
-echo "Slurm against one core an object here: $(share "$alone" "$many"), packed $(share "$rate" "$many")"
-for catalog in nodes packed; do same_bits "$out/many" "$out/$catalog" "$n"; done
-same_bits "$out/many" "$out/one" "$n"
+echo "packed: $(share "$rate" "$many")"
+measure "all cores for one object after another" batch run "$out/m.jsonl" -o "$out/one" --jobs 1 --threads "$(nproc)" --quiet
+echo "one core an object against all cores for one: $(share "$many" "$rate")"
+for catalog in nodes packed one; do same_bits "$out/many" "$out/$catalog" "$n"; done
