@@ -10,14 +10,16 @@ namespace cei3d {
 
 // Rotation by an angle about the unit axis k, counter-clockwise when the axis points to the viewer
 // (Rodrigues' formula).
-inline Mat3f about_axis(Vec3f k, float radians) {
-  const float s = std::sin(radians), c = 1 - std::cos(radians);
-  const Mat3f cross_k{{{0, -k.z, k.y}, {k.z, 0, -k.x}, {-k.y, k.x, 0}}};
-  const Mat3f squared = cross_k * cross_k;
-  Mat3f r = Mat3f::identity();
+template <class T>
+Mat3<T> rotation_about(Vec3<T> k, T radians) {
+  const T s = std::sin(radians), c = 1 - std::cos(radians), o = 0;
+  const Mat3<T> cross_k{{{o, -k.z, k.y}, {k.z, o, -k.x}, {-k.y, k.x, o}}};
+  const Mat3<T> squared = cross_k * cross_k;
+  Mat3<T> r = Mat3<T>::identity();
   for (int i = 0; i < 3; ++i) r.row[i] += cross_k.row[i] * s + squared.row[i] * c;
   return r;
 }
+inline Mat3f about_axis(Vec3f k, float radians) { return rotation_about(k, radians); }
 
 // The shortest rotation that takes one unit vector to another.
 inline Mat3f turning(Vec3f from, Vec3f to) {

@@ -27,6 +27,7 @@ class PixelStore {
   void add_view(const Camera& unit_camera, const Image& image, int rim, ImageDepth depth = ImageDepth::bits8);
 
   const std::vector<Camera>& cameras() const { return cameras_; }
+  void set_cameras(std::vector<Camera> cameras) { cameras_ = std::move(cameras); }  // one a view, of its size
   const std::vector<Pixel>& pixels() const { return pixels_; }
   Vec3f radiance(size_t pixel) const;  // linear, as far as the file holds it
   // Bit c: channel c is at the upper limit of its file, its radiance may be higher.

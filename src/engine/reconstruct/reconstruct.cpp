@@ -40,7 +40,7 @@ Plan make_plan(const ReconstructInputs& in, const Preset& preset, size_t pixels,
 Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progress& listener) {
   RunClock progress(listener, in.clock, in.options.iterations > 0 ? 0 : in.options.seconds);
   progress.enter("loading", 0, 0);
-  const TrainingViews views = load_training_views(in.capture, in.images, in.normalization, progress);
+  TrainingViews views = load_training_views(in.capture, in.images, in.normalization, progress);
   Preset preset = in.preset;
   fit_to_footprint(preset, views.footprint);
   preset_settings().put(in.options.set, preset);

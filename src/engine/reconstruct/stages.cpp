@@ -54,12 +54,13 @@ LightFrame first_light_frame(const RunContext& run) {
 }
 
 void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
-  const PixelStore& pixels = run.views.train;
+  PixelStore& pixels = run.views.train;
   const double begin = run.progress.now();
   TrialOptions trial = run.preset.trial;
   trial.light = state.scene.light_frame = first_light_frame(run);
   state.light_frame_known = run.light || trial.light.motion != LightMotion::world;
   if (run.plan.trial_steps > 0) trial.steps = run.plan.trial_steps;
+  trial.align = true;
   const StartShape start = run.plan.trial_steps > 0
                                ? choose_start(run.device, pixels, trial, run.seed, run.progress)
                                : start_shape(pixels, Start::hull, run.seed, trial.shapes, run.progress);

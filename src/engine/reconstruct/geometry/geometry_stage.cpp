@@ -181,12 +181,12 @@ GeometryStats GeometryStage::evaluate(const PixelStore& held_out, int rays, doub
   return total;
 }
 
-Image GeometryStage::render_radiance(const Camera& camera, int samples) {
+template <class F>
+void GeometryStage::render_rays(const Camera& camera, int samples, const F& take) {
   const int per_pixel = samples * samples, pixels = kChunkRays / per_pixel,
             all = camera.width * camera.height;
   if (pixels < 1) fail("render_radiance: at most 8 samples per pixel and axis");
   const Step step = step_at(-1, 1);
-  Image out(camera.width, camera.height, 3);
   parallel_for((all + pixels - 1) / pixels, [&](int c) {
     std::vector<Ray> rays;
     for (int i = c * pixels; i < std::min(all, (c + 1) * pixels); ++i)
@@ -199,12 +199,26 @@ Image GeometryStage::render_radiance(const Camera& camera, int samples) {
       if (light_.motion != LightMotion::world)
         batch.room_from_object.assign(batch.rays.size(), light_.room_from_object(camera.world_from_cam));
       render(step, std::move(batch), w);
-      for (int r = 0; r < w.batch.count(); ++r) {
-        const int i = c * pixels + r / per_pixel;
-        for (int k = 0; k < 3; ++k)
-          out.data[size_t(i) * 3 + k] += w.renderer.pixels()[r][k] / float(per_pixel);
-      }
+      for (int r = 0; r < w.batch.count(); ++r) take(c * pixels + r / per_pixel, r, w);
     });
+  });
+}
+
+Image GeometryStage::render_radiance(const Camera& camera, int samples) {
+  Image out(camera.width, camera.height, 3);
+  const float share = 1.0f / float(samples * samples);
+  render_rays(camera, samples, [&](int pixel, int ray, const Work& w) {
+    for (int k = 0; k < 3; ++k)
+      out.data[size_t(pixel) * 3 + size_t(k)] += w.renderer.pixels()[ray][k] * share;
+  });
+  return out;
+}
+
+ModelView GeometryStage::render_view(const Camera& camera) {
+  ModelView out{Image(camera.width, camera.height, 3), Image(camera.width, camera.height, 1)};
+  render_rays(camera, 1, [&](int pixel, int ray, const Work& w) {
+    for (int k = 0; k < 3; ++k) out.srgb.data[size_t(pixel) * 3 + size_t(k)] = w.renderer.pixels()[ray][k];
+    out.depth.data[size_t(pixel)] = w.renderer.depths()[ray];
   });
   return out;
 }

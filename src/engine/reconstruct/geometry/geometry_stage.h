@@ -9,6 +9,7 @@
 #include "core/base/progress.h"
 #include "engine/reconstruct/geometry/geometry_objective.h"
 #include "engine/reconstruct/geometry/geometry_options.h"
+#include "engine/reconstruct/geometry/model_view.h"
 #include "engine/reconstruct/geometry/occupancy.h"
 #include "engine/reconstruct/geometry/pixel_errors.h"
 #include "engine/reconstruct/geometry/point_values.h"
@@ -55,6 +56,8 @@ class GeometryStage {
   GeometryStats evaluate(const PixelStore& held_out, int rays, double u);
   // The whole view by the radiance field, over white, display-encoded RGB. samples: per pixel and axis.
   Image render_radiance(const Camera& unit_camera, int samples);
+  // The same with depths, by one sample a pixel.
+  ModelView render_view(const Camera& unit_camera);
 
   const Field& sdf() const { return sdf_; }
   void time_into(StepTimes* times) { times_ = times; }  // null: no clock is read
@@ -87,6 +90,9 @@ class GeometryStage {
   void slope_gradients(const Step&, const ValueSlopes&, Work&, ChunkGradients&) const;
   GeometryStats hold_gradients(const Step&, Work&, ChunkGradients&) const;
   void render(const Step&, RayBatch, Work&) const;
+  // take(pixel, ray, work): of each ray of the view, `samples` per pixel and axis.
+  template <class F>
+  void render_rays(const Camera&, int samples, const F& take);
 
   const Device& device_;
   const PixelStore& pixels_;

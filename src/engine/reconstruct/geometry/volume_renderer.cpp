@@ -65,15 +65,19 @@ void VolumeRenderer::composite(const GeometrySchedule& s, const RayBatch& batch,
   weights_.clear();
   pixels_.clear();
   coverage_.clear();
+  depths_.clear();
   for (int r = 0; r < batch.count(); ++r) {
     Composite<float> ray(batch.backgrounds[r]);
+    float depth = 0;
     for (int i = samples.first[r]; i < samples.first[r + 1]; ++i) {
       const float cosine = dot(jets().gradient(i), batch.rays[r].direction);
       alphas_.push_back(neus_alpha(jets().value(i), cosine, s.step, s.inv_s));
       weights_.push_back(ray.add(alphas_.back().alpha, color(i)));
+      depth += weights_.back().weight * samples.depths[i];
     }
     pixels_.push_back(ray.pixel);
     coverage_.push_back(ray.coverage);
+    depths_.push_back(ray.coverage > 0.5f ? depth / ray.coverage : 0);
   }
 }
 

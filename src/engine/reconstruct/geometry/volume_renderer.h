@@ -26,7 +26,9 @@ class VolumeRenderer {
   void forward(const GeometryNetworks&, const GeometrySchedule&, const RayBatch&, const RaySamples&);
   std::span<const Vec3f> pixels() const { return pixels_; }      // #rays, display-encoded
   std::span<const float> coverage() const { return coverage_; }  // #rays
-  JetView jets() const { return {jet_.output(), rows_}; }        // #samples: distance and its gradient
+  // #rays: mean over the light of a ray; 0 where more than half of it is the background's.
+  std::span<const float> depths() const { return depths_; }
+  JetView jets() const { return {jet_.output(), rows_}; }  // #samples: distance and its gradient
   Vec3f point(int sample) const { return load_point<float>(points_.data(), sample); }
 
   // The adjoint in two parts, so that losses of the distances and their gradients can be added to d_jets()
@@ -57,7 +59,7 @@ class VolumeRenderer {
   std::vector<NeusSample<float>> alphas_;     // #samples
   std::vector<SampleWeight<float>> weights_;  // #samples
   std::vector<Vec3f> pixels_;
-  std::vector<float> coverage_;
+  std::vector<float> coverage_, depths_;
 };
 
 }  // namespace cei3d

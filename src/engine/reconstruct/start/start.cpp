@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "core/base/cancel.h"
 #include "core/base/json.h"
 #include "core/image/area.h"
+#include "engine/reconstruct/poses/align_views.h"
 
 namespace cei3d {
 
@@ -27,6 +29,10 @@ constexpr double kMinGain = 0.3;
 // Minimum number of views that must have a cell in their frame for the start shape to fill it. With fewer
 // views, floating blobs in front of the surface remain.
 constexpr int kMinViews = 3;
+// Of cameras: alignments at most; pixels by which one has to move the object in the images (median of the
+// views), and dB that it has to gain.
+constexpr int kMaxAlignments = 5;
+constexpr double kMinAlignment = 0.4, kMinAlignmentGain = 0.1;
 
 // Cells that the object may fill. Masks are grown by half a cell, as the cameras see it at the object's
 // center, or rods thinner than a cell would be lost: training removes excess volume, but does not add volume
@@ -49,19 +55,55 @@ StartShape shape_of(const VisualHull& hull, bool anchored, float matte_until) {
   return {{hull.n, signed_distance(hull)}, anchored, matte_until};
 }
 
-// PSNR in dB of random training pixels after a short training. done: fraction of all trials before this one.
-double trial_psnr(const Device& device, const PixelStore& pixels, const TrialOptions& options,
-                  const StartShape& shape, uint64_t seed, double done, Progress& progress) {
-  GeometryStage stage(device, pixels, options.geometry, seed);
+// A field after a short training, and its PSNR in dB on random training pixels.
+struct Trial {
+  StartShape shape;
+  std::unique_ptr<GeometryStage> trained;
+  double psnr = -1e9;
+};
+
+// done: fraction of all trials before this one.
+Trial tried(const Device& device, const PixelStore& pixels, const TrialOptions& options, Start start,
+            uint64_t seed, double done, Progress& progress) {
+  Trial trial{start_shape(pixels, start, seed, options.shapes, progress),
+              std::make_unique<GeometryStage>(device, pixels, options.geometry, seed)};
+  GeometryStage& stage = *trial.trained;
   stage.set_light(options.light);
-  stage.prefit(shape, progress);
+  stage.prefit(trial.shape, progress);
   for (int step = 0; step < options.steps; ++step) {
     check_cancelled(progress);
     const double u = double(step) / options.steps;
     stage.step(step, u, {}, progress);
     if (step % 20 == 0) progress.report({"choosing a start", done + u / kStarts.size(), -1, ""});
   }
-  return stage.evaluate(pixels, options.rays, 1).psnr();
+  trial.psnr = stage.evaluate(pixels, options.rays, 1).psnr();
+  return trial;
+}
+
+// Aligns the cameras with what was trained from the visual hull, and tries the hull again, while that moves
+// the object's image and explains more of the pixels. Returns the last trial of the hull.
+Trial align_with_hull(const Device& device, PixelStore& pixels, const TrialOptions& options, Trial hull,
+                      uint64_t seed, Progress& progress) {
+  for (int round = 0; round < kMaxAlignments; ++round) {
+    AlignedViews aligned = align_views(*hull.trained, pixels, progress);
+    Json log{{"stage", "alignment"}, {"pixels", aligned.pixels}, {"psnr", hull.psnr}};
+    const bool moves = aligned.pixels >= kMinAlignment;
+    if (moves) {
+      std::vector<Camera> before = pixels.cameras();
+      pixels.set_cameras(std::move(aligned.cameras));
+      Trial again = tried(device, pixels, options, Start::hull, seed, 0, progress);
+      log["aligned_psnr"] = again.psnr;
+      if (again.psnr > hull.psnr + kMinAlignmentGain) {
+        hull = std::move(again);
+        progress.log(log.dump());
+        continue;
+      }
+      pixels.set_cameras(std::move(before));
+    }
+    progress.log(log.dump());
+    break;
+  }
+  return hull;
 }
 
 }  // namespace
@@ -79,8 +121,8 @@ StartShape start_shape(const PixelStore& pixels, Start start, uint64_t seed, con
   return shape_of(carve(pixels, hull, carving, progress), true, kMatteUntil);
 }
 
-StartShape choose_start(const Device& device, const PixelStore& pixels, const TrialOptions& options,
-                        uint64_t seed, Progress& progress) {
+StartShape choose_start(const Device& device, PixelStore& pixels, const TrialOptions& options, uint64_t seed,
+                        Progress& progress) {
   StartShape best;
   double best_psnr = -1e9;
   Json log{{"stage", "start"}};
@@ -89,13 +131,14 @@ StartShape choose_start(const Device& device, const PixelStore& pixels, const Tr
     check_cancelled(progress);
     // Carving takes the colors of a point for the same in all views.
     if (start == Start::carved && options.light.motion != LightMotion::world) continue;
-    StartShape shape = start_shape(pixels, start, seed, options.shapes, progress);
     const double done = double(i) / kStarts.size();
-    const double psnr = trial_psnr(device, pixels, options, shape, seed, done, progress);
-    log[name] = psnr;
-    if (psnr <= best_psnr) continue;
-    best = std::move(shape);
-    best_psnr = psnr + (start == Start::hull ? kMinGain : 0);
+    Trial trial = tried(device, pixels, options, start, seed, done, progress);
+    if (start == Start::hull && options.align)
+      trial = align_with_hull(device, pixels, options, std::move(trial), seed, progress);
+    log[name] = trial.psnr;
+    if (trial.psnr <= best_psnr) continue;
+    best = std::move(trial.shape);
+    best_psnr = trial.psnr + (start == Start::hull ? kMinGain : 0);
   }
   progress.log(log.dump());
   return best;

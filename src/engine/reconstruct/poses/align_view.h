@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Moves a camera until what a model shows from it lies where the photograph shows it: direct image alignment
+// [Lucas and Kanade 1981] with the depths of the model.
+#pragma once
+
+#include "core/math/camera.h"
+#include "core/math/rigid_motion.h"
+#include "engine/reconstruct/geometry/model_view.h"
+
+namespace cei3d {
+
+struct AlignOptions {
+  int steps = 15;  // at most, at each of the blurs
+  // Standard deviations of a turn (radians) and of a shift (world units) as they are expected; what the
+  // images say weighs more, unless they say nothing.
+  double turn = 0.02, shift = 0.02;
+};
+
+struct Alignment {
+  RigidMotion motion;  // of the camera
+  double pixels = 0;   // root mean square of how far the model's points move in the image
+};
+
+// photograph: RGBA of the size of the camera; color over white, alpha 1 where it is known, else 0.
+Alignment align_view(const Camera&, const ModelView&, const Image& photograph, const AlignOptions& = {});
+
+// Derivative of the continuous pixel position of a world point by a motion of the camera, at no motion:
+// row 0 of x, row 1 of y; columns turn (3) and shift (3).
+struct MotionSlopes {
+  Vec3d turn[2], shift[2];
+};
+MotionSlopes motion_slopes(const Camera&, Vec3d point);
+
+}  // namespace cei3d

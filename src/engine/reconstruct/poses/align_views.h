@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Moves the cameras of all views to where a trained model says that they stood.
+#pragma once
+
+#include <vector>
+
+#include "core/base/progress.h"
+#include "engine/reconstruct/geometry/geometry_stage.h"
+#include "engine/reconstruct/pixels.h"
+
+namespace cei3d {
+
+struct AlignedViews {
+  std::vector<Camera> cameras;  // of the store's views, moved
+  double pixels = 0;  // median over views of how far they move the object in the image, in its pixels
+};
+
+// model: trained on these pixels. The mean motion of all cameras stays nothing: the object would move with
+// them. Error: interrupted.
+AlignedViews align_views(GeometryStage& model, const PixelStore&, const Progress&);
+
+// Photographs at 1/n of their size as alignment compares them: color over white, alpha 1 where it is known.
+std::vector<Image> photographs_over_white(const PixelStore&, std::span<const int> n);
+
+}  // namespace cei3d

@@ -1,0 +1,43 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""disturb_poses.py CAPTURE OUT DEGREES PERCENT [SEED]: a copy of a NeRF-synthetic capture whose training poses are a little wrong.
+
+Each training camera is turned about its center by a random rotation vector, and shifted by a random vector; DEGREES and PERCENT (of
+its distance from the origin) are standard deviations of the whole vectors. Test poses stay as they are. Needs python3-numpy.
+"""
+import json
+import os
+import shutil
+import sys
+
+import numpy
+
+
+def rotation(vector):
+    angle = numpy.linalg.norm(vector)
+    k = vector / max(angle, 1e-12)
+    cross = numpy.array([[0, -k[2], k[1]], [k[2], 0, -k[0]], [-k[1], k[0], 0]])
+    return numpy.eye(3) + numpy.sin(angle) * cross + (1 - numpy.cos(angle)) * cross @ cross
+
+
+def main():
+    if len(sys.argv) not in (5, 6):
+        sys.exit(__doc__)
+    capture, out, degrees, percent = sys.argv[1], sys.argv[2], float(sys.argv[3]), float(sys.argv[4])
+    random = numpy.random.default_rng(int(sys.argv[5]) if len(sys.argv) > 5 else 1)
+    shutil.copytree(capture, out)
+    path = os.path.join(out, 'transforms_train.json')
+    with open(path, encoding='utf-8') as file:
+        transforms = json.load(file)
+    for frame in transforms['frames']:
+        pose = numpy.array(frame['transform_matrix'])
+        distance = numpy.linalg.norm(pose[:3, 3])
+        pose[:3, :3] = rotation(random.normal(size=3) * numpy.radians(degrees) / 3 ** 0.5) @ pose[:3, :3]
+        pose[:3, 3] += random.normal(size=3) * distance * percent / 100 / 3 ** 0.5
+        frame['transform_matrix'] = pose.tolist()
+    with open(path, 'w', encoding='utf-8') as file:
+        json.dump(transforms, file, indent=1)
+    print(f"{out}: {len(transforms['frames'])} training poses")
+
+
+main()
