@@ -58,6 +58,9 @@ void read_options(JsonReader r, BatchItem& item) {
   const auto color = light_color_from(r.optional("light_color", std::string("near-white")));
   if (!color) fail("{}: 'light_color' is free, near-white or three numbers above 0.", r.what());
   o.light_color = *color;
+  const std::string poses = r.optional("poses", std::string("auto"));
+  place_of(poses, {"auto", "given"}, r.what() + ", 'poses'");
+  o.refine_poses = poses == "auto";
   const std::string format = r.optional("format", std::string());
   const bool strict = r.optional("strict", false);
   r.finish();

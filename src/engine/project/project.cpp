@@ -144,8 +144,9 @@ Project::Project(fs::path folder, Mode mode)
       store_(folder_ / "objects") {
   Dataset dataset =
       read_json_file(file("dataset.json"), [&](const Json& j) { return dataset_from_json(j, folder_); });
-  capture_ = std::move(dataset.capture);
+  given_capture_ = capture_ = std::move(dataset.capture);
   fingerprint_ = std::move(dataset.fingerprint);
+  capture_ = with_poses(given_capture_, refined_poses());
 }
 
 Project Project::create(const fs::path& folder, const ProjectHead& head, const Capture& capture,
@@ -229,12 +230,19 @@ void Project::save_base(const Scene& scene) {
   save_scene(scene, tensors, head);
   const std::string object = store_.put(tensors);
   write_json_file(file("base/scene.json"), {{"object", object}, {"head", std::move(head)}});
+  capture_ = with_poses(given_capture_, scene.poses);
   collect_garbage();
 }
 
 bool Project::has_base() const {
   std::error_code error;
   return fs::exists(file("base/scene.json"), error);
+}
+
+std::vector<RefinedPose> Project::refined_poses() const {
+  if (!has_base()) return {};
+  return read_json_file(file("base/scene.json"),
+                        [&](const Json& j) { return poses_from_head(j.at("head")); });
 }
 
 std::string Project::base_key() const {

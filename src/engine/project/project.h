@@ -84,7 +84,10 @@ class Project {
 
   const std::filesystem::path& folder() const { return folder_; }
   const ProjectHead& head() const { return head_; }
+  // With the poses that the reconstruction refined, once it is finished.
   const Capture& capture() const { return capture_; }
+  std::vector<RefinedPose> refined_poses() const;  // empty: there are none, or the object is not finished
+  const Capture& given_capture() const { return given_capture_; }  // with the poses it was given
   const std::string& fingerprint() const { return fingerprint_; }  // of the capture when it was reconstructed
   const Stack& stack() const { return stack_; }
 
@@ -157,7 +160,7 @@ class Project {
   std::filesystem::path folder_;
   ProjectLock lock_;
   ProjectHead head_;
-  Capture capture_;
+  Capture given_capture_, capture_;
   std::string fingerprint_;
   Stack stack_;
   ObjectStore store_;

@@ -2,12 +2,15 @@
 #include "engine/reconstruct/geometry_training.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
 #include "core/base/cancel.h"
 #include "core/base/json.h"
 #include "core/math/color.h"
+#include "engine/reconstruct/poses/align_views.h"
+#include "engine/reconstruct/poses/refined_poses.h"
 
 namespace cei3d {
 
@@ -16,6 +19,10 @@ namespace {
 constexpr double kReportSeconds = 2;
 // Between evaluations on held-out pixels: at least 2 s, and 40 times as long as the last one took.
 constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
+// Where poses were moved before, they are aligned again with what was trained since: positions in the
+// schedule.
+constexpr std::array kAlignAt{0.3, 0.6};
+constexpr int kAlignSide = 320;        // of the images that are compared, at most; pixels
 constexpr int kEvaluationBatches = 2;  // pixels of an evaluation, in batches of the training
 
 class Training {
@@ -37,6 +44,7 @@ class Training {
 
   // One step, and what is due after it.
   void step(double u, const Stage::Checkpoint& checkpoint) {
+    align(u);
     const GeometryStats sum = state_.geometry->step(state_.step, u, {}, run_.progress);
     if (!std::isfinite(sum.color))
       fail("training diverged at step {}: the loss is not a number", state_.step);
@@ -56,6 +64,17 @@ class Training {
   double elapsed() const { return run_.progress.now() - begin_; }
 
  private:
+  void align(double u) {
+    if (state_.scene.poses.empty() || state_.alignments >= int(kAlignAt.size()) ||
+        u < kAlignAt[size_t(state_.alignments)])
+      return;
+    AlignedViews aligned = align_views(*state_.geometry, run_.views.train, kAlignSide, run_.progress);
+    run_.progress.log(Json{{"stage", "alignment"}, {"u", u}, {"pixels", aligned.pixels}}.dump());
+    run_.views.train.set_cameras(std::move(aligned.cameras));
+    keep_poses(run_, state_);
+    ++state_.alignments;
+  }
+
   void evaluate(double u, const GeometryStats& sum) {
     const double begin = elapsed(), rays = double(sum.rays);
     psnr_ = state_.geometry->evaluate(judged_, kEvaluationBatches * run_.preset.geometry.rays, u).psnr();
@@ -126,6 +145,12 @@ std::optional<double> view_error(GeometryStage& stage, const Camera& whole, cons
 }
 
 }  // namespace
+
+void keep_poses(const RunContext& run, RunState& state) {
+  PixelStore& pixels = run.views.train;
+  state.scene.poses = refined_poses(run.capture, pixels.cameras(), run.normalization);
+  pixels.set_cameras(posed_cameras(pixels.cameras(), state.scene.poses, run.normalization));
+}
 
 void train_geometry(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
   Training training(run, state);

@@ -2,6 +2,7 @@
 #include "engine/reconstruct/reconstruct.h"
 
 #include "core/base/json.h"
+#include "engine/reconstruct/poses/refined_poses.h"
 #include "engine/reconstruct/preset_settings.h"
 #include "engine/reconstruct/reconstruct_with.h"
 #include "engine/reconstruct/stages.h"
@@ -58,9 +59,12 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
                            .seed = in.options.seed,
                            .light = in.options.light,
                            .light_color = in.options.light_color,
+                           .refine_poses = in.options.refine_poses,
                            .progress = progress,
                            .live = live};
   RunState state = saved ? std::move(saved->state) : RunState();
+  if (!state.scene.poses.empty())
+    views.train.set_cameras(posed_cameras(views.train.cameras(), state.scene.poses, in.normalization));
   state.scene.normalization = in.normalization;
   state.scene.up = in.capture.up;
   StageRunner(context, rates, checkpoints)

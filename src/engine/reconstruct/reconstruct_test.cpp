@@ -190,11 +190,9 @@ Checkpoints::State with_interruptions(AnyRun& small, MemoryCheckpoints& checkpoi
 }
 
 // The state after the stage, with a network of materials, as an object of several has one.
-Checkpoints::State with_materials(const Checkpoints::State& state) {
+Checkpoints::State with_materials(const Checkpoints::State& state, const FieldConfig& network) {
   SavedRun run = read_checkpoint(state, {});
-  FieldConfig config = run.state.scene.albedo->config();
-  config.outputs = MaterialField::kOutputs;
-  run.state.scene.material = {run.state.scene.material.mean(), std::make_shared<Field>(config, 9)};
+  run.state.scene.material = {run.state.scene.material.mean(), std::make_shared<Field>(network, 9)};
   return checkpoint_of(run.position, run.state);
 }
 
@@ -208,7 +206,8 @@ TEST(Reconstruct, ATurningLightAndSeveralMaterialsAreResumedAnywhere) {
   EXPECT_EQ(object.head, turning.scene.head);
 
   MemoryCheckpoints of_several;
-  of_several.latest_state = with_materials(turning.checkpoints.after.at("appearance"));
+  of_several.latest_state =
+      with_materials(turning.checkpoints.after.at("light"), small.preset.appearance.materials);
   MemoryCheckpoints interrupted = of_several;
   ScriptedProgress progress;
   const Checkpoints::State several = saved(small.run(of_several, progress));

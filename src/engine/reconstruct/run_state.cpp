@@ -60,6 +60,7 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
           {"polish_deadline", state.polish_deadline},
           {"look_seconds", state.look_seconds},
           {"light_frame_known", state.light_frame_known},
+          {"alignments", state.alignments},
           {"has_geometry", bool(state.geometry)}};
   if (state.geometry) {
     Tensors geometry;
@@ -86,6 +87,7 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   state.look_seconds = reader.require<double>("look_seconds");
   state.light_frame_known = reader.optional("light_frame_known", false);
   state.descent = {reader.optional<int64_t>("descent_step", 0), without_prefix(kDescent, tensors)};
+  state.alignments = reader.optional("alignments", 0);
   const bool has_geometry = reader.require<bool>("has_geometry");
   const Json& scene = reader.member("scene");
   reader.finish();

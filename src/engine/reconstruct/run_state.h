@@ -23,6 +23,7 @@ struct RunState {
   double polish_deadline = 0;      // end of all polishing rounds, s since the start of the run; 0: not begun
   double look_seconds = 0;         // s that the last round took to estimate light and material
   bool light_frame_known = false;  // whether scene.light_frame is final
+  int alignments = 0;              // of the poses that are done in the geometry stage
   Scene scene;                     // the finished parts of the object
 
   // Between the stages of light and appearance: LinearSplit::albedo, #V of scene.surface; else empty.

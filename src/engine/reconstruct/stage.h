@@ -29,6 +29,7 @@ struct RunContext {
   uint64_t seed;
   std::optional<LightMotion> light;  // none: to be found
   LightColorPrior light_color;
+  bool refine_poses;
   RunClock& progress;
   LivePicture& live;
 };

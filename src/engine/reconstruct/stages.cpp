@@ -10,6 +10,7 @@
 #include "engine/reconstruct/geometry/silhouette_level.h"
 #include "engine/reconstruct/geometry_training.h"
 #include "engine/reconstruct/joint/joint_stage.h"
+#include "engine/reconstruct/poses/refined_poses.h"
 
 namespace cei3d {
 
@@ -60,10 +61,12 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
   trial.light = state.scene.light_frame = first_light_frame(run);
   state.light_frame_known = run.light || trial.light.motion != LightMotion::world;
   if (run.plan.trial_steps > 0) trial.steps = run.plan.trial_steps;
-  trial.align = true;
+  trial.align = run.refine_poses;
+  const std::vector<Camera> given = pixels.cameras();
   const StartShape start = run.plan.trial_steps > 0
                                ? choose_start(run.device, pixels, trial, run.seed, run.progress)
                                : start_shape(pixels, Start::hull, run.seed, trial.shapes, run.progress);
+  if (!same_poses(pixels.cameras(), given)) keep_poses(run, state);
   const double chosen = run.progress.now();
   state.start_seconds = chosen - begin;
   state.geometry = std::make_unique<GeometryStage>(run.device, pixels, run.preset.geometry, run.seed);

@@ -10,6 +10,7 @@
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "core/math/quantile.h"
+#include "engine/project/dataset.h"
 #include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
@@ -106,6 +107,8 @@ bool is_camera_file(const fs::path& path) {
 
 std::vector<View> choose_views(const Project& project, const fs::path& path, std::optional<Split> split) {
   Capture capture = path.empty() ? project.capture() : load_capture(path);
+  if (!path.empty() && capture_fingerprint(capture) == project.fingerprint())
+    capture = with_poses(std::move(capture), project.refined_poses());
   std::map<std::string, Split> known;
   for (const View& v : project.capture().views) known[v.name] = v.split;
   const bool has_splits = std::any_of(capture.views.begin(), capture.views.end(),

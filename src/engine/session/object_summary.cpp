@@ -12,6 +12,7 @@ ObjectSummary summary_of(const Device& device, const Scene& scene) {
   out.explained = scene.explained;
   out.light_motion = scene.light_frame.motion;
   out.light_error = scene.light_error;
+  out.refined_poses = scene.poses.size();
   out.min_roughness = out.max_roughness = out.mean.roughness;
   out.metal_share = out.mean.metalness;
   out.varies = bool(scene.material.varying());

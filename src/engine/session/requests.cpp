@@ -102,12 +102,17 @@ Json ObjectSummary::json() const {
   j["roughness_range"] = {min_roughness, max_roughness};
   j["light"] = {{"motion", light_motion_name(light_motion)}};
   if (light_error) j["light"]["relative_error"] = {light_error->x, light_error->y, light_error->z};
+  j["refined_poses"] = refined_poses;
   if (explained)
     j["explained_db"] = {{"physical", explained->physical}, {"with_residual", explained->with_residual}};
   return j;
 }
 
-std::string ObjectSummary::text() const { return material_text() + "; " + light_text(); }
+std::string ObjectSummary::text() const {
+  const std::string text = material_text() + "; " + light_text();
+  return refined_poses == 0 ? text
+                            : fmt::format("{}; the poses of {} views were refined", text, refined_poses);
+}
 
 std::string ObjectSummary::material_text() const {
   if (!varies)

@@ -80,6 +80,7 @@ struct ObjectSummary {
   std::optional<Explained> explained;          // none: not measured
   LightMotion light_motion = LightMotion::world;
   std::optional<Vec3f> light_error;  // relative, of the strength of its channels; none: not known
+  size_t refined_poses = 0;          // training views whose poses the reconstruction moved
   // A sentence if light and material alone explain the photographs much worse than with the correction
   // network; else empty.
   std::string warning() const;

@@ -44,6 +44,7 @@ Json options_json(const ReconstructRequest& r) {
           {"light_color", light_color_text(o.light_color)},
           {"views", o.views},
           {"light", o.light ? light_motion_name(*o.light) : "auto"},
+          {"refine_poses", o.refine_poses},
           {"set", o.set},
           {"format", r.format}};
 }
@@ -62,6 +63,7 @@ ReconstructOptions options_from_json(const Json& j) {
   o.views = reader.optional("views", 0);                                        // missing in older projects
   o.light = light_motion_named(reader.optional("light", std::string("auto")));  // missing in older projects
   o.light_color = light_color_from(reader.optional("light_color", std::string())).value_or(LightColorPrior());
+  o.refine_poses = reader.optional("refine_poses", true);
   if (reader.has("set")) o.set = reader.member("set");
   check_settings(preset_settings().infos(), o.set);
   reader.has("format");
@@ -92,7 +94,7 @@ Project create_project(const ReconstructRequest& request, const CheckReport& che
 
 // Error: the capture has changed since the reconstruction began.
 void require_same_capture(const Project& project, const fs::path& given) {
-  Capture now = project.capture();
+  Capture now = project.given_capture();
   if (!given.empty()) {
     const Json& o = project.head().options;
     now = load_capture(given, capture_options(o.value("format", ""), options_from_json(o)));

@@ -115,6 +115,24 @@ LightFrame load_light_frame(JsonReader& head) {
   return frame;
 }
 
+Json poses_json(const std::vector<RefinedPose>& poses) {
+  Json list = Json::array();
+  for (const RefinedPose& p : poses) {
+    const auto& r = p.world_from_cam.row;
+    const Json rotation = {r[0].x, r[0].y, r[0].z, r[1].x, r[1].y, r[1].z, r[2].x, r[2].y, r[2].z};
+    list.push_back({{"view", p.view}, {"world_from_cam", rotation}, {"center", vector_json(p.center)}});
+  }
+  return list;
+}
+
+RefinedPose pose_from_json(JsonReader reader) {
+  RefinedPose p{reader.require<std::string>("view"), {}, vector_from(reader, "center")};
+  const std::array<double, 9> rows = reader.numbers<9>("world_from_cam");  // row by row
+  for (size_t i = 0; i < 3; ++i) p.world_from_cam.row[i] = {rows[3 * i], rows[3 * i + 1], rows[3 * i + 2]};
+  reader.finish();
+  return p;
+}
+
 // Objects of project version 3 and below have one material.
 std::shared_ptr<const Field> load_materials(const Tensors& tensors, JsonReader& head) {
   std::shared_ptr<const Field> field = load_field("materials", tensors, head);
@@ -188,6 +206,14 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   if (scene.explained)
     head["explained"] = {{"physical", scene.explained->physical},
                          {"with_residual", scene.explained->with_residual}};
+  if (!scene.poses.empty()) head["poses"] = poses_json(scene.poses);
+}
+
+std::vector<RefinedPose> poses_from_head(const Json& head) {
+  std::vector<RefinedPose> poses;
+  if (!head.contains("poses")) return poses;
+  for (const Json& pose : head.at("poses")) poses.push_back(pose_from_json({pose, "A pose of the object"}));
+  return poses;
 }
 
 Scene load_scene(const Tensors& tensors, const Json& head, const std::string& what) {
@@ -215,6 +241,8 @@ Scene load_scene(const Tensors& tensors, const Json& head, const std::string& wh
       scene.explained = {explained.require<double>("physical"), explained.require<double>("with_residual")};
       explained.finish();
     }
+    reader.has("poses");
+    scene.poses = poses_from_head(head);
     reader.finish();
     return scene;
   });

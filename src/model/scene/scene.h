@@ -45,6 +45,7 @@ struct Scene {
   // Correction network; null: none, or the light was changed.
   std::shared_ptr<const Residual> residual;
   std::optional<Explained> explained;             // of the reconstruction; none: not measured
+  std::vector<RefinedPose> poses;                 // of training views; empty: those of the capture are right
   std::shared_ptr<const HandlerPoints> handlers;  // on the present shape
   ShapeVersions shape_versions;  // the last one has `surface`; empty while the shape is the reconstructed one
   std::vector<EditLayer> layers;  // in order; later layers cover earlier ones
@@ -64,5 +65,6 @@ Scene in_view(Scene, const Camera&);  // the scene under light_in_view()
 void save_scene(const Scene&, Tensors& tensors, Json& head);
 Scene load_scene(const Tensors& tensors, const Json& head,
                  const std::string& what = "The description of the object");
+std::vector<RefinedPose> poses_from_head(const Json& head);  // Scene::poses alone
 
 }  // namespace cei3d

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,13 @@ struct View {
   const Camera& file_camera() const { return photo ? photo->camera() : camera; }
 };
 
+// Where a view was really taken from, as a reconstruction found out; capture frame.
+struct RefinedPose {
+  std::string view;  // its name
+  Mat3d world_from_cam;
+  Vec3d center;
+};
+
 // A ball that contains the object, as some formats state it.
 struct ObjectBall {
   Vec3d center;
@@ -56,6 +64,9 @@ struct Capture {
   Vec3d up{0, 0, 1};                  // world axis that points up, capture frame
   std::vector<std::string> warnings;  // one sentence per assumption that the loader made
 };
+
+// The capture with the poses of the views that are named; other names are passed over.
+Capture with_poses(Capture, std::span<const RefinedPose>);
 
 // What an image file can hold.
 enum class ImageDepth {

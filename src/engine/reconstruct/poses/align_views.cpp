@@ -13,10 +13,6 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kSide = 160;  // of an image that is compared, at most; pixels
-
-int reduction(const Camera& c) { return (std::max(c.width, c.height) + kSide - 1) / kSide; }
-
 RigidMotion mean_of(const std::vector<Alignment>& views) {
   RigidMotion mean;
   for (const Alignment& a : views) {
@@ -50,10 +46,10 @@ std::vector<Image> photographs_over_white(const PixelStore& store, std::span<con
   return out;
 }
 
-AlignedViews align_views(GeometryStage& model, const PixelStore& store, const Progress& progress) {
+AlignedViews align_views(GeometryStage& model, const PixelStore& store, int side, const Progress& progress) {
   const std::vector<Camera>& cameras = store.cameras();
   std::vector<int> n;
-  for (const Camera& c : cameras) n.push_back(reduction(c));
+  for (const Camera& c : cameras) n.push_back((std::max(c.width, c.height) + side - 1) / side);
   const std::vector<Image> photographs = photographs_over_white(store, n);
   std::vector<ModelView> shown;
   for (size_t v = 0; v < cameras.size(); ++v) {

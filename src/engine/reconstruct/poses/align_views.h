@@ -15,9 +15,9 @@ struct AlignedViews {
   double pixels = 0;  // median over views of how far they move the object in the image, in its pixels
 };
 
-// model: trained on these pixels. The mean motion of all cameras stays nothing: the object would move with
-// them. Error: interrupted.
-AlignedViews align_views(GeometryStage& model, const PixelStore&, const Progress&);
+// model: trained on these pixels. side: of the images that are compared, at most; pixels. The mean motion of
+// all cameras stays nothing: the object would move with them. Error: interrupted.
+AlignedViews align_views(GeometryStage& model, const PixelStore&, int side, const Progress&);
 
 // Photographs at 1/n of their size as alignment compares them: color over white, alpha 1 where it is known.
 std::vector<Image> photographs_over_white(const PixelStore&, std::span<const int> n);

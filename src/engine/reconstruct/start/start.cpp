@@ -32,7 +32,8 @@ constexpr int kMinViews = 3;
 // Of cameras: alignments at most; pixels by which one has to move the object in the images (median of the
 // views), and dB that it has to gain.
 constexpr int kMaxAlignments = 5;
-constexpr double kMinAlignment = 0.4, kMinAlignmentGain = 0.1;
+constexpr int kAlignSide = 160;  // of the images that are compared, at most; pixels
+constexpr double kMinAlignment = 0.5, kMinAlignmentGain = 0.1;
 
 // Cells that the object may fill. Masks are grown by half a cell, as the cameras see it at the object's
 // center, or rods thinner than a cell would be lost: training removes excess volume, but does not add volume
@@ -85,7 +86,7 @@ Trial tried(const Device& device, const PixelStore& pixels, const TrialOptions& 
 Trial align_with_hull(const Device& device, PixelStore& pixels, const TrialOptions& options, Trial hull,
                       uint64_t seed, Progress& progress) {
   for (int round = 0; round < kMaxAlignments; ++round) {
-    AlignedViews aligned = align_views(*hull.trained, pixels, progress);
+    AlignedViews aligned = align_views(*hull.trained, pixels, kAlignSide, progress);
     Json log{{"stage", "alignment"}, {"pixels", aligned.pixels}, {"psnr", hull.psnr}};
     const bool moves = aligned.pixels >= kMinAlignment;
     if (moves) {
