@@ -25,4 +25,17 @@ inline Camera moved(Camera camera, const RigidMotion& m) {
   return camera;
 }
 
+// Inverse of rotation_of(), for turns of less than a half circle.
+inline Vec3d turn_of(const Mat3d& r) {
+  const Vec3d twice_sine{r.row[2].y - r.row[1].z, r.row[0].z - r.row[2].x, r.row[1].x - r.row[0].y};
+  const double sine = length(twice_sine) / 2, cosine = (r.row[0].x + r.row[1].y + r.row[2].z - 1) / 2;
+  return sine < 1e-12 ? twice_sine * 0.5 : twice_sine * (std::atan2(sine, cosine) / (2 * sine));
+}
+
+// The motion that takes one camera to the other.
+inline RigidMotion motion_between(const Camera& from, const Camera& to) {
+  const Mat3d r = to.world_from_cam * transpose(from.world_from_cam);
+  return {turn_of(r), to.center - r * from.center};
+}
+
 }  // namespace cei3d

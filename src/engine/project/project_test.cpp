@@ -6,6 +6,9 @@
 
 #include <fstream>
 
+#include "core/math/rigid_motion.h"
+#include "engine/capture/capture.h"
+#include "engine/project/dataset.h"
 #include "engine/project/test_project.h"
 
 namespace cei3d {
@@ -31,6 +34,26 @@ TEST_F(ProjectTest, ReopensAsItWas) {
     EXPECT_EQ(a.camera.fx, b.camera.fx);
   }
   EXPECT_EQ(bytes_of(p.scene()), bytes_of(small_scene()));
+}
+
+// The pose of an object's view is where edits and renders see it from; what was given is still known.
+TEST_F(ProjectTest, RefinedPosesAreThoseOfItsViews) {
+  const Vec3d center{0.25, 4, -1};
+  {
+    Project p = make();
+    Scene scene = small_scene();
+    scene.poses = {{"train/r_000", rotation_of({0.1, 0, 0.2}), center}};
+    p.save_base(scene);
+    EXPECT_EQ(find_view(p.capture(), "train/r_000").camera.center.y, 4);
+  }
+  const Project p = Project::open(folder(), Project::Mode::read);
+  const Capture given = small_capture(temp_.path() / "photos");
+  const auto camera = [](const Capture& c, const char* name) { return find_view(c, name).camera; };
+  EXPECT_EQ(camera(p.capture(), "train/r_000").center.x, center.x);
+  EXPECT_EQ(camera(p.capture(), "train/r_000").world_from_cam.row[1].z, rotation_of({0.1, 0, 0.2}).row[1].z);
+  EXPECT_EQ(camera(p.capture(), "test/r_002").center.x, camera(given, "test/r_002").center.x);
+  EXPECT_EQ(camera(p.given_capture(), "train/r_000").center.x, camera(given, "train/r_000").center.x);
+  EXPECT_EQ(capture_fingerprint(p.given_capture()), p.fingerprint());
 }
 
 TEST_F(ProjectTest, MovesTogetherWithItsCapture) {

@@ -21,7 +21,7 @@ constexpr double kReportSeconds = 2;
 constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
 // Where poses were moved before, they are aligned again with what was trained since: positions in the
 // schedule.
-constexpr std::array kAlignAt{0.3, 0.6};
+constexpr std::array kAlignAt{0.1, 0.2, 0.3, 0.45, 0.6};
 constexpr int kAlignSide = 320;        // of the images that are compared, at most; pixels
 constexpr int kEvaluationBatches = 2;  // pixels of an evaluation, in batches of the training
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/image/resample.h"
 #include "engine/reconstruct/pixels.h"
 #include "engine/synthetic/picture.h"
 #include "engine/synthetic/views.h"
@@ -32,6 +33,17 @@ inline bool in_solid(Vec3f p) { return pit_box().distance(p) < 0; }
 template <class ColorAt>
 Image box_picture(const Camera& camera, const ColorAt& color_at) {
   return draw_unlit(pit_box(), camera, [&](Vec3f p) { return color_at(p - pit_box().normal(p) * 2e-3f); });
+}
+
+// Pixels are means, as those of a photograph.
+template <class ColorAt>
+Image filtered_box_picture(const Camera& camera, const ColorAt& color_at) {
+  constexpr int kSamples = 4;  // per pixel and axis
+  Camera finer = camera;
+  finer.width *= kSamples;
+  finer.height *= kSamples;
+  for (double* f : {&finer.fx, &finer.fy, &finer.cx, &finer.cy, &finer.skew}) *f *= kSamples;
+  return downscale(box_picture(finer, color_at), kSamples);
 }
 
 // On a sphere of radius 2.5 around the origin, looking at it; `size` pixels per axis.

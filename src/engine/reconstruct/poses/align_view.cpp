@@ -148,19 +148,6 @@ double mean_way(const Camera& from, const Camera& to, const std::vector<Point>& 
 
 RigidMotion motion_of(const Vector6& v) { return {{v(0), v(1), v(2)}, {v(3), v(4), v(5)}}; }
 
-// r = rotation_of(turn), of less than a half turn.
-Vec3d turn_of(const Mat3d& r) {
-  const Vec3d twice_sine{r.row[2].y - r.row[1].z, r.row[0].z - r.row[2].x, r.row[1].x - r.row[0].y};
-  const double sine = length(twice_sine) / 2, cosine = (r.row[0].x + r.row[1].y + r.row[2].z - 1) / 2;
-  return sine < 1e-12 ? twice_sine * 0.5 : twice_sine * (std::atan2(sine, cosine) / (2 * sine));
-}
-
-// The motion that takes one camera to the other.
-RigidMotion motion_between(const Camera& from, const Camera& to) {
-  const Mat3d r = to.world_from_cam * transpose(from.world_from_cam);
-  return {turn_of(r), to.center - r * from.center};
-}
-
 }  // namespace
 
 MotionSlopes motion_slopes(const Camera& camera, Vec3d point) {
@@ -179,6 +166,19 @@ MotionSlopes motion_slopes(const Camera& camera, Vec3d point) {
   return out;
 }
 
+MotionInformation information_of(const Camera& camera, std::span<const Vec3d> points) {
+  MotionInformation sum{};
+  for (const Vec3d p : points) {
+    const MotionSlopes s = motion_slopes(camera, p);
+    for (int k = 0; k < 2; ++k) {
+      const Vector6 row = vector_of(s.turn[k], s.shift[k]);
+      for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) sum[size_t(i)][size_t(j)] += row(i) * row(j);
+    }
+  }
+  return sum;
+}
+
 Alignment align_view(const Camera& given, const ModelView& model, const Image& photograph,
                      const AlignOptions& options) {
   const std::vector<Point> points = points_of(given, model);
@@ -195,7 +195,9 @@ Alignment align_view(const Camera& given, const ModelView& model, const Image& p
       if (way < kSmallStep) break;
     }
   }
-  return {motion_between(given, camera), mean_way(given, camera, points)};
+  std::vector<Vec3d> positions;
+  for (const Point& p : points) positions.push_back(p.at);
+  return {motion_between(given, camera), mean_way(given, camera, points), information_of(given, positions)};
 }
 
 }  // namespace cei3d

@@ -3,6 +3,9 @@
 // [Lucas and Kanade 1981] with the depths of the model.
 #pragma once
 
+#include <array>
+#include <span>
+
 #include "core/math/camera.h"
 #include "core/math/rigid_motion.h"
 #include "engine/reconstruct/geometry/model_view.h"
@@ -16,9 +19,15 @@ struct AlignOptions {
   double turn = 0.02, shift = 0.02;
 };
 
+// How much motions, (turn, shift), move points in the image: the sum over points of the outer products of the
+// slopes of their pixel positions.
+using MotionInformation = std::array<std::array<double, 6>, 6>;
+MotionInformation information_of(const Camera&, std::span<const Vec3d> points);
+
 struct Alignment {
-  RigidMotion motion;  // of the camera
-  double pixels = 0;   // root mean square of how far the model's points move in the image
+  RigidMotion motion;               // of the camera
+  double pixels = 0;                // root mean square of how far the model's points move in the image
+  MotionInformation information{};  // of the model's points
 };
 
 // photograph: RGBA of the size of the camera; color over white, alpha 1 where it is known, else 0.

@@ -22,7 +22,7 @@ Vec3f checkers(Vec3f p) {
 
 // RGBA over white, of alpha 1.
 Image photograph(const Camera& camera) {
-  Image image = box_picture(camera, checkers);
+  Image image = filtered_box_picture(camera, checkers);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < image.width; ++x) {
       float* p = image.at(x, y);
@@ -92,8 +92,8 @@ TEST(AlignView, FindsWhereTheCameraStood) {
     const Camera truth = box_camera(-0.5 + 0.25 * double(i), 1.7 * double(i), kSize);
     const Camera wrong = moved(truth, {random_vector(rng, 0.01), random_vector(rng, 0.02)});
     const Alignment found = align_view(wrong, model_from(wrong), photograph(truth));
-    EXPECT_GT(apart(wrong, truth), 0.5) << i;
-    EXPECT_LT(apart(moved(wrong, found.motion), truth), 0.15) << i;
+    EXPECT_GT(apart(wrong, truth), 1) << i;
+    EXPECT_LT(apart(moved(wrong, found.motion), truth), 0.25) << i;
     EXPECT_NEAR(found.pixels, apart(wrong, truth), 0.6 * apart(wrong, truth)) << i;
   }
 }
@@ -108,7 +108,7 @@ TEST(AlignView, StaysWithoutEvidence) {
   const Camera camera = box_camera(0.4, 0.6, kSize);
   Image unknown = photograph(box_camera(0.4, 0.7, kSize));
   for (size_t i = 3; i < unknown.data.size(); i += 4) unknown.data[i] = 0;
-  EXPECT_EQ(align_view(camera, model_from(camera), unknown).pixels, 0);
+  EXPECT_LT(align_view(camera, model_from(camera), unknown).pixels, 1e-9);
 }
 
 }  // namespace

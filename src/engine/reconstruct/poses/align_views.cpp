@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/poses/align_views.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 
 #include "core/base/cancel.h"
@@ -13,16 +14,36 @@ namespace cei3d {
 
 namespace {
 
-RigidMotion mean_of(const std::vector<Alignment>& views) {
-  RigidMotion mean;
-  for (const Alignment& a : views) {
-    mean.turn += a.motion.turn / double(views.size());
-    mean.shift += a.motion.shift / double(views.size());
-  }
-  return mean;
-}
+using Matrix7 = Eigen::Matrix<double, 7, 7>;
+using Vector7 = Eigen::Matrix<double, 7, 1>;
 
 }  // namespace
+
+void keep_frame(std::span<const Camera> cameras, std::vector<Alignment>& views) {
+  Matrix7 matrix = Matrix7::Identity() * 1e-9;
+  Vector7 right = Vector7::Zero();
+  for (size_t v = 0; v < views.size(); ++v) {
+    const RigidMotion& m = views[v].motion;
+    const Vec3d c = cameras[v].center;
+    // Of the view's six numbers by those of the common motion; the last one is a step along its center.
+    Eigen::Matrix<double, 6, 7> by_common = Eigen::Matrix<double, 6, 7>::Zero();
+    by_common.leftCols<6>().setIdentity();
+    by_common.col(6) << 0, 0, 0, c.x, c.y, c.z;
+    Eigen::Matrix<double, 6, 6> weight;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j) weight(i, j) = views[v].information[size_t(i)][size_t(j)];
+    Eigen::Matrix<double, 6, 1> own;
+    own << m.turn.x, m.turn.y, m.turn.z, m.shift.x, m.shift.y, m.shift.z;
+    matrix += by_common.transpose() * weight * by_common;
+    right += by_common.transpose() * weight * own;
+  }
+  const Vector7 common = matrix.ldlt().solve(right);
+  for (size_t v = 0; v < views.size(); ++v) {
+    RigidMotion& m = views[v].motion;
+    m.turn = m.turn - Vec3d{common(0), common(1), common(2)};
+    m.shift = m.shift - Vec3d{common(3), common(4), common(5)} - cameras[v].center * common(6);
+  }
+}
 
 std::vector<Image> photographs_over_white(const PixelStore& store, std::span<const int> n) {
   std::vector<Image> out;
@@ -61,12 +82,11 @@ AlignedViews align_views(GeometryStage& model, const PixelStore& store, int side
     aligned[size_t(v)] =
         align_view(scaled(cameras[size_t(v)], n[size_t(v)]), shown[size_t(v)], photographs[size_t(v)]);
   });
-  const RigidMotion mean = mean_of(aligned);
+  keep_frame(cameras, aligned);
   AlignedViews out;
   std::vector<double> pixels;
   for (size_t v = 0; v < cameras.size(); ++v) {
-    const RigidMotion& m = aligned[v].motion;
-    out.cameras.push_back(moved(cameras[v], {m.turn - mean.turn, m.shift - mean.shift}));
+    out.cameras.push_back(moved(cameras[v], aligned[v].motion));
     pixels.push_back(aligned[v].pixels * n[v]);
   }
   out.pixels = median(pixels);

@@ -30,10 +30,10 @@ constexpr double kMinGain = 0.3;
 // views, floating blobs in front of the surface remain.
 constexpr int kMinViews = 3;
 // Of cameras: alignments at most; pixels by which one has to move the object in the images (median of the
-// views), and dB that it has to gain.
+// views), and dB that the first one has to gain.
 constexpr int kMaxAlignments = 5;
 constexpr int kAlignSide = 160;  // of the images that are compared, at most; pixels
-constexpr double kMinAlignment = 0.5, kMinAlignmentGain = 0.1;
+constexpr double kMinAlignment = 0.5, kMinAlignmentGain = 0.3;
 
 // Cells that the object may fill. Masks are grown by half a cell, as the cameras see it at the object's
 // center, or rods thinner than a cell would be lost: training removes excess volume, but does not add volume
@@ -88,21 +88,20 @@ Trial align_with_hull(const Device& device, PixelStore& pixels, const TrialOptio
   for (int round = 0; round < kMaxAlignments; ++round) {
     AlignedViews aligned = align_views(*hull.trained, pixels, kAlignSide, progress);
     Json log{{"stage", "alignment"}, {"pixels", aligned.pixels}, {"psnr", hull.psnr}};
-    const bool moves = aligned.pixels >= kMinAlignment;
-    if (moves) {
-      std::vector<Camera> before = pixels.cameras();
-      pixels.set_cameras(std::move(aligned.cameras));
-      Trial again = tried(device, pixels, options, Start::hull, seed, 0, progress);
-      log["aligned_psnr"] = again.psnr;
-      if (again.psnr > hull.psnr + kMinAlignmentGain) {
-        hull = std::move(again);
-        progress.log(log.dump());
-        continue;
-      }
-      pixels.set_cameras(std::move(before));
+    if (aligned.pixels < kMinAlignment) {
+      progress.log(log.dump());
+      break;
     }
+    std::vector<Camera> before = pixels.cameras();
+    pixels.set_cameras(std::move(aligned.cameras));
+    Trial again = tried(device, pixels, options, Start::hull, seed, 0, progress);
+    log["aligned_psnr"] = again.psnr;
     progress.log(log.dump());
-    break;
+    if (again.psnr < hull.psnr + (round == 0 ? kMinAlignmentGain : 0)) {
+      pixels.set_cameras(std::move(before));
+      break;
+    }
+    hull = std::move(again);
   }
   return hull;
 }

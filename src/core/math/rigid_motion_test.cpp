@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "core/math/rigid_motion.h"
+
+#include <gtest/gtest.h>
+
+namespace cei3d {
+namespace {
+
+TEST(RigidMotion, BetweenTwoCamerasIsTheOneThatMovedThem) {
+  Camera camera;
+  camera.world_from_cam = rotation_of({0.3, -1.2, 0.5});
+  camera.center = {1, -3, 2};
+  for (const Vec3d turn : {Vec3d{0, 0, 0}, Vec3d{1e-9, 0, 0}, Vec3d{0.02, -0.01, 0.03}, Vec3d{-1, 2, 0.5}}) {
+    const Vec3d shift{0.1, 0.2, -0.3};
+    const RigidMotion m = motion_between(camera, moved(camera, {turn, shift}));
+    EXPECT_LT(length(m.turn - turn), 1e-12);
+    EXPECT_LT(length(m.shift - shift), 1e-12);
+  }
+}
+
+// About the origin, and so that what it turns stays as large as it is.
+TEST(RigidMotion, TurnsAboutTheOriginBeforeItShifts) {
+  Camera camera;
+  camera.center = {1, 0, 0};
+  const Camera turned = moved(camera, {{0, 0, M_PI / 2}, {0, 0, 5}});
+  EXPECT_LT(length(turned.center - Vec3d{0, 1, 5}), 1e-12);
+  EXPECT_LT(length(turned.world_from_cam * Vec3d{1, 0, 0} - Vec3d{0, 1, 0}), 1e-12);
+}
+
+}  // namespace
+}  // namespace cei3d

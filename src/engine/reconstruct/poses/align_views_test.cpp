@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// A checkered box whose cameras are given a little wrong, or right.
+#include "engine/reconstruct/poses/align_views.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/math/rigid_motion.h"
+#include "core/math/rng.h"
+#include "engine/reconstruct/poses/refined_poses.h"
+#include "engine/reconstruct/presets.h"
+#include "engine/reconstruct/test_box.h"
+
+namespace cei3d {
+namespace {
+
+constexpr int kViews = 16, kSize = 96;
+
+Camera true_camera(int view) { return box_camera(-0.6 + 1.4 * view / kViews, 2.4 * view, kSize); }
+
+RigidMotion disturbance(int view, double size) {
+  Rng rng(3, 1, uint64_t(view));
+  const auto vector = [&] { return Vec3d{rng.normal(), rng.normal(), rng.normal()} * size; };
+  return {vector(), vector()};
+}
+
+PixelStore photographs(double wrong) {
+  PixelStore store;
+  for (int v = 0; v < kViews; ++v) {
+    const Image image = filtered_box_picture(true_camera(v), [](Vec3f p) {
+      const bool odd = (int(std::floor(p.x * 5)) + int(std::floor(p.y * 5)) + int(std::floor(p.z * 5))) & 1;
+      return odd ? Vec3f{0.5f, 0.3f, 0.2f} : Vec3f{0.1f, 0.3f, 0.4f};
+    });
+    store.add_view(moved(true_camera(v), disturbance(v, wrong)), image, 6);
+  }
+  return store;
+}
+
+TrialOptions brief_trials() {
+  TrialOptions o = preset_by_name("fast").trial;
+  o.geometry.sdf.encoding = {0, 6, 8, 64, 12};
+  o.geometry.rays = 1024;
+  o.geometry.prefit_steps = 100;
+  o.shapes.cells = o.shapes.stereo_cells = 48;
+  o.shapes.carving.steps = 20;
+  o.steps = 400;
+  o.align = true;
+  return o;
+}
+
+// The corners of the box on the side of the camera.
+std::vector<Vec3d> corners_before(const Camera& camera) {
+  std::vector<Vec3d> corners;
+  for (int c = 0; c < 8; ++c) {
+    const Vec3d p{c & 1 ? 0.45 : -0.45, c & 2 ? 0.45 : -0.45, c & 4 ? 0.4 : -0.4};
+    if (dot(p, camera.center) > 0) corners.push_back(p);
+  }
+  return corners;
+}
+
+// Root mean square over views and corners of how far the image of the box is off, in pixels, but for what all
+// cameras have in common, which no alignment can know.
+double off_by(const PixelStore& store) {
+  std::vector<Alignment> missing;
+  for (int v = 0; v < kViews; ++v) {
+    const Camera& camera = store.cameras()[size_t(v)];
+    missing.push_back(
+        {motion_between(camera, true_camera(v)), 0, information_of(camera, corners_before(camera))});
+  }
+  keep_frame(store.cameras(), missing);
+  double sum = 0;
+  int points = 0;
+  for (int v = 0; v < kViews; ++v) {
+    const Camera& camera = store.cameras()[size_t(v)];
+    for (const Vec3d p : corners_before(camera)) {
+      const Vec3d d = moved(camera, missing[size_t(v)].motion).project(p) - camera.project(p);
+      sum += d.x * d.x + d.y * d.y;
+      ++points;
+    }
+  }
+  return std::sqrt(sum / points);
+}
+
+TEST(AlignViews, AModelBringsCamerasBackThatAreALittleWrong) {
+  const Device device = make_device();
+  const PixelStore right = photographs(0);
+  const TrialOptions o = brief_trials();
+  GeometryStage model(device, right, o.geometry, 1);
+  model.prefit(start_shape(right, Start::hull, 1, o.shapes));
+  for (int step = 0; step < o.steps; ++step) model.step(step, double(step) / o.steps);
+  PixelStore store = photographs(0.012);
+  const double before = off_by(store);
+  ASSERT_GT(before, 0.9);
+  store.set_cameras(align_views(model, store, kSize, Progress()).cameras);
+  EXPECT_LT(off_by(store), 0.65 * before) << before;  // by a model of 96 pixels and 400 steps
+}
+
+TEST(AlignViews, CamerasThatAreRightStay) {
+  PixelStore store = photographs(0);
+  const std::vector<Camera> before = store.cameras();
+  TrialOptions o = brief_trials();
+  o.steps = 200;
+  Progress quiet;
+  choose_start(make_device(), store, o, 1, quiet);
+  EXPECT_TRUE(same_poses(store.cameras(), before));
+}
+
+TEST(RefinedPoses, GoToTheCaptureAndBack) {
+  Capture capture;
+  std::vector<Camera> cameras;
+  for (int v = 0; v < 4; ++v) {
+    View view;
+    view.name = std::to_string(v);
+    view.split = v == 1 ? Split::test : Split::train;
+    view.camera = true_camera(v);
+    capture.views.push_back(view);
+    if (v != 1) cameras.push_back(moved(true_camera(v), disturbance(v, 0.01)));
+  }
+  const Normalization n{{1, -2, 0.5}, 0.3};
+  const std::vector<RefinedPose> poses = refined_poses(capture, cameras, n);
+  ASSERT_EQ(poses.size(), 3u);
+  EXPECT_EQ(poses[1].view, "2");
+  const std::vector<Camera> back = posed_cameras(cameras, poses, n);
+  for (size_t i = 0; i < 3; ++i) EXPECT_LT(length(back[i].center - cameras[i].center), 1e-12);
+  const Capture posed = with_poses(capture, poses);
+  EXPECT_EQ(posed.views[1].camera.center.x, capture.views[1].camera.center.x);  // of the held-out view
+  EXPECT_LT(length(posed.views[3].camera.center - n.capture_from_unit(cameras[2].center)), 1e-12);
+}
+
+}  // namespace
+}  // namespace cei3d
