@@ -75,7 +75,7 @@ struct Sampled {
   double known;
 };
 
-// Bilinear, with the slopes of the same interpolation. inside: u, v at least half a pixel from the edges.
+// Bilinear at a continuous position, with the slopes of the same interpolation.
 Sampled sample(const Image& image, double u, double v) {
   const double x = std::clamp(u - 0.5, 0.0, image.width - 1.001),
                y = std::clamp(v - 0.5, 0.0, image.height - 1.001);
