@@ -241,8 +241,9 @@ bool Project::has_base() const {
 
 std::vector<RefinedPose> Project::refined_poses() const {
   if (!has_base()) return {};
-  return read_json_file(file("base/scene.json"),
-                        [&](const Json& j) { return poses_from_head(j.at("head")); });
+  return read_json_file(file("base/scene.json"), [&](const Json& j) {
+    return poses_from_head(j.at("head"), file("base/scene.json").string());
+  });
 }
 
 std::string Project::base_key() const {

@@ -209,10 +209,10 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   if (!scene.poses.empty()) head["poses"] = poses_json(scene.poses);
 }
 
-std::vector<RefinedPose> poses_from_head(const Json& head) {
+std::vector<RefinedPose> poses_from_head(const Json& head, const std::string& what) {
   std::vector<RefinedPose> poses;
   if (!head.contains("poses")) return poses;
-  for (const Json& pose : head.at("poses")) poses.push_back(pose_from_json({pose, "A pose of the object"}));
+  for (const Json& pose : head.at("poses")) poses.push_back(pose_from_json({pose, "A pose in " + what}));
   return poses;
 }
 
@@ -242,7 +242,7 @@ Scene load_scene(const Tensors& tensors, const Json& head, const std::string& wh
       explained.finish();
     }
     reader.has("poses");
-    scene.poses = poses_from_head(head);
+    scene.poses = poses_from_head(head, what);
     reader.finish();
     return scene;
   });

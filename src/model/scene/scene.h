@@ -65,6 +65,7 @@ Scene in_view(Scene, const Camera&);  // the scene under light_in_view()
 void save_scene(const Scene&, Tensors& tensors, Json& head);
 Scene load_scene(const Tensors& tensors, const Json& head,
                  const std::string& what = "The description of the object");
-std::vector<RefinedPose> poses_from_head(const Json& head);  // Scene::poses alone
+// Scene::poses alone.
+std::vector<RefinedPose> poses_from_head(const Json& head, const std::string& what);
 
 }  // namespace cei3d
