@@ -19,6 +19,7 @@ constexpr const char* kAbout =
     "cei3d: reconstructs an editable, relightable 3D object from posed photographs.\n"
     "\n"
     "  cei3d demo                                             all of it, on the sample capture\n"
+    "  cei3d capture PHOTOS -o CAPTURE                        poses and masks for bare photographs\n"
     "  cei3d check CAPTURE                                    check that a capture can be used\n"
     "  cei3d reconstruct CAPTURE -o PROJECT                   reconstruct an object from photographs\n"
     "  cei3d edit PROJECT paint --view NAME --scribble S.png  paint on one view, see it in all\n"
@@ -165,7 +166,7 @@ int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostrea
     return run_cli(with_common(line, common), common.json ? unseen : out, err, err_is_terminal);
   });
   for (const auto add :
-       {add_check, add_reconstruct, add_render, add_edit, add_parts, add_history, add_export, add_eval,
+       {add_check, add_capture, add_reconstruct, add_render, add_edit, add_parts, add_history, add_export, add_eval,
         add_evaluate, add_info, add_bench, add_synth, add_open, add_batch, add_demo, add_manual})
     add(commands);
   app.footer(footer());

@@ -62,6 +62,7 @@ void add_networks(CLI::App* verb, NetworkFiles&);    // --lpips-model, --fid-mod
 void add_residual_switch(CLI::App* verb, bool& on);  // --no-residual
 
 void add_check(Commands&);
+void add_capture(Commands&);
 void add_reconstruct(Commands&);
 void add_render(Commands&);
 void add_edit(Commands&);

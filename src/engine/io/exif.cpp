@@ -43,6 +43,7 @@ ExifNotes read_exif(const std::string& bytes) {
   const auto time = ratio(data.get(), EXIF_TAG_EXPOSURE_TIME), aperture = ratio(data.get(), EXIF_TAG_FNUMBER);
   const auto iso = short_of(data.get(), EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED_RATINGS);
   if (time && aperture && iso && *iso > 0) notes.exposure = *time * *iso / (*aperture * *aperture);
+  notes.focal_length = ratio(data.get(), EXIF_TAG_FOCAL_LENGTH);
   return notes;
 }
 

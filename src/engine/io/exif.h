@@ -11,6 +11,7 @@ struct ExifNotes {
   int orientation = 1;  // 1 to 8; 5 to 8 swap the sides
   std::optional<double>
       exposure;  // relative light that reached the sensor and its gain: time * ISO / f-number^2
+  std::optional<double> focal_length;  // millimeters
 };
 
 // bytes: the file, or a beginning of it that holds the notes. Whatever is missing or broken keeps its

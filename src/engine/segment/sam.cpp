@@ -34,7 +34,7 @@ OnnxTensor encoder_input(const Image& rgb) {
 }
 
 OnnxTensors decoder_input(const SamImage& picture, std::span<const Vec2f> positive,
-                          std::span<const Vec2f> negative) {
+                          std::span<const Vec2f> negative, const std::optional<std::array<Vec2f, 2>>& box) {
   OnnxTensor coords, labels;
   const auto add = [&](Vec2f p, float label) {
     // The network itself adds half a frame pixel.
@@ -44,8 +44,13 @@ OnnxTensors decoder_input(const SamImage& picture, std::span<const Vec2f> positi
   };
   for (Vec2f p : positive) add(p, 1);
   for (Vec2f p : negative) add(p, 0);
-  coords.data.insert(coords.data.end(), {0, 0});  // points without a box end with a filler
-  labels.data.push_back(-1);
+  if (box) {
+    add((*box)[0], 2);
+    add((*box)[1], 3);
+  } else {
+    coords.data.insert(coords.data.end(), {0, 0});  // points without a box end with a filler
+    labels.data.push_back(-1);
+  }
   const auto n = int64_t(labels.data.size());
   coords.shape = {1, n, 2};
   labels.shape = {1, n};
@@ -136,13 +141,13 @@ SamImage Sam::encode(const Image& rgba) const {
   return {std::move(out.at(output)), rgba.width, rgba.height, frame.x0, frame.y0, frame.scale};
 }
 
-Image Sam::mask(const SamImage& picture, std::span<const Vec2f> positive,
-                std::span<const Vec2f> negative) const {
+Image Sam::mask(const SamImage& picture, std::span<const Vec2f> positive, std::span<const Vec2f> negative,
+                const std::optional<std::array<Vec2f, 2>>& box) const {
   const OnnxTensors out =
-      decoder_.run(decoder_input(picture, positive, negative), {"low_res_masks", "iou_predictions"});
+      decoder_.run(decoder_input(picture, positive, negative, box), {"low_res_masks", "iou_predictions"});
   const OnnxTensor& masks = out.at("low_res_masks");
   constexpr size_t kPlane = size_t(kLowRes) * kLowRes;
-  const size_t best = best_mask(out.at("iou_predictions"), positive.size() + negative.size());
+  const size_t best = best_mask(out.at("iou_predictions"), positive.size() + negative.size() + (box ? 2 : 0));
   if (masks.data.size() < (best + 1) * kPlane)
     fail(
         "The segmentation decoder gives masks of another size than {0} x {0}; `./run sam` installs one that "

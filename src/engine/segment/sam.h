@@ -8,7 +8,9 @@
 // iou_predictions.
 #pragma once
 
+#include <array>
 #include <filesystem>
+#include <optional>
 #include <span>
 
 #include "core/image/image.h"
@@ -39,9 +41,11 @@ class Sam {
   // rgba: linear, straight alpha; the object is where alpha > 0.5.
   SamImage encode(const Image& rgba) const;
 
-  // positive, negative: continuous pixel positions in the image. Returns log-odds, 1 channel of the image's
-  // size; strongly negative outside the frame.
-  Image mask(const SamImage&, std::span<const Vec2f> positive, std::span<const Vec2f> negative) const;
+  // positive, negative: continuous pixel positions in the image. box: opposite corners of a box around the
+  // whole thing, where that is known. Returns log-odds, 1 channel of the image's size; strongly negative
+  // outside the frame.
+  Image mask(const SamImage&, std::span<const Vec2f> positive, std::span<const Vec2f> negative,
+             const std::optional<std::array<Vec2f, 2>>& box = {}) const;
 
  private:
   std::shared_ptr<const OnnxRuntime> runtime_;

@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/photos/object_masks.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/base/cancel.h"
+#include "core/base/error.h"
+#include "core/image/area.h"
+#include "core/math/quantile.h"
+#include "engine/capture/capture_images.h"
+#include "engine/capture/mask_votes.h"
+#include "engine/io/image_file.h"
+#include "model/scene/normalization.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr size_t kPrompts = 4;   // of each kind, in the first round
+constexpr float kPrior = 3;      // masks that must contradict what the points' places say
+constexpr size_t kMore = 6;      // in the second one
+constexpr double kMargin = 0.1;  // around the object in the second round, as a share of its longer side
+
+PixelBox whole(const View& v) { return {0, 0, v.file_camera().width, v.file_camera().height}; }
+
+// A mask of the photograph's size.
+Image mask_image(const Image& log_odds, const PixelBox& box, const View& view) {
+  Image mask(view.file_camera().width, view.file_camera().height, 1);
+  for (int y = 0; y < box.height; ++y)
+    for (int x = 0; x < box.width; ++x)
+      *mask.at(box.x0 + x, box.y0 + y) = *log_odds.at(x, y) > 0 ? 1.0f : 0.0f;
+  return mask;
+}
+
+bool is_in(const Image& mask, Vec2f p) {
+  const int x = std::clamp(int(p.x), 0, mask.width - 1), y = std::clamp(int(p.y), 0, mask.height - 1);
+  return *mask.at(x, y) > 0.5f;
+}
+
+View with_mask(View view, const fs::path& file) {
+  view.mask_path = file;
+  view.dark_object = false;
+  return view;
+}
+
+PixelBox box_around(const std::vector<Vec2f>& pixels, double margin, const PixelBox& limit) {
+  if (pixels.empty()) return {};
+  float x0 = pixels[0].x, x1 = x0, y0 = pixels[0].y, y1 = y0;
+  for (const Vec2f p : pixels)
+    x0 = std::min(x0, p.x), x1 = std::max(x1, p.x), y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
+  const float more = float(margin) * std::max(x1 - x0, y1 - y0);
+  const int left = std::max(0, int(x0 - more)), top = std::max(0, int(y0 - more));
+  return {left, top, std::min(limit.width, int(x1 + more) + 1) - left,
+          std::min(limit.height, int(y1 + more) + 1) - top};
+}
+
+// Without the outermost, which may be mistakes.
+std::vector<Vec2f> without_strays(const std::vector<Vec2f>& pixels) {
+  constexpr double kStrays = 0.01;  // at each side
+  std::vector<float> x, y;
+  for (const Vec2f p : pixels) x.push_back(p.x), y.push_back(p.y);
+  const auto low = size_t(kStrays * double(x.size())), high = x.size() - 1 - low;
+  return {{value_of_rank(x, low), value_of_rank(y, low)}, {value_of_rank(x, high), value_of_rank(y, high)}};
+}
+
+// Where the photograph shows a point; none: it does not.
+std::optional<Vec2d> photo_pixel(const View& v, Vec3d point) {
+  const Camera& c = v.file_camera();
+  const Vec3d at = c.project(point);
+  const std::optional<Vec2d> pixel = v.photo ? project(*v.photo, point) : std::optional(Vec2d{at.x, at.y});
+  if (!pixel || at.z <= 0) return std::nullopt;
+  if (!(pixel->x >= 0 && pixel->y >= 0 && pixel->x < c.width && pixel->y < c.height)) return std::nullopt;
+  return pixel;
+}
+
+class FirstRound {
+ public:
+  FirstRound(const MaskRequest& r, const SparsePoints& points, PhotoSegmenter& segmenter)
+      : request_(r), points_(points), segmenter_(segmenter) {
+    votes_.resize(points.positions.size());
+    if (r.clicks.empty()) belief_ = split_points(points, r.views).belief;
+    belief_.resize(points.positions.size(), 0);
+  }
+
+  std::vector<float> beliefs() const {
+    std::vector<float> out;
+    for (uint32_t p = 0; p < votes_.size(); ++p) out.push_back(belief(p));
+    return out;
+  }
+
+  void run(double first, double last, Progress& progress) {
+    const size_t n = request_.views.size();
+    std::vector<uint8_t> done(n);
+    for (size_t i = 0; i < n; ++i) {
+      check_cancelled(progress, "Interrupted; the same command goes on from here.");
+      progress.report({"masks", first + (last - first) * double(i) / double(n), -1, ""});
+      const size_t view = next(done);
+      if (view == n) break;
+      done[view] = 1;
+      learn(view, mask_of(view));
+    }
+  }
+
+ private:
+  // The view that shows most points of the object, of those that are not done; clicked ones first. The number
+  // of views: none shows any.
+  size_t next(const std::vector<uint8_t>& done) const {
+    size_t best = request_.views.size(), most = 0;
+    for (size_t v = 0; v < done.size(); ++v) {
+      if (done[v]) continue;
+      if (clicked(v)) return v;
+      size_t count = 0;
+      for (const auto& s : points_.views[v]) count += belief(s.point) > 0;
+      if (count > most) most = count, best = v;
+    }
+    return best;
+  }
+  bool clicked(size_t view) const {
+    return std::any_of(request_.clicks.begin(), request_.clicks.end(),
+                       [&](const PhotoClick& c) { return c.view == view && c.object; });
+  }
+  float belief(uint32_t point) const { return kPrior * belief_[point] + float(votes_[point]); }
+
+  // Around all points of the object, also those that are hidden or not found in this view.
+  std::optional<PixelBox> around(const View& v) const {
+    std::vector<Vec2f> pixels;
+    for (uint32_t p = 0; p < votes_.size(); ++p) {
+      if (belief(p) <= 0) continue;
+      const std::optional<Vec2d> at = photo_pixel(v, points_.positions[p]);
+      if (at) pixels.push_back({float(at->x), float(at->y)});
+    }
+    if (pixels.size() < 3) return std::nullopt;
+    return box_around(without_strays(pixels), kMargin / 2, whole(v));
+  }
+
+  Prompts prompts_of(size_t view) const {
+    Prompts prompts;
+    for (const PhotoClick& c : request_.clicks)
+      if (c.view == view) (c.object ? prompts.positive : prompts.negative).push_back(c.pixel);
+    BelievedPixels pixels;
+    for (const auto& s : points_.views[view]) {
+      const float b = belief(s.point);
+      (b > 0 ? pixels.in : b < 0 ? pixels.out : pixels.unknown).push_back(s.pixel);
+    }
+    if (!clicked(view)) add_prompts(pixels, kPrompts, prompts);
+    return prompts;
+  }
+  Image mask_of(size_t view) {
+    const View& v = request_.views[view];
+    const fs::path file = request_.first_masks / (v.name + ".png");
+    if (fs::exists(file)) return read_image(file);
+    const Prompts prompts = prompts_of(view);
+    if (prompts.positive.empty()) return {};
+    const Image mask = mask_image(segmenter_.log_odds(v, whole(v), prompts, around(v)), whole(v), v);
+    write_png(file, mask);
+    return mask;
+  }
+  void learn(size_t view, const Image& mask) {
+    if (mask.empty()) return;
+    for (const auto& s : points_.views[view]) votes_[s.point] += is_in(mask, s.pixel) ? 1 : -1;
+  }
+
+  const MaskRequest& request_;
+  const SparsePoints& points_;
+  PhotoSegmenter& segmenter_;
+  PointBelief belief_;
+  std::vector<int> votes_;
+};
+
+// What all masks say, in every view: also in those without a mask of their own.
+struct Consensus {
+  std::vector<Camera> cameras;  // small, capture frame
+  std::vector<Area> areas;
+};
+
+// The first mask of a view at the size that is compared; a view without one counts as background.
+SmallMasks small_first_mask(const View& view, const fs::path& file) {
+  if (fs::exists(file)) {
+    const Mask mask = load_mask(with_mask(view, file));
+    const HullMask hull{view.camera, mask.object};
+    return small_masks({&hull, 1}, Normalization());
+  }
+  const Camera small = scaled(view.camera, reduction_of(view.camera.width, view.camera.height));
+  return {{small}, {std::vector<uint8_t>(size_t(small.width) * small.height, kBackground)}};
+}
+
+// The ball about the points that are believed to be on the object, with room for what has no points.
+Normalization ball_of(const SparsePoints& points, const std::vector<float>& belief) {
+  constexpr double kMost = 0.98, kRoom = 1.3;  // mistakes among the points; radius
+  std::vector<double> axis[3], distances;
+  for (size_t i = 0; i < belief.size(); ++i)
+    for (int a = 0; a < 3 && belief[i] > 0; ++a) axis[a].push_back(points.positions[i][a]);
+  if (axis[0].empty()) fail("No triangulated point lies on the object.");
+  Normalization n;
+  for (int a = 0; a < 3; ++a) n.center[a] = median(axis[a]);
+  for (size_t i = 0; i < axis[0].size(); ++i)
+    distances.push_back(length(Vec3d{axis[0][i], axis[1][i], axis[2][i]} - n.center));
+  n.scale = 1 / (kRoom * value_of_rank(distances, size_t(kMost * double(distances.size() - 1))));
+  return n;
+}
+
+Consensus agree(const MaskRequest& r, const Normalization& normalization) {
+  SmallMasks small;
+  for (const View& v : r.views) {
+    SmallMasks one = small_first_mask(v, r.first_masks / (v.name + ".png"));
+    small.cameras.push_back(one.cameras[0]);
+    small.masks.push_back(std::move(one.masks[0]));
+  }
+  Consensus out{small.cameras, {}};
+  for (Camera& c : small.cameras) c = normalization.unit_from_capture(c);
+  for (const MaskDoubt& d : vote_on_masks(small)) out.areas.push_back(d.consensus);
+  return out;
+}
+
+// The consensus in the pixels of the photograph.
+struct PhotoArea {
+  BelievedPixels pixels;
+  PixelBox object;  // around it; width 0: it is not seen
+  PixelBox box;     // the same with a margin
+};
+
+Area eroded(const Area& area, int width, int height, int radius) {
+  Area out(area.size());
+  for (size_t i = 0; i < area.size(); ++i) out[i] = !area[i];
+  out = dilated(out, width, height, radius);
+  for (uint8_t& v : out) v = !v;
+  return out;
+}
+
+PhotoArea photo_area(const View& view, const Camera& small, const Area& area) {
+  const Area core = eroded(area, small.width, small.height, 1),
+             grown = dilated(area, small.width, small.height, 2);
+  const double n = double(view.camera.width) / small.width;
+  PhotoArea out;
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x) {
+      const size_t i = size_t(y) * small.width + x;
+      const Vec2d pinhole{(x + 0.5) * n, (y + 0.5) * n};
+      const std::optional<Vec2d> at =
+          view.photo ? photo_from_pinhole(*view.photo, view.camera, pinhole) : std::optional(pinhole);
+      if (!at) continue;
+      const Vec2f pixel{float(at->x), float(at->y)};
+      (core[i] ? out.pixels.in : grown[i] ? out.pixels.unknown : out.pixels.out).push_back(pixel);
+    }
+  out.object = box_around(out.pixels.in, 0, whole(view));
+  out.box = box_around(out.pixels.in, kMargin, whole(view));
+  return out;
+}
+
+// Cuts off what no other view takes for the object.
+void keep_near(Image& mask, const View& view, const Camera& small, const Area& area) {
+  const Area near = dilated(area, small.width, small.height, 2);
+  const double n = double(view.camera.width) / small.width;
+  for (int y = 0; y < mask.height; ++y)
+    for (int x = 0; x < mask.width; ++x) {
+      const Vec2d pixel{x + 0.5, y + 0.5};
+      const std::optional<Vec2d> at =
+          view.photo ? pinhole_from_photo(*view.photo, view.camera, pixel) : std::optional(pixel);
+      const int i = at ? int(std::floor(at->x / n)) : -1, j = at ? int(std::floor(at->y / n)) : -1;
+      const bool inside = i >= 0 && j >= 0 && i < small.width && j < small.height;
+      if (!inside || !near[size_t(j) * small.width + i]) *mask.at(x, y) = 0;
+    }
+}
+
+bool second_mask(const MaskRequest& r, size_t v, const Consensus& consensus, PhotoSegmenter& segmenter) {
+  const View& view = r.views[v];
+  const fs::path file = r.masks / (view.name + ".png");
+  if (fs::exists(file)) return true;
+  const PhotoArea area = photo_area(view, consensus.cameras[v], consensus.areas[v]);
+  if (area.box.width < 8 || area.box.height < 8) return false;
+  Prompts prompts;
+  BelievedPixels in_box = area.pixels;
+  std::erase_if(in_box.out, [&](Vec2f p) {
+    return p.x < float(area.box.x0) || p.y < float(area.box.y0) ||
+           p.x >= float(area.box.x0 + area.box.width) || p.y >= float(area.box.y0 + area.box.height);
+  });
+  add_prompts(in_box, kMore, prompts);
+  Image mask = mask_image(segmenter.log_odds(view, area.box, prompts, area.object), area.box, view);
+  keep_near(mask, view, consensus.cameras[v], consensus.areas[v]);
+  write_png(file, mask);
+  return true;
+}
+
+}  // namespace
+
+std::vector<std::string> make_masks(const MaskRequest& r, PhotoSegmenter& segmenter, double first,
+                                    double last, Progress& progress) {
+  const SparsePoints points = sparse_points(r.views);
+  const double middle = (first + last) / 2;
+  FirstRound round(r, points, segmenter);
+  round.run(first, middle, progress);
+  const Consensus consensus = agree(r, ball_of(points, round.beliefs()));
+  std::vector<std::string> without;
+  for (size_t v = 0; v < r.views.size(); ++v) {
+    check_cancelled(progress, "Interrupted; the same command goes on from here.");
+    progress.report({"masks", middle + (last - middle) * double(v) / double(r.views.size()), -1, ""});
+    if (!second_mask(r, v, consensus, segmenter)) without.push_back(r.views[v].name);
+  }
+  return without;
+}
+
+}  // namespace cei3d
