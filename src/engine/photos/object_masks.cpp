@@ -79,8 +79,10 @@ class FirstRound {
   FirstRound(const MaskRequest& r, const SparsePoints& points, PhotoSegmenter& segmenter)
       : request_(r), points_(points), segmenter_(segmenter) {
     votes_.resize(points.positions.size());
-    if (r.clicks.empty()) belief_ = split_points(points, r.views).belief;
-    belief_.resize(points.positions.size(), 0);
+    belief_ = split_points(points, r.views).belief;
+    if (r.clicks.empty()) return;
+    for (float& b : belief_)
+      if (b > -1) b = 0;  // what stands about may be what was clicked
   }
 
   std::vector<float> beliefs() const {
@@ -248,6 +250,30 @@ PhotoArea photo_area(const View& view, const Camera& small, const Area& area) {
   return out;
 }
 
+// Pixels of the object that are neighbors of each other, by their index.
+using Piece = std::vector<uint32_t>;
+std::vector<Piece> pieces_of(const Image& mask) {
+  std::vector<uint8_t> open(mask.data.size());
+  for (size_t i = 0; i < open.size(); ++i) open[i] = mask.data[i] > 0.5f;
+  std::vector<Piece> pieces;
+  for (uint32_t start = 0; start < open.size(); ++start) {
+    if (!open[start]) continue;
+    Piece piece{start};
+    open[start] = 0;
+    for (size_t next = 0; next < piece.size(); ++next) {
+      const int x = int(piece[next]) % mask.width, y = int(piece[next]) / mask.width;
+      const auto visit = [&](int i, int j) {
+        if (i < 0 || j < 0 || i >= mask.width || j >= mask.height) return;
+        const auto at = uint32_t(j) * uint32_t(mask.width) + uint32_t(i);
+        if (open[at]) open[at] = 0, piece.push_back(at);
+      };
+      visit(x - 1, y), visit(x + 1, y), visit(x, y - 1), visit(x, y + 1);
+    }
+    pieces.push_back(std::move(piece));
+  }
+  return pieces;
+}
+
 // Cuts off what no other view takes for the object.
 void keep_near(Image& mask, const View& view, const Camera& small, const Area& area) {
   const Area near = dilated(area, small.width, small.height, 2);
@@ -261,6 +287,17 @@ void keep_near(Image& mask, const View& view, const Camera& small, const Area& a
       const bool inside = i >= 0 && j >= 0 && i < small.width && j < small.height;
       if (!inside || !near[size_t(j) * small.width + i]) *mask.at(x, y) = 0;
     }
+}
+
+// Without specks: pieces that are small beside the largest one.
+void drop_specks(Image& mask) {
+  constexpr double kSpeck = 0.03;  // share of the largest piece
+  const std::vector<Piece> pieces = pieces_of(mask);
+  size_t largest = 0;
+  for (const Piece& p : pieces) largest = std::max(largest, p.size());
+  for (const Piece& p : pieces)
+    if (double(p.size()) < kSpeck * double(largest))
+      for (const uint32_t i : p) mask.data[i] = 0;
 }
 
 bool second_mask(const MaskRequest& r, size_t v, const Consensus& consensus, PhotoSegmenter& segmenter) {
@@ -278,6 +315,7 @@ bool second_mask(const MaskRequest& r, size_t v, const Consensus& consensus, Pho
   add_prompts(in_box, kMore, prompts);
   Image mask = mask_image(segmenter.log_odds(view, area.box, prompts, area.object), area.box, view);
   keep_near(mask, view, consensus.cameras[v], consensus.areas[v]);
+  drop_specks(mask);
   write_png(file, mask);
   return true;
 }

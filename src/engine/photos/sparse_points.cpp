@@ -195,7 +195,7 @@ PointSplit split_points(const SparsePoints& points, std::span<const View> views)
       above.push_back(i), standing.push_back(points.positions[i]);
   }
   const std::vector<uint8_t> is_object = middle_group(standing, out.center, out.radius);
-  for (size_t i = 0; i < above.size(); ++i) out.belief[above[i]] = is_object[i] ? 1.0f : -1.0f;
+  for (size_t i = 0; i < above.size(); ++i) out.belief[above[i]] = is_object[i] ? 1.0f : -0.5f;
   return out;
 }
 

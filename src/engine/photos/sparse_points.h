@@ -21,7 +21,7 @@ struct SparsePoints {
 };
 SparsePoints sparse_points(std::span<const View> views);
 
-// How sure a point is on the object (1), or beside it (-1); 0: unknown.
+// On the object (1), on the ground or far away (-1), on something else that stands about (-0.5), unknown (0).
 using PointBelief = std::vector<float>;
 
 // The object is what stands in the middle of what all cameras look at, above the plane that it lies on or
