@@ -166,8 +166,8 @@ int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostrea
     return run_cli(with_common(line, common), common.json ? unseen : out, err, err_is_terminal);
   });
   for (const auto add :
-       {add_check, add_capture, add_reconstruct, add_render, add_edit, add_parts, add_history, add_export, add_eval,
-        add_evaluate, add_info, add_bench, add_synth, add_open, add_batch, add_demo, add_manual})
+       {add_check, add_capture, add_reconstruct, add_render, add_edit, add_parts, add_history, add_export,
+        add_eval, add_evaluate, add_info, add_bench, add_synth, add_open, add_batch, add_demo, add_manual})
     add(commands);
   app.footer(footer());
   wrap_help(app);

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "core/base/system.h"
 #include "engine/capture/capture.h"
 #include "engine/io/image_file.h"
 #include "engine/photos/colmap_run.h"
@@ -81,12 +82,18 @@ std::vector<PhotoClick> clicks_of(const PhotosRequest& r, const Capture& capture
   return out;
 }
 
-// The photographs that a folder was begun with. Error: others are in it.
-void require_same_photos(const PhotosRequest& r) {
+// The right to write the folder, after a look at what is in it. Errors: another process writes there; it was
+// begun with other photographs, or holds something else.
+FileLock claim(const PhotosRequest& r) {
   const fs::path note = r.out / "work/photographs";
   const std::string from = fs::absolute(r.photos).lexically_normal().string();
+  const auto lock = [&] {
+    std::optional<FileLock> taken = FileLock::take(r.out / "work/lock");
+    if (!taken) fail("Another process is writing {}.", r.out.string());
+    return std::move(*taken);
+  };
   if (fs::exists(note)) {
-    if (read_file(note) == from) return;
+    if (read_file(note) == from) return lock();
     throw Error(ErrorCode::usage,
                 fmt::format("{} was begun with the photographs {}.", r.out.string(), read_file(note)),
                 "Name another folder after -o, or remove that one.");
@@ -94,6 +101,7 @@ void require_same_photos(const PhotosRequest& r) {
   if (fs::exists(r.out) && !fs::is_empty(r.out))
     fail_usage("{} is not empty. Name a new folder after -o.", r.out.string());
   write_file_atomic(note, from);
+  return lock();
 }
 
 }  // namespace
@@ -108,7 +116,7 @@ PhotosReport capture_photos(const PhotosRequest& r, Progress& progress) {
   const double start = steady_seconds();
   require_colmap();
   const std::unique_ptr<PhotoSegmenter> segmenter = segmenter_of(r);
-  require_same_photos(r);
+  const FileLock lock = claim(r);
   progress.report({"photographs", 0, -1, ""});
   const PhotoFiles photos = copy_photos(r.photos, r.out / "images", r.frames, progress);
   PosingRequest posing;

@@ -7,6 +7,7 @@
 
 #include "core/base/error_of.h"
 #include "core/base/file.h"
+#include "core/base/system.h"
 #include "core/base/temp_folder.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_images.h"
@@ -112,6 +113,14 @@ TEST_F(Photos, OfAnotherFolderAreRefused) {
   PhotosRequest other = request();
   other.photos = root_.path();
   EXPECT_NE(message([&] { capture_photos(other, progress_); }).find("was begun with"), std::string::npos);
+}
+
+TEST_F(Photos, OfOneFolderAreTakenByOneProcess) {
+  capture_photos(request(), progress_);
+  const std::optional<FileLock> other = FileLock::take(request().out / "work/lock");
+  ASSERT_TRUE(other);
+  EXPECT_NE(message([&] { capture_photos(request(), progress_); }).find("Another process"),
+            std::string::npos);
 }
 
 TEST_F(Photos, FolderWithOtherFilesIsRefused) {

@@ -43,7 +43,7 @@ struct PlaneFit {
   size_t on = 0;
 };
 
-// The plane with most points on it that has none behind and all cameras before it.
+// The plane with most points on it that has none behind and all cameras before it. [Fischler and Bolles 1981]
 std::optional<Plane> support_plane(const std::vector<Vec3d>& points, std::span<const View> views,
                                    double radius) {
   if (points.size() < 20) return std::nullopt;
