@@ -17,9 +17,11 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kPrompts = 4;   // of each kind, in the first round
-constexpr float kPrior = 3;      // masks that must contradict what the points' places say
-constexpr size_t kMore = 6;      // in the second one
+constexpr size_t kPrompts = 4;  // of each kind, in the first round
+constexpr float kPrior = 3;     // masks that must contradict what the points' places say
+// In the second round, where the box says most: many prompts inside make the outline ragged.
+constexpr size_t kInside = 2;
+constexpr size_t kBeside = 4;
 constexpr double kMargin = 0.1;  // around the object in the second round, as a share of its longer side
 
 PixelBox whole(const View& v) { return {0, 0, v.file_camera().width, v.file_camera().height}; }
@@ -312,7 +314,8 @@ bool second_mask(const MaskRequest& r, size_t v, const Consensus& consensus, Pho
     return p.x < float(area.box.x0) || p.y < float(area.box.y0) ||
            p.x >= float(area.box.x0 + area.box.width) || p.y >= float(area.box.y0 + area.box.height);
   });
-  add_prompts(in_box, kMore, prompts);
+  add_prompts(in_box, kBeside, prompts);
+  prompts.positive.resize(std::min(prompts.positive.size(), kInside));
   Image mask = mask_image(segmenter.log_odds(view, area.box, prompts, area.object), area.box, view);
   keep_near(mask, view, consensus.cameras[v], consensus.areas[v]);
   drop_specks(mask);
