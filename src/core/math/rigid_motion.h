@@ -32,6 +32,27 @@ inline Vec3d turn_of(const Mat3d& r) {
   return sine < 1e-12 ? twice_sine * 0.5 : twice_sine * (std::atan2(sine, cosine) / (2 * sine));
 }
 
+// Derivative of the continuous pixel position of a world point by a motion of the camera, at no motion:
+// row 0 of x, row 1 of y; columns turn (3) and shift (3).
+struct MotionSlopes {
+  Vec3d turn[2], shift[2];
+};
+inline MotionSlopes motion_slopes(const Camera& camera, Vec3d point) {
+  const Mat3d cam_from_world = transpose(camera.world_from_cam);
+  const Vec3d c = cam_from_world * (point - camera.center);
+  const Vec3d by_c[2] = {
+      {camera.fx / c.z, camera.skew / c.z, -(camera.fx * c.x + camera.skew * c.y) / (c.z * c.z)},
+      {0, camera.fy / c.z, -camera.fy * c.y / (c.z * c.z)}};
+  MotionSlopes out;
+  for (int i = 0; i < 2; ++i) {
+    // Seen from the moved camera the point moves by -(turn x point + shift).
+    const Vec3d by_point = camera.world_from_cam * by_c[i];
+    out.shift[i] = -by_point;
+    out.turn[i] = cross(by_point, point);
+  }
+  return out;
+}
+
 // The motion that takes one camera to the other.
 inline RigidMotion motion_between(const Camera& from, const Camera& to) {
   const Mat3d r = to.world_from_cam * transpose(from.world_from_cam);

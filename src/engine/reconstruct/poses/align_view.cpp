@@ -150,22 +150,6 @@ RigidMotion motion_of(const Vector6& v) { return {{v(0), v(1), v(2)}, {v(3), v(4
 
 }  // namespace
 
-MotionSlopes motion_slopes(const Camera& camera, Vec3d point) {
-  const Mat3d cam_from_world = transpose(camera.world_from_cam);
-  const Vec3d c = cam_from_world * (point - camera.center);
-  const Vec3d by_c[2] = {
-      {camera.fx / c.z, camera.skew / c.z, -(camera.fx * c.x + camera.skew * c.y) / (c.z * c.z)},
-      {0, camera.fy / c.z, -camera.fy * c.y / (c.z * c.z)}};
-  MotionSlopes out;
-  for (int i = 0; i < 2; ++i) {
-    // Seen from the moved camera the point moves by -(turn x point + shift).
-    const Vec3d by_point = camera.world_from_cam * by_c[i];
-    out.shift[i] = -by_point;
-    out.turn[i] = cross(by_point, point);
-  }
-  return out;
-}
-
 MotionInformation information_of(const Camera& camera, std::span<const Vec3d> points) {
   MotionInformation sum{};
   for (const Vec3d p : points) {

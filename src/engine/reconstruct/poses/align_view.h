@@ -33,11 +33,4 @@ struct Alignment {
 // photograph: RGBA of the size of the camera; color over white, alpha 1 where it is known, else 0.
 Alignment align_view(const Camera&, const ModelView&, const Image& photograph, const AlignOptions& = {});
 
-// Derivative of the continuous pixel position of a world point by a motion of the camera, at no motion:
-// row 0 of x, row 1 of y; columns turn (3) and shift (3).
-struct MotionSlopes {
-  Vec3d turn[2], shift[2];
-};
-MotionSlopes motion_slopes(const Camera&, Vec3d point);
-
 }  // namespace cei3d

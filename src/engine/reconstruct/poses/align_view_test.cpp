@@ -51,29 +51,6 @@ Vec3d random_vector(Rng& rng, double size) {
   return Vec3d{rng.normal(), rng.normal(), rng.normal()} * (size / std::sqrt(3.0));
 }
 
-TEST(MotionSlopes, AreThoseOfFiniteDifferences) {
-  Camera camera = box_camera(0.3, 1.1, kSize);
-  camera.skew = 0.7;
-  for (uint64_t i = 0; i < 20; ++i) {
-    Rng rng(4, 0, i);
-    const Vec3d point = random_vector(rng, 0.5);
-    const MotionSlopes slopes = motion_slopes(camera, point);
-    constexpr double kStep = 1e-6;
-    for (int axis = 0; axis < 3; ++axis) {
-      Vec3d d{0, 0, 0};
-      d[axis] = kStep;
-      const Vec3d turned = moved(camera, {d, {0, 0, 0}}).project(point) -
-                           moved(camera, {-d, {0, 0, 0}}).project(point),
-                  shifted = moved(camera, {{0, 0, 0}, d}).project(point) -
-                            moved(camera, {{0, 0, 0}, -d}).project(point);
-      for (int k = 0; k < 2; ++k) {
-        EXPECT_NEAR(slopes.turn[k][axis], turned[k] / (2 * kStep), 1e-4);
-        EXPECT_NEAR(slopes.shift[k][axis], shifted[k] / (2 * kStep), 1e-4);
-      }
-    }
-  }
-}
-
 // How far two cameras see the corners of the box apart, in pixels at most.
 double apart(const Camera& a, const Camera& b) {
   double most = 0;
