@@ -8,7 +8,8 @@ namespace cei3d {
 namespace {
 
 struct Options {
-  std::string capture, project, time, light = "auto", light_color = "near-white", poses = "auto";
+  std::string capture, project, time, light = "auto", light_color = "near-white", poses = "auto",
+                                      exposures = "auto";
   std::vector<std::string> set;
   std::string split;
   bool list_settings = false;
@@ -37,6 +38,7 @@ void run_reconstruct(const Options& o, Session& session, Console& console) {
   if (!color) fail_usage("--light-color is free, near-white or three numbers above 0, as in 1,0.9,0.8.");
   request.options.light_color = *color;
   request.options.refine_poses = o.poses == "auto";
+  request.options.fit_exposures = o.exposures == "auto";
   if (!o.time.empty()) request.options.seconds = parse_duration(o.time);
   const ReconstructReport r = session.reconstruct(request, console);
   console.done(r.json(),
@@ -103,10 +105,16 @@ void add_view_options(CLI::App* verb, Options& o) {
       ->capture_default_str();
 }
 
-void add_pose_option(CLI::App* verb, Options& o) {
+void add_fit_options(CLI::App* verb, Options& o) {
   verb->add_option("--poses", o.poses,
                    "Poses of the training cameras. auto: aligned with the object where that explains the "
                    "photographs better. given: as the capture has them")
+      ->check(CLI::IsMember({"auto", "given"}))
+      ->capture_default_str();
+  verb->add_option(
+          "--exposures", o.exposures,
+          "Exposures of the training photographs. auto: made equal, by channel, where they differ and "
+          "that explains the photographs better. given: taken for equal")
       ->check(CLI::IsMember({"auto", "given"}))
       ->capture_default_str();
 }
@@ -135,7 +143,7 @@ void add_reconstruct(Commands& commands) {
   add_schedule_options(verb, *o);
   add_settings(verb, *o);
   add_view_options(verb, *o);
-  add_pose_option(verb, *o);
+  add_fit_options(verb, *o);
   add_light_options(verb, *o);
   verb->add_option("--format", o->request.format,
                    capture_format_names() + " (default: detected from the files)");

@@ -11,7 +11,7 @@ namespace {
 
 const std::vector<std::string> kTexts{"id", "capture", "for", "keep"}, kLists{"steps", "export"},
     kNumbers{"unit_scale", "frames", "stub_seconds"},
-    kTextOptions{"preset", "light", "light_color", "poses", "format"},
+    kTextOptions{"preset", "light", "light_color", "poses", "exposures", "format"},
     kNumberOptions{"seconds", "iterations", "joint", "seed", "downscale", "test_every", "views"};
 
 bool is_in(const std::vector<std::string>& list, const std::string& word) {

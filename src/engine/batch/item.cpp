@@ -61,6 +61,9 @@ void read_options(JsonReader r, BatchItem& item) {
   const std::string poses = r.optional("poses", std::string("auto"));
   place_of(poses, {"auto", "given"}, r.what() + ", 'poses'");
   o.refine_poses = poses == "auto";
+  const std::string exposures = r.optional("exposures", std::string("auto"));
+  place_of(exposures, {"auto", "given"}, r.what() + ", 'exposures'");
+  o.fit_exposures = exposures == "auto";
   const std::string format = r.optional("format", std::string());
   const bool strict = r.optional("strict", false);
   r.finish();

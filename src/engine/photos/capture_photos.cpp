@@ -104,6 +104,21 @@ FileLock claim(const PhotosRequest& r) {
   return lock();
 }
 
+// Masks by other clicks or another plate are moved aside, so that new ones are made.
+void set_aside_other_masks(const PhotosRequest& r) {
+  std::string prompts = r.plate.string() + "\n";
+  for (const PhotosRequest::Click& c : r.clicks)
+    prompts += fmt::format("{} {} {} {}\n", c.photo, c.pixel.x, c.pixel.y, c.object);
+  const fs::path note = r.out / "work/prompts";
+  if (fs::exists(note) && read_file(note) == prompts) return;
+  fs::remove_all(r.out / "work/first_masks");
+  if (fs::exists(r.out / "masks")) {
+    fs::remove_all(r.out / "work/earlier_masks");
+    move_path(r.out / "masks", r.out / "work/earlier_masks");
+  }
+  write_file_atomic(note, prompts);
+}
+
 }  // namespace
 
 Json PhotosReport::json() const {
@@ -136,6 +151,7 @@ PhotosReport capture_photos(const PhotosRequest& r, Progress& progress) {
         "More overlap between neighbors helps, and texture: docs/photographing.md. With a turntable: "
         "--turntable.");
   if (segmenter) {
+    set_aside_other_masks(r);
     MaskRequest masks{capture.views, clicks_of(r, capture), r.out / "work/first_masks", r.out / "masks"};
     report.without_mask = make_masks(masks, *segmenter, kPosed, 1, progress);
   }

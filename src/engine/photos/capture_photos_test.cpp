@@ -108,6 +108,19 @@ TEST_F(Photos, AreNotPosedTwice) {
   EXPECT_EQ(calls().substr(once.size()), "feature_extractor -h\n");
 }
 
+TEST_F(Photos, GetNewMasksForOtherClicks) {
+  const fs::path mask = request().out / "masks/r_003.png";
+  capture_photos(request(), progress_);
+  write_png(mask, Image(96, 72, 1));  // painted by the user
+  capture_photos(request(), progress_);
+  EXPECT_EQ(read_image(mask).data, Image(96, 72, 1).data);
+  PhotosRequest clicked = request();
+  clicked.clicks = {{"r_003", {48, 36}, true}};
+  capture_photos(clicked, progress_);
+  EXPECT_NE(read_image(mask).data, Image(96, 72, 1).data);
+  EXPECT_EQ(read_image(request().out / "work/earlier_masks/r_003.png").data, Image(96, 72, 1).data);
+}
+
 TEST_F(Photos, OfAnotherFolderAreRefused) {
   capture_photos(request(), progress_);
   PhotosRequest other = request();

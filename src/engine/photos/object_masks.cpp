@@ -11,166 +11,23 @@
 #include "engine/capture/capture_images.h"
 #include "engine/capture/mask_votes.h"
 #include "engine/io/image_file.h"
+#include "engine/photos/first_masks.h"
+#include "engine/photos/photo_pixels.h"
 #include "model/scene/normalization.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kPrompts = 4;  // of each kind, in the first round
-constexpr float kPrior = 3;     // masks that must contradict what the points' places say
-// In the second round, where the box says most: many prompts inside make the outline ragged.
-constexpr size_t kInside = 2;
-constexpr size_t kBeside = 4;
-constexpr double kMargin = 0.1;  // around the object in the second round, as a share of its longer side
-
-PixelBox whole(const View& v) { return {0, 0, v.file_camera().width, v.file_camera().height}; }
-
-// A mask of the photograph's size.
-Image mask_image(const Image& log_odds, const PixelBox& box, const View& view) {
-  Image mask(view.file_camera().width, view.file_camera().height, 1);
-  for (int y = 0; y < box.height; ++y)
-    for (int x = 0; x < box.width; ++x)
-      *mask.at(box.x0 + x, box.y0 + y) = *log_odds.at(x, y) > 0 ? 1.0f : 0.0f;
-  return mask;
-}
-
-bool is_in(const Image& mask, Vec2f p) {
-  const int x = std::clamp(int(p.x), 0, mask.width - 1), y = std::clamp(int(p.y), 0, mask.height - 1);
-  return *mask.at(x, y) > 0.5f;
-}
+// Prompts of the second round, where the box says most: many prompts inside make the outline ragged.
+constexpr size_t kInside = 2, kBeside = 4;
+constexpr double kMargin = 0.1;  // around the object, as a share of its longer side
 
 View with_mask(View view, const fs::path& file) {
   view.mask_path = file;
   view.dark_object = false;
   return view;
 }
-
-PixelBox box_around(const std::vector<Vec2f>& pixels, double margin, const PixelBox& limit) {
-  if (pixels.empty()) return {};
-  float x0 = pixels[0].x, x1 = x0, y0 = pixels[0].y, y1 = y0;
-  for (const Vec2f p : pixels)
-    x0 = std::min(x0, p.x), x1 = std::max(x1, p.x), y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
-  const float more = float(margin) * std::max(x1 - x0, y1 - y0);
-  const int left = std::max(0, int(x0 - more)), top = std::max(0, int(y0 - more));
-  return {left, top, std::min(limit.width, int(x1 + more) + 1) - left,
-          std::min(limit.height, int(y1 + more) + 1) - top};
-}
-
-// Without the outermost, which may be mistakes.
-std::vector<Vec2f> without_strays(const std::vector<Vec2f>& pixels) {
-  constexpr double kStrays = 0.01;  // at each side
-  std::vector<float> x, y;
-  for (const Vec2f p : pixels) x.push_back(p.x), y.push_back(p.y);
-  const auto low = size_t(kStrays * double(x.size())), high = x.size() - 1 - low;
-  return {{value_of_rank(x, low), value_of_rank(y, low)}, {value_of_rank(x, high), value_of_rank(y, high)}};
-}
-
-// Where the photograph shows a point; none: it does not.
-std::optional<Vec2d> photo_pixel(const View& v, Vec3d point) {
-  const Camera& c = v.file_camera();
-  const Vec3d at = c.project(point);
-  const std::optional<Vec2d> pixel = v.photo ? project(*v.photo, point) : std::optional(Vec2d{at.x, at.y});
-  if (!pixel || at.z <= 0) return std::nullopt;
-  if (!(pixel->x >= 0 && pixel->y >= 0 && pixel->x < c.width && pixel->y < c.height)) return std::nullopt;
-  return pixel;
-}
-
-class FirstRound {
- public:
-  FirstRound(const MaskRequest& r, const SparsePoints& points, PhotoSegmenter& segmenter)
-      : request_(r), points_(points), segmenter_(segmenter) {
-    votes_.resize(points.positions.size());
-    belief_ = split_points(points, r.views).belief;
-    if (r.clicks.empty()) return;
-    for (float& b : belief_)
-      if (b > -1) b = 0;  // what stands about may be what was clicked
-  }
-
-  std::vector<float> beliefs() const {
-    std::vector<float> out;
-    for (uint32_t p = 0; p < votes_.size(); ++p) out.push_back(belief(p));
-    return out;
-  }
-
-  void run(double first, double last, Progress& progress) {
-    const size_t n = request_.views.size();
-    std::vector<uint8_t> done(n);
-    for (size_t i = 0; i < n; ++i) {
-      check_cancelled(progress, "Interrupted; the same command goes on from here.");
-      progress.report({"masks", first + (last - first) * double(i) / double(n), -1, ""});
-      const size_t view = next(done);
-      if (view == n) break;
-      done[view] = 1;
-      learn(view, mask_of(view));
-    }
-  }
-
- private:
-  // The view that shows most points of the object, of those that are not done; clicked ones first. The number
-  // of views: none shows any.
-  size_t next(const std::vector<uint8_t>& done) const {
-    size_t best = request_.views.size(), most = 0;
-    for (size_t v = 0; v < done.size(); ++v) {
-      if (done[v]) continue;
-      if (clicked(v)) return v;
-      size_t count = 0;
-      for (const auto& s : points_.views[v]) count += belief(s.point) > 0;
-      if (count > most) most = count, best = v;
-    }
-    return best;
-  }
-  bool clicked(size_t view) const {
-    return std::any_of(request_.clicks.begin(), request_.clicks.end(),
-                       [&](const PhotoClick& c) { return c.view == view && c.object; });
-  }
-  float belief(uint32_t point) const { return kPrior * belief_[point] + float(votes_[point]); }
-
-  // Around all points of the object, also those that are hidden or not found in this view.
-  std::optional<PixelBox> around(const View& v) const {
-    std::vector<Vec2f> pixels;
-    for (uint32_t p = 0; p < votes_.size(); ++p) {
-      if (belief(p) <= 0) continue;
-      const std::optional<Vec2d> at = photo_pixel(v, points_.positions[p]);
-      if (at) pixels.push_back({float(at->x), float(at->y)});
-    }
-    if (pixels.size() < 3) return std::nullopt;
-    return box_around(without_strays(pixels), kMargin / 2, whole(v));
-  }
-
-  Prompts prompts_of(size_t view) const {
-    Prompts prompts;
-    for (const PhotoClick& c : request_.clicks)
-      if (c.view == view) (c.object ? prompts.positive : prompts.negative).push_back(c.pixel);
-    BelievedPixels pixels;
-    for (const auto& s : points_.views[view]) {
-      const float b = belief(s.point);
-      (b > 0 ? pixels.in : b < 0 ? pixels.out : pixels.unknown).push_back(s.pixel);
-    }
-    if (!clicked(view)) add_prompts(pixels, kPrompts, prompts);
-    return prompts;
-  }
-  Image mask_of(size_t view) {
-    const View& v = request_.views[view];
-    const fs::path file = request_.first_masks / (v.name + ".png");
-    if (fs::exists(file)) return read_image(file);
-    const Prompts prompts = prompts_of(view);
-    if (prompts.positive.empty()) return {};
-    const Image mask = mask_image(segmenter_.log_odds(v, whole(v), prompts, around(v)), whole(v), v);
-    write_png(file, mask);
-    return mask;
-  }
-  void learn(size_t view, const Image& mask) {
-    if (mask.empty()) return;
-    for (const auto& s : points_.views[view]) votes_[s.point] += is_in(mask, s.pixel) ? 1 : -1;
-  }
-
-  const MaskRequest& request_;
-  const SparsePoints& points_;
-  PhotoSegmenter& segmenter_;
-  PointBelief belief_;
-  std::vector<int> votes_;
-};
 
 // What all masks say, in every view: also in those without a mask of their own.
 struct Consensus {
@@ -190,7 +47,7 @@ SmallMasks small_first_mask(const View& view, const fs::path& file) {
 }
 
 // The ball about the points that are believed to be on the object, with room for what has no points.
-Normalization ball_of(const SparsePoints& points, const std::vector<float>& belief) {
+Normalization ball_of(const SparsePoints& points, const PointBelief& belief) {
   constexpr double kMost = 0.98, kRoom = 1.3;  // mistakes among the points; radius
   std::vector<double> axis[3], distances;
   for (size_t i = 0; i < belief.size(); ++i)
@@ -329,9 +186,8 @@ std::vector<std::string> make_masks(const MaskRequest& r, PhotoSegmenter& segmen
                                     double last, Progress& progress) {
   const SparsePoints points = sparse_points(r.views);
   const double middle = (first + last) / 2;
-  FirstRound round(r, points, segmenter);
-  round.run(first, middle, progress);
-  const Consensus consensus = agree(r, ball_of(points, round.beliefs()));
+  const PointBelief belief = make_first_masks(r, points, segmenter, first, middle, progress);
+  const Consensus consensus = agree(r, ball_of(points, belief));
   std::vector<std::string> without;
   for (size_t v = 0; v < r.views.size(); ++v) {
     check_cancelled(progress, "Interrupted; the same command goes on from here.");

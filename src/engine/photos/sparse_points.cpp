@@ -155,6 +155,15 @@ std::vector<uint8_t> middle_group(const std::vector<Vec3d>& points, Vec3d center
   return out;
 }
 
+// At most kPlanePoints of those in the ball. Error: none.
+std::vector<Vec3d> points_within(const std::vector<Vec3d>& points, Vec3d center, double radius) {
+  std::vector<Vec3d> near;
+  for (const Vec3d p : points)
+    if (length(p - center) < radius) near.push_back(p);
+  if (near.empty()) fail("No point was triangulated on what the photographs look at.");
+  return thinned(near, kPlanePoints);
+}
+
 }  // namespace
 
 SparsePoints sparse_points(std::span<const View> views) {
@@ -177,22 +186,19 @@ PointSplit split_points(const SparsePoints& points, std::span<const View> views)
   PointSplit out;
   out.center = looked_at(views);
   out.radius = shown_radius(views, out.center);
-  const auto distance = [&](size_t i) { return length(points.positions[i] - out.center) / out.radius; };
-  std::vector<Vec3d> near;
-  for (size_t i = 0; i < points.positions.size(); ++i)
-    if (distance(i) < kReach) near.push_back(points.positions[i]);
-  if (near.empty()) fail("No point was triangulated on what the photographs look at.");
-  const std::optional<Plane> plane = support_plane(thinned(near, kPlanePoints), views, out.radius);
+  const std::optional<Plane> plane =
+      support_plane(points_within(points.positions, out.center, kReach * out.radius), views, out.radius);
   out.on_plane = plane.has_value();
 
   std::vector<uint32_t> above;
   std::vector<Vec3d> standing;
   for (uint32_t i = 0; i < points.positions.size(); ++i) {
-    const double height = plane ? plane->height(points.positions[i]) / out.radius : 1;
-    const bool beside = distance(i) > kBeside || height < kFlat;
+    const Vec3d p = points.positions[i];
+    const double height = plane ? plane->height(p) / out.radius : 1,
+                 distance = length(p - out.center) / out.radius;
+    const bool beside = distance > kBeside || height < kFlat;
     out.belief.push_back(beside ? -1.0f : 0.0f);  // at the foot of the object nothing is sure
-    if (!beside && distance(i) < kReach && height > kAbove)
-      above.push_back(i), standing.push_back(points.positions[i]);
+    if (!beside && distance < kReach && height > kAbove) above.push_back(i), standing.push_back(p);
   }
   const std::vector<uint8_t> is_object = middle_group(standing, out.center, out.radius);
   for (size_t i = 0; i < above.size(); ++i) out.belief[above[i]] = is_object[i] ? 1.0f : -0.5f;

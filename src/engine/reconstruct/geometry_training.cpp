@@ -19,8 +19,8 @@ namespace {
 constexpr double kReportSeconds = 2;
 // Between evaluations on held-out pixels: at least 2 s, and 40 times as long as the last one took.
 constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
-// Where poses were moved before, they are aligned again with what was trained since: positions in the
-// schedule.
+// Where poses were moved or exposures found before, they are fitted again to what was trained since:
+// positions in the schedule.
 constexpr std::array kAlignAt{0.1, 0.2, 0.3, 0.45, 0.6};
 constexpr int kAlignSide = 320;        // of the images that are compared, at most; pixels
 constexpr int kEvaluationBatches = 2;  // pixels of an evaluation, in batches of the training
@@ -44,7 +44,7 @@ class Training {
 
   // One step, and what is due after it.
   void step(double u, const Stage::Checkpoint& checkpoint) {
-    align(u);
+    fit_views(u);
     const GeometryStats sum = state_.geometry->step(state_.step, u, {}, run_.progress);
     if (!std::isfinite(sum.color))
       fail("training diverged at step {}: the loss is not a number", state_.step);
@@ -64,14 +64,27 @@ class Training {
   double elapsed() const { return run_.progress.now() - begin_; }
 
  private:
-  void align(double u) {
-    if (state_.scene.poses.empty() || state_.alignments >= int(kAlignAt.size()) ||
+  void fit_views(double u) {
+    const bool poses = !state_.scene.poses.empty(), exposures = !state_.scene.exposures.empty();
+    if ((!poses && !exposures) || state_.alignments >= int(kAlignAt.size()) ||
         u < kAlignAt[size_t(state_.alignments)])
       return;
-    AlignedViews aligned = align_views(*state_.geometry, run_.views.train, kAlignSide, run_.progress);
-    run_.progress.log(Json{{"stage", "alignment"}, {"u", u}, {"pixels", aligned.pixels}}.dump());
-    run_.views.train.set_cameras(std::move(aligned.cameras));
-    keep_poses(run_, state_);
+    PixelStore& pixels = run_.views.train;
+    const ShownViews views = show_views(*state_.geometry, pixels, kAlignSide, run_.progress);
+    Json log{{"stage", "alignment"}, {"u", u}};
+    if (exposures) {
+      std::vector<Vec3f> found = find_exposures(views, pixels);
+      log["exposures"] = exposure_change(pixels.exposures(), found);
+      pixels.set_exposures(std::move(found));
+      keep_exposures(run_, state_);
+    }
+    if (poses) {
+      AlignedViews aligned = align_views(views, pixels);
+      log["pixels"] = aligned.pixels;
+      pixels.set_cameras(std::move(aligned.cameras));
+      keep_poses(run_, state_);
+    }
+    run_.progress.log(log.dump());
     ++state_.alignments;
   }
 
@@ -150,6 +163,13 @@ void keep_poses(const RunContext& run, RunState& state) {
   PixelStore& pixels = run.views.train;
   state.scene.poses = refined_poses(run.capture, pixels.cameras(), run.normalization);
   pixels.set_cameras(posed_cameras(pixels.cameras(), state.scene.poses, run.normalization));
+}
+
+void keep_exposures(const RunContext& run, RunState& state) {
+  state.scene.exposures.clear();
+  for (const View& v : run.capture.views)
+    if (v.split == Split::train)
+      state.scene.exposures.push_back({v.name, run.views.train.exposures()[state.scene.exposures.size()]});
 }
 
 void train_geometry(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {

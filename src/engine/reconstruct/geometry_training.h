@@ -8,6 +8,8 @@ namespace cei3d {
 
 // Notes the poses of the training cameras in the object, and takes from there what a resumed run will.
 void keep_poses(const RunContext&, RunState& state);
+// Stores the exposures of the training pixels in the scene.
+void keep_exposures(const RunContext&, RunState&);
 
 // Trains state.geometry from state.step to the end of the schedule.
 void train_geometry(const RunContext&, RunState& state, const Stage::Checkpoint& checkpoint);

@@ -58,7 +58,27 @@ Vec3f PixelStore::radiance(size_t pixel) const {
   const bool deep = depths_[p.view] != ImageDepth::bits8;
   for (size_t c = 0; c < 3; ++c)
     out[int(c)] = deep ? float_from_half(halves_[pixel][c]) : linear_from_srgb(float(p.srgba[c]) / 255);
-  return out;
+  return exposures_.empty() ? out : out / exposures_[p.view];
+}
+
+Target PixelStore::target(const Pixel& p) const {
+  const float a = float(p.srgba[3]) / 255;
+  Target t{{0, 0, 0}, a};
+  for (size_t c = 0; c < 3; ++c) {
+    const float own = curves_.empty() ? float(p.srgba[c]) / 255 : curves_[p.view][c][p.srgba[c]];
+    t.srgb[int(c)] = own * a + (1 - a);
+  }
+  return t;
+}
+
+void PixelStore::set_exposures(std::vector<Vec3f> factors) {
+  exposures_ = std::move(factors);
+  curves_.assign(exposures_.size(), {});
+  for (size_t v = 0; v < exposures_.size(); ++v)
+    for (size_t c = 0; c < 3; ++c)
+      for (size_t byte = 0; byte < 256; ++byte)
+        curves_[v][c][byte] =
+            std::min(srgb_from_linear(linear_from_srgb(float(byte) / 255) / exposures_[v][int(c)]), 1.0f);
 }
 
 uint8_t PixelStore::clipped(size_t pixel) const {

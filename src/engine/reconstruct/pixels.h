@@ -14,6 +14,12 @@
 
 namespace cei3d {
 
+// Display-encoded color over white, and coverage.
+struct Target {
+  Vec3f srgb;
+  float alpha;
+};
+
 struct Pixel {
   uint16_t view, x, y;
   std::array<uint8_t, 4> srgba;  // display-encoded color, at most 1; straight alpha
@@ -29,7 +35,12 @@ class PixelStore {
   const std::vector<Camera>& cameras() const { return cameras_; }
   void set_cameras(std::vector<Camera> cameras) { cameras_ = std::move(cameras); }  // one a view, of its size
   const std::vector<Pixel>& pixels() const { return pixels_; }
+  // Factors by which the linear channels of each view are brighter than they should be; empty: none is.
+  // Colors are divided by them. A color that becomes brighter than white is white in target().
+  void set_exposures(std::vector<Vec3f> factors);
+  const std::vector<Vec3f>& exposures() const { return exposures_; }
   Vec3f radiance(size_t pixel) const;  // linear, as far as the file holds it
+  Target target(const Pixel&) const;
   // Bit c: channel c is at the upper limit of its file, its radiance may be higher.
   uint8_t clipped(size_t pixel) const;
   // Of each view, row-major: kObject where alpha > 0.5, kUnknown where alpha < 0 (visual_hull.h).
@@ -46,17 +57,9 @@ class PixelStore {
       halves_;                      // of the radiance: #pixels, or empty when all files have 8 bits
   std::vector<ImageDepth> depths_;  // of the views
   std::vector<std::vector<uint8_t>> masks_;
+  std::vector<Vec3f> exposures_;
+  std::vector<std::array<std::array<float, 256>, 3>>
+      curves_;  // of the views: display-encoded colors of the bytes; empty without exposures
 };
-
-// Display-encoded color over white, and coverage.
-struct Target {
-  Vec3f srgb;
-  float alpha;
-};
-inline Target target_of(const Pixel& p) {
-  const float a = float(p.srgba[3]) / 255;
-  const auto over = [&](int c) { return float(p.srgba[c]) / 255 * a + (1 - a); };
-  return {{over(0), over(1), over(2)}, a};
-}
 
 }  // namespace cei3d

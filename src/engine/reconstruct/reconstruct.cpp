@@ -60,11 +60,15 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
                            .light = in.options.light,
                            .light_color = in.options.light_color,
                            .refine_poses = in.options.refine_poses,
+                           .fit_exposures = in.options.fit_exposures,
                            .progress = progress,
                            .live = live};
   RunState state = saved ? std::move(saved->state) : RunState();
   if (!state.scene.poses.empty())
     views.train.set_cameras(posed_cameras(views.train.cameras(), state.scene.poses, in.normalization));
+  std::vector<Vec3f> exposures;
+  for (const ViewExposure& e : state.scene.exposures) exposures.push_back(e.factors);
+  views.train.set_exposures(std::move(exposures));
   state.scene.normalization = in.normalization;
   state.scene.up = in.capture.up;
   StageRunner(context, rates, checkpoints)

@@ -29,7 +29,7 @@ struct RunContext {
   uint64_t seed;
   std::optional<LightMotion> light;  // none: to be found
   LightColorPrior light_color;
-  bool refine_poses;
+  bool refine_poses, fit_exposures;
   RunClock& progress;
   LivePicture& live;
 };

@@ -82,9 +82,11 @@ ViewScore view_from(JsonReader reader) {
               reader.require<double>("ssim"),
               {},
               {},
+              {},
               {}};
   if (const Json& masked = reader.member("psnr_masked"); !masked.is_null())
     v.psnr_masked = decibels_from(masked);
+  if (reader.has("psnr_exposed")) v.psnr_exposed = decibels_from(reader, "psnr_exposed");
   v.lpips = reader.optional<double>("lpips");
   v.flip = reader.optional<double>("flip");
   reader.finish();
@@ -99,6 +101,7 @@ EvalReport eval_report_from_json(const Json& j, const std::string& what) {
   r.psnr = decibels_from(reader, "psnr");
   r.ssim = reader.require<double>("ssim");
   r.psnr_masked = decibels_from(reader, "psnr_masked");
+  if (reader.has("psnr_exposed")) r.psnr_exposed = decibels_from(reader, "psnr_exposed");
   r.psnr_worst = decibels_from(reader, "psnr_worst");
   r.worst_view = reader.require<std::string>("worst_view");
   reader.has("background");  // always the same
@@ -125,6 +128,7 @@ Json EvalReport::json() const {
             {"worst_view", worst_view},
             {"background", "white"},
             {"residual", residual}};
+  if (psnr_exposed) j["psnr_exposed"] = decibels(*psnr_exposed);
   if (alone) j["alone"] = {{"psnr", decibels(alone->psnr)}, {"psnr_masked", decibels(alone->psnr_masked)}};
   if (lpips) j["lpips"] = *lpips;
   if (fid) j["fid"] = *fid;
@@ -136,6 +140,7 @@ Json EvalReport::json() const {
                  {"psnr", decibels(v.psnr)},
                  {"ssim", v.ssim},
                  {"psnr_masked", v.psnr_masked ? decibels(*v.psnr_masked) : Json()}};
+    if (v.psnr_exposed) view["psnr_exposed"] = decibels(*v.psnr_exposed);
     if (v.lpips) view["lpips"] = *v.lpips;
     if (v.flip) view["flip"] = *v.flip;
     j["views"].push_back(std::move(view));
@@ -154,6 +159,7 @@ std::string EvalReport::markdown() const {
     rule += "---|";
     row += fmt::format(" {} |", value);
   };
+  if (psnr_exposed) column("at the photographs' exposures", decibels_text(*psnr_exposed) + " dB");
   if (alone)
     column("light and material alone", fmt::format("{} dB, {} dB in the mask", decibels_text(alone->psnr),
                                                    decibels_text(alone->psnr_masked)));

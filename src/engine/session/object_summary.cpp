@@ -2,8 +2,20 @@
 #include "engine/session/object_summary.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace cei3d {
+
+namespace {
+
+double spread_of(const std::vector<ViewExposure>& exposures) {
+  double sum = 0;
+  for (const ViewExposure& e : exposures)
+    for (int c = 0; c < 3; ++c) sum += std::pow(std::log(double(e.factors[c])), 2) / 3;
+  return exposures.empty() ? 0 : std::sqrt(sum / double(exposures.size()));
+}
+
+}  // namespace
 
 ObjectSummary summary_of(const Device& device, const Scene& scene) {
   constexpr size_t kTwentieth = 20;
@@ -13,6 +25,7 @@ ObjectSummary summary_of(const Device& device, const Scene& scene) {
   out.light_motion = scene.light_frame.motion;
   out.light_error = scene.light_error;
   out.refined_poses = scene.poses.size();
+  out.exposures = spread_of(scene.exposures);
   out.min_roughness = out.max_roughness = out.mean.roughness;
   out.metal_share = out.mean.metalness;
   out.varies = bool(scene.material.varying());

@@ -103,15 +103,19 @@ Json ObjectSummary::json() const {
   j["light"] = {{"motion", light_motion_name(light_motion)}};
   if (light_error) j["light"]["relative_error"] = {light_error->x, light_error->y, light_error->z};
   j["refined_poses"] = refined_poses;
+  j["exposures"] = exposures;
   if (explained)
     j["explained_db"] = {{"physical", explained->physical}, {"with_residual", explained->with_residual}};
   return j;
 }
 
 std::string ObjectSummary::text() const {
-  const std::string text = material_text() + "; " + light_text();
-  return refined_poses == 0 ? text
-                            : fmt::format("{}; the poses of {} views were refined", text, refined_poses);
+  std::string text = material_text() + "; " + light_text();
+  if (refined_poses > 0) text += fmt::format("; the poses of {} views were refined", refined_poses);
+  if (exposures > 0)
+    text +=
+        fmt::format("; exposures that differ by {:.0f} % were made equal", 100 * (std::exp(exposures) - 1));
+  return text;
 }
 
 std::string ObjectSummary::material_text() const {

@@ -81,6 +81,8 @@ struct ObjectSummary {
   LightMotion light_motion = LightMotion::world;
   std::optional<Vec3f> light_error;  // relative, of the strength of its channels; none: not known
   size_t refined_poses = 0;          // training views whose poses the reconstruction moved
+  double exposures = 0;  // by how much their photographs are of different brightness, standard deviation of
+                         // the logarithm; 0: they are taken for equal
   // A sentence if light and material alone explain the photographs much worse than with the correction
   // network; else empty.
   std::string warning() const;
@@ -255,7 +257,8 @@ struct EvalRequest {
 struct ViewScore {
   std::string view;
   double psnr = 0, ssim = 0;
-  std::optional<double> psnr_masked;  // none without object pixels
+  std::optional<double> psnr_masked;   // none without object pixels
+  std::optional<double> psnr_exposed;  // the same with the render at the exposure of the photograph
   std::optional<double> lpips;
   std::optional<double> flip;  // none in reports of older programs
 };
@@ -279,6 +282,7 @@ struct EditScore {
 struct EvalReport {
   std::vector<ViewScore> views;
   double psnr = 0, ssim = 0, psnr_masked = 0;  // means over views
+  std::optional<double> psnr_exposed;          // the same; none in reports of older programs
   double psnr_worst = 0;
   std::string worst_view;
   bool residual = false;  // whether the images include the correction network

@@ -5,6 +5,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
+#include "core/image/exposure.h"
 #include "engine/capture/capture_images.h"
 #include "engine/io/image_file.h"
 #include "engine/metrics/flip.h"
@@ -56,7 +57,14 @@ ViewScore score_view(const View& view, const Image& rendered, const Image& photo
   const Image a = over_background(rendered, 1), b = over_background(photo, 1);
   perceptual.add(sets.rendered, a);
   perceptual.add(sets.photos, b);
-  return {view.name, psnr(a, b), ssim(a, b), psnr_in_mask(a, b, mask_of(photo)), perceptual.distance(a, b),
+  const std::vector<uint8_t> mask = mask_of(photo);
+  const std::optional<Vec3f> exposure = exposure_between(a, b, mask);
+  return {view.name,
+          psnr(a, b),
+          ssim(a, b),
+          psnr_in_mask(a, b, mask),
+          psnr_in_mask(exposure ? exposed(a, *exposure) : a, b, mask),
+          perceptual.distance(a, b),
           flip(b, a)};
 }
 
@@ -77,6 +85,7 @@ void summarise(EvalReport& r) {
     if (v.lpips) r.lpips = r.lpips.value_or(0) + *v.lpips / double(r.views.size());
     if (v.psnr_masked) {
       r.psnr_masked += *v.psnr_masked;
+      r.psnr_exposed = r.psnr_exposed.value_or(0) + v.psnr_exposed.value_or(*v.psnr_masked);
       ++masked;
     }
     if (v.psnr < r.psnr_worst || r.worst_view.empty()) {
@@ -85,6 +94,7 @@ void summarise(EvalReport& r) {
     }
   }
   r.psnr_masked /= double(std::max<size_t>(masked, 1));
+  if (r.psnr_exposed) *r.psnr_exposed /= double(masked);
 }
 
 // The object without one of its edits.

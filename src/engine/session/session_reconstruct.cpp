@@ -45,6 +45,7 @@ Json options_json(const ReconstructRequest& r) {
           {"views", o.views},
           {"light", o.light ? light_motion_name(*o.light) : "auto"},
           {"refine_poses", o.refine_poses},
+          {"fit_exposures", o.fit_exposures},
           {"set", o.set},
           {"format", r.format}};
 }
@@ -64,6 +65,7 @@ ReconstructOptions options_from_json(const Json& j) {
   o.light = light_motion_named(reader.optional("light", std::string("auto")));  // missing in older projects
   o.light_color = light_color_from(reader.optional("light_color", std::string())).value_or(LightColorPrior());
   o.refine_poses = reader.optional("refine_poses", true);
+  o.fit_exposures = reader.optional("fit_exposures", true);
   if (reader.has("set")) o.set = reader.member("set");
   check_settings(preset_settings().infos(), o.set);
   reader.has("format");

@@ -125,6 +125,19 @@ Json poses_json(const std::vector<RefinedPose>& poses) {
   return list;
 }
 
+Json exposures_json(const std::vector<ViewExposure>& exposures) {
+  Json list = Json::array();
+  for (const ViewExposure& e : exposures)
+    list.push_back({{"view", e.view}, {"factors", vector_json(to_double(e.factors))}});
+  return list;
+}
+
+ViewExposure exposure_from_json(JsonReader reader) {
+  ViewExposure e{reader.require<std::string>("view"), to_float(vector_from(reader, "factors"))};
+  reader.finish();
+  return e;
+}
+
 RefinedPose pose_from_json(JsonReader reader) {
   RefinedPose p{reader.require<std::string>("view"), {}, vector_from(reader, "center")};
   const std::array<double, 9> rows = reader.numbers<9>("world_from_cam");  // row by row
@@ -207,6 +220,7 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
     head["explained"] = {{"physical", scene.explained->physical},
                          {"with_residual", scene.explained->with_residual}};
   if (!scene.poses.empty()) head["poses"] = poses_json(scene.poses);
+  if (!scene.exposures.empty()) head["exposures"] = exposures_json(scene.exposures);
 }
 
 std::vector<RefinedPose> poses_from_head(const Json& head, const std::string& what) {
@@ -243,6 +257,9 @@ Scene load_scene(const Tensors& tensors, const Json& head, const std::string& wh
     }
     reader.has("poses");
     scene.poses = poses_from_head(head, what);
+    if (reader.has("exposures"))
+      for (const Json& e : head.at("exposures"))
+        scene.exposures.push_back(exposure_from_json({e, "An exposure in " + what}));
     reader.finish();
     return scene;
   });

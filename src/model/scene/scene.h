@@ -46,6 +46,7 @@ struct Scene {
   std::shared_ptr<const Residual> residual;
   std::optional<Explained> explained;             // of the reconstruction; none: not measured
   std::vector<RefinedPose> poses;                 // of training views; empty: those of the capture are right
+  std::vector<ViewExposure> exposures;            // of training views; empty: all have the same
   std::shared_ptr<const HandlerPoints> handlers;  // on the present shape
   ShapeVersions shape_versions;  // the last one has `surface`; empty while the shape is the reconstructed one
   std::vector<EditLayer> layers;  // in order; later layers cover earlier ones

@@ -50,6 +50,12 @@ struct RefinedPose {
   Vec3d center;
 };
 
+// How much brighter a photograph is than the others, as a reconstruction found out.
+struct ViewExposure {
+  std::string view;        // its name
+  Vec3f factors{1, 1, 1};  // of the linear channels; the geometric mean over the views is 1
+};
+
 // A ball that contains the object, as some formats state it.
 struct ObjectBall {
   Vec3d center;

@@ -11,6 +11,7 @@ namespace {
 constexpr double kTurningBy = 0.8, kExplained = 5e-5;
 constexpr float kRoughness = 0.3f;
 constexpr int kLightHeight = 24;  // a rough answer will do
+constexpr int kHoldOut = 5;  // every so many views judge what the others say, where there are twice as many
 
 }  // namespace
 
@@ -32,6 +33,7 @@ LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16
   options.max_hits = options.search_hits;
   options.light_height = kLightHeight;
   options.seed = seed;
+  options.hold_out = cameras.size() >= 2 * kHoldOut ? kHoldOut : 0;
   const Transport transport(input.surface);
   const auto residual = [&](LightMotion motion) {
     const auto turns = turns_of(light_frame(motion, cameras, axis), cameras);

@@ -7,8 +7,8 @@
 
 namespace cei3d {
 
-// The motion that explains the samples best, by a split for one dielectric: as many unknowns for each. A
-// light that stands still wins unless another motion leaves much less. input: its samples not turned. views:
+// The motion that explains held-out views best, by a split of the others for one dielectric. A light that
+// stands still wins unless another motion leaves much less. input: its samples not turned. views:
 // #samples, index of the camera. cameras: of the training views; the first is the reference. axis: of a
 // turntable, unit.
 LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16_t> views,

@@ -50,6 +50,9 @@ struct LinearSplitOptions {
   // Relative: the largest roughness whose residual is this close to the best is taken.
   float tolerance = 0.008f;
   uint64_t seed = 1;
+  // Every n-th view does not take part, and residuals are of those views alone; 0: all take part. Needs
+  // SurfaceSamples::turned.views.
+  int hold_out = 0;
 };
 
 struct LinearSplit {

@@ -199,7 +199,7 @@ std::vector<Vec3f> mean_colors(size_t vertices, const std::vector<SplitRow>& row
   std::vector<Vec3f> sum(vertices, Vec3f{0, 0, 0});
   std::vector<float> count(vertices, 0);
   for (const SplitRow& r : rows)
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3 && !r.held_out; ++k) {
       sum[r.vertices[k]] += r.color * r.barycentric[k];
       count[r.vertices[k]] += r.barycentric[k];
     }

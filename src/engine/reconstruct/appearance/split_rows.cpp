@@ -47,6 +47,7 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     row.normal = samples.turned.in_room(kept[k], h.normal);
     row.to_camera = samples.turned.in_room(kept[k], h.to_camera);
     row.view = samples.turned.turns ? samples.turned.views[kept[k]] : 0;
+    row.held_out = options.hold_out > 0 && samples.turned.views[kept[k]] % options.hold_out == 0;
     row.nv = dot(h.normal, h.to_camera);
     row.color = samples.colors[kept[k]];
     for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_slope(max(row.color[c], kDarkest)));

@@ -26,7 +26,7 @@ SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
       options_(options),
       blurs_(options.light_height),
       harmonics_(options.light_height) {
-  for (const SplitRow& row : rows) weights_.push_back(row.weight);
+  for (const SplitRow& row : rows) weights_.push_back(row.held_out ? Vec3f{0, 0, 0} : row.weight);
   for (const auto& t : mesh.triangles)
     for (int c = 0; c < 3; ++c)
       if (t[c] < t[(c + 1) % 3]) edges_.push_back({t[c], t[(c + 1) % 3]});
@@ -101,7 +101,7 @@ void SplitSystem::release_bounds(const SplitUnknowns& x) {
   parallel_ranges(int(rows_.size()), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
-      if (!row.clipped) continue;
+      if (!row.clipped || row.held_out) continue;
       const Vec3f above = predict(size_t(i), x, sky) - row.color;
       for (int c = 0; c < 3; ++c) weights_[i][c] = (row.clipped >> c & 1) && above[c] > 0 ? 0 : row.weight[c];
     }
@@ -228,7 +228,7 @@ double SplitSystem::residual(const SplitUnknowns& x) const {
     const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
     for (size_t i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
-      if (row.blocked) continue;
+      if (row.blocked || row.held_out != (options_.hold_out > 0)) continue;
       const Vec3f e = predict(i, x, sky) - row.color;
       count[chunk] += 3;
       for (int c = 0; c < 3; ++c) {

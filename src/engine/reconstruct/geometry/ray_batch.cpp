@@ -17,7 +17,7 @@ void add_pixel(const PixelStore& store, size_t pixel, RayBatch& batch) {
   const Pixel& p = store.pixels()[pixel];
   batch.pixels.push_back(pixel);
   batch.rays.push_back(store.ray(p));
-  batch.targets.push_back(target_of(p));
+  batch.targets.push_back(store.target(p));
 }
 
 }  // namespace

@@ -6,6 +6,8 @@
 
 #include "core/base/cancel.h"
 #include "core/base/parallel.h"
+#include "core/image/area.h"
+#include "core/image/exposure.h"
 #include "core/math/quantile.h"
 #include "engine/reconstruct/poses/align_view.h"
 #include "model/geometry/shape/visual_hull.h"
@@ -61,26 +63,31 @@ std::vector<Image> photographs_over_white(const PixelStore& store, std::span<con
     Image& image = out[p.view];
     const int k = n[p.view], x = p.x / k, y = p.y / k;
     if (x >= image.width || y >= image.height) continue;
-    const Vec3f below_white = Vec3f{1, 1, 1} - target_of(p).srgb;
+    const Vec3f below_white = Vec3f{1, 1, 1} - store.target(p).srgb;
     for (int c = 0; c < 3; ++c) image.at(x, y)[c] -= below_white[c] / float(k * k);
   }
   return out;
 }
 
-AlignedViews align_views(GeometryStage& model, const PixelStore& store, int side, const Progress& progress) {
-  const std::vector<Camera>& cameras = store.cameras();
-  std::vector<int> n;
-  for (const Camera& c : cameras) n.push_back((std::max(c.width, c.height) + side - 1) / side);
-  const std::vector<Image> photographs = photographs_over_white(store, n);
-  std::vector<ModelView> shown;
-  for (size_t v = 0; v < cameras.size(); ++v) {
+ShownViews show_views(GeometryStage& model, const PixelStore& store, int side, const Progress& progress) {
+  ShownViews out;
+  for (const Camera& c : store.cameras())
+    out.reductions.push_back((std::max(c.width, c.height) + side - 1) / side);
+  out.photographs = photographs_over_white(store, out.reductions);
+  for (size_t v = 0; v < store.cameras().size(); ++v) {
     check_cancelled(progress);
-    shown.push_back(model.render_view(scaled(cameras[v], n[v])));
+    out.models.push_back(model.render_view(scaled(store.cameras()[v], out.reductions[v])));
   }
+  return out;
+}
+
+AlignedViews align_views(const ShownViews& views, const PixelStore& store) {
+  const std::vector<Camera>& cameras = store.cameras();
+  const std::vector<int>& n = views.reductions;
   std::vector<Alignment> aligned(cameras.size());
   parallel_for(int(cameras.size()), [&](int v) {
-    aligned[size_t(v)] =
-        align_view(scaled(cameras[size_t(v)], n[size_t(v)]), shown[size_t(v)], photographs[size_t(v)]);
+    aligned[size_t(v)] = align_view(scaled(cameras[size_t(v)], n[size_t(v)]), views.models[size_t(v)],
+                                    views.photographs[size_t(v)]);
   });
   keep_frame(cameras, aligned);
   AlignedViews out;
@@ -91,6 +98,47 @@ AlignedViews align_views(GeometryStage& model, const PixelStore& store, int side
   }
   out.pixels = median(pixels);
   return out;
+}
+
+namespace {
+
+// Pixels well inside of the object in model and photograph.
+Area inside_of(const ModelView& model, const Image& photograph) {
+  Area out(size_t(photograph.width) * photograph.height), rest(out.size());
+  for (size_t i = 0; i < out.size(); ++i)
+    rest[i] = !(model.depth.data[i] > 0) || photograph.data[4 * i + 3] < 0.999f;
+  rest = dilated(rest, photograph.width, photograph.height, 1);
+  for (size_t i = 0; i < out.size(); ++i) out[i] = !rest[i];
+  return out;
+}
+
+}  // namespace
+
+std::vector<Vec3f> find_exposures(const ShownViews& views, const PixelStore& store) {
+  std::vector<Vec3f> out = store.exposures();
+  out.resize(views.models.size(), {1, 1, 1});
+  Vec3d mean{0, 0, 0};
+  for (size_t v = 0; v < out.size(); ++v) {
+    const ModelView& model = views.models[v];
+    if (const auto by =
+            exposure_between(model.srgb, views.photographs[v], inside_of(model, views.photographs[v])))
+      out[v] = out[v] * *by;
+    for (int c = 0; c < 3; ++c) mean[c] += std::log(double(out[v][c])) / double(out.size());
+  }
+  for (Vec3f& factors : out)
+    for (int c = 0; c < 3; ++c) factors[c] = float(factors[c] * std::exp(-mean[c]));
+  return out;
+}
+
+double exposure_change(std::span<const Vec3f> a, std::span<const Vec3f> b) {
+  const size_t n = std::max(a.size(), b.size());
+  double sum = 0;
+  for (size_t v = 0; v < n; ++v)
+    for (int c = 0; c < 3; ++c) {
+      const double from = a.empty() ? 1 : a[v][c], to = b.empty() ? 1 : b[v][c];
+      sum += std::pow(std::log(to / from), 2) / double(3 * n);
+    }
+  return std::sqrt(sum);
 }
 
 }  // namespace cei3d

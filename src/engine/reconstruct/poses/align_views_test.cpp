@@ -25,15 +25,17 @@ RigidMotion disturbance(int view, double size) {
   return {vector(), vector()};
 }
 
+Image checkered_picture(int view) {
+  return filtered_box_picture(true_camera(view), [](Vec3f p) {
+    const bool odd = (int(std::floor(p.x * 5)) + int(std::floor(p.y * 5)) + int(std::floor(p.z * 5))) & 1;
+    return odd ? Vec3f{0.5f, 0.3f, 0.2f} : Vec3f{0.1f, 0.3f, 0.4f};
+  });
+}
+
 PixelStore photographs(double wrong) {
   PixelStore store;
-  for (int v = 0; v < kViews; ++v) {
-    const Image image = filtered_box_picture(true_camera(v), [](Vec3f p) {
-      const bool odd = (int(std::floor(p.x * 5)) + int(std::floor(p.y * 5)) + int(std::floor(p.z * 5))) & 1;
-      return odd ? Vec3f{0.5f, 0.3f, 0.2f} : Vec3f{0.1f, 0.3f, 0.4f};
-    });
-    store.add_view(moved(true_camera(v), disturbance(v, wrong)), image, 6);
-  }
+  for (int v = 0; v < kViews; ++v)
+    store.add_view(moved(true_camera(v), disturbance(v, wrong)), checkered_picture(v), 6);
   return store;
 }
 
@@ -92,8 +94,60 @@ TEST(AlignViews, AModelBringsCamerasBackThatAreALittleWrong) {
   PixelStore store = photographs(0.012);
   const double before = off_by(store);
   ASSERT_GT(before, 0.9);
-  store.set_cameras(align_views(model, store, kSize, Progress()).cameras);
+  store.set_cameras(align_views(show_views(model, store, kSize, Progress()), store).cameras);
   EXPECT_LT(off_by(store), 0.65 * before) << before;  // by a model of 96 pixels and 400 steps
+}
+
+// Views that are brighter or darker, each channel by itself.
+Vec3f exposure(int view, float size) {
+  Rng rng(9, 2, uint64_t(view));
+  Vec3f e;
+  for (int c = 0; c < 3; ++c) e[c] = std::exp(size * rng.normal());
+  return e;
+}
+PixelStore exposed_photographs(float size) {
+  PixelStore store;
+  for (int v = 0; v < kViews; ++v) {
+    Image image = checkered_picture(v);
+    for (size_t i = 0; i < image.data.size(); ++i)
+      if (i % 4 < 3) image.data[i] *= exposure(v, size)[int(i % 4)];
+    store.add_view(true_camera(v), image, 6);
+  }
+  return store;
+}
+
+// The exposures but for their mean, which nothing can tell.
+double exposures_off_by(const PixelStore& store, float size) {
+  std::vector<Vec3f> truth;
+  Vec3d mean{0, 0, 0};
+  for (int v = 0; v < kViews; ++v) {
+    truth.push_back(exposure(v, size));
+    for (int c = 0; c < 3; ++c) mean[c] += std::log(double(truth.back()[c])) / kViews;
+  }
+  for (Vec3f& e : truth)
+    for (int c = 0; c < 3; ++c) e[c] = float(e[c] * std::exp(-mean[c]));
+  return exposure_change(truth, store.exposures());
+}
+
+TEST(Exposures, AreFoundByTheStart) {
+  PixelStore store = exposed_photographs(0.25f);
+  TrialOptions o = brief_trials();
+  o.align = false, o.expose = true;
+  const double before = exposures_off_by(store, 0.25f);
+  ASSERT_GT(before, 0.2);
+  Progress quiet;
+  choose_start(make_device(), store, o, 1, quiet);
+  EXPECT_LT(exposures_off_by(store, 0.25f), 0.2 * before);
+}
+
+TEST(Exposures, ThatAreEqualStay) {
+  PixelStore store = photographs(0);
+  TrialOptions o = brief_trials();
+  o.align = false, o.expose = true;
+  o.steps = 200;
+  Progress quiet;
+  choose_start(make_device(), store, o, 1, quiet);
+  EXPECT_TRUE(store.exposures().empty());
 }
 
 TEST(AlignViews, CamerasThatAreRightStay) {

@@ -101,7 +101,7 @@ class Fog {
       color += Vec3f{c[1], c[2], c[3]} * weight;
       light -= weight;
     }
-    const Target target = target_of(p);
+    const Target target = pixels_.target(p);
     const Vec3f error = color + Vec3f{light, light, light} - target.srgb;
     const float error_opacity = options_.opacity_weight * (1 - light - target.alpha);
     Vec3f behind{light, light, light};  // color from the rest of the ray

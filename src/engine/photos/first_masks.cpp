@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/photos/first_masks.h"
+
+#include <algorithm>
+
+#include "core/base/cancel.h"
+#include "core/math/quantile.h"
+#include "engine/io/image_file.h"
+#include "engine/photos/photo_pixels.h"
+
+namespace cei3d {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr size_t kPrompts = 4;    // of each kind
+constexpr float kPrior = 3;       // masks that must contradict what the points' places say
+constexpr double kMargin = 0.05;  // of the box around the points, as a share of its longer side
+
+bool is_in(const Image& mask, Vec2f p) {
+  const int x = std::clamp(int(p.x), 0, mask.width - 1), y = std::clamp(int(p.y), 0, mask.height - 1);
+  return *mask.at(x, y) > 0.5f;
+}
+
+// Without the outermost, which may be mistakes.
+std::vector<Vec2f> without_strays(const std::vector<Vec2f>& pixels) {
+  constexpr double kStrays = 0.01;  // at each side
+  std::vector<float> x, y;
+  for (const Vec2f p : pixels) x.push_back(p.x), y.push_back(p.y);
+  const auto low = size_t(kStrays * double(x.size())), high = x.size() - 1 - low;
+  return {{value_of_rank(x, low), value_of_rank(y, low)}, {value_of_rank(x, high), value_of_rank(y, high)}};
+}
+
+class FirstRound {
+ public:
+  FirstRound(const MaskRequest& r, const SparsePoints& points, PhotoSegmenter& segmenter)
+      : request_(r), points_(points), segmenter_(segmenter) {
+    votes_.resize(points.positions.size());
+    belief_ = split_points(points, r.views).belief;
+    if (r.clicks.empty()) return;
+    for (float& b : belief_)
+      if (b > -1) b = 0;  // what stands about may be what was clicked
+  }
+
+  PointBelief beliefs() const {
+    PointBelief out;
+    for (uint32_t p = 0; p < votes_.size(); ++p) out.push_back(belief(p));
+    return out;
+  }
+
+  void run(double first, double last, Progress& progress) {
+    const size_t n = request_.views.size();
+    std::vector<uint8_t> done(n);
+    for (size_t i = 0; i < n; ++i) {
+      check_cancelled(progress, "Interrupted; the same command goes on from here.");
+      progress.report({"masks", first + (last - first) * double(i) / double(n), -1, ""});
+      const size_t view = next(done);
+      if (view == n) break;
+      done[view] = 1;
+      learn(view, mask_of(view));
+    }
+  }
+
+ private:
+  // The view that shows most points of the object, of those that are not done; clicked ones first. The number
+  // of views: none shows any.
+  size_t next(const std::vector<uint8_t>& done) const {
+    size_t best = request_.views.size(), most = 0;
+    for (size_t v = 0; v < done.size(); ++v) {
+      if (done[v]) continue;
+      if (clicked(v)) return v;
+      size_t count = 0;
+      for (const auto& s : points_.views[v]) count += belief(s.point) > 0;
+      if (count > most) most = count, best = v;
+    }
+    return best;
+  }
+  bool clicked(size_t view) const {
+    return std::any_of(request_.clicks.begin(), request_.clicks.end(),
+                       [&](const PhotoClick& c) { return c.view == view && c.object; });
+  }
+  float belief(uint32_t point) const { return kPrior * belief_[point] + float(votes_[point]); }
+
+  // Around all points of the object, also those that are hidden or not found in this view.
+  std::optional<PixelBox> around(const View& v) const {
+    std::vector<Vec2f> pixels;
+    for (uint32_t p = 0; p < votes_.size(); ++p) {
+      if (belief(p) <= 0) continue;
+      const std::optional<Vec2d> at = photo_pixel(v, points_.positions[p]);
+      if (at) pixels.push_back({float(at->x), float(at->y)});
+    }
+    if (pixels.size() < 3) return std::nullopt;
+    return box_around(without_strays(pixels), kMargin, whole(v));
+  }
+
+  Prompts prompts_of(size_t view) const {
+    Prompts prompts;
+    for (const PhotoClick& c : request_.clicks)
+      if (c.view == view) (c.object ? prompts.positive : prompts.negative).push_back(c.pixel);
+    BelievedPixels pixels;
+    for (const auto& s : points_.views[view]) {
+      const float b = belief(s.point);
+      (b > 0 ? pixels.in : b < 0 ? pixels.out : pixels.unknown).push_back(s.pixel);
+    }
+    if (!clicked(view)) add_prompts(pixels, kPrompts, prompts);
+    return prompts;
+  }
+  Image mask_of(size_t view) {
+    const View& v = request_.views[view];
+    const fs::path file = request_.first_masks / (v.name + ".png");
+    if (fs::exists(file)) return read_image(file);
+    const Prompts prompts = prompts_of(view);
+    if (prompts.positive.empty()) return {};
+    const Image mask = mask_image(segmenter_.log_odds(v, whole(v), prompts, around(v)), whole(v), v);
+    write_png(file, mask);
+    return mask;
+  }
+  void learn(size_t view, const Image& mask) {
+    if (mask.empty()) return;
+    for (const auto& s : points_.views[view]) votes_[s.point] += is_in(mask, s.pixel) ? 1 : -1;
+  }
+
+  const MaskRequest& request_;
+  const SparsePoints& points_;
+  PhotoSegmenter& segmenter_;
+  PointBelief belief_;
+  std::vector<int> votes_;
+};
+
+}  // namespace
+
+PointBelief make_first_masks(const MaskRequest& r, const SparsePoints& points, PhotoSegmenter& segmenter,
+                             double first, double last, Progress& progress) {
+  FirstRound round(r, points, segmenter);
+  round.run(first, last, progress);
+  return round.beliefs();
+}
+
+}  // namespace cei3d
