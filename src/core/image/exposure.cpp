@@ -2,11 +2,8 @@
 #include "core/image/exposure.h"
 
 #include <algorithm>
-#include <cmath>
-#include <vector>
 
 #include "core/math/color.h"
-#include "core/math/quantile.h"
 
 namespace cei3d {
 namespace {
@@ -21,15 +18,17 @@ bool tells(float v) { return v > kDark && v < kClipped; }
 std::optional<Vec3f> exposure_between(const Image& shown, const Image& photo, const Area& area) {
   Vec3f factors;
   for (int c = 0; c < 3; ++c) {
-    std::vector<float> logs;
+    double of_shown = 0, of_photo = 0;
+    size_t pixels = 0;
     for (size_t i = 0; i < area.size(); ++i) {
       const float a = shown.data[i * size_t(shown.channels) + size_t(c)],
                   b = photo.data[i * size_t(photo.channels) + size_t(c)];
-      if (area[i] && tells(a) && tells(b))
-        logs.push_back(std::log(linear_from_srgb(b) / linear_from_srgb(a)));
+      if (!area[i] || !tells(a) || !tells(b)) continue;
+      of_shown += linear_from_srgb(a), of_photo += linear_from_srgb(b);
+      ++pixels;
     }
-    if (logs.size() < kFewest) return std::nullopt;
-    factors[c] = std::exp(median(std::move(logs)));
+    if (pixels < kFewest) return std::nullopt;
+    factors[c] = float(of_photo / of_shown);
   }
   return factors;
 }

@@ -19,10 +19,13 @@ namespace {
 constexpr double kReportSeconds = 2;
 // Between evaluations on held-out pixels: at least 2 s, and 40 times as long as the last one took.
 constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
-// Where poses were moved or exposures found before, they are fitted again to what was trained since:
-// positions in the schedule.
-constexpr std::array kAlignAt{0.1, 0.2, 0.3, 0.45, 0.6};
-constexpr int kAlignSide = 320;        // of the images that are compared, at most; pixels
+// Positions in the schedule at which poses that were moved before, and exposures, are fitted to what was
+// trained.
+constexpr std::array kFitAt{0.1, 0.2, 0.3, 0.45, 0.6};
+constexpr int kAlignSide = 320, kExposeSide = 64;  // of the images that are compared, at most; pixels
+// Exposures are found late: what was trained briefly is off by as much. Their spread (exposure_change()) from
+// which on they are believed: of equal ones it is .05 at most, for a metal.
+constexpr double kExposeFrom = 0.3, kMinExposure = 0.08;
 constexpr int kEvaluationBatches = 2;  // pixels of an evaluation, in batches of the training
 
 class Training {
@@ -65,27 +68,35 @@ class Training {
 
  private:
   void fit_views(double u) {
-    const bool poses = !state_.scene.poses.empty(), exposures = !state_.scene.exposures.empty();
-    if ((!poses && !exposures) || state_.alignments >= int(kAlignAt.size()) ||
-        u < kAlignAt[size_t(state_.alignments)])
-      return;
+    while (state_.alignments < int(kFitAt.size()) && u >= kFitAt[size_t(state_.alignments)]) {
+      if (!state_.scene.poses.empty()) align(u);
+      if (run_.fit_exposures && kFitAt[size_t(state_.alignments)] >= kExposeFrom) expose(u);
+      ++state_.alignments;
+    }
+  }
+
+  void align(double u) {
     PixelStore& pixels = run_.views.train;
-    const ShownViews views = show_views(*state_.geometry, pixels, kAlignSide, run_.progress);
-    Json log{{"stage", "alignment"}, {"u", u}};
-    if (exposures) {
-      std::vector<Vec3f> found = find_exposures(views, pixels);
-      log["exposures"] = exposure_change(pixels.exposures(), found);
-      pixels.set_exposures(std::move(found));
-      keep_exposures(run_, state_);
-    }
-    if (poses) {
-      AlignedViews aligned = align_views(views, pixels);
-      log["pixels"] = aligned.pixels;
-      pixels.set_cameras(std::move(aligned.cameras));
-      keep_poses(run_, state_);
-    }
-    run_.progress.log(log.dump());
-    ++state_.alignments;
+    AlignedViews aligned =
+        align_views(show_views(*state_.geometry, pixels, kAlignSide, run_.progress), pixels);
+    run_.progress.log(Json{{"stage", "alignment"}, {"u", u}, {"pixels", aligned.pixels}}.dump());
+    pixels.set_cameras(std::move(aligned.cameras));
+    keep_poses(run_, state_);
+  }
+
+  void expose(double u) {
+    PixelStore& pixels = run_.views.train;
+    std::vector<Vec3f> found =
+        find_exposures(show_views(*state_.geometry, pixels, kExposeSide, run_.progress), pixels);
+    const double spread = exposure_change({}, found);
+    run_.progress.log(Json{{"stage", "exposures"},
+                           {"u", u},
+                           {"spread", spread},
+                           {"change", exposure_change(pixels.exposures(), found)}}
+                          .dump());
+    if (spread < kMinExposure && pixels.exposures().empty()) return;
+    pixels.set_exposures(std::move(found));
+    keep_exposures(run_, state_);
   }
 
   void evaluate(double u, const GeometryStats& sum) {

@@ -29,12 +29,12 @@ constexpr double kMinGain = 0.3;
 // Minimum number of views that must have a cell in their frame for the start shape to fill it. With fewer
 // views, floating blobs in front of the surface remain.
 constexpr int kMinViews = 3;
+constexpr int kCompareSide = 160;  // of the images that show what is wrong with views, at most; pixels
 // Of cameras: alignments at most, and pixels by which one has to move the object in the images (median of the
-// views). Of exposures likewise, by the change of logarithms: photographs of one exposure differ from a model
-// by .03 at most. The first round has to gain so many dB.
-constexpr int kMaxAlignments = 5, kMaxExposures = 2;
-constexpr int kAlignSide = 160;  // of the images that are compared, at most; pixels
-constexpr double kMinAlignment = 0.5, kMinExposure = 0.08, kMinFitGain = 0.3;
+// views).
+constexpr int kMaxAlignments = 5;
+constexpr double kMinAlignment = 0.5;
+constexpr double kMinAlignmentGain = 0.3;  // dB that the first one has to gain
 
 // Cells that the object may fill. Masks are grown by half a cell, as the cameras see it at the object's
 // center, or rods thinner than a cell would be lost: training removes excess volume, but does not add volume
@@ -82,52 +82,29 @@ Trial tried(const Device& device, const PixelStore& pixels, const TrialOptions& 
   return trial;
 }
 
-// Fits the views to what was trained from the visual hull, and tries the hull again, while that explains more
-// of the pixels. change: of the views, by the model; how large it is. Returns the last trial of the hull.
-template <class Change, class Undo>
-Trial fit_to_hull(const Device& device, PixelStore& pixels, const TrialOptions& options, Trial hull,
-                  uint64_t seed, const char* what, int rounds, double least, const Change& change,
-                  const Undo& undo, Progress& progress) {
-  for (int round = 0; round < rounds; ++round) {
-    const auto before = undo();
-    const double size = change(show_views(*hull.trained, pixels, kAlignSide, progress));
-    Json log{{"stage", what}, {"change", size}, {"psnr", hull.psnr}};
-    Trial again;
-    if (size >= least) again = tried(device, pixels, options, Start::hull, seed, 0, progress);
-    if (again.trained) log["fitted_psnr"] = again.psnr;
+// Aligns the cameras with what was trained from the visual hull, and tries the hull again, while that moves
+// the object's image and explains more of the pixels. Returns the last trial of the hull.
+Trial align_with_hull(const Device& device, PixelStore& pixels, const TrialOptions& options, Trial hull,
+                      uint64_t seed, Progress& progress) {
+  for (int round = 0; round < kMaxAlignments; ++round) {
+    AlignedViews aligned = align_views(show_views(*hull.trained, pixels, kCompareSide, progress), pixels);
+    Json log{{"stage", "alignment"}, {"pixels", aligned.pixels}, {"psnr", hull.psnr}};
+    if (aligned.pixels < kMinAlignment) {
+      progress.log(log.dump());
+      break;
+    }
+    std::vector<Camera> before = pixels.cameras();
+    pixels.set_cameras(std::move(aligned.cameras));
+    Trial again = tried(device, pixels, options, Start::hull, seed, 0, progress);
+    log["aligned_psnr"] = again.psnr;
     progress.log(log.dump());
-    if (!again.trained || again.psnr < hull.psnr + (round == 0 ? kMinFitGain : 0)) {
-      before();
+    if (again.psnr < hull.psnr + (round == 0 ? kMinAlignmentGain : 0)) {
+      pixels.set_cameras(std::move(before));
       break;
     }
     hull = std::move(again);
   }
   return hull;
-}
-
-Trial expose_by_hull(const Device& device, PixelStore& pixels, const TrialOptions& options, Trial hull,
-                     uint64_t seed, Progress& progress) {
-  const auto change = [&](const ShownViews& views) {
-    std::vector<Vec3f> found = find_exposures(views, pixels);
-    const double size = exposure_change(pixels.exposures(), found);
-    pixels.set_exposures(std::move(found));
-    return size;
-  };
-  const auto undo = [&] { return [&, before = pixels.exposures()] { pixels.set_exposures(before); }; };
-  return fit_to_hull(device, pixels, options, std::move(hull), seed, "exposures", kMaxExposures, kMinExposure,
-                     change, undo, progress);
-}
-
-Trial align_with_hull(const Device& device, PixelStore& pixels, const TrialOptions& options, Trial hull,
-                      uint64_t seed, Progress& progress) {
-  const auto change = [&](const ShownViews& views) {
-    AlignedViews aligned = align_views(views, pixels);
-    pixels.set_cameras(std::move(aligned.cameras));
-    return aligned.pixels;
-  };
-  const auto undo = [&] { return [&, before = pixels.cameras()] { pixels.set_cameras(before); }; };
-  return fit_to_hull(device, pixels, options, std::move(hull), seed, "alignment", kMaxAlignments,
-                     kMinAlignment, change, undo, progress);
 }
 
 }  // namespace
@@ -157,8 +134,6 @@ StartShape choose_start(const Device& device, PixelStore& pixels, const TrialOpt
     if (start == Start::carved && options.light.motion != LightMotion::world) continue;
     const double done = double(i) / kStarts.size();
     Trial trial = tried(device, pixels, options, start, seed, done, progress);
-    if (start == Start::hull && options.expose)
-      trial = expose_by_hull(device, pixels, options, std::move(trial), seed, progress);
     if (start == Start::hull && options.align)
       trial = align_with_hull(device, pixels, options, std::move(trial), seed, progress);
     log[name] = trial.psnr;
