@@ -170,6 +170,26 @@ TEST_F(Photos, WithAClickOutsideAreRefused) {
   EXPECT_NE(message([&] { capture_photos(r, progress_); }).find("is outside"), std::string::npos);
 }
 
+// The name of the converted file, and a converter that fails.
+TEST_F(Photos, OfPhonesAreConverted) {
+  fs::create_directories(root_.path() / "phone");
+  for (int i = 0; i < 8; ++i)
+    fs::copy_file(photos() / "r_003.png", root_.path() / ("phone/IMG_" + std::to_string(i) + ".HEIC"));
+  const auto write_converter = [&](const std::string& script) {
+    write_file_atomic(bin() / "heif-convert", "#!/bin/sh\n" + script);
+    fs::permissions(bin() / "heif-convert", fs::perms::owner_all);
+  };
+  write_converter("echo no good\nexit 1\n");
+  const auto copied = [&] {
+    return copy_photos(root_.path() / "phone", root_.path() / "to", 100, progress_);
+  };
+  EXPECT_NE(message([&] { copied(); }).find("heif-convert said: no good"), std::string::npos)
+      << message([&] { copied(); });
+  write_converter("cp \"$3\" \"$4\"\n");
+  EXPECT_EQ(copied().names.size(), 8u);
+  EXPECT_EQ(copied().names.front(), "IMG_0.jpg");
+}
+
 TEST_F(Photos, FewerThanEightAreRefused) {
   const fs::path few = root_.path() / "few";
   fs::create_directories(few);

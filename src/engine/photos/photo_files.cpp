@@ -41,17 +41,27 @@ std::vector<fs::path> photos_in(const fs::path& folder) {
   return found;
 }
 
-// Runs a program that writes a file; what it wrote appears under its name only when it is complete.
-void convert(std::vector<std::string> command, const fs::path& from, const fs::path& to,
-             const std::string& package) {
-  const fs::path partial = to.parent_path() / (".partial-" + to.filename().string());
-  command.push_back(partial.string());
+// Error: it is not installed, with the package that has it.
+ProgramOutput run_tool(const std::vector<std::string>& command, const char* package) {
   try {
-    if (const ProgramOutput out = run_program(command); out.exit_code != 0 || !fs::exists(partial))
-      fail("{} could not be read: {} said: {}", from.string(), command[0], out.text.substr(0, 300));
+    return run_program(command);
   } catch (const Error& e) {
-    throw Error(e.code(), e.what(), fmt::format("`apt-get install {}` installs {}.", package, command[0]));
+    throw Error(e.code(), e.what(), fmt::format("`apt-get install {}` installs it.", package));
   }
+}
+
+[[noreturn]] void fail_reading(const fs::path& file, const char* program, std::string said) {
+  while (!said.empty() && std::isspace(static_cast<unsigned char>(said.back()))) said.pop_back();
+  fail("{} could not be read. {} said: {}", file.string(), program, said.substr(0, 300));
+}
+
+// What it writes appears among the photographs only when it is complete.
+void convert_heic(const fs::path& from, const fs::path& to) {
+  fs::create_directories(to.parent_path());
+  const fs::path partial = to.parent_path().parent_path() / ("partial-" + to.filename().string());
+  const ProgramOutput out =
+      run_tool({"heif-convert", "-q", "95", from.string(), partial.string()}, "libheif-examples");
+  if (out.exit_code != 0 || !fs::exists(partial)) fail_reading(from, "heif-convert", out.text);
   move_path(partial, to);
 }
 
@@ -59,35 +69,30 @@ std::string copy_photo(const fs::path& from, const fs::path& to) {
   const fs::path target = to / (is_heic(from) ? from.stem().string() + ".jpg" : from.filename().string());
   if (fs::exists(target)) return target.filename().string();
   if (is_heic(from))
-    convert({"heif-convert", "-q", "95", from.string()}, from, target, "libheif-examples");
+    convert_heic(from, target);
   else
     write_file_atomic(target, read_file(from));
   return target.filename().string();
 }
 
 double duration_of(const fs::path& video) {
-  const ProgramOutput out = run_program({"ffprobe", "-v", "error", "-show_entries", "format=duration", "-of",
-                                         "default=noprint_wrappers=1:nokey=1", video.string()});
+  const ProgramOutput out = run_tool({"ffprobe", "-v", "error", "-show_entries", "format=duration", "-of",
+                                      "default=noprint_wrappers=1:nokey=1", video.string()},
+                                     "ffmpeg");
   const double seconds = out.exit_code == 0 ? std::strtod(out.text.c_str(), nullptr) : 0;
-  if (!(seconds > 0)) fail("{} is not a video that ffmpeg can read: {}", video.string(), out.text);
+  if (!(seconds > 0)) fail_reading(video, "ffprobe", out.text);
   return seconds;
 }
 
 void take_frames(const fs::path& video, const fs::path& to, int frames) {
-  const fs::path partial = to.parent_path() / ".partial-frames";
+  const fs::path partial = to.parent_path() / "partial-frames";
   fs::remove_all(partial);
   fs::create_directories(partial);
-  try {
-    const double rate = frames / duration_of(video);
-    const ProgramOutput out =
-        run_program({"ffmpeg", "-v", "error", "-i", video.string(), "-vf", fmt::format("fps={:.9g}", rate),
-                     "-q:v", "2", (partial / "frame_%04d.jpg").string()});
-    if (out.exit_code != 0) fail("{}: ffmpeg said: {}", video.string(), out.text.substr(0, 300));
-  } catch (const Error& e) {
-    fs::remove_all(partial);
-    throw Error(e.code(), e.what(), "`apt-get install ffmpeg` installs what reads videos.");
-  }
-  fs::remove_all(to);
+  const ProgramOutput out = run_tool({"ffmpeg", "-v", "error", "-i", video.string(), "-vf",
+                                      fmt::format("fps={:.9g}", frames / duration_of(video)), "-q:v", "2",
+                                      (partial / "frame_%04d.jpg").string()},
+                                     "ffmpeg");
+  if (out.exit_code != 0) fail_reading(video, "ffmpeg", out.text);
   move_path(partial, to);
 }
 
