@@ -23,9 +23,10 @@ constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
 // trained.
 constexpr std::array kFitAt{0.1, 0.2, 0.3, 0.45, 0.6};
 constexpr int kAlignSide = 320, kExposeSide = 64;  // of the images that are compared, at most; pixels
-// Exposures are found late: what was trained briefly is off by as much. Their spread (exposure_change()) from
-// which on they are believed: of equal ones it is .05 at most, for a metal.
+// Exposures are found late, after so many steps: what was trained briefly is off by as much. Their spread
+// (exposure_change()) from which on they are believed: of equal ones it is .05 at most, for a metal.
 constexpr double kExposeFrom = 0.3, kMinExposure = 0.08;
+constexpr int kExposeSteps = 1000;
 constexpr int kEvaluationBatches = 2;  // pixels of an evaluation, in batches of the training
 
 class Training {
@@ -70,7 +71,7 @@ class Training {
   void fit_views(double u) {
     while (state_.alignments < int(kFitAt.size()) && u >= kFitAt[size_t(state_.alignments)]) {
       if (!state_.scene.poses.empty()) align(u);
-      if (run_.fit_exposures && kFitAt[size_t(state_.alignments)] >= kExposeFrom) expose(u);
+      if (run_.fit_exposures && u >= kExposeFrom && state_.step >= kExposeSteps) expose(u);
       ++state_.alignments;
     }
   }
