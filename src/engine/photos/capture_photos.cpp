@@ -30,7 +30,7 @@ std::unique_ptr<PhotoSegmenter> segmenter_of(const PhotosRequest& r) {
   if (!r.masks) return nullptr;
   if (!r.plate.empty()) return plate_segmenter(r.plate);
   try {
-    return sam_segmenter(r.sam_files.empty() ? installed_sam() : r.sam_files, r.threads);
+    return sam_segmenter(installed_sam(), r.threads);
   } catch (const Error& e) {
     throw Error(e.code(), e.what(),
                 "`./run sam` installs the network that finds the object. Without it: --background PLATE, a "

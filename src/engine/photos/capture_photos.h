@@ -21,14 +21,13 @@ struct PhotosRequest {
     Vec2d pixel;
     bool object = true;
   };
-  std::vector<Click> clicks;        // on the object, or beside it; empty: found by itself
-  std::filesystem::path plate;      // photograph of the background without the object; empty: none
-  std::filesystem::path sam_files;  // folder of the segmentation network; empty: installed_sam()
-  bool turntable = false;           // the object turned before a camera that stood still
-  bool masks = true;                // false: poses alone
-  std::optional<double> focal;      // of the photographs, in pixels
-  int frames = 100;                 // that are taken of a video
-  int threads = 0;                  // 0: all cores
+  std::vector<Click> clicks;    // on the object, or beside it; empty: found by itself
+  std::filesystem::path plate;  // photograph of the background without the object; empty: none
+  bool turntable = false;       // the object turned before a camera that stood still
+  bool masks = true;            // false: poses alone
+  std::optional<double> focal;  // of the photographs, in pixels
+  int frames = 100;             // that are taken of a video
+  int threads = 0;              // 0: all cores
 };
 
 struct PhotosReport {

@@ -132,20 +132,19 @@ bool has_model(const fs::path& models) {
 void require_colmap() { dialect(); }
 
 std::optional<double> colmap_progress(const std::string& log, size_t photos) {
-  const size_t at = log.find_last_of('\n') == std::string::npos ? 0 : log.size();
   unsigned done = 0, all = 0, other = 0, others = 0;
   // The last line of each kind; a step prints one kind only.
-  if (const size_t p = log.rfind("Processed file [", at); p != std::string::npos)
+  if (const size_t p = log.rfind("Processed file ["); p != std::string::npos)
     if (std::sscanf(log.c_str() + p, "Processed file [%u/%u]", &done, &all) == 2 && all > 0)
       return double(done) / all;
-  if (const size_t p = log.rfind("Matching block [", at); p != std::string::npos)
+  if (const size_t p = log.rfind("Matching block ["); p != std::string::npos)
     if (std::sscanf(log.c_str() + p, "Matching block [%u/%u, %u/%u]", &done, &all, &other, &others) == 4 &&
         all > 0 && others > 0)
       return (double(done - 1) * others + other - 1) / (double(all) * others);
-  if (const size_t p = log.rfind("Matching image [", at); p != std::string::npos)
+  if (const size_t p = log.rfind("Matching image ["); p != std::string::npos)
     if (std::sscanf(log.c_str() + p, "Matching image [%u/%u]", &done, &all) == 2 && all > 0)
       return double(done) / all;
-  if (const size_t p = log.rfind("Registering image #", at); p != std::string::npos)
+  if (const size_t p = log.rfind("Registering image #"); p != std::string::npos)
     if (std::sscanf(log.c_str() + p, "Registering image #%u (%u)", &other, &done) == 2 && photos > 0)
       return std::min(1.0, double(done) / double(photos));
   return std::nullopt;

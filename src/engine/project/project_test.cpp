@@ -56,6 +56,20 @@ TEST_F(ProjectTest, RefinedPosesAreThoseOfItsViews) {
   EXPECT_EQ(capture_fingerprint(p.given_capture()), p.fingerprint());
 }
 
+TEST_F(ProjectTest, KeepsTheExposuresOfItsViews) {
+  {
+    Project p = make();
+    Scene scene = small_scene();
+    scene.exposures = {{"train/r_000", {1.25f, 0.8f, 1 / 3.0f}}};
+    p.save_base(scene);
+  }
+  const Scene scene = Project::open(folder(), Project::Mode::read).base();
+  ASSERT_EQ(scene.exposures.size(), 1u);
+  EXPECT_EQ(scene.exposures[0].view, "train/r_000");
+  EXPECT_EQ(scene.exposures[0].factors.x, 1.25f);
+  EXPECT_EQ(scene.exposures[0].factors.z, 1 / 3.0f);
+}
+
 TEST_F(ProjectTest, MovesTogetherWithItsCapture) {
   fs::create_directories(temp_.path() / "a/photos");
   Project::create(temp_.path() / "a/object", {}, small_capture(temp_.path() / "a/photos"), false);
