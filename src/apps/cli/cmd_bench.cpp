@@ -25,7 +25,7 @@ void add_bench(Commands& commands) {
   auto o = std::make_shared<Options>();
   CLI::App* verb = commands.add(
       "bench",
-      "Measure the speed of kernels (as fractions of this machine's peak), training, a frame and an edit");
+      "Measure the speed of kernels (as fractions of this machine's peak), of training, of a frame and an edit");
   verb->add_option("--capture", o->capture,
                    "Capture to train on (default: samples/spot, else a synthetic ball)");
   verb->add_option("--project", o->request.project,
@@ -37,6 +37,10 @@ void add_bench(Commands& commands) {
                    "Repetitions of every kernel; frames and edits are repeated a third as often")
       ->check(CLI::Range(3, 1000))
       ->capture_default_str();
+  verb->add_option("--only", o->request.only,
+                   "What to measure: kernels, fields, training, object (default: all)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"kernels", "fields", "training", "object"}));
   commands.on(verb, o, bench);
 }
 

@@ -32,11 +32,63 @@ struct Case {
 
 template <class A>
 std::vector<float> activation_case(const Device& device, bool gradient) {
-  const auto z = noise(kN * 4 * 5, 1, 2);
-  auto y = noise(kN * 4 * 5, 2);
-  const ActivateArgs a{z.data(), y.data(), 5, 5, 5, 4, 10};
+  const auto z = noise(kN * 5, 1, 2);
+  auto y = noise(kN * 5, 2);
+  const ActivateArgs a{z.data(), y.data(), 5, 5, 5, 10};
   gradient ? device.launch<ActivateGrad<A>>(a, kN) : device.launch<Activate<A>>(a, kN);
   return y;
+}
+
+template <class A>
+std::vector<float> activate_twice_case(const Device& device) {
+  std::vector<float> all = noise(kN * 5, 1, 2);
+  all.resize(3 * kN * 5);
+  device.launch<ActivateTwice<A>>(
+      {all.data(), all.data() + kN * 5, all.data() + 2 * kN * 5, 5, 5, 10}, kN);
+  return all;
+}
+
+// Between the layers of a network whose gradient is taken: 5 rows, of the larger arrays 7.
+struct GradientCase {
+  std::vector<float> wide = noise(kN * 7, 30), slope = noise(kN * 5, 31), curvature = noise(kN * 5, 32),
+                     d_wide = noise(kN * 7, 33), narrow = noise(kN * 5, 34), x = noise(kN * 4 * 7, 35),
+                     d_y = noise(kN * 4 * 3, 36), y = std::vector<float>(kN * 4 * 3, 0.0f),
+                     d_x = std::vector<float>(kN * 4 * 7, 0.0f);
+};
+
+std::vector<float> gradient_step_case(const Device& device) {
+  GradientCase c;
+  device.launch<GradientStep>({c.wide.data(), c.slope.data(), c.narrow.data(), 7, 5}, kN);
+  return c.narrow;
+}
+
+std::vector<float> gradient_step_grad_case(const Device& device) {
+  GradientCase c;
+  device.launch<GradientStepGrad>({c.wide.data(), c.slope.data(), c.curvature.data(), c.d_wide.data(),
+                                   c.narrow.data(), 7, 5},
+                                  kN);
+  c.narrow.insert(c.narrow.end(), c.d_wide.begin(), c.d_wide.end());
+  return c.narrow;
+}
+
+std::vector<float> activate_grad_plus_case(const Device& device) {
+  GradientCase c;
+  device.launch<ActivateGradPlus>({c.slope.data(), c.narrow.data(), c.wide.data(), 7, 5}, kN);
+  return c.wide;
+}
+
+std::vector<float> point_gradient_case(const Device& device) {
+  GradientCase c;
+  device.launch<PointGradient>({c.x.data(), c.wide.data(), c.y.data(), 7, 3, 5}, kN);
+  return c.y;
+}
+
+std::vector<float> point_gradient_grad_case(const Device& device) {
+  GradientCase c;
+  device.launch<PointGradientGrad>(
+      {c.x.data(), c.wide.data(), c.d_y.data(), c.d_wide.data(), c.d_x.data(), 7, 3, 5}, kN);
+  c.d_x.insert(c.d_x.end(), c.d_wide.begin(), c.d_wide.end());
+  return c.d_x;
 }
 
 std::vector<float> grid_case(const Device& device, int columns, uint32_t mask) {
@@ -118,7 +170,7 @@ std::vector<float> frequency_case(const Device& device, int k) {
 std::vector<float> linear_case(const Device& device, int in, int out) {
   const auto x = noise(size_t(kN) * in, 15), w = noise(size_t(in) * out, 16), b = noise(out, 17);
   std::vector<float> y(size_t(kN) * out);
-  device.linear({kN / kPanel, in, out, x.data(), in, w.data(), in, b.data(), 1, y.data(), out});
+  device.linear({kN / kPanel, in, out, x.data(), in, w.data(), in, b.data(), y.data(), out});
   return y;
 }
 
@@ -160,6 +212,30 @@ struct Parity<ActivateGrad<A>> {
   static Cases cases() {
     return {{"gradient", [](const Device& d) { return activation_case<A>(d, true); }}};
   }
+};
+template <class A>
+struct Parity<ActivateTwice<A>> {
+  static Cases cases() { return {{"", activate_twice_case<A>}}; }
+};
+template <>
+struct Parity<GradientStep> {
+  static Cases cases() { return {{"", gradient_step_case}}; }
+};
+template <>
+struct Parity<GradientStepGrad> {
+  static Cases cases() { return {{"", gradient_step_grad_case}}; }
+};
+template <>
+struct Parity<ActivateGradPlus> {
+  static Cases cases() { return {{"", activate_grad_plus_case}}; }
+};
+template <>
+struct Parity<PointGradient> {
+  static Cases cases() { return {{"", point_gradient_case}}; }
+};
+template <>
+struct Parity<PointGradientGrad> {
+  static Cases cases() { return {{"", point_gradient_grad_case}}; }
 };
 template <>
 struct Parity<EncodePoint> {
@@ -334,23 +410,23 @@ void expect_plain_loops(int in, int out, int panels) {
     const int x_stride = in + 2, y_stride = out + 1;
     const auto x = noise(size_t(panels) * x_stride * kPanel, 1), w = noise(in * out, 2), b = noise(out, 3);
     std::vector<float> y(size_t(panels) * y_stride * kPanel, -5.0f);
-    device.linear({panels, in, out, x.data(), x_stride, w.data(), in, b.data(), 4, y.data(), y_stride});
+    device.linear({panels, in, out, x.data(), x_stride, w.data(), in, b.data(), y.data(), y_stride});
     const auto d_y = noise(y.size(), 4);
     std::vector<float> d_w(in * out, 0.5f), d_b(out, 0.25f);
     device.linear_weight_grad(
-        {panels, in, out, x.data(), x_stride, d_y.data(), y_stride, d_w.data(), in, d_b.data(), 4});
+        {panels, in, out, x.data(), x_stride, d_y.data(), y_stride, d_w.data(), in, d_b.data()});
     std::vector<double> want_w(in * out, 0.5), want_b(out, 0.25);
     for (int p = 0; p < panels; ++p)
       for (int s = 0; s < kPanel; ++s) {
         for (int o = 0; o < out; ++o) {
           const double d = d_y[(size_t(p) * y_stride + o) * kPanel + s];
-          double sum = p % 4 == 0 ? b[o] : 0;
+          double sum = b[o];
           for (int i = 0; i < in; ++i) {
             const double v = x[(size_t(p) * x_stride + i) * kPanel + s];
             sum += w[o * in + i] * v;
             want_w[o * in + i] += d * v;
           }
-          if (p % 4 == 0) want_b[o] += d;
+          want_b[o] += d;
           EXPECT_NEAR(y[(size_t(p) * y_stride + o) * kPanel + s], sum, 1e-5);
         }
         EXPECT_EQ(y[(size_t(p) * y_stride + out) * kPanel + s], -5.0f);  // rows beyond are left alone
@@ -360,7 +436,7 @@ void expect_plain_loops(int in, int out, int panels) {
   }
 }
 
-TEST(Linear, EqualsPlainLoopsWithBiasOnValuePanelsOnly) {
+TEST(Linear, EqualsPlainLoops) {
   expect_plain_loops(9, 6, 8);
   expect_plain_loops(41, 13, 24);  // more than a block of weight gradients, either way; tiles of every height
 }
@@ -370,7 +446,7 @@ TEST(Kernels, FlushDenormalsOnlyForThemselves) {
   for (const Device& device : all_devices()) {
     const std::vector<float> x(kPanel, float(small)), weight{third};
     std::vector<float> y(kPanel, 1.0f);
-    device.linear({1, 1, 1, x.data(), 1, weight.data(), 1, nullptr, 1, y.data(), 1});
+    device.linear({1, 1, 1, x.data(), 1, weight.data(), 1, nullptr, y.data(), 1});
     EXPECT_EQ(y[0], 0) << device.name();
     EXPECT_GT(small * third, 0) << device.name();
   }

@@ -21,12 +21,11 @@ struct LinearArgs {
   const float* weights;  // [out][weight_stride]
   int weight_stride;     // floats from one output's row to the next
   const float* bias;     // [out] or null
-  int bias_every;  // bias goes to panels 0, bias_every, 2 bias_every, ... (4 for jets: the value panels)
   float* y;        // [panels][y_stride][32]; rows [0, out) are written
   int y_stride;
 };
 
-// d_weights[o][i] += sum over samples of d_y[o] x[i]; d_bias[o] += sum over the panels that have the bias.
+// d_weights[o][i] += sum over samples of d_y[o] x[i]; d_bias[o] += sum over samples of d_y[o].
 struct LinearWeightGradArgs {
   int panels, in, out;
   const float* x;
@@ -36,7 +35,6 @@ struct LinearWeightGradArgs {
   float* d_weights;  // [out][weight_stride]
   int weight_stride;
   float* d_bias;  // [out] or null
-  int bias_every;
 };
 
 }  // namespace cei3d

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Activations: value, first and second derivative; and how they act on a jet (a value and its three spatial
-// derivatives), forward and backward. With z the input, s = sigma(z), a jet (z, dz_c) becomes (s, s' dz_c);
-// the adjoints are  z~ = v~ s' + sum_c d~_c s'' dz_c,  dz~_c = d~_c s'.  See docs/method.md#jets.
+// Activations: value, first and second derivative.
 #pragma once
 
 #include "core/math/scalar.h"

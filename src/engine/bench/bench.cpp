@@ -78,16 +78,23 @@ std::string BenchReport::text() const {
 
 namespace {
 
+bool asked(const BenchRequest& request, const char* part) {
+  return request.only.empty() || std::ranges::count(request.only, part) > 0;
+}
+
 BenchReport measure(Session& session, const BenchRequest& request, Progress& progress) {
   const Device& device = session.device();
   BenchReport report;
   report.machine = Session::machine();
   report.device = device.name();
+  const int fewer = (request.repeats + 2) / 3;
   progress.report({"kernels", 0, -1, ""});
-  report.figures = bench_kernels(device, request.repeats);
-  append(report.figures, bench_training(device, {request.capture, request.seconds}, progress));
-  if (!request.project.empty())
-    append(report.figures, bench_object(session, request.project, (request.repeats + 2) / 3, progress));
+  if (asked(request, "kernels")) append(report.figures, bench_kernels(device, request.repeats));
+  if (asked(request, "fields")) append(report.figures, bench_fields(device, fewer, progress));
+  if (asked(request, "training"))
+    append(report.figures, bench_training(device, {request.capture, request.seconds}, progress));
+  if (asked(request, "object") && !request.project.empty())
+    append(report.figures, bench_object(session, request.project, fewer, progress));
   return report;
 }
 

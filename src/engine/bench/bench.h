@@ -28,7 +28,7 @@ struct Spread {
 Spread spread_of(std::vector<double> values, bool higher_is_better);
 
 struct BenchFigure {
-  std::string group;  // "machine", "kernels", "training", "object"
+  std::string group;  // "machine", "kernels", "fields", "training", "object"
   std::string
       subject;  // capture or project that it was measured on; figures of different ones do not compare
   std::string name, unit;
@@ -41,7 +41,8 @@ struct BenchRequest {
   std::filesystem::path capture;  // empty: samples/spot below the working folder, or else a synthetic ball
   std::filesystem::path project;  // empty: no frame and no edit
   double seconds = 6;             // of training steps
-  int repeats = 21;               // repetitions of kernels; frames and edits take a third of them
+  int repeats = 21;  // repetitions of kernels; steps of fields, frames and edits take a third of them
+  std::vector<std::string> only;  // "kernels", "fields", "training", "object"; empty: all
 };
 struct BenchReport {
   MachineInfo machine;
@@ -54,8 +55,9 @@ struct BenchReport {
 // Errors: capture or project cannot be read; cancelled.
 BenchReport run_bench(Session&, const BenchRequest&, Progress&);
 
-// Its parts. Kernels and peaks: one core. Training and object: all threads.
+// Its parts. Kernels and peaks: one core. Fields, training and object: all threads.
 std::vector<BenchFigure> bench_kernels(const Device&, int repeats);
+std::vector<BenchFigure> bench_fields(const Device&, int repeats, Progress&);
 struct TrainingBench {
   std::filesystem::path capture;  // as in BenchRequest
   double seconds = 6;

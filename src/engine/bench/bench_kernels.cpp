@@ -31,7 +31,7 @@ struct LinearData {
 
 double linear_forward(const Device& device, LinearData& d) {
   for (int k = 0; k < d.kRounds; ++k)
-    device.linear({d.kPanels, d.kSize, d.kSize, d.x.data(), d.kSize, d.w.data(), d.kSize, d.bias.data(), 1,
+    device.linear({d.kPanels, d.kSize, d.kSize, d.x.data(), d.kSize, d.w.data(), d.kSize, d.bias.data(),
                    d.y.data(), d.kSize});
   return d.flops();
 }
@@ -39,7 +39,7 @@ double linear_forward(const Device& device, LinearData& d) {
 double linear_weights(const Device& device, LinearData& d) {
   for (int k = 0; k < d.kRounds; ++k)
     device.linear_weight_grad({d.kPanels, d.kSize, d.kSize, d.x.data(), d.kSize, d.y.data(), d.kSize,
-                               d.d_w.data(), d.kSize, nullptr, 1});
+                               d.d_w.data(), d.kSize, nullptr});
   return d.flops();
 }
 

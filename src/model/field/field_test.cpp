@@ -40,6 +40,21 @@ FieldConfig frequency_config() {
   return c;
 }
 
+// As the field of the geometry stage: one hidden layer.
+FieldConfig shallow_config() {
+  FieldConfig c = grid_config(Activation::softplus);
+  c.hidden_layers = 1;
+  c.outputs = 1;
+  return c;
+}
+
+FieldConfig linear_config() {
+  FieldConfig c = frequency_config();
+  c.hidden_layers = 0;
+  c.skip_layer = -1;
+  return c;
+}
+
 // The field written down once more, in double, from the definition.
 class Reference {
  public:
@@ -136,9 +151,9 @@ void randomize(Field& field) {
 class FieldOnDevice : public testing::TestWithParam<std::tuple<std::string, int>> {
  protected:
   static FieldConfig config(int kind) {
-    return kind == 0   ? grid_config(Activation::softplus)
-           : kind == 1 ? grid_config(Activation::elu)
-                       : frequency_config();
+    const FieldConfig configs[] = {grid_config(Activation::softplus), grid_config(Activation::elu),
+                                   frequency_config(), shallow_config(), linear_config()};
+    return configs[kind];
   }
 };
 
@@ -224,7 +239,7 @@ std::vector<std::string> device_names() {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FieldOnDevice,
-                         testing::Combine(testing::ValuesIn(device_names()), testing::Values(0, 1, 2)),
+                         testing::Combine(testing::ValuesIn(device_names()), testing::Range(0, 5)),
                          [](const auto& info) {
                            std::string name =
                                std::get<0>(info.param) + "_" + std::to_string(std::get<1>(info.param));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A small fully connected network over panels of samples: values, or jets, whose four columns are four
-// panels.
+// A small fully connected network over panels of samples: its values, or those with the spatial gradient of
+// output 0 as jets, whose four columns are four panels.
 #pragma once
 
 #include <vector>
@@ -55,7 +55,7 @@ class MlpWeights {
 class MlpPass {
  public:
   // capacity: samples, a multiple of 32. columns: 1 for values, 4 for jets. Of a jet's outputs only output 0
-  // has derivative columns; those of the others stay zero.
+  // has derivative columns; those of the others stay zero. Networks of jets have no output activation.
   MlpPass(const MlpConfig& config, int capacity, int columns);
 
   float* input() { return x_.data(); }  // [panels * columns][inputs][32], filled by the caller
@@ -69,15 +69,38 @@ class MlpPass {
   void backward(const Device&, const MlpWeights&, int n, int active_inputs, float* gradient, float* d_input);
 
  private:
-  int panels(int n) const { return n / kPanel * columns_; }
-  void activate(const Device&, int layer, int n);
-  void activate_grad(const Device&, int layer, int n, float* d);
+  // What a hidden layer keeps, in panels of its outputs or, `with the appended input`, of what the next layer
+  // reads.
+  struct Hidden {
+    AlignedVector<float> z;  // before the activation; of jets the activation's slope there
+    AlignedVector<float> h;  // after it, with the appended input
+    // Of jets:
+    AlignedVector<float> curvature;   // second derivative of the activation
+    AlignedVector<float> d_h, d_z;    // derivatives of output 0; d_h with the appended input
+    AlignedVector<float> loss_by_z;   // derivative by z of a loss of the gradient
+  };
+  struct Span {  // one batch of samples
+    int n, panels, active_inputs;
+  };
+
+  bool jets() const { return columns_ > 1; }
+  int last() const { return int(layers_.size()) - 1; }
+  int in_use(const Span& s, int layer) const { return layer == 0 ? s.active_inputs : layers_[layer].in; }
+  size_t offset(int layer) const;  // of its weights among the gradients
+  void activate(const Device&, int layer, const Span&);
+  void activate_grad(const Device&, int layer, const Span&, float* d);
+  void append_input(const float* x, int x_stride, float* h, int layer, const Span&) const;
+  // The spatial gradient of output 0, and a loss of it back.
+  void differentiate(const Device&, const MlpWeights&, const Span&);
+  void differentiate_grad(const Device&, const MlpWeights&, const Span&, float* gradient, float* d_input);
 
   MlpConfig config_;
   std::vector<MlpLayer> layers_;
   int columns_;
   AlignedVector<float> x_, y_, y_raw_, d_y_, d_a_, d_b_, d_x_;
-  std::vector<AlignedVector<float>> z_, h_;  // before and after each hidden layer's activation
+  AlignedVector<float> gradient_, loss_by_gradient_;  // of output 0 by the input; of a loss by that
+  AlignedVector<float> ones_;                         // [panels][1][32]
+  std::vector<Hidden> hidden_;
 };
 
 }  // namespace cei3d

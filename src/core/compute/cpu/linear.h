@@ -11,10 +11,10 @@ namespace cei3d {
 
 // y[o .. o+R) for the 2 W samples at x: R outputs per tile, W samples per register.
 template <int R, class T, int W>
-HD void linear_rows(const LinearArgs& a, const float* x, const float* bias, int o, float* y) {
+HD void linear_rows(const LinearArgs& a, const float* x, int o, float* y) {
   const float* w = a.weights + size_t(o) * a.weight_stride;
   T s0[R], s1[R];
-  for (int r = 0; r < R; ++r) s0[r] = s1[r] = T(bias ? bias[o + r] : 0.0f);
+  for (int r = 0; r < R; ++r) s0[r] = s1[r] = T(a.bias ? a.bias[o + r] : 0.0f);
   for (int i = 0; i < a.in; ++i) {
     const T x0 = load<T>(x + size_t(i) * kPanel), x1 = load<T>(x + size_t(i) * kPanel + W);
     for (int r = 0; r < R; ++r) {
@@ -33,14 +33,13 @@ template <class T, int W>
 inline __attribute__((always_inline)) void linear_run(const LinearArgs& a) {
   constexpr int kRows = W == 16 ? 8 : 4;  // AVX-512 has twice the registers
   for (int p = 0; p < a.panels; ++p) {
-    const float* bias = a.bias && p % a.bias_every == 0 ? a.bias : nullptr;
     for (int s = 0; s < kPanel; s += 2 * W) {
       const float* x = a.x + size_t(p) * a.x_stride * kPanel + s;
       float* y = a.y + size_t(p) * a.y_stride * kPanel + s;
       int o = 0;
-      for (; o + kRows <= a.out; o += kRows) linear_rows<kRows, T, W>(a, x, bias, o, y);
-      for (; o + 4 <= a.out; o += 4) linear_rows<4, T, W>(a, x, bias, o, y);
-      for (; o < a.out; ++o) linear_rows<1, T, W>(a, x, bias, o, y);
+      for (; o + kRows <= a.out; o += kRows) linear_rows<kRows, T, W>(a, x, o, y);
+      for (; o + 4 <= a.out; o += 4) linear_rows<4, T, W>(a, x, o, y);
+      for (; o < a.out; ++o) linear_rows<1, T, W>(a, x, o, y);
     }
   }
 }
@@ -85,7 +84,7 @@ template <class T, int W>
 inline __attribute__((always_inline)) void bias_grad(const LinearWeightGradArgs& a) {
   for (int o = 0; o < a.out; ++o) {
     T sum(0.0f);
-    for (int p = 0; p < a.panels; p += a.bias_every)
+    for (int p = 0; p < a.panels; ++p)
       for (int s = 0; s < kPanel; s += W)
         sum = sum + load<T>(a.d_y + (size_t(p) * a.y_stride + o) * kPanel + s);
     a.d_bias[o] += sum_lanes(sum);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Activations over `rows` rows of panels, on values (columns 1) or jets (columns 4).
+// Activations over `rows` rows of panels.
 #pragma once
 
 #include "core/compute/kernels/panel.h"
@@ -11,7 +11,7 @@ struct ActivateArgs {
   const float* z;  // before the activation
   float* y;        // Activate: written. ActivateGrad: dL/dy on entry, dL/dz on return
   int z_stride, y_stride;
-  int rows, columns;
+  int rows;
   float beta;
 };
 
@@ -21,13 +21,9 @@ struct Activate {
   template <class T>
   static HD void run(const Args& a, int i) {
     const float beta = a.beta;  // a copy: the compiler must assume that stores change a.beta
-    for (int r = 0; r < a.rows; ++r) {
-      const auto s = A::eval(load<T>(a.z + panel_at(i, a.columns, 0, a.z_stride, r)), beta);
-      store<T>(a.y + panel_at(i, a.columns, 0, a.y_stride, r), s.value);
-      for (int c = 1; c < a.columns; ++c)
-        store<T>(a.y + panel_at(i, a.columns, c, a.y_stride, r),
-                 s.first * load<T>(a.z + panel_at(i, a.columns, c, a.z_stride, r)));
-    }
+    for (int r = 0; r < a.rows; ++r)
+      store<T>(a.y + panel_at(i, 1, 0, a.y_stride, r),
+               A::eval(load<T>(a.z + panel_at(i, 1, 0, a.z_stride, r)), beta).value);
   }
 };
 
@@ -38,16 +34,34 @@ struct ActivateGrad {
   static HD void run(const Args& a, int i) {
     const float beta = a.beta;  // a copy: the compiler must assume that stores change a.beta
     for (int r = 0; r < a.rows; ++r) {
-      const auto s = A::eval(load<T>(a.z + panel_at(i, a.columns, 0, a.z_stride, r)), beta);
-      float* value = a.y + panel_at(i, a.columns, 0, a.y_stride, r);
-      T d = load<T>(value) * s.first;
-      for (int c = 1; c < a.columns; ++c) {
-        float* column = a.y + panel_at(i, a.columns, c, a.y_stride, r);
-        const T d_column = load<T>(column);
-        d = d + d_column * s.second * load<T>(a.z + panel_at(i, a.columns, c, a.z_stride, r));
-        store<T>(column, d_column * s.first);
-      }
-      store<T>(value, d);
+      float* d = a.y + panel_at(i, 1, 0, a.y_stride, r);
+      store<T>(d, load<T>(d) * A::eval(load<T>(a.z + panel_at(i, 1, 0, a.z_stride, r)), beta).first);
+    }
+  }
+};
+
+// Activations whose derivatives are needed later.
+struct ActivateTwiceArgs {
+  float* z_slope;    // before the activation on entry, its first derivative there on return
+  float* curvature;  // its second derivative, written
+  float* y;
+  int y_stride;  // the others have `rows` rows per panel
+  int rows;
+  float beta;
+};
+
+template <class A>
+struct ActivateTwice {
+  using Args = ActivateTwiceArgs;
+  template <class T>
+  static HD void run(const Args& a, int i) {
+    const float beta = a.beta;
+    for (int r = 0; r < a.rows; ++r) {
+      const size_t at = panel_at(i, 1, 0, a.rows, r);
+      const auto s = A::eval(load<T>(a.z_slope + at), beta);
+      store<T>(a.y + panel_at(i, 1, 0, a.y_stride, r), s.value);
+      store<T>(a.z_slope + at, s.first);
+      store<T>(a.curvature + at, s.second);
     }
   }
 };

@@ -8,5 +8,6 @@
 #include "core/compute/kernels/encode.h"
 #include "core/compute/kernels/field_hit.h"
 #include "core/compute/kernels/light.h"
+#include "core/compute/kernels/network_gradient.h"
 #include "core/compute/kernels/radiance.h"
 #include "core/compute/kernels/shade.h"

@@ -23,6 +23,8 @@ template <class A>
 struct Activate;
 template <class A>
 struct ActivateGrad;
+template <class A>
+struct ActivateTwice;
 struct Relu;
 struct Elu;
 struct Softplus;
@@ -40,6 +42,12 @@ struct FieldHitsGrad;
 // kernels/light.h
 struct SgFitResidual;
 struct SgFitGather;
+// kernels/network_gradient.h
+struct GradientStep;
+struct GradientStepGrad;
+struct ActivateGradPlus;
+struct PointGradient;
+struct PointGradientGrad;
 // kernels/radiance.h
 struct RadianceInput;
 struct RadianceInputGrad;
@@ -55,9 +63,11 @@ struct ShadeGrad;
 using AllKernels =
     KernelList<EncodePoint, EncodeFrequency, EncodeGrid, EncodeGridGrad,  //
                Activate<Relu>, ActivateGrad<Relu>, Activate<Elu>, ActivateGrad<Elu>, Activate<Softplus>,
-               ActivateGrad<Softplus>, Activate<Sigmoid>, ActivateGrad<Sigmoid>, Adam, RadianceInput,
-               RadianceInputGrad, SgFitResidual, SgFitGather,  //
-               FieldHits, FieldHitsGrad,                       //
+               ActivateGrad<Softplus>, Activate<Sigmoid>, ActivateGrad<Sigmoid>, ActivateTwice<Relu>,
+               ActivateTwice<Elu>, ActivateTwice<Softplus>, ActivateTwice<Sigmoid>,  //
+               GradientStep, GradientStepGrad, ActivateGradPlus, PointGradient, PointGradientGrad, Adam,
+               RadianceInput, RadianceInputGrad, SgFitResidual, SgFitGather,  //
+               FieldHits, FieldHitsGrad,                                      //
                SgIrradiance, SgReflection, SgReflectionGrad, ReflectionLobes, SgLobesGrad, Shade, ShadeGrad>;
 
 template <class K>
