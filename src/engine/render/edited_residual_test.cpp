@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/math/rng.h"
+#include "engine/render/random_residual.h"
 #include "engine/render/render.h"
 #include "engine/render/sphere_scene.h"
 
@@ -26,13 +26,7 @@ std::shared_ptr<const Field> uniform_field(Vec3f color) {
 // A sphere of one albedo with a correction that is not zero.
 Scene corrected_sphere() {
   Scene s = sphere_scene();
-  FieldConfig config = s.albedo->config();
-  config.outputs = 4;
-  config.output_activation = Activation::none;
-  auto residual = std::make_shared<Residual>(make_residual(std::make_shared<Field>(config, 5), 3));
-  Param& last = residual->params.all()[residual->params.all().size() - 2];
-  for (size_t i = 0; i < last.count(); ++i) last.value[i] = 0.1f * Rng(5, 5, i).normal();
-  s.residual = residual;
+  s.residual = random_residual(*s.albedo, 0.1f);
   s.albedo = uniform_field({0.4f, 0.3f, 0.2f});
   return s;
 }

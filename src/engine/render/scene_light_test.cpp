@@ -11,6 +11,7 @@
 #include "core/base/file.h"
 #include "core/base/temp_folder.h"
 #include "core/math/rng.h"
+#include "engine/render/random_residual.h"
 #include "engine/render/render_cache.h"
 #include "engine/render/sphere_scene.h"
 #include "model/scene/appearance.h"
@@ -135,13 +136,7 @@ TEST(SceneLight, ALaterEditElsewhereLeavesWhatEditedPointsMirrorAlone) {
 // Metal spheres with a residual that is not zero.
 Scene scene_with_residual() {
   Scene s = metal_scene();
-  FieldConfig config = s.albedo->config();
-  config.outputs = 4;
-  config.output_activation = Activation::none;
-  auto residual = std::make_shared<Residual>(make_residual(std::make_shared<Field>(config, 5), 3));
-  Param& last = residual->params.all()[residual->params.all().size() - 2];
-  for (size_t i = 0; i < last.count(); ++i) last.value[i] = 0.2f * Rng(5, 5, i).normal();
-  s.residual = residual;
+  s.residual = random_residual(*s.albedo, 0.2f);
   return s;
 }
 
