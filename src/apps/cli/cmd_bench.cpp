@@ -23,9 +23,9 @@ void bench(const Options& o, Session& session, Console& console) {
 
 void add_bench(Commands& commands) {
   auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add(
-      "bench",
-      "Measure the speed of kernels (as fractions of this machine's peak), of training, of a frame and an edit");
+  CLI::App* verb = commands.add("bench",
+                                "Measure the speed of kernels (as fractions of this machine's peak), of "
+                                "training, of a frame and an edit");
   verb->add_option("--capture", o->capture,
                    "Capture to train on (default: samples/spot, else a synthetic ball)");
   verb->add_option("--project", o->request.project,

@@ -43,8 +43,7 @@ template <class A>
 std::vector<float> activate_twice_case(const Device& device) {
   std::vector<float> all = noise(kN * 5, 1, 2);
   all.resize(3 * kN * 5);
-  device.launch<ActivateTwice<A>>(
-      {all.data(), all.data() + kN * 5, all.data() + 2 * kN * 5, 5, 5, 10}, kN);
+  device.launch<ActivateTwice<A>>({all.data(), all.data() + kN * 5, all.data() + 2 * kN * 5, 5, 5, 10}, kN);
   return all;
 }
 
@@ -64,9 +63,8 @@ std::vector<float> gradient_step_case(const Device& device) {
 
 std::vector<float> gradient_step_grad_case(const Device& device) {
   GradientCase c;
-  device.launch<GradientStepGrad>({c.wide.data(), c.slope.data(), c.curvature.data(), c.d_wide.data(),
-                                   c.narrow.data(), 7, 5},
-                                  kN);
+  device.launch<GradientStepGrad>(
+      {c.wide.data(), c.slope.data(), c.curvature.data(), c.d_wide.data(), c.narrow.data(), 7, 5}, kN);
   c.narrow.insert(c.narrow.end(), c.d_wide.begin(), c.d_wide.end());
   return c.narrow;
 }

@@ -21,7 +21,7 @@ struct LinearArgs {
   const float* weights;  // [out][weight_stride]
   int weight_stride;     // floats from one output's row to the next
   const float* bias;     // [out] or null
-  float* y;        // [panels][y_stride][32]; rows [0, out) are written
+  float* y;              // [panels][y_stride][32]; rows [0, out) are written
   int y_stride;
 };
 

@@ -75,9 +75,9 @@ class MlpPass {
     AlignedVector<float> z;  // before the activation; of jets the activation's slope there
     AlignedVector<float> h;  // after it, with the appended input
     // Of jets:
-    AlignedVector<float> curvature;   // second derivative of the activation
-    AlignedVector<float> d_h, d_z;    // derivatives of output 0; d_h with the appended input
-    AlignedVector<float> loss_by_z;   // derivative by z of a loss of the gradient
+    AlignedVector<float> curvature;  // second derivative of the activation
+    AlignedVector<float> d_h, d_z;   // derivatives of output 0; d_h with the appended input
+    AlignedVector<float> loss_by_z;  // derivative by z of a loss of the gradient
   };
   struct Span {  // one batch of samples
     int n, panels, active_inputs;

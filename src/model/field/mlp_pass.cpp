@@ -170,8 +170,7 @@ void MlpPass::differentiate_grad(const Device& device, const MlpWeights& w, cons
     const int in = in_use(s, l), out = layers_[l].out, stride = layers_[l + 1].in;
     device.linear_weight_grad({s.panels, in, out, t, t_stride, hidden.d_z.data(), out, gradient + offset(l),
                                layers_[l].in, nullptr});
-    device.linear(
-        {s.panels, in, out, t, t_stride, w.weight(l), layers_[l].in, nullptr, next, stride});
+    device.linear({s.panels, in, out, t, t_stride, w.weight(l), layers_[l].in, nullptr, next, stride});
     device.launch<GradientStepGrad>({hidden.d_h.data(), hidden.z.data(), hidden.curvature.data(), next,
                                      hidden.loss_by_z.data(), stride, out},
                                     s.n);
@@ -219,8 +218,8 @@ void MlpPass::backward(const Device& device, const MlpWeights& w, int n, int act
     device.linear_weight_grad({s.panels, in, layer.out, x, x_stride, d_y, d_stride, gw, layer.in, gb});
     if (l == 0 && !d_input) break;
     float* target = l == 0 ? d_input : d_x;
-    device.linear({s.panels, layer.out, in, d_y, d_stride, w.transposed(l), layer.out, nullptr, target,
-                   x_stride});
+    device.linear(
+        {s.panels, layer.out, in, d_y, d_stride, w.transposed(l), layer.out, nullptr, target, x_stride});
     if (l == 0) break;
     activate_grad(device, l - 1, s, target);
     d_y = target;

@@ -29,8 +29,8 @@ struct GradientStep {
 struct GradientStepGrad {
   struct Args {
     const float *d_h, *slope, *curvature;
-    float* t;    // by d_z on entry, by d_h on return
-    float* d_z;  // by z, written
+    float* t;      // by d_z on entry, by d_h on return
+    float* d_z;    // by z, written
     int h_stride;  // of d_h and t; the others have `rows` rows per panel
     int rows;
   };
@@ -77,8 +77,7 @@ struct PointGradient {
     Vec3<T> sum{T(0.0f), T(0.0f), T(0.0f)};
     for (int r = 0; r < a.rows; ++r) {
       const T d = load<T>(a.d_input + panel_at(i, 1, 0, a.inputs, r));
-      for (int c = 0; c < 3; ++c)
-        sum[c] = sum[c] + d * load<T>(a.x + panel_at(i, 4, 1 + c, a.inputs, r));
+      for (int c = 0; c < 3; ++c) sum[c] = sum[c] + d * load<T>(a.x + panel_at(i, 4, 1 + c, a.inputs, r));
     }
     for (int c = 0; c < 3; ++c) store<T>(a.y + panel_at(i, 4, 1 + c, a.outputs, 0), sum[c]);
   }
@@ -101,8 +100,7 @@ struct PointGradientGrad {
     for (int r = 0; r < a.rows; ++r) {
       const size_t at = panel_at(i, 1, 0, a.inputs, r);
       T t = T(0.0f);
-      for (int c = 0; c < 3; ++c)
-        t = t + d_y[c] * load<T>(a.x + panel_at(i, 4, 1 + c, a.inputs, r));
+      for (int c = 0; c < 3; ++c) t = t + d_y[c] * load<T>(a.x + panel_at(i, 4, 1 + c, a.inputs, r));
       store<T>(a.t + at, t);
       if (!a.d_x) continue;
       const T d = load<T>(a.d_input + at);
