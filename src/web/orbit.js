@@ -7,7 +7,7 @@ import { cross, dot, plus, unit } from './camera.js';
 /** @typedef {import('./camera.js').Vec3} Vec3 */
 
 const kFieldOfView = 0.6;        // radians, along the shorter side
-const kMostElevation = 1.55;     // radians: never quite from above, where left and right would swap
+const kMaxElevation = 1.55;     // radians: never quite from above, where left and right would swap
 const kNearest = 1.05, kFarthest = 20;  // times the object's radius
 
 export class Orbit {
@@ -35,7 +35,7 @@ export class Orbit {
   /** Back to where it began. */
   home() {
     this.azimuth = this.start.azimuth;
-    this.elevation = Math.min(Math.max(this.start.elevation, -kMostElevation), kMostElevation);
+    this.elevation = Math.min(Math.max(this.start.elevation, -kMaxElevation), kMaxElevation);
     this.distance = (1.08 * this.radius) / Math.sin(kFieldOfView / 2);
     this.target = this.center;
   }
@@ -43,7 +43,7 @@ export class Orbit {
   /** The camera moves right and up. @param {number} right radians @param {number} up */
   turn(right, up) {
     this.azimuth += right;
-    this.elevation = Math.min(Math.max(this.elevation + up, -kMostElevation), kMostElevation);
+    this.elevation = Math.min(Math.max(this.elevation + up, -kMaxElevation), kMaxElevation);
   }
 
   /** @param {number} factor of the distance */

@@ -12,7 +12,7 @@ import { Renderer, channels } from './renderer.js';
 
 const kPacks = ['tables', 'light', 'shape', 'look', 'vertex_light'];
 const kRest = 150;             // milliseconds after the last change until the fine picture is drawn
-const kMostPixels = 2600;      // of a side of the canvas
+const kMaxPixels = 2600;      // of a side of the canvas
 
 /** @template {HTMLElement} T @param {string} id @param {new () => T} type @returns {T} */
 function element(id, type) {
@@ -152,7 +152,7 @@ class Page {
   /** Of the canvas as it is now. @returns {Camera} */
   camera() {
     const {clientWidth: w, clientHeight: h} = this.canvas;
-    const scale = Math.min(window.devicePixelRatio || 1, kMostPixels / Math.max(w, h, 1));
+    const scale = Math.min(window.devicePixelRatio || 1, kMaxPixels / Math.max(w, h, 1));
     return this.orbit.camera(Math.max(1, Math.round(w * scale)), Math.max(1, Math.round(h * scale)));
   }
 

@@ -85,7 +85,7 @@ uniform sampler2D uIrradiance, uSurface, uBase, uFresnel, uLobe;
 uniform sampler3D uReflection;
 uniform float uIrradianceSide, uReflectionSide, uReflectionLevels;
 uniform vec2 uTableSize;
-uniform float uLeastRoughness, uMiddleShare, uDielectricF0, uMetalF0;
+uniform float uMinRoughness, uMiddleShare, uDielectricF0, uMetalF0;
 const float kPi = 3.14159265;
 
 vec2 octahedral(vec3 d, float side) {
@@ -118,7 +118,7 @@ vec3 alongLobe(vec4 lobe, vec3 n, vec3 mirror, vec3 across, out vec3 axis) {
 vec3 lit(vec3 n, vec3 v, float roughness, float specular, float metalness) {
   vec3 albedo = vAlbedo.rgb;
   float nv = dot(n, v);
-  vec2 at = vec2(sqrt(clamp(nv, 0.0, 1.0)), clamp((roughness - uLeastRoughness) / (1.0 - uLeastRoughness), 0.0, 1.0));
+  vec2 at = vec2(sqrt(clamp(nv, 0.0, 1.0)), clamp((roughness - uMinRoughness) / (1.0 - uMinRoughness), 0.0, 1.0));
   vec2 uv = (at * (uTableSize - 1.0) + 0.5) / uTableSize;
   vec4 surface = texture(uSurface, uv);
   vec2 smoothed = texture(uLobe, vec2(0.5, uv.y)).xy;

@@ -106,7 +106,7 @@ TEST(Cli, WrongUsageIsTwo) {
       {"reconstruct", "photos", "-o", "x", "--time", "soon"},
       {"reconstruct", "photos", "-o", "x", "--time", "1m", "--iterations", "5"},
       {"reconstruct", "photos", "-o", "x", "--resume", "--force"},
-      {"reconstruct", "photos", "-o", "x", "--downscale", "0"},
+      {"reconstruct", "photos", "-o", "x", "--downscale", "65"},
       {"reconstruct", "photos", "-o", "x", "--joint", "-2"},
       {"reconstruct", "photos", "-o", "x", "--bogus"},
       {"render", "p"},

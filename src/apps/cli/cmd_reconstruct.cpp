@@ -42,9 +42,11 @@ void run_reconstruct(const Options& o, Session& session, Console& console) {
   if (!o.time.empty()) request.options.seconds = parse_duration(o.time);
   const ReconstructReport r = session.reconstruct(request, console);
   console.done(r.json(),
-               fmt::format("{}: object of {} vertices and {} handler points from {} views in {}; {}.{}{}",
-                           o.project, r.vertices, r.handler_points, r.views, duration_text(r.seconds),
-                           r.object.text(), r.object.warning().empty() ? "" : "\n", r.object.warning()));
+               fmt::format("{}: object of {} vertices and {} handler points from {} views{} in {}; {}.{}{}",
+                           o.project, r.vertices, r.handler_points, r.views,
+                           r.downscale > 1 ? fmt::format(" at 1/{} of their size", r.downscale) : "",
+                           duration_text(r.seconds), r.object.text(), r.object.warning().empty() ? "" : "\n",
+                           r.object.warning()));
 }
 
 void add_schedule_options(CLI::App* verb, Options& o) {
@@ -88,8 +90,10 @@ void add_settings(CLI::App* verb, Options& o) {
 
 void add_view_options(CLI::App* verb, Options& o) {
   ReconstructOptions& options = o.request.options;
-  verb->add_option("--downscale", options.downscale, "Use the images at 1/N of their size")
-      ->check(CLI::Range(1, 64))
+  verb->add_option("--downscale", options.downscale,
+                   "Use the images at 1/N of their size. 0: such that the training views show at most 60 "
+                   "million pixels of the object")
+      ->check(CLI::Range(0, 64))
       ->capture_default_str();
   CLI::Option* every =
       verb->add_option(

@@ -193,15 +193,15 @@ LightChoice light_choice(JsonReader& j, const Uploads& uploads) {
 }
 
 FrameRequest frame_request(JsonReader& j, const Uploads& uploads) {
-  constexpr int kMostSide = 2048, kMostSamples = 4;
+  constexpr int kMaxSide = 2048, kMaxSamples = 4;
   FrameRequest r;
   r.camera = camera_member(j, "camera");
-  if (r.camera.width > kMostSide || r.camera.height > kMostSide)
-    fail_usage("A frame has at most {} pixels a side.", kMostSide);
+  if (r.camera.width > kMaxSide || r.camera.height > kMaxSide)
+    fail_usage("A frame has at most {} pixels a side.", kMaxSide);
   r.channel = named(j, "channel", channel_from_name, "rgb");
   r.samples = j.optional("samples", 1);
-  if (r.samples < 1 || r.samples > kMostSamples)
-    fail_usage("A frame has 1 to {} samples a pixel and axis.", kMostSamples);
+  if (r.samples < 1 || r.samples > kMaxSamples)
+    fail_usage("A frame has 1 to {} samples a pixel and axis.", kMaxSamples);
   if (j.has("light")) {
     JsonReader light = j.object("light");
     r.light = light_choice(light, uploads);

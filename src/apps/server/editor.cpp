@@ -103,11 +103,11 @@ void Editor::on_worker(const std::string& job, Reply reply, Work work) {
 }
 
 void Editor::change(const HttpRequest& request, Reply reply, std::function<Json(Session&, Progress&)> make) {
-  constexpr size_t kMostWaiting = 16;
+  constexpr size_t kMaxWaiting = 16;
   if (read_only_)
     return reply(error_response(403, "This object is open for looking only.",
                                 "Open it without --read-only, once no other program changes it."));
-  if (worker_->edits_waiting() >= kMostWaiting)
+  if (worker_->edits_waiting() >= kMaxWaiting)
     return reply(error_response(503, "Too many changes wait; try again when some are done."));
   on_worker(
       "edit", std::move(reply),
@@ -122,10 +122,10 @@ void Editor::change(const HttpRequest& request, Reply reply, std::function<Json(
 }
 
 void Editor::keep(const std::string& token, std::shared_ptr<const EditPreview> preview) {
-  constexpr size_t kMost = 8;
+  constexpr size_t kMax = 8;
   const std::lock_guard lock(mutex_);
   previews_.emplace_back(token, std::move(preview));
-  if (previews_.size() > kMost) previews_.pop_front();
+  if (previews_.size() > kMax) previews_.pop_front();
 }
 
 std::shared_ptr<const EditPreview> Editor::kept(const std::string& token) {

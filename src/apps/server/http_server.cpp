@@ -32,9 +32,9 @@ using Seconds = std::chrono::seconds;
 using BoostError = beast::error_code;
 
 constexpr int kThreads = 2;  // they only carry bytes
-constexpr int kMostConnections = 64;
-constexpr size_t kMostHeader = size_t(16) << 10;    // bytes
-constexpr size_t kMostMessage = size_t(256) << 10;  // bytes, from a WebSocket
+constexpr int kMaxConnections = 64;
+constexpr size_t kMaxHeader = size_t(16) << 10;    // bytes
+constexpr size_t kMaxMessage = size_t(256) << 10;  // bytes, from a WebSocket
 constexpr Seconds kIdle{60}, kBodyTime{300}, kLinger{2};
 
 std::string text_of(beast::string_view v) { return {v.data(), v.size()}; }
@@ -71,7 +71,7 @@ class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> 
     stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& r) {
       for (const auto& [name, value] : safety_headers()) r.set(name, value);
     }));
-    stream_.read_message_max(kMostMessage);
+    stream_.read_message_max(kMaxMessage);
     stream_.async_accept(request, [self = shared_from_this()](BoostError error) {
       if (error) return;
       self->app_.opened(self);
@@ -163,7 +163,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
  private:
   void read_head() {
     head_.emplace();
-    head_->header_limit(kMostHeader);
+    head_->header_limit(kMaxHeader);
     head_->body_limit(std::numeric_limits<uint64_t>::max());  // see read_body()
     stream_.expires_after(kIdle);
     http::async_read_header(stream_, buffer_, *head_, [self = shared_from_this()](BoostError error, size_t) {
@@ -279,7 +279,7 @@ struct HttpServer::State {
       acceptor->open(at.protocol());
       acceptor->set_option(asio::socket_base::reuse_address(true));
       acceptor->bind(at, error);
-      if (!error) acceptor->listen(kMostConnections, error);
+      if (!error) acceptor->listen(kMaxConnections, error);
       if (!error) return;
     }
     fail("Cannot listen at {}:{}: {}; choose another port with --port.", options.host, options.port,
@@ -289,7 +289,7 @@ struct HttpServer::State {
   void accept() {
     acceptor->async_accept(asio::make_strand(context), [this](BoostError error, tcp::socket socket) {
       if (error == asio::error::operation_aborted) return;
-      if (!error && ++*connections <= kMostConnections) {
+      if (!error && ++*connections <= kMaxConnections) {
         BoostError ignored;
         socket.set_option(tcp::no_delay(true), ignored);
         std::make_shared<Connection>(std::move(socket), app, connections)->start();

@@ -192,13 +192,13 @@ void Editor::show_making(const Image& picture) {
 }
 
 void Editor::reconstruct(JsonReader& j, const HttpRequest&, Reply reply) {
-  constexpr double kLeast = 20, kMost = 7 * 24 * 3600;
+  constexpr double kMin = 20, kMax = 7 * 24 * 3600;
   ReconstructRequest request;
   request.resume = j.optional("resume", false);
   request.options.seconds = j.optional("seconds", 300.0);
   j.finish();
-  if (!(request.options.seconds >= kLeast && request.options.seconds <= kMost))
-    fail_usage("A reconstruction takes {} seconds to {} days.", kLeast, int(kMost / 86400));
+  if (!(request.options.seconds >= kMin && request.options.seconds <= kMax))
+    fail_usage("A reconstruction takes {} seconds to {} days.", kMin, int(kMax / 86400));
   if (options_.read_only) fail_usage("This folder is open for looking only.");
   on_worker("reconstruct", std::move(reply), [this, request](Session& session, Progress& progress) mutable {
     if (state().value("mode", "") != "capture") fail_usage("There is no capture open to make an object of.");

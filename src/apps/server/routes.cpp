@@ -56,10 +56,10 @@ void Editor::get(const HttpRequest& request, Reply reply) {
 }
 
 void Editor::photo(const HttpRequest& request, Reply reply) {
-  constexpr int kLeast = 16, kMost = 4096, kQuality = 88;
+  constexpr int kMin = 16, kMax = 4096, kQuality = 88;
   const auto view = decoded(request.path.substr(std::string("/api/photo/").size()));
   const std::string width = request.parameter("width").value_or("1024");
-  if (!view || !is_number(width) || std::stoi(width) < kLeast || std::stoi(width) > kMost)
+  if (!view || !is_number(width) || std::stoi(width) < kMin || std::stoi(width) > kMax)
     return reply(error_response(400, "There is no such photograph."));
   worker_->background([reply, view = *view, width = std::stoi(width)](Session& session) {
     reply(guarded_response([&] {

@@ -26,7 +26,7 @@ std::string Uploads::add(const std::string& name, const std::string& bytes) {
   std::erase_if(files_, [&](const auto& f) { return f.first == id; });
   write_file_atomic(folder_.path() / id / plain, bytes);
   files_.emplace_back(id, plain);
-  for (; files_.size() > kMost; files_.pop_front()) {
+  for (; files_.size() > kMax; files_.pop_front()) {
     std::error_code ignored;
     std::filesystem::remove_all(folder_.path() / files_.front().first, ignored);
   }

@@ -20,7 +20,7 @@ class Uploads {
   std::string bytes(const std::string& id) const;
 
  private:
-  static constexpr size_t kMost = 200;  // files; the oldest go first
+  static constexpr size_t kMax = 200;  // files; the oldest go first
   TempFolder folder_;
   mutable std::mutex mutex_;
   std::deque<std::pair<std::string, std::string>> files_;  // id, name

@@ -47,7 +47,7 @@ bool fits(const SettingInfo& s, const Json& v) {
       if (!v.is_number()) return false;
   }
   const auto number = v.get<double>();
-  if (!(number >= s.least && number <= s.most) || !std::isfinite(number)) return false;
+  if (!(number >= s.min && number <= s.max) || !std::isfinite(number)) return false;
   return s.kind == Kind::number || v.get<int64_t>() % s.multiple == 0;
 }
 
@@ -75,8 +75,8 @@ std::string range_text(const SettingInfo& s) {
   if (s.kind == Kind::flag) return "true or false";
   if (s.kind == Kind::choice) return "one of " + fmt::format("{}", fmt::join(s.choices, ", "));
   std::string text = s.kind == Kind::whole ? "a whole number" : "a number";
-  text += std::isfinite(s.most) ? fmt::format(" from {} to {}", s.least, s.most)
-                                : fmt::format(" of at least {}", s.least);
+  text += std::isfinite(s.max) ? fmt::format(" from {} to {}", s.min, s.max)
+                               : fmt::format(" of at least {}", s.min);
   if (s.multiple > 1) text += fmt::format(", a multiple of {}", s.multiple);
   return text;
 }

@@ -23,7 +23,7 @@ struct SettingInfo {
   std::string unit;    // "steps", "1 / length"; empty: none
   std::string source;  // "[Wang et al. 2021]"; empty: found by trials
   Kind kind = Kind::number;
-  double least = 0, most = 0;        // of a number, both allowed
+  double min = 0, max = 0;           // of a number, both allowed
   int multiple = 1;                  // whole numbers are multiples of it
   std::vector<std::string> choices;  // of a choice
 };
@@ -70,7 +70,7 @@ class SettingTable {
 double shortest_decimal(float value);  // the decimal number with fewest digits that is the same float
 
 struct SettingRange {
-  double least = 0, most = std::numeric_limits<double>::infinity();
+  double min = 0, max = std::numeric_limits<double>::infinity();
   int multiple = 1;
 };
 
@@ -91,8 +91,8 @@ class SettingGroup {
   template <class T>
   const SettingGroup& add(const char* name, T Owner::*member, SettingRange range, const char* unit,
                           const char* what, const char* source = "") const {
-    SettingInfo info{prefix_ + name, what,       unit,           source, kind_of<T>(),
-                     range.least,    range.most, range.multiple, {}};
+    SettingInfo info{prefix_ + name, what,      unit,           source, kind_of<T>(),
+                     range.min,      range.max, range.multiple, {}};
     table_.add(
         std::move(info), [at = at_, member](Target& t) { return json_of(at(t).*member); },
         [at = at_, member](Target& t, const Json& value) { at(t).*member = value.template get<T>(); });

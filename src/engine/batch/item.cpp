@@ -32,9 +32,9 @@ std::vector<std::string> words_of(JsonReader& r, const char* key, const std::vec
   return out;
 }
 
-int count_of(JsonReader& r, const char* key, int otherwise, int least, int most) {
+int count_of(JsonReader& r, const char* key, int otherwise, int min, int max) {
   const int n = r.optional(key, otherwise);
-  if (n < least || n > most) fail("{}: '{}' is {}; it is {} to {}.", r.what(), key, n, least, most);
+  if (n < min || n > max) fail("{}: '{}' is {}; it is {} to {}.", r.what(), key, n, min, max);
   return n;
 }
 
@@ -49,7 +49,7 @@ void read_options(JsonReader r, BatchItem& item) {
     fail("{}: give 'iterations' or 'seconds', which are more than 0.", r.what());
   o.joint_steps = count_of(r, "joint", -1, -1, kMany);
   o.seed = r.optional("seed", o.seed);
-  o.downscale = count_of(r, "downscale", 1, 1, 64);
+  o.downscale = count_of(r, "downscale", 0, 0, 64);
   o.test_every = count_of(r, "test_every", o.test_every, 0, kMany);
   o.views = count_of(r, "views", 0, 0, kMany);
   const std::string light = r.optional("light", std::string("auto"));

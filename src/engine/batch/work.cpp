@@ -26,10 +26,10 @@ struct Failure {
 
 // The disk is full or a file system is gone, although the error does not tell.
 bool machine_is_in_the_way(const BatchCatalog& catalog, const BatchItem& item) {
-  constexpr uintmax_t kLeastSpace = 1 << 20;
+  constexpr uintmax_t kMinSpace = 1 << 20;
   std::error_code error;
   const fs::space_info space = fs::space(catalog.folder(), error);
-  if (error || space.available < kLeastSpace) return true;
+  if (error || space.available < kMinSpace) return true;
   if (catalog.prepared() && !fs::exists(catalog.folder() / "batch.json", error)) return true;
   return item.planned && !fs::exists(item.capture, error);
 }

@@ -45,8 +45,8 @@ Spread spread_of(std::vector<double> values, bool higher_is_better) {
   if (values.empty()) fail("A figure without measurements (an error in the program).");
   Spread s;
   s.repeats = int(values.size());
-  const auto [least, greatest] = std::minmax_element(values.begin(), values.end());
-  s.best = higher_is_better ? *greatest : *least;
+  const auto [smallest, greatest] = std::minmax_element(values.begin(), values.end());
+  s.best = higher_is_better ? *greatest : *smallest;
   s.median = middle(values);
   for (double& v : values) v = std::abs(v - s.median);
   s.deviation = middle(values);

@@ -129,6 +129,11 @@ ImageDepth CaptureImages::depth(const View& view) const {
   return bits == 8 ? ImageDepth::bits8 : bits == 16 ? ImageDepth::bits16 : ImageDepth::open;
 }
 
+std::optional<double> CaptureImages::exposure(const View& view) const {
+  require_path(view);
+  return read_image_exif(view.image_path).exposure;
+}
+
 Image CaptureImages::load(const View& view) const { return downscale(load_linear_rgba(view), downscale_); }
 
 }  // namespace cei3d

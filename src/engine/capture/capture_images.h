@@ -36,6 +36,7 @@ class CaptureImages : public ImageSource {
   explicit CaptureImages(int downscale = 1) : downscale_(downscale) {}
   Image load(const View& view) const override;
   ImageDepth depth(const View& view) const override;
+  std::optional<double> exposure(const View& view) const override;  // EXIF of JPEG files
 
  private:
   int downscale_;

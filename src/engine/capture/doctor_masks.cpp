@@ -263,15 +263,15 @@ bool report_mistake(std::span<const JudgedMask> masks, std::vector<Finding>& fin
   if (now > kAgree) return false;
   const std::vector<Mistake> all = mistakes();
   const Mistake* best = nullptr;
-  double most = std::max(kAgree, now + 0.1);
+  double largest = std::max(kAgree, now + 0.1);
   for (const Mistake& m : all)
-    if (const double a = agreement(tried, m.undo); a > most) most = a, best = &m;
+    if (const double a = agreement(tried, m.undo); a > largest) largest = a, best = &m;
   if (!best) return false;
   findings.push_back(
       {Severity::error,
        fmt::format("Masks and cameras disagree ({:.0f} % of the object is confirmed by the other views). "
                    "They agree ({:.0f} %) if {}.",
-                   100 * now, 100 * most, best->what),
+                   100 * now, 100 * largest, best->what),
        "Correct the cameras: `cei3d check --fix -o CAPTURE2` does.", [undo = best->undo](Capture& c) {
          for (View& v : c.views) {
            v.camera = undo(v.camera);

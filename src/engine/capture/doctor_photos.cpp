@@ -105,12 +105,12 @@ void check_exposures(std::span<const JudgedPhoto> photos, std::vector<Finding>& 
   for (const JudgedPhoto& p : photos)
     if (p.look->exposure) stated.push_back(*p.look->exposure);
   if (stated.size() < 2) return;
-  const auto [least, most] = std::minmax_element(stated.begin(), stated.end());
-  if (*most > kExposures * *least)
+  const auto [smallest, largest] = std::minmax_element(stated.begin(), stated.end());
+  if (*largest > kExposures * *smallest)
     findings.push_back(
         {Severity::note,
          fmt::format("By the camera's own notes (EXIF) exposures differ by a factor of {:.2g}.",
-                     *most / *least),
+                     *largest / *smallest),
          "Lock exposure and white balance; light and albedo are estimated from all photographs together."});
 }
 

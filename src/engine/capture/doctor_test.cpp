@@ -25,10 +25,10 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-std::string sentences(const CaptureReport& report, Severity least) {
+std::string sentences(const CaptureReport& report, Severity from) {
   std::string text;
   for (const Finding& f : report.findings)
-    if (f.severity >= least) text += f.what + "\n";
+    if (f.severity >= from) text += f.what + "\n";
   return text;
 }
 

@@ -122,9 +122,9 @@ bool is_half_pixel(Vec2d bias) {
 const Reading* best_reading(const std::vector<Reading>& all, const std::vector<const View*>& views,
                             double now) {
   const Reading* best = nullptr;
-  double least = kExplains * now;
+  double smallest = kExplains * now;
   for (const Reading& r : all)
-    if (const double left = median_of_all(views, &r); left < least) least = left, best = &r;
+    if (const double left = median_of_all(views, &r); left < smallest) smallest = left, best = &r;
   return best;
 }
 

@@ -178,6 +178,7 @@ TEST_F(Formats, ImagesAreTurnedOnlyWhereTheCameraIs) {
           error += std::abs(srgb_from_linear(seen.at(x, y)[0]) - drawn.at(x, y)[0]), ++n;
         }
       EXPECT_LT(error / n, 0.02) << view.name;
+      EXPECT_NEAR(CaptureImages().exposure(view).value_or(0), 200.0 / 50 / 16, 1e-12);  // with_exif()
     }
   }
 }

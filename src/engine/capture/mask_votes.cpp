@@ -181,17 +181,17 @@ std::vector<HullMask> SmallMasks::views() const {
   return out;
 }
 
-int reduction_of(int width, int height, int most) {
-  return std::max(1, (std::max(width, height) + most - 1) / most);
+int reduction_of(int width, int height, int max_side) {
+  return std::max(1, (std::max(width, height) + max_side - 1) / max_side);
 }
 
-SmallMasks small_masks(std::span<const HullMask> masks, const Normalization& normalization, int most) {
+SmallMasks small_masks(std::span<const HullMask> masks, const Normalization& normalization, int max_side) {
   SmallMasks out;
   out.cameras.resize(masks.size());
   out.masks.resize(masks.size());
   parallel_for(int(masks.size()), [&](int i) {
     const HullMask& m = masks[size_t(i)];
-    const int n = reduction_of(m.camera.width, m.camera.height, most);
+    const int n = reduction_of(m.camera.width, m.camera.height, max_side);
     const Camera small = scaled(normalization.unit_from_capture(m.camera), n);
     for (int y = 0; y < small.height; ++y)
       for (int x = 0; x < small.width; ++x) out.masks[size_t(i)].push_back(block_of(m, x * n, y * n, n));

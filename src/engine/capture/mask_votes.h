@@ -20,9 +20,9 @@ struct SmallMasks {
 };
 inline constexpr int kSmallMask = 160;  // pixels of the longer side, at most
 // By how much a mask of this size is reduced.
-int reduction_of(int width, int height, int most = kSmallMask);
+int reduction_of(int width, int height, int max_side = kSmallMask);
 // masks: cameras in the capture frame.
-SmallMasks small_masks(std::span<const HullMask> masks, const Normalization&, int most = kSmallMask);
+SmallMasks small_masks(std::span<const HullMask> masks, const Normalization&, int max_side = kSmallMask);
 
 struct MaskDoubt {
   int width = 0, height = 0;  // of the small mask

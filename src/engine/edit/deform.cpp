@@ -61,11 +61,11 @@ void check_drags(const Scene& scene, const DeformRequest& r) {
 
 uint32_t nearest_vertex(const Mesh& mesh, Vec3f to) {
   uint32_t best = mesh.triangles.at(0)[0];
-  float least = length(mesh.positions[best] - to);
+  float smallest = length(mesh.positions[best] - to);
   for (const auto& t : mesh.triangles)
     for (const uint32_t v : t) {
       const float d = length(mesh.positions[v] - to);
-      if (d < least || (d == least && v < best)) best = v, least = d;
+      if (d < smallest || (d == smallest && v < best)) best = v, smallest = d;
     }
   return best;
 }

@@ -53,12 +53,12 @@ std::vector<Seed> mask_seeds(const Scene& scene, const PartRequest& r) {
 
 // Rays through the drawn pixels; of many an even selection.
 std::vector<Vec2f> drawn_pixels(const Image& mask) {
-  constexpr size_t kMost = 20000;
+  constexpr size_t kMax = 20000;
   std::vector<Vec2f> all, kept;
   for (int y = 0; y < mask.height; ++y)
     for (int x = 0; x < mask.width; ++x)
       if (*mask.at(x, y) > 0) all.push_back({float(x) + 0.5f, float(y) + 0.5f});
-  const size_t step = all.size() / kMost + 1;
+  const size_t step = all.size() / kMax + 1;
   for (size_t i = 0; i < all.size(); i += step) kept.push_back(all[i]);
   return kept;
 }

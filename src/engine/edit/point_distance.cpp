@@ -42,22 +42,22 @@ PointDistance::PointDistance(HandlerPoints points) {
 // here is below the Euclidean one. Finer points around that one come nearer.
 template <class Norm>
 float PointDistance::nearest(Vec3f x, const Norm& norm, size_t& point) const {
-  float least = std::numeric_limits<float>::infinity();
+  float smallest = std::numeric_limits<float>::infinity();
   const auto search = [&](const Level& l, Vec3f center) {
     l.index.any_within(center, l.radius, [&](size_t i) {
       const float d = norm(x - l.points.positions[i]);
-      if (d < least || (d == least && i < point)) least = d, point = i;
+      if (d < smallest || (d == smallest && i < point)) smallest = d, point = i;
       return false;
     });
   };
   size_t level = 0;
-  for (; level < levels_.size() && !(least <= levels_[level].radius); ++level) search(levels_[level], x);
-  for (size_t k = level; k > 1 && std::isfinite(least); --k) {
+  for (; level < levels_.size() && !(smallest <= levels_[level].radius); ++level) search(levels_[level], x);
+  for (size_t k = level; k > 1 && std::isfinite(smallest); --k) {
     const Vec3f from = levels_[k - 1].points.positions[point];
-    least = std::numeric_limits<float>::infinity();
+    smallest = std::numeric_limits<float>::infinity();
     search(levels_[k - 2], from);
   }
-  return least;
+  return smallest;
 }
 
 float PointDistance::l1_distance(Vec3f x) const {

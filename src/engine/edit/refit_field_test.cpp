@@ -51,10 +51,10 @@ TEST(PointDistance, L1IsTheLeastSumOfDifferences) {
     Rng rng(2, 0, i);
     const Vec3f x =
         normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()}) * (0.5f + 0.2f * rng.uniform());
-    float least = 9;
+    float smallest = 9;
     for (const Vec3f h : p.positions)
-      least = std::min(least, std::abs(x.x - h.x) + std::abs(x.y - h.y) + std::abs(x.z - h.z));
-    EXPECT_NEAR(distance.l1_distance(x), least, 1e-6f);
+      smallest = std::min(smallest, std::abs(x.x - h.x) + std::abs(x.y - h.y) + std::abs(x.z - h.z));
+    EXPECT_NEAR(distance.l1_distance(x), smallest, 1e-6f);
   }
 }
 

@@ -26,9 +26,9 @@ bool beside_opaque(const Image& rgba, int x, int y) {
 }
 
 int count_painted(const Image& rgba) {
-  const float least = min_alpha(rgba);
+  const float threshold = min_alpha(rgba);
   int n = 0;
-  for (size_t i = 3; i < rgba.data.size(); i += 4) n += rgba.data[i] >= least;
+  for (size_t i = 3; i < rgba.data.size(); i += 4) n += rgba.data[i] >= threshold;
   return n;
 }
 
@@ -118,11 +118,11 @@ float min_alpha(const Image& rgba) {
 }
 
 PixelBox painted_box(const Image& rgba, int margin) {
-  const float least = min_alpha(rgba);
+  const float threshold = min_alpha(rgba);
   int x0 = rgba.width, y0 = rgba.height, x1 = -1, y1 = -1;
   for (int y = 0; y < rgba.height; ++y) {
     for (int x = 0; x < rgba.width; ++x) {
-      if (rgba.at(x, y)[3] < least) continue;
+      if (rgba.at(x, y)[3] < threshold) continue;
       x0 = std::min(x0, x);
       x1 = std::max(x1, x);
       y0 = std::min(y0, y);
@@ -150,12 +150,12 @@ Image without_unchanged(const Device& device, const Scene& scene, const Camera& 
   for (size_t i = 0; i < look.unlit.size(); ++i)
     if (look.unlit[i] > 0) look.albedo[i] = {kNoAlbedo, kNoAlbedo, kNoAlbedo};
   const Image shown = filtered_albedo(traced, look.albedo);
-  const float least = min_alpha(rgba);
+  const float threshold = min_alpha(rgba);
   for (int y = 0; y < box.height; ++y)
     for (int x = 0; x < box.width; ++x) {
       float* painted = left.at(box.x0 + x, box.y0 + y);
       const float* now = shown.at(x, y);
-      if (painted[3] < least || now[3] == 0) continue;
+      if (painted[3] < threshold || now[3] == 0) continue;
       const auto same = [&](int c) { return std::abs(srgb_from_linear(now[c]) - painted[c]) < kStep; };
       if (!same(0) || !same(1) || !same(2)) continue;
       painted[3] = 0;

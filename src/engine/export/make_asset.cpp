@@ -15,8 +15,8 @@ namespace {
 // The surface may be farther from the simplified one than the error of the last collapse says, which is a
 // mean over planes.
 float reach_of(float error) {
-  constexpr float kTimes = 5, kLeast = 0.01f, kMost = 0.05f;
-  return std::clamp(kTimes * error, kLeast, kMost);
+  constexpr float kTimes = 5, kMin = 0.01f, kMax = 0.05f;
+  return std::clamp(kTimes * error, kMin, kMax);
 }
 
 void to_capture_frame(TexturedMesh& mesh, const Normalization& n) {

@@ -128,10 +128,10 @@ double hyab(Vec3d a, Vec3d b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.
 
 // Of two seen colors, [0, 1].
 double color_error(Vec3d a, Vec3d b) {
-  static const double most =
+  static const double largest =
       std::pow(hyab(lab_from_linear({0, 1, 0}), lab_from_linear({0, 0, 1})), kColorExponent);
-  const double e = std::pow(hyab(a, b), kColorExponent), bend = kBreak * most;
-  return e < bend ? kAtBreak / bend * e : kAtBreak + (e - bend) / (most - bend) * (1 - kAtBreak);
+  const double e = std::pow(hyab(a, b), kColorExponent), bend = kBreak * largest;
+  return e < bend ? kAtBreak / bend * e : kAtBreak + (e - bend) / (largest - bend) * (1 - kAtBreak);
 }
 
 struct Channels {

@@ -64,13 +64,13 @@ class FirstRound {
   // The view that shows most points of the object, of those that are not done; clicked ones first. The number
   // of views: none shows any.
   size_t next(const std::vector<uint8_t>& done) const {
-    size_t best = request_.views.size(), most = 0;
+    size_t best = request_.views.size(), largest = 0;
     for (size_t v = 0; v < done.size(); ++v) {
       if (done[v]) continue;
       if (clicked(v)) return v;
       size_t count = 0;
       for (const auto& s : points_.views[v]) count += belief(s.point) > 0;
-      if (count > most) most = count, best = v;
+      if (count > largest) largest = count, best = v;
     }
     return best;
   }

@@ -48,7 +48,7 @@ SmallMasks small_first_mask(const View& view, const fs::path& file) {
 
 // The ball about the points that are believed to be on the object, with room for what has no points.
 Normalization ball_of(const SparsePoints& points, const PointBelief& belief) {
-  constexpr double kMost = 0.98, kRoom = 1.3;  // mistakes among the points; radius
+  constexpr double kMax = 0.98, kRoom = 1.3;  // mistakes among the points; radius
   std::vector<double> axis[3], distances;
   for (size_t i = 0; i < belief.size(); ++i)
     for (int a = 0; a < 3 && belief[i] > 0; ++a) axis[a].push_back(points.positions[i][a]);
@@ -57,7 +57,7 @@ Normalization ball_of(const SparsePoints& points, const PointBelief& belief) {
   for (int a = 0; a < 3; ++a) n.center[a] = median(axis[a]);
   for (size_t i = 0; i < axis[0].size(); ++i)
     distances.push_back(length(Vec3d{axis[0][i], axis[1][i], axis[2][i]} - n.center));
-  n.scale = 1 / (kRoom * value_of_rank(distances, size_t(kMost * double(distances.size() - 1))));
+  n.scale = 1 / (kRoom * value_of_rank(distances, size_t(kMax * double(distances.size() - 1))));
   return n;
 }
 

@@ -88,8 +88,8 @@ class PlateSegmenter final : public PhotoSegmenter {
           border.push_back(*apart.at(x, y));
       }
     // Noise of the background itself, where the photograph shows nothing else.
-    constexpr float kNoise = 6, kLeast = 0.12f;
-    const float threshold = std::max(kLeast, kNoise * median(border));
+    constexpr float kNoise = 6, kMin = 0.12f;
+    const float threshold = std::max(kMin, kNoise * median(border));
     for (float& d : apart.data) d = 10 * (d / threshold - 1);
     return cut_out(apart, box);
   }

@@ -67,8 +67,8 @@ std::optional<Plane> support_plane(const std::vector<Vec3d>& points, std::span<c
   return best.plane;
 }
 
-std::vector<Vec3d> thinned(const std::vector<Vec3d>& points, size_t most) {
-  const size_t step = std::max<size_t>(1, (points.size() + most - 1) / most);
+std::vector<Vec3d> thinned(const std::vector<Vec3d>& points, size_t max_count) {
+  const size_t step = std::max<size_t>(1, (points.size() + max_count - 1) / max_count);
   std::vector<Vec3d> out;
   for (size_t i = 0; i < points.size(); i += step) out.push_back(points[i]);
   return out;

@@ -23,10 +23,9 @@ constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
 // trained.
 constexpr std::array kFitAt{0.1, 0.2, 0.3, 0.45, 0.6};
 constexpr int kAlignSide = 320, kExposeSide = 64;  // of the images that are compared, at most; pixels
-// Exposures are found late, after so many steps: what was trained briefly is off by as much. Their spread
-// (exposure_change()) from which on they are believed: of equal ones it is .05 at most, for a metal.
+// Exposures are found late: what was trained briefly is off by as much. Their spread (exposure_change()) from
+// which on they are believed: of equal ones it is .05 at most, for a metal.
 constexpr double kExposeFrom = 0.3, kMinExposure = 0.08;
-constexpr int kExposeSteps = 1000;
 constexpr int kEvaluationBatches = 2;  // pixels of an evaluation, in batches of the training
 
 class Training {
@@ -68,25 +67,38 @@ class Training {
   double elapsed() const { return run_.progress.now() - begin_; }
 
  private:
+  // Changes nothing before all is known: whoever is interrupted goes on from the state before it.
   void fit_views(double u) {
+    PixelStore& pixels = run_.views.train;
     while (state_.alignments < int(kFitAt.size()) && u >= kFitAt[size_t(state_.alignments)]) {
-      if (!state_.scene.poses.empty()) align(u);
-      if (run_.fit_exposures && u >= kExposeFrom && state_.step >= kExposeSteps) expose(u);
+      std::vector<Camera> cameras;
+      std::vector<Vec3f> exposures;
+      if (!state_.scene.poses.empty()) cameras = aligned_cameras(u);
+      if (run_.fit_exposures && u >= kExposeFrom && state_.step >= run_.preset.exposures_from_steps)
+        exposures = found_exposures(u);
+      if (!cameras.empty()) {
+        pixels.set_cameras(std::move(cameras));
+        keep_poses(run_, state_);
+      }
+      if (!exposures.empty()) {
+        pixels.set_exposures(std::move(exposures));
+        keep_exposures(run_, state_);
+      }
       ++state_.alignments;
     }
   }
 
-  void align(double u) {
-    PixelStore& pixels = run_.views.train;
+  std::vector<Camera> aligned_cameras(double u) {
+    const PixelStore& pixels = run_.views.train;
     AlignedViews aligned =
         align_views(show_views(*state_.geometry, pixels, kAlignSide, run_.progress), pixels);
     run_.progress.log(Json{{"stage", "alignment"}, {"u", u}, {"pixels", aligned.pixels}}.dump());
-    pixels.set_cameras(std::move(aligned.cameras));
-    keep_poses(run_, state_);
+    return std::move(aligned.cameras);
   }
 
-  void expose(double u) {
-    PixelStore& pixels = run_.views.train;
+  // Empty: they are equal.
+  std::vector<Vec3f> found_exposures(double u) {
+    const PixelStore& pixels = run_.views.train;
     std::vector<Vec3f> found =
         find_exposures(show_views(*state_.geometry, pixels, kExposeSide, run_.progress), pixels);
     const double spread = exposure_change({}, found);
@@ -95,9 +107,8 @@ class Training {
                            {"spread", spread},
                            {"change", exposure_change(pixels.exposures(), found)}}
                           .dump());
-    if (spread < kMinExposure && pixels.exposures().empty()) return;
-    pixels.set_exposures(std::move(found));
-    keep_exposures(run_, state_);
+    if (spread < kMinExposure && pixels.exposures().empty()) return {};
+    return found;
   }
 
   void evaluate(double u, const GeometryStats& sum) {

@@ -152,6 +152,8 @@ void add_run(const Group<Preset>& g) {
   g.add("iterations", &Preset::iterations, {1, 1e8}, "steps",
         "Of the geometry stage, without --time or --iterations", kPaper)
       .add("polish_steps", &Preset::polish_steps, {0, 1e6}, "steps", "Of a round of polishing, at most")
+      .add("exposures_from_steps", &Preset::exposures_from_steps, {0, 1e8}, "steps",
+           "Steps after which the model is compared with the exposures of the photographs")
       .add("polish_from_iterations", &Preset::polish_from_iterations, {0, 1e8}, "steps",
            "Of the geometry stage, from which a run by steps polishes and meshes finer")
       .add("trials_from_iterations", &Preset::trials_from_iterations, {0, 1e8}, "steps",

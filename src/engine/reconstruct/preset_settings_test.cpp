@@ -18,11 +18,11 @@ Json other(const SettingInfo& s, const Json& value) {
     case SettingInfo::Kind::choice:
       return value == s.choices[0] ? s.choices[1] : s.choices[0];
     case SettingInfo::Kind::whole:
-      return value.get<int64_t>() + s.multiple <= s.most ? value.get<int64_t>() + s.multiple
-                                                         : value.get<int64_t>() - s.multiple;
+      return value.get<int64_t>() + s.multiple <= s.max ? value.get<int64_t>() + s.multiple
+                                                        : value.get<int64_t>() - s.multiple;
     case SettingInfo::Kind::number:
       for (const double v : {0.5, 0.25, 2.0, 128.0})  // the same as floats
-        if (v >= s.least && v <= s.most && value != v) return v;
+        if (v >= s.min && v <= s.max && value != v) return v;
   }
   return {};
 }

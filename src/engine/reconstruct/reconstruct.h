@@ -26,7 +26,8 @@ struct ReconstructOptions {
   int iterations = 0;
   int joint_steps = -1;  // of the joint descent, at most; 0: none; -1: the preset's
   uint64_t seed = 1;
-  int downscale = 1;      // use images at 1/N of their size
+  // Use images at 1/N of their size; 0: as engine/session/photograph_size.h has it.
+  int downscale = 0;
   int test_every = 8;     // hold out every Nth view when the capture has no split; 0: none
   double test_share = 0;  // instead: hold out this share of the views, chosen at random by the seed
   std::optional<LightMotion> light;  // how the light moves against the object; none: to be found

@@ -62,6 +62,23 @@ class SmallTurningRun : Owner<TurntableCapture>, public AnyRun {
   SmallTurningRun() : AnyRun(own.capture(), own) { options.light = LightMotion::turntable; }
 };
 
+// The box in photographs that are brighter and darker in turn.
+class ExposedCapture : public BoxCapture {
+ public:
+  Image load(const View& view) const override {
+    Image image = BoxCapture::load(view);
+    const float factor = std::stoi(view.name) % 2 ? 0.6f : 1.3f;
+    for (size_t i = 0; i < image.data.size(); ++i)
+      if (i % 4 < 3) image.data[i] *= factor;
+    return image;
+  }
+};
+
+class SmallExposedRun : Owner<ExposedCapture>, public AnyRun {
+ public:
+  SmallExposedRun() : AnyRun(own.capture(), own) { preset.exposures_from_steps = 1; }
+};
+
 void expect_same(const Tensors& a, const Tensors& b, const std::string& where) {
   ASSERT_EQ(a.size(), b.size()) << where;
   for (const auto& [name, tensor] : a) {
@@ -215,6 +232,22 @@ TEST(Reconstruct, ATurningLightAndSeveralMaterialsAreResumedAnywhere) {
   const Checkpoints::State same = with_interruptions(small, interrupted, progress, 1);
   expect_same(same.tensors, several.tensors, "several materials");
   EXPECT_EQ(same.head, several.head);
+}
+
+TEST(Reconstruct, ExposuresAreFittedKeptAndResumed) {
+  SmallExposedRun small;
+  const Reference reference(small);
+  ASSERT_EQ(reference.scene.head.at("exposures").size(), 10u);  // of the training views
+  const int checks = reference.progress.checks.at("geometry");
+  for (const int check : {checks / 2, checks * 5 / 8, checks * 3 / 4, checks * 7 / 8, checks}) {
+    expect_same_after(small, reference, 2, check, How::kill);
+    expect_same_after(small, reference, 2, check, How::cancel);
+  }
+  SmallExposedRun given;
+  given.options.fit_exposures = false;
+  MemoryCheckpoints checkpoints;
+  ScriptedProgress progress;
+  EXPECT_TRUE(given.run(checkpoints, progress).exposures.empty());
 }
 
 // Before there were stages, checkpoints held the geometry stage alone.

@@ -62,11 +62,13 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
   state.light_frame_known = run.light || trial.light.motion != LightMotion::world;
   if (run.plan.trial_steps > 0) trial.steps = run.plan.trial_steps;
   trial.align = run.refine_poses;
+  if (run.fit_exposures) trial.exposures = run.views.noted_exposures;
   const std::vector<Camera> given = pixels.cameras();
   const StartShape start = run.plan.trial_steps > 0
                                ? choose_start(run.device, pixels, trial, run.seed, run.progress)
                                : start_shape(pixels, Start::hull, run.seed, trial.shapes, run.progress);
   if (!same_poses(pixels.cameras(), given)) keep_poses(run, state);
+  if (!pixels.exposures().empty()) keep_exposures(run, state);
   const double chosen = run.progress.now();
   state.start_seconds = chosen - begin;
   state.geometry = std::make_unique<GeometryStage>(run.device, pixels, run.preset.geometry, run.seed);

@@ -2,15 +2,19 @@
 #include "engine/reconstruct/training_views.h"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 #include "core/base/cancel.h"
+#include "engine/reconstruct/poses/align_views.h"
 
 namespace cei3d {
 
 namespace {
 
-constexpr int kRim = 6;            // pixels around the object that are trained on
-constexpr size_t kMaxHeldOut = 8;  // held-out views that are read
+constexpr int kRim = 6;             // pixels around the object that are trained on
+constexpr size_t kMaxHeldOut = 8;   // held-out views that are read
+constexpr double kMinNoted = 0.02;  // spread of noted exposures (exposure_change()) that counts
 
 // The camera in the unit frame, for an image of this width (images may be downscaled).
 Camera camera_of(const View& view, const Normalization& normalization, const Image& image) {
@@ -22,12 +26,27 @@ Camera camera_of(const View& view, const Normalization& normalization, const Ima
   return camera;
 }
 
+std::vector<Vec3f> relative_exposures(const std::vector<std::optional<double>>& noted) {
+  double mean = 0;
+  for (const auto& e : noted) {
+    if (!e || !(*e > 0)) return {};
+    mean += std::log(*e) / double(noted.size());
+  }
+  std::vector<Vec3f> factors;
+  for (const auto& e : noted) {
+    const float factor = float(*e / std::exp(mean));
+    factors.push_back({factor, factor, factor});
+  }
+  return exposure_change({}, factors) < kMinNoted ? std::vector<Vec3f>() : factors;
+}
+
 }  // namespace
 
 TrainingViews load_training_views(const Capture& capture, const ImageSource& images,
                                   const Normalization& normalization, Progress& progress) {
   TrainingViews v;
-  int done = 0, trained = 0;
+  std::vector<std::optional<double>> noted;
+  int done = 0;
   for (const View& view : capture.views) {
     progress.report({"", double(done++) / double(capture.views.size()), -1, view.name});
     check_cancelled(progress);
@@ -36,9 +55,12 @@ TrainingViews load_training_views(const Capture& capture, const ImageSource& ima
     const Image image = images.load(view);
     const Camera camera = camera_of(view, normalization, image);
     (train ? v.train : v.held_out).add_view(camera, image, kRim, images.depth(view));
-    if (train) v.footprint += length(camera.center) / camera.fx, ++trained;
+    if (!train) continue;
+    v.footprint += length(camera.center) / camera.fx;
+    noted.push_back(images.exposure(view));
   }
-  v.footprint /= std::max(trained, 1);
+  v.footprint /= double(std::max<size_t>(noted.size(), 1));
+  v.noted_exposures = relative_exposures(noted);
   if (v.train.pixels().empty()) fail("no training image shows the object: every mask is empty");
   return v;
 }

@@ -36,10 +36,10 @@ TEST(IrradianceMap, IsTheSumOverTheLobes) {
       mean += error / kNormals;
       worst = std::max(worst, error);
     }
-    const double most = mu * sg_irradiance(double(sharpness), 1.0);
-    EXPECT_LT(mean, 0.0005 * most) << sharpness;
+    const double largest = mu * sg_irradiance(double(sharpness), 1.0);
+    EXPECT_LT(mean, 0.0005 * largest) << sharpness;
     // A sun at the horizon: a kink is off by up to a quarter of a cell, whose diagonals are up to .064 long.
-    EXPECT_LT(worst, 0.016 * most) << sharpness;
+    EXPECT_LT(worst, 0.016 * largest) << sharpness;
   }
 }
 

@@ -315,11 +315,11 @@ TEST_F(VertexLightFilesTest, DamagedFilesAreComputedAgainAndOldOnesGo) {
   write_file_atomic(file, read_file(file).substr(0, 1000));
   EXPECT_TRUE(same_bits(frame(files, scene), first));
   EXPECT_EQ(transports_, 1u);
-  for (size_t i = 0; i < VertexLightFiles::kMost + 2; ++i) {
+  for (size_t i = 0; i < VertexLightFiles::kMax + 2; ++i) {
     scene.light.lobes[0].mu.x += 0.1f;
     files.put(scene.light, VertexLight());
   }
-  EXPECT_EQ(count(), VertexLightFiles::kMost);
+  EXPECT_EQ(count(), VertexLightFiles::kMax);
 }
 
 TEST(Transport, KeepsItsSurface) {

@@ -143,9 +143,9 @@ SeenHistory::SeenHistory(VertexMaterials as_reconstructed)
 }
 
 size_t SeenHistory::common_layers(const Scene& scene, int last) const {
-  const size_t most = std::min(size_t(last + 1), changes_.size());
+  const size_t end = std::min(size_t(last + 1), changes_.size());
   size_t n = 0;
-  while (n < most && !changes_[n]->content.empty() && changes_[n]->content == scene.layers[n].content) ++n;
+  while (n < end && !changes_[n]->content.empty() && changes_[n]->content == scene.layers[n].content) ++n;
   return n;
 }
 

@@ -119,8 +119,8 @@ std::vector<Vec3f> photographed_radiance(const SceneLight& light, std::span<cons
 // stays that share where they change. Where they become much brighter it stays behind, because the errors of
 // a dark surface say little about a bright one.
 float kept_share(float now, float before) {
-  constexpr float kMost = 2, kBlack = 1e-4f;
-  return std::clamp((now + kBlack) / (before + kBlack), 0.0f, kMost);
+  constexpr float kMax = 2, kBlack = 1e-4f;
+  return std::clamp((now + kBlack) / (before + kBlack), 0.0f, kMax);
 }
 
 // Output of the correction network, carried over to the edited surface: #hits, linear radiance.

@@ -64,7 +64,7 @@ void VertexLightFiles::put(const SgMixture& light, const VertexLight& v) const {
     write_tensors(file_of(light), {{"visibility", tensor_of(v.visibility)},
                                    {"bounce", tensor_of(v.bounce)},
                                    {"irradiance", tensor_of(v.irradiance)}});
-    remove_oldest(folder_, kMost);
+    remove_oldest(folder_, kMax);
   } catch (const Error&) {
     return;  // the folder cannot be written, or the disk is full
   }

@@ -13,7 +13,7 @@ namespace cei3d {
 
 class VertexLightFiles {
  public:
-  static constexpr size_t kMost = 8;  // files that are kept, the newest
+  static constexpr size_t kMax = 8;  // files that are kept, the newest
 
   VertexLightFiles() = default;  // keeps nothing
   // object: a hash of the surface and of the materials of its vertices. Not writable: put() does nothing.

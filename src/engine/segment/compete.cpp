@@ -184,9 +184,9 @@ float before_largest_step(std::vector<float> joined) {
   std::sort(joined.begin(), joined.end());
   const size_t finite = size_t(std::lower_bound(joined.begin(), joined.end(), kNever) - joined.begin());
   const size_t seeds = size_t(std::upper_bound(joined.begin(), joined.end(), 0.0f) - joined.begin());
-  const size_t least = std::max(4 * seeds, joined.size() / 1000);
+  const size_t smallest = std::max(4 * seeds, joined.size() / 1000);
   float best = kNever, largest = 1;
-  for (size_t i = std::max<size_t>(least, 1); i < finite; ++i) {
+  for (size_t i = std::max<size_t>(smallest, 1); i < finite; ++i) {
     const float step = joined[i] / max(joined[i - 1], 1e-12f);
     if (step > largest) largest = step, best = joined[i - 1];
   }

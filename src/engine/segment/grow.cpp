@@ -30,12 +30,12 @@ class Clicks {
 
   uint32_t nearest(const SurfacePoint& click) const {
     uint32_t best = 0;
-    float least = 1e30f;
+    float smallest = 1e30f;
     for (uint32_t i = 0; i < points_.positions.size(); ++i) {
       const Vec3f d = points_.positions[i] - click.position;
       // Points on the other side count as far.
       const float distance = dot(d, d) + (dot(points_.normals[i], click.normal) > 0 ? 0 : 4);
-      if (distance < least) least = distance, best = i;
+      if (distance < smallest) smallest = distance, best = i;
     }
     return best;
   }

@@ -21,8 +21,8 @@ float nearest(Vec2f p, std::span<const Vec2f> others) {
 }
 
 // Every n-th element, at most `most` elements. The order of handler points is random in space.
-std::vector<Vec2f> thinned(std::span<const Vec2f> pixels, size_t most) {
-  const size_t step = std::max<size_t>((pixels.size() + most - 1) / most, 1);
+std::vector<Vec2f> thinned(std::span<const Vec2f> pixels, size_t max_count) {
+  const size_t step = std::max<size_t>((pixels.size() + max_count - 1) / max_count, 1);
   std::vector<Vec2f> kept;
   for (size_t i = 0; i < pixels.size(); i += step) kept.push_back(pixels[i]);
   return kept;

@@ -73,8 +73,9 @@ Comparison compare(const std::vector<SeenPoint>& seen, const Votes& votes, const
   return c;
 }
 
-std::vector<Vec3f> every(const std::vector<size_t>& ids, size_t most, const std::vector<Vec3f>& positions) {
-  const size_t step = std::max<size_t>(ids.size() / most, 1);
+std::vector<Vec3f> every(const std::vector<size_t>& ids, size_t max_count,
+                         const std::vector<Vec3f>& positions) {
+  const size_t step = std::max<size_t>(ids.size() / max_count, 1);
   std::vector<Vec3f> kept;
   for (size_t k = 0; k < ids.size(); k += step) kept.push_back(positions[ids[k]]);
   return kept;

@@ -75,10 +75,10 @@ void set_files(std::vector<NamedCamera>& cameras) {
 }  // namespace
 
 void check_camera(const Camera& c, const std::string& what) {
-  constexpr int kMostPixels = 1 << 16;
+  constexpr int kMaxPixels = 1 << 16;
   if (c.width < 1 || c.height < 1 || !(c.fx > 0) || !(c.fy > 0))
     fail("{} has no size or no focal length.", what);
-  if (c.width > kMostPixels || c.height > kMostPixels)
+  if (c.width > kMaxPixels || c.height > kMaxPixels)
     fail("{} is {}x{} pixels, which is too large.", what, c.width, c.height);
   double sum = c.fx + c.fy + c.cx + c.cy + c.skew + c.center.x + c.center.y + c.center.z;
   const Mat3d product = c.world_from_cam * transpose(c.world_from_cam);

@@ -38,9 +38,9 @@ void require_size(const Image& scribble, const View& view, const std::string& na
 }
 
 void require_paint(const Image& scribble, const std::string& name) {
-  const float least = min_alpha(scribble);
+  const float smallest = min_alpha(scribble);
   for (size_t i = 3; i < scribble.data.size(); i += 4)
-    if (scribble.data[i] >= least) return;
+    if (scribble.data[i] >= smallest) return;
   fail("Nothing in {} is opaque (alpha at least one half): there is nothing to paint.", name);
 }
 

@@ -51,7 +51,7 @@ EditedArea edited_area(const Scene& scene, const EditLayer& layer, const GBuffer
     for (uint32_t h = g.pixel_start[i]; h < g.pixel_start[i + 1]; ++h) hits += inside[h];
     if (layer.reshape && !same_pixel(p.before, p.after, i)) hits = samples;
     area.any.push_back(hits > 0);
-    area.most.push_back(2 * hits >= samples);
+    area.half.push_back(2 * hits >= samples);
   }
   return area;
 }
@@ -60,7 +60,7 @@ void EditScorer::add(const View& view, const EditImages& p, const EditedArea& ow
   const fs::path mask_file = image_like(masks_, view);
   const bool has_truth = !truth_.empty() && fs::exists(image_like(truth_, view)) && fs::exists(mask_file);
   const Area mask = has_truth ? read_area(mask_file, view.camera) : own.any;
-  if (has_truth) add_truth(view, p, mask, own.most);
+  if (has_truth) add_truth(view, p, mask, own.half);
   if (has_truth || truth_.empty()) add_rest(p, dilated(mask, p.after.width, p.after.height, kGrow));
   perceptual_.add(before_, over_background(p.before, 1));
   perceptual_.add(after_, over_background(p.after, 1));

@@ -21,7 +21,7 @@ struct EditImages {
 
 struct EditedArea {
   Area any;   // pixels with at least one sample on surface that the layer changed
-  Area most;  // pixels with at least half of their samples on it
+  Area half;  // pixels with at least half of their samples on it
 };
 // All pixels if the layer is not local. g: trace_view() of the scene with the layer.
 EditedArea edited_area(const Scene&, const EditLayer&, const GBuffer& g, const EditImages&);

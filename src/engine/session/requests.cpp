@@ -145,11 +145,9 @@ std::string ObjectSummary::warning() const {
 }
 
 Json ReconstructReport::json() const {
-  return {{"seconds", seconds},
-          {"views", views},
-          {"handler_points", handler_points},
-          {"vertices", vertices},
-          {"material", object.json()}};
+  return {{"seconds", seconds},     {"views", views},
+          {"downscale", downscale}, {"handler_points", handler_points},
+          {"vertices", vertices},   {"material", object.json()}};
 }
 
 Json ProjectInfo::json() const {

@@ -94,6 +94,7 @@ struct ObjectSummary {
 struct ReconstructReport {
   double seconds = 0;
   size_t views = 0;
+  int downscale = 1;  // the photographs were used at 1/N of their size
   size_t handler_points = 0, vertices = 0;
   ObjectSummary object;
   Json json() const;
@@ -265,7 +266,7 @@ struct ViewScore {
 // An edit against true images, inside the true masks.
 struct EditFidelity {
   double psnr_inside = 0;
-  double iou = 0;  // intersection over union of EditedArea::most and the masks
+  double iou = 0;  // intersection over union of EditedArea::half and the masks
   size_t pixels_inside = 0, changed_outside = 0, pixels_outside = 0, views = 0;
 };
 // Pixels of the object outside the edit: edited renders against photographs. Means over views.

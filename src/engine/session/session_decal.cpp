@@ -22,7 +22,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kMostSide = 768;  // pixels of a decal; more are finer than the painted colors
+constexpr int kMaxSide = 768;  // pixels of a decal; more are finer than the painted colors
 
 // What the decal lies on: the point, and the mean normal around it, unit frame.
 struct Ground {
@@ -86,7 +86,7 @@ Image decal_picture(const InputFile& file) {
       if (c == 3 && channels < 4) continue;  // opaque
       rgba.data[4 * p + c] = read.data[p * channels + (channels < 3 ? 0 : c)];
     }
-  const int n = (std::max(rgba.width, rgba.height) + kMostSide - 1) / kMostSide;
+  const int n = (std::max(rgba.width, rgba.height) + kMaxSide - 1) / kMaxSide;
   return n > 1 ? srgb_from_linear(downscale(linear_from_srgb(std::move(rgba)), n)) : rgba;
 }
 

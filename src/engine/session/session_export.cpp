@@ -70,12 +70,12 @@ bool has(const std::string& kind, std::initializer_list<const char*> kinds) {
 }
 
 void check_sizes(const ExportRequest& r) {
-  constexpr int kLeastTexture = 64, kMostTexture = 8192, kLeastFaces = 4, kMostFaces = 20'000'000;
-  if (r.texture && *r.texture != 0 && (*r.texture < kLeastTexture || *r.texture > kMostTexture))
+  constexpr int kMinTexture = 64, kMaxTexture = 8192, kMinFaces = 4, kMaxFaces = 20'000'000;
+  if (r.texture && *r.texture != 0 && (*r.texture < kMinTexture || *r.texture > kMaxTexture))
     fail_usage("--texture {}: the side of a texture is {} to {} texels, or 0 for none.", *r.texture,
-               kLeastTexture, kMostTexture);
-  if (r.faces && (*r.faces < kLeastFaces || *r.faces > kMostFaces))
-    fail_usage("--faces {}: a mesh has {} to {} faces.", *r.faces, kLeastFaces, kMostFaces);
+               kMinTexture, kMaxTexture);
+  if (r.faces && (*r.faces < kMinFaces || *r.faces > kMaxFaces))
+    fail_usage("--faces {}: a mesh has {} to {} faces.", *r.faces, kMinFaces, kMaxFaces);
   if (!(r.unit_scale > 0) || !std::isfinite(r.unit_scale))
     fail_usage("--unit-scale {}: meters per unit of the capture, more than 0.", r.unit_scale);
   if (!(r.size >= 0) || !std::isfinite(r.size)) fail_usage("--size {}: meters, more than 0.", r.size);

@@ -2,6 +2,7 @@
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/base/json_reader.h"
+#include "core/base/system.h"
 #include "core/compute/device.h"
 #include "engine/capture/capture_images.h"
 #include "engine/capture/check.h"
@@ -10,6 +11,7 @@
 #include "engine/project/project.h"
 #include "engine/reconstruct/preset_settings.h"
 #include "engine/session/object_summary.h"
+#include "engine/session/photograph_size.h"
 #include "engine/session/run_log.h"
 #include "engine/session/session.h"
 
@@ -73,6 +75,18 @@ ReconstructOptions options_from_json(const Json& j) {
   return o;
 }
 
+// Error: the machine has too little memory for it.
+int usable_downscale(int asked, const CaptureReport& report) {
+  const int n = asked > 0 ? asked : default_downscale(report);
+  const double needed = reconstruction_gib(report, n), there = memory_gib();
+  if (there == 0 || needed < there) return n;
+  throw Error(ErrorCode::failed,
+              fmt::format("Photographs at 1/{} of their size need about {:.1f} GiB of memory; this machine "
+                          "has {:.1f}.",
+                          n, needed, there),
+              fmt::format("Use them smaller (--downscale {}), or fewer of them (--views).", n + 1));
+}
+
 // The same checks as in `check`, so that nothing is written for an unusable capture.
 Project create_project(const ReconstructRequest& request, const CheckReport& checked) {
   require_usable(checked.report);
@@ -83,7 +97,9 @@ Project create_project(const ReconstructRequest& request, const CheckReport& che
   for (const CaptureReport::Doubt& d : checked.report.doubts)
     for (View& v : capture.views)
       if (v.name == d.view) v.doubtful_path = file_of(d.view);
-  Project project = Project::create(request.project, {*checked.report.normalization, options_json(request)},
+  ReconstructRequest sized = request;
+  sized.options.downscale = usable_downscale(request.options.downscale, checked.report);
+  Project project = Project::create(request.project, {*checked.report.normalization, options_json(sized)},
                                     capture, request.replace);
   for (const CaptureReport::Doubt& d : checked.report.doubts) {
     const Camera& c = find_view(capture, d.view).camera;
@@ -113,6 +129,7 @@ ReconstructReport report_of(const Device& device, const Project& project, const 
   ReconstructReport r;
   r.seconds = seconds;
   r.views = views_of(project.capture(), Split::train).size();
+  r.downscale = project.head().options.value("downscale", 1);
   r.handler_points = scene.handlers ? scene.handlers->positions.size() : 0;
   r.vertices = scene.surface ? scene.surface->mesh().positions.size() : 0;
   r.object = summary_of(device, scene);

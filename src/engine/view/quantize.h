@@ -19,12 +19,12 @@ inline int16_t snorm16(float x) { return int16_t(std::lround(clamp(x, -1.0f, 1.0
 // five. Larger numbers than 65408 are cut off. [Khronos OpenGL ES 3.0, sec. 3.8.3]
 inline uint32_t shared_exponent(Vec3f color) {
   constexpr int kMantissa = 9, kBias = 15;
-  constexpr float kMost = 65408;
-  for (int c = 0; c < 3; ++c) color[c] = clamp(color[c], 0.0f, kMost);
-  const float most = std::max({color.x, color.y, color.z});
-  int exponent = std::max(-kBias - 1, most > 0 ? std::ilogb(most) : -kBias - 1) + 1 + kBias;
+  constexpr float kMax = 65408;
+  for (int c = 0; c < 3; ++c) color[c] = clamp(color[c], 0.0f, kMax);
+  const float largest = std::max({color.x, color.y, color.z});
+  int exponent = std::max(-kBias - 1, largest > 0 ? std::ilogb(largest) : -kBias - 1) + 1 + kBias;
   const auto step = [&] { return std::ldexp(1.0f, exponent - kBias - kMantissa); };
-  if (std::lround(most / step()) == 1 << kMantissa) ++exponent;  // rounded up to the next power of two
+  if (std::lround(largest / step()) == 1 << kMantissa) ++exponent;  // rounded up to the next power of two
   uint32_t bits = uint32_t(exponent) << 27;
   for (int c = 0; c < 3; ++c) bits |= uint32_t(std::lround(color[c] / step())) << (9 * c);
   return bits;

@@ -70,15 +70,15 @@ std::vector<int16_t> octahedral(const std::vector<Vec3f>& normals, const ViewMes
 void add_visibility(const Surface& surface, const ViewMesh& view, Pack& pack) {
   constexpr size_t kColumns = 12;  // hardware likes multiples of 4
   const std::vector<VisibilityTerms> terms = visibility_harmonics(surface);
-  float most = 1e-6f;
+  float largest = 1e-6f;
   for (const uint32_t v : view.vertices)
-    for (const float t : terms[v]) most = std::max(most, std::abs(t));
+    for (const float t : terms[v]) largest = std::max(largest, std::abs(t));
   std::vector<int8_t> out;
   for (const uint32_t v : view.vertices) {
-    for (const float t : terms[v]) out.push_back(snorm8(t / most));
+    for (const float t : terms[v]) out.push_back(snorm8(t / largest));
     out.resize(out.size() + kColumns - kVisibilityTerms, 0);
   }
-  pack["visibility_scale"] = most;
+  pack["visibility_scale"] = largest;
   pack.add("visibility", out, kColumns);
 }
 

@@ -41,14 +41,14 @@ std::vector<uint8_t> inside_layer(const Scene& scene, const EditLayer& layer, st
 }
 
 PartsOfHits parts_of(const Scene& scene, std::span<const Hit> hits) {
-  constexpr size_t kMost = 256;
+  constexpr size_t kMax = 256;
   std::vector<const EditLayer*> layers;
   for (const std::string& name : part_names(scene)) layers.push_back(&part_layer(scene, name));
   std::sort(layers.begin(), layers.end());  // in the order of the scene's
   PartsOfHits out;
   out.of.resize(hits.size(), 0);
   for (const EditLayer* layer : layers) {
-    if (out.names.size() == kMost) break;
+    if (out.names.size() == kMax) break;
     const std::vector<uint8_t> inside = inside_layer(scene, *layer, hits);
     for (size_t i = 0; i < hits.size(); ++i)
       if (inside[i]) out.of[i] = uint8_t(out.names.size());

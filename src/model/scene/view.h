@@ -89,6 +89,9 @@ class ImageSource {
   // RGBA, linear, straight alpha; alpha is the object mask, below 0 where it is not known what the view shows
   virtual Image load(const View&) const = 0;
   virtual ImageDepth depth(const View&) const { return ImageDepth::bits8; }
+  // How much light reached the sensor, times its gain, by the camera's notes, relative to other views; none:
+  // nothing was noted.
+  virtual std::optional<double> exposure(const View&) const { return std::nullopt; }
 };
 
 // Alpha of pixels that show nothing known: neither object nor background.

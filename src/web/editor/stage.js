@@ -11,7 +11,7 @@ import { byId } from './dom.js';
 /** @typedef {import('./camera.js').CameraJson} CameraJson */
 
 const kRest = 140;  // milliseconds without movement until the exact frame is asked for
-const kMostSide = 1024;  // pixels of an exact frame
+const kMaxSide = 1024;  // pixels of an exact frame
 const kQuickSide = 288;
 /** @type {[string, string][]} names of the program, and for people */
 export const channels = [['rgb', 'Lit'], ['albedo', 'Albedo'], ['diffuse', 'Diffuse'], ['specular', 'Shine'], ['normal', 'Normals'], ['roughness', 'Roughness']];
@@ -73,7 +73,7 @@ export class Stage extends EventTarget {
   /** Pixels of the exact frame. */
   size() {
     const { clientWidth: w, clientHeight: h } = this.view;
-    const scale = Math.min(window.devicePixelRatio || 1, 2, kMostSide / Math.max(w, h, 1));
+    const scale = Math.min(window.devicePixelRatio || 1, 2, kMaxSide / Math.max(w, h, 1));
     return { width: Math.max(16, Math.round(w * scale)), height: Math.max(16, Math.round(h * scale)), scale };
   }
 

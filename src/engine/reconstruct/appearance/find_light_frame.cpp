@@ -46,12 +46,12 @@ LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16
   };
   const double still = residual(LightMotion::world);
   if (still < kExplained) return {};
-  double least = kTurningBy * still;
+  double smallest = kTurningBy * still;
   LightMotion best = LightMotion::world;
   for (const LightMotion motion : {LightMotion::camera, LightMotion::turntable}) {
     const double r = residual(motion);
-    if (r >= least) continue;
-    least = r;
+    if (r >= smallest) continue;
+    smallest = r;
     best = motion;
   }
   return light_frame(best, cameras, axis);

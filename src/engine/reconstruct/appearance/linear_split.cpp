@@ -42,17 +42,17 @@ template <class F>
 float search_roughness(F residual_at, const LinearSplitOptions& o) {
   if (o.fixed_roughness > 0) return o.fixed_roughness;
   std::map<float, double> tried;
-  double least = std::numeric_limits<double>::infinity();
+  double smallest = std::numeric_limits<double>::infinity();
   const auto solve = [&](float r) {
     tried[r] = residual_at(r);
-    least = std::min(least, tried[r]);
+    smallest = std::min(smallest, tried[r]);
   };
-  for (float r = kSmoothest; r < kRoughest && (tried.empty() || tried.rbegin()->second < kFar * least);
+  for (float r = kSmoothest; r < kRoughest && (tried.empty() || tried.rbegin()->second < kFar * smallest);
        r *= o.scan_step)
     solve(r);
   const auto last_good = [&] {
     auto it = std::prev(tried.end());
-    while (it->second > (1 + o.tolerance) * least) --it;
+    while (it->second > (1 + o.tolerance) * smallest) --it;
     return it;
   };
   for (int k = 0; k < o.refinements; ++k) {

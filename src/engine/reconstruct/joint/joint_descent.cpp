@@ -180,14 +180,14 @@ double JointDescent::accumulate_mask(int step, const std::vector<Ray>& missed, V
   }
   const size_t empty = rays.size();
   rays.insert(rays.end(), missed.begin(), missed.end());
-  const std::vector<FieldTrace> least = least_along(device_, object_.sdf, rays);
+  const std::vector<FieldTrace> lowest = lowest_along(device_, object_.sdf, rays);
   const float sharpness = options_.mask_sharpness, weight = options_.mask * sharpness / float(options_.rays);
   double sum = 0;
   for (size_t i = 0; i < rays.size(); ++i) {
     const LossValue<float> loss =
-        i < empty ? empty_push(least[i].value, sharpness) : cover_pull(least[i].value, sharpness);
+        i < empty ? empty_push(lowest[i].value, sharpness) : cover_pull(lowest[i].value, sharpness);
     sum += double(weight) * loss.value;
-    by_values.points.push_back(rays[i].origin + rays[i].direction * least[i].depth);
+    by_values.points.push_back(rays[i].origin + rays[i].direction * lowest[i].depth);
     by_values.d_values.push_back(weight * loss.gradient);
   }
   return sum;

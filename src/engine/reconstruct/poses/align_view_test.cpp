@@ -53,14 +53,14 @@ Vec3d random_vector(Rng& rng, double size) {
 
 // How far two cameras see the corners of the box apart, in pixels at most.
 double apart(const Camera& a, const Camera& b) {
-  double most = 0;
+  double largest = 0;
   for (const double x : {-0.4, 0.4})
     for (const double y : {-0.4, 0.4})
       for (const double z : {-0.35, 0.35}) {
         const Vec3d d = a.project({x, y, z}) - b.project({x, y, z});
-        most = std::max(most, std::hypot(d.x, d.y));
+        largest = std::max(largest, std::hypot(d.x, d.y));
       }
-  return most;
+  return largest;
 }
 
 TEST(AlignView, FindsWhereTheCameraStood) {

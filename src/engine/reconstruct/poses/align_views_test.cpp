@@ -176,6 +176,19 @@ TEST(Exposures, OfAViewThatShowsNothingStayAsTheyAre) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(std::log(found[3][c]), -mean[c], 0.01);
 }
 
+TEST(Exposures, OfTheCamerasNotesAreKeptWhereTheyExplainMore) {
+  TrialOptions o = brief_trials();
+  o.steps = 200;
+  o.align = false;
+  for (int v = 0; v < kViews; ++v) o.exposures.push_back(exposure(v));
+  Progress quiet;
+  PixelStore exposed = exposed_photographs(), equal = photographs(0);
+  choose_start(make_device(), exposed, o, 1, quiet);
+  EXPECT_EQ(exposure_change(exposed.exposures(), o.exposures), 0);
+  choose_start(make_device(), equal, o, 1, quiet);
+  EXPECT_TRUE(equal.exposures().empty());
+}
+
 TEST(AlignViews, CamerasThatAreRightStay) {
   PixelStore store = photographs(0);
   const std::vector<Camera> before = store.cameras();

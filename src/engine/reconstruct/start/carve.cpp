@@ -120,15 +120,15 @@ class Fog {
 
   // Adam without bias correction.
   void update(uint32_t i, float decay) {
-    const float most[] = {options_.density_rate / size_, options_.color_rate, options_.color_rate,
-                          options_.color_rate};
+    const float rates[] = {options_.density_rate / size_, options_.color_rate, options_.color_rate,
+                           options_.color_rate};
     const float high[] = {3 / size_, 1, 1, 1};
     for (int k = 0; k < 4; ++k) {
       const float d = slope_[i][k];
       float &m = mean_[i][k], &v = square_[i][k];
       m = 0.8f * m + 0.2f * d;
       v = 0.95f * v + 0.05f * d * d;
-      cells_[i][k] = std::clamp(cells_[i][k] - decay * most[k] * m / (std::sqrt(v) + 1e-7f), 0.0f, high[k]);
+      cells_[i][k] = std::clamp(cells_[i][k] - decay * rates[k] * m / (std::sqrt(v) + 1e-7f), 0.0f, high[k]);
     }
     slope_[i] = {};
   }

@@ -35,6 +35,9 @@ constexpr int kCompareSide = 160;  // of the images that show what is wrong with
 constexpr int kMaxAlignments = 5;
 constexpr double kMinAlignment = 0.5;
 constexpr double kMinAlignmentGain = 0.3;  // dB that the first one has to gain
+// Share of noted exposures that has to be found in the photographs. Colors that depend on the view explain a
+// part of them; where the notes say nothing of the photographs it is about 0.
+constexpr double kMinShareFound = 0.15;
 
 // Cells that the object may fill. Masks are grown by half a cell, as the cameras see it at the object's
 // center, or rods thinner than a cell would be lost: training removes excess volume, but does not add volume
@@ -55,6 +58,18 @@ VisualHull hull_of(const PixelStore& pixels, int cells) {
 
 StartShape shape_of(const VisualHull& hull, bool anchored, float matte_until) {
   return {{hull.n, signed_distance(hull)}, anchored, matte_until};
+}
+
+// By least squares over views and channels, of logarithms.
+double share_found(std::span<const Vec3f> noted, std::span<const Vec3f> found) {
+  double both = 0, squares = 0;
+  for (size_t v = 0; v < noted.size(); ++v)
+    for (int c = 0; c < 3; ++c) {
+      const double n = std::log(double(noted[v][c]));
+      both += n * std::log(double(found[v][c]));
+      squares += n * n;
+    }
+  return squares > 0 ? both / squares : 0;
 }
 
 // A field after a short training, and its PSNR in dB on random training pixels.
@@ -107,6 +122,18 @@ Trial align_with_hull(const Device& device, PixelStore& pixels, const TrialOptio
   return hull;
 }
 
+// Takes over the exposures that the cameras noted, and tries the visual hull again, where the photographs are
+// as much brighter or darker than what was trained.
+Trial expose_with_hull(const Device& device, PixelStore& pixels, const TrialOptions& options, Trial hull,
+                       uint64_t seed, Progress& progress) {
+  const ShownViews views = show_views(*hull.trained, pixels, kCompareSide, progress);
+  const double share = share_found(options.exposures, find_exposures(views, pixels));
+  progress.log(Json{{"stage", "noted exposures"}, {"share_found", share}}.dump());
+  if (share < kMinShareFound) return hull;
+  pixels.set_exposures(options.exposures);
+  return tried(device, pixels, options, Start::hull, seed, 0, progress);
+}
+
 }  // namespace
 
 StartShape start_shape(const PixelStore& pixels, Start start, uint64_t seed, const ShapeOptions& options,
@@ -134,6 +161,8 @@ StartShape choose_start(const Device& device, PixelStore& pixels, const TrialOpt
     if (start == Start::carved && options.light.motion != LightMotion::world) continue;
     const double done = double(i) / kStarts.size();
     Trial trial = tried(device, pixels, options, start, seed, done, progress);
+    if (start == Start::hull && !options.exposures.empty())
+      trial = expose_with_hull(device, pixels, options, std::move(trial), seed, progress);
     if (start == Start::hull && options.align)
       trial = align_with_hull(device, pixels, options, std::move(trial), seed, progress);
     log[name] = trial.psnr;

@@ -18,9 +18,9 @@ constexpr double kBestAngle = 0.2;
 constexpr double kMinAngle = 0.05, kMaxAngle = 0.7;
 constexpr int kMaxPlanes = 256;
 
-int shrink_for(const PixelStore& pixels, size_t most) {
+int shrink_for(const PixelStore& pixels, size_t max_pixels) {
   int factor = 1;
-  while (pixels.pixels().size() / size_t(factor * factor) > most) ++factor;
+  while (pixels.pixels().size() / size_t(factor * factor) > max_pixels) ++factor;
   return factor;
 }
 
@@ -74,7 +74,7 @@ std::vector<Gray> gray_pictures(const PixelStore& pixels, int factor) {
 }
 
 // The views whose angle to this one, seen from the origin, is nearest to the optimum.
-std::vector<int> neighbors_of(int view, const std::vector<Gray>& pictures, int most) {
+std::vector<int> neighbors_of(int view, const std::vector<Gray>& pictures, int max_count) {
   const Vec3d here = normalize(pictures[view].camera.center);
   std::vector<std::pair<double, int>> ranked;
   for (int v = 0; v < int(pictures.size()); ++v) {
@@ -84,7 +84,7 @@ std::vector<int> neighbors_of(int view, const std::vector<Gray>& pictures, int m
   }
   std::sort(ranked.begin(), ranked.end());
   std::vector<int> out;
-  for (int k = 0; k < std::min(most, int(ranked.size())); ++k) out.push_back(ranked[k].second);
+  for (int k = 0; k < std::min(max_count, int(ranked.size())); ++k) out.push_back(ranked[k].second);
   return out;
 }
 
@@ -253,7 +253,7 @@ VisualHull carve_by_depths(const VisualHull& hull, std::span<const DepthMap> map
   constexpr float kTruncation = 3;  // cells
   constexpr float kMinViews = 3;
   const Vec3d cell = to_double(hull.hi - hull.lo) / double(hull.n);
-  const float most = kTruncation * float(cell.x);
+  const float largest = kTruncation * float(cell.x);
   VisualHull out = hull;
   parallel_for(hull.n, [&](int z) {
     for (int y = 0; y < hull.n; ++y)
@@ -266,8 +266,8 @@ VisualHull carve_by_depths(const VisualHull& hull, std::span<const DepthMap> map
         for (const DepthMap& m : maps) {
           const Vec3d there = m.camera.project(p);
           const float depth = depth_at(m.camera, m.depth, there), before = depth - float(there.z);
-          if (depth == 0 || before < -most) continue;
-          sum += std::min(before, most);
+          if (depth == 0 || before < -largest) continue;
+          sum += std::min(before, largest);
           ++views;
         }
         if (views >= kMinViews && sum > 0) inside = 0;

@@ -59,7 +59,7 @@ void WindowMatcher::match(const Gray& b, const Warp& warp, double depth, std::ve
 void WindowMatcher::sample(const Gray& b, const Warp& w, double depth, int y, std::vector<float>& row) {
   const Vec3f start = to_float((w.column + w.dx * 0.5 + w.dy * (y + 0.5)) * depth + w.offset),
               step = to_float(w.dx * depth);
-  const float most_x = float(b.camera.width) - 1.001f, most_y = float(b.camera.height) - 1.001f;
+  const float max_x = float(b.camera.width) - 1.001f, max_y = float(b.camera.height) - 1.001f;
   const float* inside = &a_.inside[a_.at(0, y)];
   const float* value = &a_.value[a_.at(0, y)];
   const size_t stride = size_t(b.camera.width);
@@ -68,7 +68,7 @@ void WindowMatcher::sample(const Gray& b, const Warp& w, double depth, int y, st
     if (inside[x] > 0) {
       const Vec3f h = start + step * float(x);
       const float u = h.x / h.z - 0.5f, v = h.y / h.z - 0.5f;
-      if (h.z > 0 && u >= 0 && v >= 0 && u < most_x && v < most_y) {
+      if (h.z > 0 && u >= 0 && v >= 0 && u < max_x && v < max_y) {
         const int i = int(u), j = int(v);
         const float s = u - float(i), t = v - float(j);
         const size_t k = size_t(j) * stride + size_t(i);
@@ -95,7 +95,7 @@ void WindowMatcher::sample(const Gray& b, const Warp& w, double depth, int y, st
 
 void WindowMatcher::correlate(float* score, int y) {
   const float* inside = &a_.inside[a_.at(0, y)];
-  const float least = kMinKnown * float(rows_.size() * rows_.size());
+  const float min_known = kMinKnown * float(rows_.size() * rows_.size());
   for (int k = 0; k < kSums; ++k) {
     float* sum = &sums_[k * width_];
     std::fill(sum, sum + width_, 0.0f);
@@ -112,7 +112,7 @@ void WindowMatcher::correlate(float* score, int y) {
     const float aa = sum_aa[x] / n - a * a + kNoise, bb = sum_bb[x] / n - b * b + kNoise,
                 ab = sum_ab[x] / n - a * b;
     const float r = ab / std::sqrt(std::max(aa * bb, 1e-12f));
-    score[x] = sum_1[x] * inside[x] > least ? r : -1.0f;
+    score[x] = sum_1[x] * inside[x] > min_known ? r : -1.0f;
   }
 }
 

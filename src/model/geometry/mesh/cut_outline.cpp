@@ -41,8 +41,8 @@ std::vector<double> vertex_areas(const Mesh& mesh) {
 }
 
 // Flips connected components of that label whose area is below `least` and that border on the other label.
-void flip_islands(const VertexLists& neighbors, const std::vector<double>& area, uint8_t label, double least,
-                  std::vector<uint8_t>& labels) {
+void flip_islands(const VertexLists& neighbors, const std::vector<double>& area, uint8_t label,
+                  double min_area, std::vector<uint8_t>& labels) {
   std::vector<uint8_t> seen(labels.size(), 0);
   std::vector<uint32_t> island;
   for (uint32_t start = 0; start < labels.size(); ++start) {
@@ -60,7 +60,7 @@ void flip_islands(const VertexLists& neighbors, const std::vector<double>& area,
         island.push_back(u);
       }
     }
-    if (borders && size < least)
+    if (borders && size < min_area)
       for (const uint32_t v : island) labels[v] = !label;
   }
 }

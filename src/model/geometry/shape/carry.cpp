@@ -16,10 +16,10 @@ class NearestVertex {
   // -1: none is within three edges' length.
   int operator()(Vec3f x) const {
     int best = -1;
-    float least = radius_ * radius_;
+    float smallest = radius_ * radius_;
     index_.any_within(x, radius_, [&](size_t v) {
       const Vec3f d = mesh_.positions[v] - x;
-      if (dot(d, d) < least || best < 0) least = dot(d, d), best = int(v);
+      if (dot(d, d) < smallest || best < 0) smallest = dot(d, d), best = int(v);
       return false;
     });
     return best;

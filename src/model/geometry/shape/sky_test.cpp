@@ -28,14 +28,14 @@ TEST(Octahedron, FoldsBackToTheSameDirection) {
 
 TEST(Sky, TheNearestDirectionsAreAround) {
   const std::vector<Vec3f>& sky = sky_directions();
-  const auto least = std::cos(0.3f);  // directions are .16 apart
+  const auto threshold = std::cos(0.3f);  // directions are .16 apart
   for (uint64_t i = 0; i < 2000; ++i) {
     const Vec3f d = some_direction(i);
     const auto nearest = std::max_element(
         sky.begin(), sky.end(), [&](const Vec3f& a, const Vec3f& b) { return dot(a, d) < dot(b, d); });
     const SkyNeighbors& around = sky_around(d);
     EXPECT_NE(std::find(around.begin(), around.end(), nearest - sky.begin()), around.end());
-    for (const uint16_t k : around) EXPECT_GT(dot(sky[k], d), least);
+    for (const uint16_t k : around) EXPECT_GT(dot(sky[k], d), threshold);
   }
 }
 

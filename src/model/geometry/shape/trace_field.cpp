@@ -131,8 +131,8 @@ void find_zeros(Tracer& tracer, std::vector<Probe*> probes) {
 }
 
 // Updates the least value of each ray by samples in the middle of equal parts of a span.
-void search_least(const Device& device, const Field& sdf, std::span<const Ray> rays,
-                  std::span<const Span> spans, int samples, std::vector<FieldTrace>& out) {
+void search_lowest(const Device& device, const Field& sdf, std::span<const Ray> rays,
+                   std::span<const Span> spans, int samples, std::vector<FieldTrace>& out) {
   std::vector<Vec3f> points;
   const auto depth = [&](size_t i, int k) {
     return spans[i].near + (spans[i].far - spans[i].near) * (float(k) + 0.5f) / float(samples);
@@ -149,7 +149,7 @@ void search_least(const Device& device, const Field& sdf, std::span<const Ray> r
 
 }  // namespace
 
-std::vector<FieldTrace> least_along(const Device& device, const Field& sdf, std::span<const Ray> rays) {
+std::vector<FieldTrace> lowest_along(const Device& device, const Field& sdf, std::span<const Ray> rays) {
   constexpr int kCoarse = 40, kFine = 8;
   std::vector<FieldTrace> out(rays.size(), kUnknown);
   std::vector<Span> spans;
@@ -157,12 +157,12 @@ std::vector<FieldTrace> least_along(const Device& device, const Field& sdf, std:
     spans.push_back(in_unit_sphere(r));
     if (spans.back().far < spans.back().near) spans.back().far = spans.back().near;
   }
-  search_least(device, sdf, rays, spans, kCoarse, out);
+  search_lowest(device, sdf, rays, spans, kCoarse, out);
   for (size_t i = 0; i < rays.size(); ++i) {
     const float step = (spans[i].far - spans[i].near) / kCoarse;
     spans[i] = {out[i].depth - step, out[i].depth + step};
   }
-  search_least(device, sdf, rays, spans, kFine, out);
+  search_lowest(device, sdf, rays, spans, kFine, out);
   return out;
 }
 

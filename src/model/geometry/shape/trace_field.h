@@ -14,7 +14,7 @@ namespace cei3d {
 
 struct FieldTrace {
   bool hit = false;
-  float depth = 0;  // of the hit; of a miss, where the least value was met, near that of least_along()
+  float depth = 0;  // of the hit; of a miss, where the least value was met, near that of lowest_along()
   float value = 0;  // of the field there; of a hit within kTraceTolerance of 0
 };
 
@@ -29,6 +29,6 @@ std::vector<FieldTrace> trace_field(const Device&, const Field& sdf, std::span<c
 
 // The point of each ray, within the unit sphere, at which the field is least, among 48 samples; hit: whether
 // it is inside. For mask losses, which push it outside or pull it inside.
-std::vector<FieldTrace> least_along(const Device&, const Field& sdf, std::span<const Ray> rays);
+std::vector<FieldTrace> lowest_along(const Device&, const Field& sdf, std::span<const Ray> rays);
 
 }  // namespace cei3d

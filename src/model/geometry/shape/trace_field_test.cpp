@@ -101,11 +101,11 @@ TEST(TraceField, RaysBesideTheUnitSphereMiss) {
 
 TEST(LeastAlong, IsTheNearestPointOfARayToASphere) {
   const std::vector<Ray> all = rays(100);
-  const std::vector<FieldTrace> least = least_along(make_device("cpu"), sphere(), all);
+  const std::vector<FieldTrace> lowest = lowest_along(make_device("cpu"), sphere(), all);
   for (size_t i = 0; i < all.size(); ++i) {
     if (gap(all[i]) > 0.95f) continue;
-    EXPECT_NEAR(least[i].value, gap(all[i]) - kRadius, 2e-3) << i;
-    EXPECT_EQ(least[i].hit, least[i].value <= 0);
+    EXPECT_NEAR(lowest[i].value, gap(all[i]) - kRadius, 2e-3) << i;
+    EXPECT_EQ(lowest[i].hit, lowest[i].value <= 0);
   }
 }
 

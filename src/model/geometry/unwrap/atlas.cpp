@@ -113,8 +113,8 @@ class Flattener {
       low = {std::min(low.x, p.x), std::min(low.y, p.y)};
       high = {std::max(high.x, p.x), std::max(high.y, p.y)};
     }
-    constexpr int kMost = 8192;
-    const double scale = std::min(2 * density_, kMost / std::max({high.x - low.x, high.y - low.y, 1e-30}));
+    constexpr int kMax = 8192;
+    const double scale = std::min(2 * density_, kMax / std::max({high.x - low.x, high.y - low.y, 1e-30}));
     const int width = int((high.x - low.x) * scale) + 1, height = int((high.y - low.y) * scale) + 1;
     std::vector<bool> seen(size_t(width) * height, false);
     bool twice = false;

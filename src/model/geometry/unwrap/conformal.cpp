@@ -49,10 +49,10 @@ std::vector<Vec2d> scaled_to(double area, const Patch2d& patch, std::vector<Vec2
 // The vertex farthest from another one.
 uint32_t farthest(const Patch2d& patch, uint32_t from) {
   uint32_t best = from;
-  float most = 0;
+  float largest = 0;
   for (uint32_t v = 0; v < patch.points.size(); ++v) {
     const Vec3f d = patch.points[v] - patch.points[from];
-    if (dot(d, d) > most) most = dot(d, d), best = v;
+    if (dot(d, d) > largest) largest = dot(d, d), best = v;
   }
   return best;
 }

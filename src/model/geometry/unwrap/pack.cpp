@@ -152,11 +152,11 @@ class Packer {
 
   // The largest of a row of scales at which all pieces find a place, in one of the orders.
   Packing best(double total_area) const {
-    constexpr double kMost = 0.93, kFactor = 0.985;  // share of the area that is used, and between attempts
+    constexpr double kMax = 0.93, kFactor = 0.985;  // share of the area that is used, and between attempts
     constexpr int kSteps = 300;
     for (int step = 0; step < kSteps; ++step) {
       std::vector<std::optional<Packing>> found(orders_.size());
-      const double scale = std::sqrt(kMost * std::pow(kFactor, step) / total_area) * cells_;
+      const double scale = std::sqrt(kMax * std::pow(kFactor, step) / total_area) * cells_;
       const std::vector<Footprints> prints = footprints_at(scale);
       parallel_for(int(found.size()), [&](int k) { found[k] = attempt(scale, prints, orders_[k]); });
       for (auto& f : found)
