@@ -8,6 +8,7 @@
 #include <functional>
 
 #include "core/base/error.h"
+#include "core/math/color.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/appearance/find_light_frame.h"
@@ -258,6 +259,33 @@ TEST(LinearSplit, MakesNoSurfaceSendOutMoreThanArrives) {
     for (const uint32_t v : seen(d)) white += split.albedo[v][c] >= 1, above += d.base[v][c] > 1;
     EXPECT_LT(double(white), 0.1 * double(above) + 0.05 * double(d.base.size()));
   }
+}
+
+// The same with the surface not whiter than white, but for a spot of a hundredth of it.
+TEST(LinearSplit, ASmallWhiteSpotIsNotCutOff) {
+  const Vec3f middle = normalize(Vec3f{1, 0.2f, 0.3f}) * 0.75f;
+  const auto away = [&](Vec3f p) { return length(p - middle); };
+  const Drawn d = draw(
+      [](Vec3f) {
+        return Material{0.3f, 0.5f, 0};
+      },
+      [&](Vec3f p) {
+        const float a = away(p) < 0.17f ? 2.5f : 0.5f;
+        return Vec3f{a, a, a};
+      });
+  LinearSplitOptions o = small();
+  o.fixed_roughness = 0.3f;
+  Progress quiet;
+  const LinearSplit split = linear_split(*d.transport, d.samples(), o, quiet);
+  double spot = 0, spots = 0, rest = 0, rests = 0;
+  for (const uint32_t v : seen(d)) {
+    const float at = away(d.surface->mesh().positions[v]);
+    if (at < 0.12f) spot += luminance(split.albedo[v]), ++spots;
+    if (at > 0.25f) rest += luminance(split.albedo[v]), ++rests;
+  }
+  ASSERT_GT(spots, 5);
+  EXPECT_LT(split.material.specular, 0.25f);
+  EXPECT_NEAR((spot / spots) / (rest / rests), 5, 0.5);
 }
 
 TEST(LinearSplit, TellsAMetalFromADielectric) {
