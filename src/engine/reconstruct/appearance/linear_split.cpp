@@ -102,44 +102,59 @@ float quantile(std::vector<float> values, double share) {
   return value_of_rank(std::move(values), rank);
 }
 
-// How often each vertex is seen: the samples of which it is the nearest.
-std::vector<uint32_t> times_seen(const Mesh& mesh, const SurfaceSamples& samples) {
-  std::vector<uint32_t> times(mesh.positions.size(), 0);
-  for (const Hit& h : samples.hits) ++times[nearest_corner(mesh.triangles[h.triangle], h.b1, h.b2)];
-  return times;
+// The vertex nearest to each sample: weights vertices by how often they are seen.
+std::vector<uint32_t> seen_vertices(const Mesh& mesh, const SurfaceSamples& samples) {
+  std::vector<uint32_t> seen;
+  for (const Hit& h : samples.hits) seen.push_back(nearest_corner(mesh.triangles[h.triangle], h.b1, h.b2));
+  return seen;
 }
 
 // By how much the mean squared error of the samples, in display units, grows if no color exceeds `limit`.
 double clamping_error(const std::vector<Vec3f>& color, const std::vector<Vec3f>& irradiance,
-                      const std::vector<uint32_t>& times, float limit) {
+                      const std::vector<uint32_t>& seen, float limit) {
   const auto display = [](float radiance) { return double(srgb_from_linear(min(radiance, 1.0f))); };
-  double sum = 0, n = 0;
-  for (size_t v = 0; v < color.size(); ++v) {
-    n += 3.0 * times[v];
+  double sum = 0;
+  for (const uint32_t v : seen)
     for (int c = 0; c < 3; ++c) {
-      if (times[v] == 0 || color[v][c] <= limit) continue;
+      if (color[v][c] <= limit) continue;
       const float white = irradiance[v][c] / kPi;
-      sum += times[v] * square(display(color[v][c] * white) - display(limit * white));
+      sum += square(display(color[v][c] * white) - display(limit * white));
     }
+  return sum / double(3 * std::max<size_t>(seen.size(), 1));
+}
+
+// The largest of the channels' quantiles of the albedo of dielectrics; 0: there are none.
+float bright_albedo(const std::vector<Vec3f>& color, const SplitMaterials& materials,
+                    const std::vector<uint32_t>& seen, double share) {
+  float largest = 0;
+  for (int c = 0; c < 3; ++c) {
+    std::vector<float> channel;
+    for (const uint32_t v : seen)
+      if (!materials.is_metal(v)) channel.push_back(color[v][c]);
+    if (channel.empty()) return 0;
+    largest = max(largest, quantile(std::move(channel), share));
   }
-  return n > 0 ? sum / n : 0;
+  return largest;
 }
 
 // Reflections determine the product of light and specular reflectance; the separation assumes specular 0.5,
 // and colors of metals are free. On surfaces that reflect less, or where paint was taken for metal, the light
 // comes out too dark and colors above 1. That no color exceeds 1 raises the light and lowers the specular
-// reflectance, until the bound costs little. Errors of surface that receives little light do not count much.
-void brighten_light(const Transport& transport, const std::vector<uint32_t>& times, SplitSolution& s,
+// reflectance: until it holds for most dielectrics, and costs little in the images for all that is seen.
+// Errors of surface that receives little light do not count much there.
+void brighten_light(const Transport& transport, const std::vector<uint32_t>& seen, SplitSolution& s,
                     int height, const LightTurns* turns, Progress& progress) {
-  constexpr double kShare = 0.02;  // of the residual that the bound may add to it
+  constexpr double kKept = 0.98;  // share of the dielectric samples
+  constexpr double kCost = 0.02;  // share of the residual that the bound may add to it
   constexpr float kStep = 1.02f, kMaxGain = 4;
   constexpr int kRounds = 3;  // the bounce does not scale with the light
   float all = 1;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<Vec3f> color = vertex_albedo(transport, s, height, turns),
                              irradiance = split_irradiance(transport, s.x, s.materials, height, turns);
-    float gain = 1;  // common to all channels: the albedo does not determine the color of the light
-    while (all * gain < kMaxGain && clamping_error(color, irradiance, times, gain) > kShare * s.residual)
+    // Common to all channels: the albedo does not determine the color of the light.
+    float gain = max(1.0f, bright_albedo(color, s.materials, seen, kKept));
+    while (all * gain < kMaxGain && clamping_error(color, irradiance, seen, gain) > kCost * s.residual)
       gain *= kStep;
     for (Vec3f& l : s.x.light) l = l * gain;
     for (Vec3f& a : s.materials.color) a = a / gain;
@@ -291,8 +306,8 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
   if (all_metal(s))
     make_light_gray(s, options.light_height);
   else
-    brighten_light(transport, times_seen(transport.surface().mesh(), samples), s, options.light_height, turns,
-                   progress);
+    brighten_light(transport, seen_vertices(transport.surface().mesh(), samples), s, options.light_height,
+                   turns, progress);
   result.material = mean_of(of);
   if (std::any_of(of.begin(), of.end(), [&](const Material& m) { return !(m == of.front()); }))
     result.materials = of;
