@@ -79,11 +79,13 @@ ReconstructOptions options_from_json(const Json& j) {
 int usable_downscale(int asked, const CaptureReport& report) {
   const int n = asked > 0 ? asked : default_downscale(report);
   const double needed = reconstruction_gib(report, n), there = memory_gib();
+  int views = 0;
+  for (const SplitReport& s : report.splits)
+    if (s.split == Split::train) views = s.views;
   if (there == 0 || needed < there) return n;
   throw Error(ErrorCode::failed,
-              fmt::format("Photographs at 1/{} of their size need about {:.1f} GiB of memory; this machine "
-                          "has {:.1f}.",
-                          n, needed, there),
+              fmt::format("{} views{} need about {:.1f} GiB of memory; this machine has {:.1f}.", views,
+                          n > 1 ? fmt::format(" at 1/{} of their size", n) : "", needed, there),
               fmt::format("Use them smaller (--downscale {}), or fewer of them (--views).", n + 1));
 }
 

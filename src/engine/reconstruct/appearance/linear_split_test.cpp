@@ -261,7 +261,7 @@ TEST(LinearSplit, MakesNoSurfaceSendOutMoreThanArrives) {
   }
 }
 
-// The same with the surface not whiter than white, but for a spot of a hundredth of it.
+// A gray body on which a spot, a hundredth of its surface, is drawn 2.5 times whiter than white.
 TEST(LinearSplit, ASmallWhiteSpotIsNotCutOff) {
   const Vec3f middle = normalize(Vec3f{1, 0.2f, 0.3f}) * 0.75f;
   const auto away = [&](Vec3f p) { return length(p - middle); };

@@ -176,7 +176,7 @@ TEST(Exposures, OfAViewThatShowsNothingStayAsTheyAre) {
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(std::log(found[3][c]), -mean[c], 0.01);
 }
 
-TEST(Exposures, OfTheCamerasNotesAreKeptWhereTheyExplainMore) {
+TEST(Exposures, OfTheCamerasNotesAreKeptWhereThePhotographsShowThem) {
   TrialOptions o = brief_trials();
   o.steps = 200;
   o.align = false;
