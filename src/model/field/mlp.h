@@ -69,30 +69,30 @@ class MlpPass {
   void backward(const Device&, const MlpWeights&, int n, int active_inputs, float* gradient, float* d_input);
 
  private:
-  // What a hidden layer keeps, in panels of its outputs or, `with the appended input`, of what the next layer
-  // reads.
+  // What a hidden layer keeps, in panels of its outputs. "Wide": of what the next layer reads, which may have
+  // the network's input appended.
   struct Hidden {
     AlignedVector<float> z;  // before the activation; of jets the activation's slope there
-    AlignedVector<float> h;  // after it, with the appended input
+    AlignedVector<float> h;  // after it; wide
     // Of jets:
     AlignedVector<float> curvature;  // second derivative of the activation
-    AlignedVector<float> d_h, d_z;   // derivatives of output 0; d_h with the appended input
+    AlignedVector<float> d_h, d_z;   // derivatives of output 0 by them; d_h is wide
     AlignedVector<float> loss_by_z;  // derivative by z of a loss of the gradient
   };
-  struct Span {  // one batch of samples
+  struct Batch {  // samples, in whole panels
     int n, panels, active_inputs;
   };
 
   bool jets() const { return columns_ > 1; }
   int last() const { return int(layers_.size()) - 1; }
-  int in_use(const Span& s, int layer) const { return layer == 0 ? s.active_inputs : layers_[layer].in; }
+  int in_use(const Batch& s, int layer) const { return layer == 0 ? s.active_inputs : layers_[layer].in; }
   size_t offset(int layer) const;  // of its weights among the gradients
-  void activate(const Device&, int layer, const Span&);
-  void activate_grad(const Device&, int layer, const Span&, float* d);
-  void append_input(const float* x, int x_stride, float* h, int layer, const Span&) const;
+  void activate(const Device&, int layer, const Batch&);
+  void activate_grad(const Device&, int layer, const Batch&, float* d);
+  void append_input(const float* x, int x_stride, float* h, int layer, const Batch&) const;
   // The spatial gradient of output 0, and a loss of it back.
-  void differentiate(const Device&, const MlpWeights&, const Span&);
-  void differentiate_grad(const Device&, const MlpWeights&, const Span&, float* gradient, float* d_input);
+  void differentiate(const Device&, const MlpWeights&, const Batch&);
+  void differentiate_grad(const Device&, const MlpWeights&, const Batch&, float* gradient, float* d_input);
 
   MlpConfig config_;
   std::vector<MlpLayer> layers_;

@@ -93,13 +93,13 @@ size_t MlpPass::offset(int layer) const {
 }
 
 // Turns the outputs of a layer, at h, into the input of the next one, where the network's input is appended.
-void MlpPass::append_input(const float* x, int x_stride, float* h, int l, const Span& s) const {
+void MlpPass::append_input(const float* x, int x_stride, float* h, int l, const Batch& s) const {
   const int out = layers_[l].out, stride = layers_[l + 1].in;
   copy_rows(h, stride, h, stride, 0, out, s.panels, kHalfRoot);
   copy_rows(x, x_stride, h, stride, out, config_.inputs, s.panels, kHalfRoot);
 }
 
-void MlpPass::activate(const Device& device, int l, const Span& s) {
+void MlpPass::activate(const Device& device, int l, const Batch& s) {
   const int out = layers_[l].out, stride = layers_[l + 1].in;
   Hidden& hidden = hidden_[l];
   const float beta = config_.softplus_beta;
@@ -114,7 +114,7 @@ void MlpPass::activate(const Device& device, int l, const Span& s) {
 }
 
 void MlpPass::forward(const Device& device, const MlpWeights& w, int n, int active_inputs, int outputs) {
-  const Span s{n, n / kPanel, active_inputs};
+  const Batch s{n, n / kPanel, active_inputs};
   const float* x = x_.data();
   int stride = config_.inputs * columns_;
   for (int l = 0; l < last(); ++l) {
@@ -134,7 +134,7 @@ void MlpPass::forward(const Device& device, const MlpWeights& w, int n, int acti
   if (jets()) differentiate(device, w, s);
 }
 
-void MlpPass::differentiate(const Device& device, const MlpWeights& w, const Span& s) {
+void MlpPass::differentiate(const Device& device, const MlpWeights& w, const Batch& s) {
   const int inputs = config_.inputs, top = last();
   float* d = top == 0 ? gradient_.data() : hidden_[top - 1].d_h.data();
   spread_rows(w.weight(top), in_use(s, top), d, layers_[top].in, s.panels);
@@ -156,7 +156,7 @@ void MlpPass::differentiate(const Device& device, const MlpWeights& w, const Spa
       {x_.data(), gradient_.data(), y_.data(), inputs, config_.outputs, s.active_inputs}, s.n);
 }
 
-void MlpPass::differentiate_grad(const Device& device, const MlpWeights& w, const Span& s, float* gradient,
+void MlpPass::differentiate_grad(const Device& device, const MlpWeights& w, const Batch& s, float* gradient,
                                  float* d_input) {
   const int inputs = config_.inputs;
   device.launch<PointGradientGrad>({x_.data(), gradient_.data(), d_y_.data(), loss_by_gradient_.data(),
@@ -183,7 +183,7 @@ void MlpPass::differentiate_grad(const Device& device, const MlpWeights& w, cons
                              gradient + offset(last()), layers_[last()].in, nullptr});
 }
 
-void MlpPass::activate_grad(const Device& device, int l, const Span& s, float* d) {
+void MlpPass::activate_grad(const Device& device, int l, const Batch& s, float* d) {
   const int out = layers_[l].out, stride = layers_[l + 1].in, inputs = config_.inputs;
   const Hidden& hidden = hidden_[l];
   if (layers_[l + 1].concat) {
@@ -200,7 +200,7 @@ void MlpPass::activate_grad(const Device& device, int l, const Span& s, float* d
 
 void MlpPass::backward(const Device& device, const MlpWeights& w, int n, int active_inputs, float* gradient,
                        float* d_input) {
-  const Span s{n, n / kPanel, active_inputs};
+  const Batch s{n, n / kPanel, active_inputs};
   const int all = config_.outputs, inputs = config_.inputs;
   if (jets()) differentiate_grad(device, w, s, gradient, d_input);
   if (!y_raw_.empty())
