@@ -27,7 +27,7 @@ std::string id_from(const fs::path& capture) {
 
 bool is_list(const fs::path& path) { return path.extension() == ".jsonl" || path.extension() == ".csv"; }
 
-// Rough: fits the peaks of the objects in docs/results.md within a third.
+// Rough: fits the peaks of the objects in docs/notebook/benchmarks.md within a third.
 double memory_of(const CheckReport& r) {
   constexpr double kProgram = 0.3, kPerMegapixel = 0.03;
   double megapixels = 0;

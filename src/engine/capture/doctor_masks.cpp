@@ -176,13 +176,14 @@ bool shows_background(const Image& picture, const std::vector<uint8_t>& mask, co
   return 2 * alike > all;
 }
 
-// The votes that the photographs do not contradict.
+// The votes that the photographs do not contradict. A view with an explanation is wrong as a whole, so its
+// photograph does not count.
 void believe_pictures(std::span<const JudgedMask> masks, const SmallMasks& small,
-                      std::vector<MaskDoubt>& doubts) {
+                      const std::vector<std::string>& explanations, std::vector<MaskDoubt>& doubts) {
   for (size_t i = 0; i < doubts.size(); ++i) {
     const Image* picture = masks[i].picture;
     MaskDoubt& d = doubts[i];
-    if (!d.stands_out || !picture || picture->width != d.width || picture->height != d.height) continue;
+    if (!d.stands_out || !explanations[i].empty() || !picture || picture->width != d.width || picture->height != d.height) continue;
     if (pixels_in(d.missing_area) == 0 || !shows_background(*picture, small.masks[i], d)) continue;
     for (size_t k = 0; k < d.doubtful.size(); ++k) d.doubtful[k] = d.doubtful[k] && !d.missing_area[k];
     d.missing = 0;
@@ -193,28 +194,37 @@ void believe_pictures(std::span<const JudgedMask> masks, const SmallMasks& small
 struct Suspect {
   const JudgedMask* mask;
   const MaskDoubt* doubt;
-  Area object;
+  std::string why;  // explanation()
 };
 
-// What would make the view fit: its image mirrored, of another camera, or of another size; else nothing is
+// What would make the suspect fit: its image mirrored, of another camera, or of another size; else nothing is
 // known.
-std::string explanation(const Suspect& s, std::span<const JudgedMask> masks,
+std::string explanation(size_t suspect, const Area& object, std::span<const JudgedMask> masks,
                         const std::vector<MaskDoubt>& doubts) {
-  const int w = s.doubt->width, h = s.doubt->height;
-  const double now = overlap(s.object, s.doubt->consensus), enough = std::max(0.85, now + 0.1);
+  const MaskDoubt& doubt = doubts[suspect];
+  const int w = doubt.width, h = doubt.height;
+  const double now = overlap(object, doubt.consensus), enough = std::max(0.85, now + 0.1);
   double best = enough;
   std::string text;
   const auto take = [&](double fit, const std::string& words) {
     if (fit > best) best = fit, text = words;
   };
   for (size_t i = 0; i < masks.size(); ++i)
-    if (&masks[i] != s.mask && doubts[i].width == w && doubts[i].height == h)
-      take(overlap(s.object, doubts[i].consensus), fmt::format("fits the camera of {}", masks[i].view->name));
-  take(overlap(warped(s.object, w, h, 1, true), s.doubt->consensus) - 0.02, "fits if its image is mirrored");
+    if (i != suspect && doubts[i].width == w && doubts[i].height == h)
+      take(overlap(object, doubts[i].consensus), fmt::format("fits the camera of {}", masks[i].view->name));
+  take(overlap(warped(object, w, h, 1, true), doubt.consensus) - 0.02, "fits if its image is mirrored");
   for (const double scale : {0.5, 2 / 3.0, 0.8, 1.25, 1.5, 2.0})
-    take(overlap(warped(s.object, w, h, scale, false), s.doubt->consensus) - 0.02,
+    take(overlap(warped(object, w, h, scale, false), doubt.consensus) - 0.02,
          fmt::format("fits if its image is scaled by {:.2g}", scale));
   return text;
+}
+
+std::vector<std::string> explanations_of(std::span<const JudgedMask> masks, const SmallMasks& small,
+                                         const std::vector<MaskDoubt>& doubts) {
+  std::vector<std::string> out(doubts.size());
+  for (size_t i = 0; i < doubts.size(); ++i)
+    if (doubts[i].stands_out) out[i] = explanation(i, mask_of(small.masks[i]), masks, doubts);
+  return out;
 }
 
 std::vector<std::string> names_of(const std::vector<Suspect>& all) {
@@ -230,18 +240,14 @@ std::function<void(Capture&)> removal(const std::vector<std::string>& names) {
   };
 }
 
-void report_poses(const std::vector<Suspect>& poses, std::span<const JudgedMask> masks,
-                  const std::vector<MaskDoubt>& doubts, std::vector<Finding>& findings) {
+void report_poses(const std::vector<Suspect>& poses, size_t all, std::vector<Finding>& findings) {
   if (poses.empty()) return;
   std::vector<std::string> texts;
-  for (const Suspect& s : poses) {
-    const std::string why = explanation(s, masks, doubts);
-    texts.push_back(s.mask->view->name + (why.empty() ? "" : " (" + why + ")"));
-  }
+  for (const Suspect& s : poses)
+    texts.push_back(s.mask->view->name + (s.why.empty() ? "" : " (" + s.why + ")"));
   findings.push_back(
       {Severity::warning,
-       fmt::format("{} of {} views do not fit the others: {}.", poses.size(), masks.size(),
-                   some_names(texts)),
+       fmt::format("{} of {} views do not fit the others: {}.", poses.size(), all, some_names(texts)),
        "Their poses or images are wrong: exchange the images, match the photographs again, or remove "
        "these views.",
        removal(names_of(poses))});
@@ -295,18 +301,20 @@ std::vector<MaskDoubt> check_silhouettes(std::span<const JudgedMask> masks,
   }
   const SmallMasks small = small_masks(hull, *normalization);
   std::vector<MaskDoubt> doubts = vote_on_masks(small);
-  believe_pictures(masks, small, doubts);
+  const std::vector<std::string> explanations = explanations_of(masks, small, doubts);
+  believe_pictures(masks, small, explanations, doubts);
   std::vector<double> unconfirmed;
   for (const MaskDoubt& d : doubts) unconfirmed.push_back(d.extra + d.missing);
   if (median(unconfirmed) > 1 - kAgree && report_mistake(masks, findings)) return {};
   std::vector<Suspect> poses, missing, extra;
   for (size_t i = 0; i < doubts.size(); ++i) {
     if (!doubts[i].stands_out) continue;
-    const Suspect s{&masks[i], &doubts[i], mask_of(small.masks[i])};
-    const bool pose = doubts[i].extra > kWrongPose || (doubts[i].missing > 0.05 && doubts[i].extra > 0.05);
+    const Suspect s{&masks[i], &doubts[i], explanations[i]};
+    const bool pose = !s.why.empty() || doubts[i].extra > kWrongPose ||
+                      (doubts[i].missing > 0.05 && doubts[i].extra > 0.05);
     (pose ? poses : doubts[i].missing > doubts[i].extra ? missing : extra).push_back(s);
   }
-  report_poses(poses, masks, doubts, findings);
+  report_poses(poses, masks.size(), findings);
   report_masks(missing, masks.size(), "leave out parts of the object that the other views show", findings);
   report_masks(extra, masks.size(), "include what no other view takes for the object", findings);
   return doubts;

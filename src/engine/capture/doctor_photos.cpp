@@ -7,14 +7,15 @@
 #include "core/math/color.h"
 #include "core/math/quantile.h"
 #include "engine/capture/doctor.h"
+#include "engine/capture/local_fit.h"
 #include "engine/io/image_file.h"
 
 namespace cei3d {
 namespace {
 
 constexpr size_t kNeighbors = 6;
-constexpr double kJump = 0.4;        // natural logarithm: half as bright again as the neighbors
-constexpr double kSpreads = 6;       // median deviations from the neighbors
+constexpr double kJump = 0.5;        // natural logarithm: 1.6 times as bright as the neighbors
+constexpr double kSpreads = 5;       // median deviations from the neighbors
 constexpr double kBlurred = 0.4;     // of the neighbors' sharpness
 constexpr double kSame = 0.004;      // root mean square difference of thumbnails, linear
 constexpr double kExposures = 1.25;  // ratio of the camera's own notes that matters
@@ -87,8 +88,19 @@ double spread_of(std::vector<double> values) {
   return median(values);
 }
 
-void check_exposures(std::span<const JudgedPhoto> photos, std::vector<Finding>& findings) {
-  const auto differences = against_neighbors(photos, [](const JudgedPhoto& p) { return p.look->brightness; });
+// What an object looks like changes with the direction, so jumps are told from a gradient.
+std::vector<double> jumps_of_brightness(std::span<const JudgedPhoto> photos, Vec3d center) {
+  std::vector<Vec3d> directions;
+  std::vector<double> brightness;
+  for (const JudgedPhoto& p : photos) {
+    directions.push_back(normalize(p.view->camera.center - center));
+    brightness.push_back(p.look->brightness);
+  }
+  return against_nearby(directions, brightness);
+}
+
+void check_exposures(std::span<const JudgedPhoto> photos, Vec3d center, std::vector<Finding>& findings) {
+  const auto differences = jumps_of_brightness(photos, center);
   const double limit = std::max(kJump, kSpreads * spread_of(differences));
   std::vector<std::string> names;
   for (size_t i = 0; i < photos.size(); ++i)
@@ -225,7 +237,7 @@ PhotoLook look_at_photo(const View& view, const Image& rgba) {
 
 void check_photographs(std::span<const JudgedPhoto> photos, Vec3d center, std::vector<Finding>& findings) {
   if (photos.size() < 4) return;
-  check_exposures(photos, findings);
+  check_exposures(photos, center, findings);
   check_blur(photos, findings);
   check_duplicates(photos, findings);
   check_background(photos, center, findings);
