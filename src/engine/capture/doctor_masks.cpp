@@ -183,7 +183,9 @@ void believe_pictures(std::span<const JudgedMask> masks, const SmallMasks& small
   for (size_t i = 0; i < doubts.size(); ++i) {
     const Image* picture = masks[i].picture;
     MaskDoubt& d = doubts[i];
-    if (!d.stands_out || !explanations[i].empty() || !picture || picture->width != d.width || picture->height != d.height) continue;
+    if (!d.stands_out || !explanations[i].empty() || !picture || picture->width != d.width ||
+        picture->height != d.height)
+      continue;
     if (pixels_in(d.missing_area) == 0 || !shows_background(*picture, small.masks[i], d)) continue;
     for (size_t k = 0; k < d.doubtful.size(); ++k) d.doubtful[k] = d.doubtful[k] && !d.missing_area[k];
     d.missing = 0;

@@ -14,8 +14,8 @@ using Matrix4 = Eigen::Matrix4d;
 using Vector4 = Eigen::Vector4d;
 
 constexpr size_t kNearest = 10;
-constexpr double kSmall = 0.05;   // differences up to here count by their square, larger ones by their size
-constexpr double kSlope = 0.15;   // prior: one direction of this weight says that the value does not change
+constexpr double kSmall = 0.05;  // differences up to here count by their square, larger ones by their size
+constexpr double kSlope = 0.15;  // prior: one direction of this weight says that the value does not change
 constexpr int kReweightings = 6;
 
 struct Neighbor {
@@ -24,7 +24,8 @@ struct Neighbor {
   double weight = 0;  // by nearness
 };
 
-std::vector<Neighbor> neighbors_of(std::span<const Vec3d> directions, std::span<const double> values, size_t i) {
+std::vector<Neighbor> neighbors_of(std::span<const Vec3d> directions, std::span<const double> values,
+                                   size_t i) {
   std::vector<std::pair<double, size_t>> all;
   for (size_t k = 0; k < directions.size(); ++k)
     if (k != i) all.push_back({length(directions[k] - directions[i]), k});
@@ -66,7 +67,7 @@ double judged(const std::vector<Neighbor>& neighbors, double value) {
       weights[k] = nearness[k] * std::min(1.0, kSmall / std::max(off, 1e-9));
     }
   }
-  const double variance = normal_matrix(neighbors, nearness).inverse()(0, 0);
+  const double variance = normal_matrix(neighbors, nearness).ldlt().solve(Vector4(Vector4::UnitX()))(0);
   return (value - fit(0)) / std::sqrt(1 + variance);
 }
 
