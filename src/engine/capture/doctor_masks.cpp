@@ -199,33 +199,46 @@ struct Suspect {
   std::string why;  // explanation()
 };
 
+struct Explanation {
+  std::string text;              // empty: none
+  std::optional<size_t> camera;  // of the view whose camera would fit
+};
+
 // What would make the suspect fit: its image mirrored, of another camera, or of another size; else nothing is
 // known.
-std::string explanation(size_t suspect, const Area& object, std::span<const JudgedMask> masks,
+Explanation explanation(size_t suspect, const Area& object, std::span<const JudgedMask> masks,
                         const std::vector<MaskDoubt>& doubts) {
   const MaskDoubt& doubt = doubts[suspect];
   const int w = doubt.width, h = doubt.height;
-  const double now = overlap(object, doubt.consensus), enough = std::max(0.85, now + 0.1);
-  double best = enough;
-  std::string text;
-  const auto take = [&](double fit, const std::string& words) {
-    if (fit > best) best = fit, text = words;
+  const double now = overlap(object, doubt.consensus);
+  double best = std::max(0.75, now + 0.1);
+  Explanation found;
+  const auto take = [&](double fit, const std::string& words, std::optional<size_t> camera) {
+    if (fit > best) best = fit, found = {words, camera};
   };
   for (size_t i = 0; i < masks.size(); ++i)
     if (i != suspect && doubts[i].width == w && doubts[i].height == h)
-      take(overlap(object, doubts[i].consensus), fmt::format("fits the camera of {}", masks[i].view->name));
-  take(overlap(warped(object, w, h, 1, true), doubt.consensus) - 0.02, "fits if its image is mirrored");
+      take(overlap(object, doubts[i].consensus), fmt::format("fits the camera of {}", masks[i].view->name),
+           i);
+  take(overlap(warped(object, w, h, 1, true), doubt.consensus) - 0.02, "fits if its image is mirrored", {});
   for (const double scale : {0.5, 2 / 3.0, 0.8, 1.25, 1.5, 2.0})
     take(overlap(warped(object, w, h, scale, false), doubt.consensus) - 0.02,
-         fmt::format("fits if its image is scaled by {:.2g}", scale));
-  return text;
+         fmt::format("fits if its image is scaled by {:.2g}", scale), {});
+  return found;
 }
 
+// Of all views that stand out. Where the image of one belongs to the camera of another, that one's image is
+// wrong, too.
 std::vector<std::string> explanations_of(std::span<const JudgedMask> masks, const SmallMasks& small,
                                          const std::vector<MaskDoubt>& doubts) {
-  std::vector<std::string> out(doubts.size());
+  std::vector<Explanation> found(doubts.size());
   for (size_t i = 0; i < doubts.size(); ++i)
-    if (doubts[i].stands_out) out[i] = explanation(i, mask_of(small.masks[i]), masks, doubts);
+    if (doubts[i].stands_out) found[i] = explanation(i, mask_of(small.masks[i]), masks, doubts);
+  std::vector<std::string> out;
+  for (const Explanation& e : found) out.push_back(e.text);
+  for (size_t i = 0; i < doubts.size(); ++i)
+    if (const auto k = found[i].camera; k && doubts[*k].stands_out && out[*k].empty())
+      out[*k] = fmt::format("its camera fits {}", masks[i].view->name);
   return out;
 }
 
