@@ -93,7 +93,8 @@ std::vector<double> jumps_of_brightness(std::span<const JudgedPhoto> photos, Vec
   std::vector<Vec3d> directions;
   std::vector<double> brightness;
   for (const JudgedPhoto& p : photos) {
-    directions.push_back(normalize(p.view->camera.center - center));
+    const Vec3d offset = p.view->camera.center - center;
+    directions.push_back(offset * (1 / std::max(length(offset), 1e-12)));
     brightness.push_back(p.look->brightness);
   }
   return against_nearby(directions, brightness);

@@ -156,7 +156,9 @@ class Project {
   Scene with_results(const Scene& base, std::span<const StoredResult>) const;  // the base and those
   void collect_garbage();
 
-  static constexpr size_t kMaxLayerBytes = size_t(32) << 20;  // of the layers' regions and networks
+  // Of the layers' regions and networks: a thousand strokes. Where the layers of one view do not fit, each
+  // stroke reads most of them again.
+  static constexpr size_t kMaxLayerBytes = size_t(128) << 20;
   std::filesystem::path folder_;
   ProjectLock lock_;
   ProjectHead head_;

@@ -55,13 +55,18 @@ size_t Region::Points::edited_count() const {
   return edited.empty() ? positions.size() : size_t(std::count(edited.begin(), edited.end(), 1));
 }
 
-// With all that the points reach.
+// With all that the edited points reach.
 std::optional<AxisBox> Region::box_of(const Data& d) {
   constexpr float kRounding = 1.001f;
-  if (d.points.positions.empty()) return std::nullopt;
+  if (d.points.edited_count() == 0) return std::nullopt;
   AxisBox box;
-  for (const Vec3f p : d.points.positions) box.add(p);
-  const float reach = kRounding * d.max_reach;
+  float max_reach = 0;
+  for (size_t i = 0; i < d.points.positions.size(); ++i) {
+    if (!d.points.is_edited(i)) continue;
+    box.add(d.points.positions[i]);
+    max_reach = max(max_reach, d.points.reach[i]);
+  }
+  const float reach = kRounding * max_reach;
   return AxisBox{box.min - Vec3f{reach, reach, reach}, box.max + Vec3f{reach, reach, reach}};
 }
 

@@ -135,6 +135,29 @@ TEST(Region, OfPointsFollowsBruteForce) {
   }
 }
 
+TEST(Region, OfPointsAndThoseBesideFollowsBruteForce) {
+  Region::Points h = painted_disc(false).points();
+  for (size_t k = 0; k < h.positions.size(); ++k) {
+    h.edited.push_back(h.positions[k].x < 0.1f);
+    h.reach[k] = h.edited[k] ? 0.03f + 0.01f * float(k % 5) : 0.3f;
+  }
+  const Region region(h);
+  int inside = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3f p = random_on_sphere(i), n = normalize(p);
+    float nearest = 1e9f;
+    bool expected = false;
+    for (size_t k = 0; k < h.positions.size(); ++k) {
+      const float d = dot(h.positions[k] - p, h.positions[k] - p);
+      if (d >= square(h.reach[k]) || d >= nearest || dot(h.normals[k], n) <= 0) continue;
+      nearest = d, expected = h.edited[k];
+    }
+    EXPECT_EQ(region.contains(p, n), expected);
+    inside += expected;
+  }
+  EXPECT_GT(inside, 100);
+}
+
 TEST(Region, ComesBackFromTensorsAsItWas) {
   for (const bool with_projector : {false, true}) {
     const Region region = painted_disc(with_projector);
