@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Requests of the page: from JSON to one call of the Session and back.
+#include <array>
+
 #include "apps/server/edit_json.h"
 #include "apps/server/editor.h"
 #include "apps/server/guarded.h"
@@ -120,11 +122,12 @@ void Editor::pick(JsonReader& j, const HttpRequest&, Reply reply) {
 void Editor::decal(JsonReader& j, const HttpRequest&, Reply reply) {
   const Camera camera = camera_member(j, "camera");
   const DecalPlace place = decal_place(j);
-  const auto [width, height] = j.numbers<2>("size");
+  const std::array<double, 2> size = j.numbers<2>("size");
   j.finish();
-  if (!(width >= 1 && height >= 1 && width < 1e5 && height < 1e5)) fail_usage("A decal has no such size.");
+  if (!(size[0] >= 1 && size[1] >= 1 && size[0] < 1e5 && size[1] < 1e5))
+    fail_usage("A decal has no such size.");
   on_worker("pick", std::move(reply), [=](Session& session, Progress&) {
-    const auto over = session.decal_camera(camera, place, int(width), int(height));
+    const auto over = session.decal_camera(camera, place, int(size[0]), int(size[1]));
     return json_response(over ? camera_json(*over) : Json());
   });
 }

@@ -42,7 +42,7 @@ class Check : public testing::Test {
     return "usable";
   }
   const TempFolder temp_;
-  const TestBall ball_;
+  const TestBall ball_{};
   const std::vector<TestView> views_ = test_views(ball_, 20);
 };
 

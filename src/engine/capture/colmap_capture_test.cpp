@@ -27,7 +27,7 @@ class Colmap : public testing::Test {
   }
   const TempFolder temp_;
   const fs::path& folder_ = temp_.path();
-  const TestBall ball_;
+  const TestBall ball_{};
   const std::vector<TestView> views_ = test_views(ball_, 6);
 };
 

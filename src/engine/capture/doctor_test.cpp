@@ -128,7 +128,7 @@ class Tracks : public testing::Test {
     return sentence;
   }
   const TempFolder temp_;
-  const TestBall ball_;
+  const TestBall ball_{};
   const std::vector<TestView> views_ = test_views(ball_, 20, 320, 240);
   TestColmap model_;
 };

@@ -22,7 +22,7 @@ class Formats : public testing::Test {
  protected:
   using Writer = std::function<void(const fs::path&)>;
   const TempFolder temp_;
-  const TestBall ball_;
+  const TestBall ball_{};
   const std::vector<TestView> views_ = test_views(ball_, 7);
   const std::pair<const char*, Writer> writers_[9] = {
       {"nerf-synthetic", [&](const fs::path& f) { write_nerf_split(f, "train", ball_, views_); }},
