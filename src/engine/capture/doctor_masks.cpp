@@ -238,7 +238,7 @@ std::vector<std::string> explanations_of(std::span<const JudgedMask> masks, cons
   for (const Explanation& e : found) out.push_back(e.text);
   for (size_t i = 0; i < doubts.size(); ++i)
     if (const auto k = found[i].camera; k && doubts[*k].stands_out && out[*k].empty())
-      out[*k] = fmt::format("its camera fits {}", masks[i].view->name);
+      out[*k] = fmt::format("the image of {} fits its camera", masks[i].view->name);
   return out;
 }
 
