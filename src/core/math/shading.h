@@ -18,7 +18,7 @@ struct IncidentLight {
   Vec3<T> visibility;         // fraction of it that arrives, per channel
   Vec3<T> bounce;             // irradiance from the object
   Vec3<T> sky_reflection;     // mean radiance of the environment over the reflection lobe, without occlusion
-  T mirror_visibility;        // fraction of the reflection lobe that is not occluded
+  Vec3<T> mirror_visibility;  // fraction of that radiance that is not occluded, per channel
   Vec3<T> object_reflection;  // mean radiance from the object over the lobe, 0 where it is not occluded
 
   HD Vec3<T> irradiance() const { return sky_irradiance * visibility + bounce; }
@@ -28,8 +28,8 @@ struct IncidentLight {
 template <class T>
 HD IncidentLight<T> incident_light_grad(const IncidentLight<T>& light, Vec3<T> d_irradiance,
                                         Vec3<T> d_reflected) {
-  return {d_irradiance * light.visibility,       d_irradiance * light.sky_irradiance,    d_irradiance,
-          d_reflected * light.mirror_visibility, dot(d_reflected, light.sky_reflection), d_reflected};
+  return {d_irradiance * light.visibility,       d_irradiance * light.sky_irradiance, d_irradiance,
+          d_reflected * light.mirror_visibility, d_reflected * light.sky_reflection,  d_reflected};
 }
 
 // Everything that the radiance of a point depends on; in an adjoint, the derivatives by it.

@@ -143,29 +143,17 @@ TEST(Shading, AdjointEqualsDualNumbersInEveryArgument) {
 TEST(Shading, IncidentLightAdjointEqualsDualNumbers) {
   const Vec3d d_irradiance{0.3, -0.8, 0.5}, d_reflected{-0.4, 0.9, 0.2};
   const auto light_of = [](auto&& x) {
-    return IncidentLight<std::decay_t<decltype(x(0))>>{
-        {x(0), x(1), x(2)},   {x(3), x(4), x(5)}, {x(6), x(7), x(8)}, {x(9), x(10), x(11)}, x(12),
-        {x(13), x(14), x(15)}};
+    return IncidentLight<std::decay_t<decltype(x(0))>>{{x(0), x(1), x(2)},    {x(3), x(4), x(5)},
+                                                       {x(6), x(7), x(8)},    {x(9), x(10), x(11)},
+                                                       {x(12), x(13), x(14)}, {x(15), x(16), x(17)}};
   };
   const auto value = [](int k) { return 0.1 + 0.9 * double(Rng(12, 0, uint64_t(k)).uniform()); };
   const IncidentLight<double> g = incident_light_grad(light_of(value), d_irradiance, d_reflected);
-  const double got[16] = {g.sky_irradiance.x,
-                          g.sky_irradiance.y,
-                          g.sky_irradiance.z,
-                          g.visibility.x,
-                          g.visibility.y,
-                          g.visibility.z,
-                          g.bounce.x,
-                          g.bounce.y,
-                          g.bounce.z,
-                          g.sky_reflection.x,
-                          g.sky_reflection.y,
-                          g.sky_reflection.z,
-                          g.mirror_visibility,
-                          g.object_reflection.x,
-                          g.object_reflection.y,
-                          g.object_reflection.z};
-  for (int k = 0; k < 16; ++k) {
+  std::vector<double> got;
+  for (const Vec3d& v :
+       {g.sky_irradiance, g.visibility, g.bounce, g.sky_reflection, g.mirror_visibility, g.object_reflection})
+    got.insert(got.end(), {v.x, v.y, v.z});
+  for (int k = 0; k < 18; ++k) {
     const auto light = light_of([&](int i) { return D(value(i), i == k ? 1.0 : 0.0); });
     double want = 0;
     for (int c = 0; c < 3; ++c)

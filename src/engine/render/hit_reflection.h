@@ -12,9 +12,11 @@ inline SurfaceReflection<float> reflection_of(const Hit& h, const Material& m) {
   return surface_reflection(reflection_tables(), h.normal, h.to_camera, m.roughness, m.specular, m.metalness);
 }
 
-// Mean of the axes of both lobes, weighted by their shares; unit.
-inline Vec3f mean_axis(const SurfaceReflection<float>& r) {
-  return normalize(r.base.axis * r.share + r.fresnel.axis * (1 - r.share));
+// One lobe in place of both: their mean, weighted by their shares.
+inline LobeFrame<float> mean_lobe(const SurfaceReflection<float>& r) {
+  const auto mean = [&](auto base, auto fresnel) { return base * r.share + fresnel * (1 - r.share); };
+  return {normalize(mean(r.base.axis, r.fresnel.axis)), r.base.across,
+          mean(r.base.roughness, r.fresnel.roughness), mean(r.base.stretch, r.fresnel.stretch)};
 }
 
 }  // namespace cei3d

@@ -1,40 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/render/irradiance_map.h"
 
-#include <algorithm>
+#include <cmath>
 
 #include "core/compute/kernels/shade.h"
-#include "core/math/octahedron.h"
 
 namespace cei3d {
 namespace {
 
-constexpr int kCells = 64, kNodes = kCells + 1;  // along a side: some 2 degrees apart
-constexpr int kCount = kNodes * kNodes, kStride = padded_to_panels(kCount);
-
-float position_of(int node) { return float(node) * (2.0f / kCells) - 1; }
+constexpr int kCells = 64;  // along a side: some 2 degrees apart
 
 }  // namespace
 
 IrradianceMap::IrradianceMap(const Device& device, const LobePlanes& lobes) {
-  std::vector<float> normals(size_t(3) * kStride, 0.0f), out(normals.size());
-  for (int i = 0; i < kCount; ++i) {
-    const Vec3f n = direction_from_octahedron({position_of(i % kNodes), position_of(i / kNodes)});
-    for (int c = 0; c < 3; ++c) normals[size_t(c) * kStride + i] = n[c];
-  }
-  device.launch<SgIrradiance>({lobes, kStride, normals.data(), out.data()}, kStride);
-  nodes_.resize(kCount);
-  for (int i = 0; i < kCount; ++i) nodes_[i] = {out[i], out[kStride + i], out[2 * kStride + i]};
-}
-
-Vec3f IrradianceMap::at(Vec3f normal) const {
-  if (nodes_.empty()) return {0, 0, 0};
-  const Vec2f p = octahedron_from_direction(normal);
-  const float x = (p.x + 1) * (0.5f * kCells), y = (p.y + 1) * (0.5f * kCells);
-  const int i = std::clamp(int(x), 0, kCells - 1), j = std::clamp(int(y), 0, kCells - 1);
-  const float u = x - float(i), v = y - float(j);
-  const Vec3f* n = &nodes_[size_t(j) * kNodes + i];
-  return (n[0] * (1 - u) + n[1] * u) * (1 - v) + (n[kNodes] * (1 - u) + n[kNodes + 1] * u) * v;
+  std::vector<Vec3f> nodes = DirectionMap::node_directions(kCells);
+  const int stride = padded_to_panels(int(nodes.size()));
+  std::vector<float> normals(size_t(3) * stride, 0.0f), out(normals.size());
+  for (size_t i = 0; i < nodes.size(); ++i) store_planes(normals.data(), stride, int(i), nodes[i]);
+  device.launch<SgIrradiance>({lobes, stride, normals.data(), out.data()}, stride);
+  for (size_t i = 0; i < nodes.size(); ++i) nodes[i] = load_planes<float>(out.data(), stride, int(i));
+  map_ = DirectionMap(kCells, std::move(nodes));
 }
 
 Vec3f IrradianceMap::grad(Vec3f normal, Vec3f d_irradiance) const {

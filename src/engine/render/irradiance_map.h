@@ -3,10 +3,9 @@
 // table is as accurate as the sum over the lobes.
 #pragma once
 
-#include <vector>
-
 #include "core/compute/device.h"
 #include "core/compute/kernels/lobes.h"
+#include "engine/render/direction_map.h"
 
 namespace cei3d {
 
@@ -15,13 +14,13 @@ class IrradianceMap {
   IrradianceMap() = default;  // no light
   IrradianceMap(const Device&, const LobePlanes&);
 
-  Vec3f at(Vec3f normal) const;  // normal: unit
+  Vec3f at(Vec3f normal) const { return map_.at(normal); }  // normal: unit
   // dL/d(normal), tangent to the unit sphere, from dL/d(irradiance). By differences over the size of a cell,
   // at whose borders the table has kinks.
   Vec3f grad(Vec3f normal, Vec3f d_irradiance) const;
 
  private:
-  std::vector<Vec3f> nodes_;  // of an octahedron's square, row by row
+  DirectionMap map_;
 };
 
 }  // namespace cei3d

@@ -9,6 +9,7 @@
 #include "engine/render/hit_reflection.h"
 #include "engine/render/lobe_frames.h"
 #include "engine/render/lobe_planes.h"
+#include "engine/render/radiance_map.h"
 
 namespace cei3d {
 namespace {
@@ -101,6 +102,7 @@ Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface,
                    std::vector<VertexLight> by_bin)
     : device_(device), surface_(std::move(surface)), vertices_(std::move(by_bin)) {
   set_lobes(light);
+  radiance_ = radiance_map(device_, lobes());
 }
 
 Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface, const SgMixture& light,
@@ -177,14 +179,14 @@ IncidentLight<float> Lighting::incident_at(const HitBatch& batch, size_t hit, Ve
           .visibility = at_corners(vertices.visibility, t, h.b1, h.b2),
           .bounce = at_corners(vertices.bounce, t, h.b1, h.b2),
           .sky_reflection = sky_reflection,
-          .mirror_visibility = max(seen.visibility, 0.0f),
+          .mirror_visibility = seen.visibility,
           .object_reflection = seen.radiance};
 }
 
 std::vector<IncidentLight<float>> Lighting::incident_light(const HitBatch& batch,
                                                            const VertexMaterials& seen) const {
   std::vector<IncidentLight<float>> out(batch.size());
-  const SelfReflection own(device_, *surface_, vertices_, lobes(),
+  const SelfReflection own(device_, *surface_, vertices_, lobes(), radiance_,
                            seen.empty() ? vertices_.front().made_of : seen);
   parallel_ranges(int(batch.size()), kBlock, [&](int begin, int end) {
     const HitBatch part = batch.part(begin, end);

@@ -88,6 +88,7 @@ class Lighting {
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
   IrradianceMap irradiance_;
+  DirectionMap radiance_;              // of the light that visibility was found for
   std::vector<VertexLight> vertices_;  // by bin of the light's turns
   bool hit_normals_ = false;           // see use_hit_normals()
 };

@@ -7,66 +7,32 @@
 #include "core/compute/kernels/shade.h"
 #include "engine/render/hit_reflection.h"
 #include "engine/render/lobe_frames.h"
+#include "engine/render/lobe_rays.h"
 
 namespace cei3d {
 namespace {
 
-// Rays of a reflection lobe: in proportion to its roughness, more for metals, whose reflections are stronger.
-// A dielectric that reflects less than kFaint towards the viewer gets the fewest.
-constexpr float kMetalRays = 80, kDielectricRays = 28;  // number of rays per unit of roughness
-constexpr int kMaxMetalRays = 24, kMaxDielectricRays = 10, kMinRays = 4;
-constexpr float kFaint = 0.02f;
 constexpr float kMinCosine = 0.02f;  // of a surface seen in a reflection
 
-int lobe_rays(const Material& m, float nv) {
-  const bool metal = m.metalness > 0;
-  if (!metal) {
-    const SplitSum<float> s = split_sum(split_sum_table(), nv, m.roughness);
-    if (dielectric_f0(m.specular, m.metalness) * s.scale + s.bias < kFaint) return kMinRays;
-  }
-  const float rays = m.roughness * (metal ? kMetalRays : kDielectricRays);
-  return std::clamp(int(rays + 0.5f), kMinRays, metal ? kMaxMetalRays : kMaxDielectricRays);
-}
-
-// `count` directions of equal weight for the reflection lobe of a roughness around +Z: each at the radius
-// that halves its share of the energy. The lobe 1 / (1 + x)^2 has the cumulative share x / (1 + x).
-std::vector<Vec3f> lobe_directions(float roughness, int count) {
-  std::vector<Vec3f> d;
-  const float width = 2 / std::sqrt(reflection_scale(max(roughness, kMinRoughness)));
-  for (int k = 0; k < count; ++k) {
-    const float u = (float(k) + 0.5f) / float(count);
-    const float t = std::min(width * std::sqrt(u / (1 - u)), 1.4f), a = 2.399963f * float(k);
-    d.push_back({std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)});
-  }
-  return d;
-}
-
-// d in a frame whose third axis is z. [Duff et al. 2017]
-Vec3f turned(Vec3f z, Vec3f d) {
-  const float s = z.z < 0 ? -1.0f : 1.0f, a = -1 / (s + z.z), b = z.x * z.y * a;
-  const Vec3f x{1 + s * z.x * z.x * a, s * b, -s * z.x}, y{b, s + z.y * z.y * a, -z.y};
-  return x * d.x + y * d.y + z * d.z;
+Vec3f unblocked(Vec3f blocked, Vec3f all) {
+  const auto rest = [](float part, float whole) { return whole > 0 ? max(1 - part / whole, 0.0f) : 1.0f; };
+  return {rest(blocked.x, all.x), rest(blocked.y, all.y), rest(blocked.z, all.z)};
 }
 
 }  // namespace
 
-// Cache of lobe directions: neighboring hits mostly have the same lobe.
-class SelfReflection::Lobes {
+// Cache of the points of a lobe: neighboring hits mostly have the same number.
+class SelfReflection::Points {
  public:
-  const std::vector<Vec3f>& of(const Material& m, float nv) {
-    const int count = lobe_rays(m, nv);
-    Entry& e = count == kMinRays ? few_ : many_;
-    if (int(e.directions.size()) != count || e.roughness != m.roughness)
-      e = {m.roughness, lobe_directions(m.roughness, count)};
-    return e.directions;
+  const std::vector<Vec2f>& of(const Hit& h, const Material& m) {
+    const int count = lobe_ray_count(m, dot(h.normal, h.to_camera));
+    std::vector<Vec2f>& points = count == kMinLobeRays ? few_ : many_;
+    if (int(points.size()) != count) points = lobe_points(count);
+    return points;
   }
 
  private:
-  struct Entry {
-    float roughness = -1;
-    std::vector<Vec3f> directions;
-  };
-  Entry few_, many_;
+  std::vector<Vec2f> few_, many_;
 };
 
 // Rays of reflection lobes, without those that the visibility table shows to be unoccluded.
@@ -94,8 +60,13 @@ struct SelfReflection::Met {
 
 SelfReflection::SelfReflection(const Device& device, const Surface& surface,
                                std::span<const VertexLight> vertices, LobePlanes light,
-                               const VertexMaterials& seen)
-    : device_(device), surface_(surface), vertices_(vertices), light_(light), seen_(seen) {}
+                               const DirectionMap& radiance, const VertexMaterials& seen)
+    : device_(device),
+      surface_(surface),
+      vertices_(vertices),
+      light_(light),
+      radiance_(radiance),
+      seen_(seen) {}
 
 Material SelfReflection::material_at(const Surface::RayHit& r) const {
   const auto& t = surface_.mesh().triangles[r.triangle];
@@ -176,38 +147,47 @@ std::vector<Vec3f> SelfReflection::radiance_of(const Met& met, const TurnedHits&
   return out;
 }
 
-void SelfReflection::add_rays(const Hit& h, const Material& m, uint32_t owner, const std::vector<Vec3f>& lobe,
-                              Rays& rays) const {
-  const Vec3f r = mean_axis(reflection_of(h, m));
-  for (const Vec3f& d : lobe) {
-    Vec3f ray = turned(r, d);
-    // Folded up from below the horizon: the split sum already holds the masking.
-    ray = ray - h.normal * (2 * min(dot(ray, h.normal), 0.0f));
+void SelfReflection::add_rays(const Hit& h, const Material& m, uint32_t owner,
+                              const std::vector<Vec2f>& points, Rays& rays) const {
+  const LobeRays lobe(h, m);
+  for (const Vec2f& p : points) {
+    const Vec3f ray = lobe.at(p);
     if (surface_.open(h.triangle, ray)) continue;
     rays.owner.push_back(owner);
-    rays.share.push_back(1 / float(lobe.size()));
+    rays.share.push_back(1 / float(points.size()));
     rays.origins.push_back(ray_origin(h));
     rays.directions.push_back(ray);
   }
 }
 
+// Mean radiance of the sky over the rays of a lobe, blocked or not.
+Vec3f SelfReflection::sky_over(const HitBatch& batch, size_t hit, const std::vector<Vec2f>& points) const {
+  const LobeRays lobe(batch.hits[hit], batch.materials[hit]);
+  Vec3f sum{0, 0, 0};
+  for (const Vec2f& p : points) sum += radiance_.at(batch.turned.in_room(hit, lobe.at(p)));
+  return sum / float(points.size());
+}
+
 std::vector<SelfReflection::Seen> SelfReflection::seen_by(const HitBatch& batch) const {
   const auto& [hits, materials, turned] = batch;
   Rays rays;
-  rays.reserve(hits.size() * kMinRays);
-  Lobes lobes;
+  rays.reserve(hits.size() * kMinLobeRays);
+  Points points;
   for (size_t i = 0; i < hits.size(); ++i)
-    add_rays(hits[i], materials[i], uint32_t(i),
-             lobes.of(materials[i], dot(hits[i].normal, hits[i].to_camera)), rays);
+    add_rays(hits[i], materials[i], uint32_t(i), points.of(hits[i], materials[i]), rays);
   const Met met = met_by(rays, turned);
   const std::vector<Vec3f> radiance = radiance_of(met, turned);
   std::vector<Seen> out(hits.size());
+  std::vector<Vec3f> blocked(hits.size());  // radiance of the sky along rays that meet the surface
   for (size_t k = 0; k < met.hits.size(); ++k) {
-    Seen& seen = out[met.owner[k]];
+    const size_t i = met.owner[k];
     const float share = rays.share[met.ray[k]];
-    seen.visibility -= share;
-    seen.radiance += radiance[k] * share;
+    out[i].radiance += radiance[k] * share;
+    blocked[i] += radiance_.at(turned.in_room(i, rays.directions[met.ray[k]])) * share;
   }
+  for (size_t i = 0; i < hits.size(); ++i)
+    if (dot(blocked[i], blocked[i]) > 0)
+      out[i].visibility = unblocked(blocked[i], sky_over(batch, i, points.of(hits[i], materials[i])));
   return out;
 }
 

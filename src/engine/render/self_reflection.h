@@ -9,6 +9,7 @@
 
 #include "core/compute/device.h"
 #include "core/compute/kernels/lobes.h"
+#include "engine/render/direction_map.h"
 #include "engine/render/hit_batch.h"
 #include "engine/render/vertex_light.h"
 #include "model/geometry/shape/surface.h"
@@ -17,13 +18,14 @@ namespace cei3d {
 
 class SelfReflection {
  public:
-  // All arguments must outlive the object. vertices: by bin of the turning light. seen: materials of the
-  // surface as seen in reflections.
+  // All arguments must outlive the object. vertices: by bin of the turning light. radiance: radiance_map() of
+  // the light. seen: materials of the surface as seen in reflections.
   SelfReflection(const Device&, const Surface&, std::span<const VertexLight> vertices, LobePlanes light,
-                 const VertexMaterials& seen);
+                 const DirectionMap& radiance, const VertexMaterials& seen);
 
   struct Seen {
-    float visibility = 1;  // fraction of the reflection lobe that is not blocked by the surface
+    // Fraction of the sky's mean radiance over the lobe that is not blocked by the surface, per channel.
+    Vec3f visibility{1, 1, 1};
     // Mean radiance over the whole lobe of the surface that blocks it; 0 where it is not blocked.
     Vec3f radiance{0, 0, 0};
   };
@@ -32,9 +34,10 @@ class SelfReflection {
 
  private:
   struct Rays;
-  class Lobes;
+  class Points;
   struct Met;
-  void add_rays(const Hit&, const Material&, uint32_t owner, const std::vector<Vec3f>& lobe, Rays&) const;
+  void add_rays(const Hit&, const Material&, uint32_t owner, const std::vector<Vec2f>& points, Rays&) const;
+  Vec3f sky_over(const HitBatch&, size_t hit, const std::vector<Vec2f>& points) const;
   Met met_by(const Rays&, const TurnedHits&) const;
   std::vector<Vec3f> mirrored(const Met&, const std::vector<size_t>& which, const TurnedHits&) const;
   std::vector<Vec3f> reflected_at(const Met&, const TurnedHits&) const;
@@ -50,6 +53,7 @@ class SelfReflection {
   const Surface& surface_;
   std::span<const VertexLight> vertices_;
   LobePlanes light_;
+  const DirectionMap& radiance_;
   const VertexMaterials& seen_;
 };
 

@@ -42,6 +42,8 @@ bool scatter(Path& path, Vec3f& out, Vec3f diffuse, Rng& rng) {
   return dot(out, path.normal) > 0;
 }
 
+float mean_of(Vec3f v) { return (v.x + v.y + v.z) / 3; }
+
 using MadeOfAt = std::function<MadeOf(Vec3f)>;
 
 // Brute force: the reflection at a point, GGX facets sampled, of paths of up to four bounces that may be
@@ -79,9 +81,10 @@ Vec3f traced_reflection(const Surface& surface, const SgMixture& sky, const Hit&
   return sum / float(kPaths);
 }
 
-// Mean error, relative, of the reflections of two balls close to each other, where the other one fills much
-// of the lobe.
-double error_between_balls(const MadeOf& lower, const MadeOf& upper) {
+// Mean error, relative, of the reflections of two balls close to each other, where the other one fills
+// `blocked` of the lobe or more.
+double error_between_balls(const MadeOf& lower, const MadeOf& upper, const SgMixture& sky = some_sky(),
+                           float blocked = 0.3f) {
   const Mesh mesh = two_spheres(-0.35f);
   const auto made_of = [&](Vec3f p) { return p.z < 0.175f ? lower : upper; };
   const auto surface = std::make_shared<const Surface>(mesh);
@@ -91,8 +94,7 @@ double error_between_balls(const MadeOf& lower, const MadeOf& upper) {
     vertices.albedo.push_back(made_of(p).albedo);
     vertices.material.push_back(made_of(p).material);
   }
-  const Lighting lighting(device, surface, some_sky(),
-                          vertex_light(Transport(surface), some_sky(), vertices));
+  const Lighting lighting(device, surface, sky, vertex_light(Transport(surface), sky, vertices));
   const auto hits = some_hits(surface->mesh(), 400);
   std::vector<Material> materials;
   std::vector<Vec3f> albedo;
@@ -105,8 +107,9 @@ double error_between_balls(const MadeOf& lower, const MadeOf& upper) {
   double error = 0, total = 0;
   int judged = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
-    if (light[i].mirror_visibility > 0.7f || dot(hits[i].normal, hits[i].to_camera) < 0.4f) continue;
-    const Vec3f truth = traced_reflection(*surface, some_sky(), hits[i], made_of, i);
+    if (mean_of(light[i].mirror_visibility) > 1 - blocked || dot(hits[i].normal, hits[i].to_camera) < 0.4f)
+      continue;
+    const Vec3f truth = traced_reflection(*surface, sky, hits[i], made_of, i);
     error += std::abs(shading.specular[i].y - truth.y);
     total += truth.y;
     ++judged;
@@ -123,6 +126,20 @@ TEST(SelfReflection, ADielectricReflectsItself) { EXPECT_LT(error_between_balls(
 
 TEST(SelfReflection, AMetalReflectsADielectricAsADielectric) {
   EXPECT_LT(error_between_balls(kCopper, kGreenPaint), 0.2);
+}
+
+// A lamp is hidden as a whole or not at all, whatever part of a lobe is.
+TEST(SelfReflection, ALampIsHiddenWhereTheObjectIsInFrontOfIt) {
+  SgMixture lamps;
+  for (uint64_t k = 0; k < 12; ++k) {
+    Rng rng(21, 0, k);
+    lamps.lobes.push_back({normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()}), 40, {1, 1, 1}});
+  }
+  MadeOf copper = kCopper;
+  copper.material.roughness = 0.2f;
+  const MadeOf black{{0, 0, 0}, {0.9f, 0, 0}};
+  // .41 by the share of the lobe that is blocked
+  EXPECT_LT(error_between_balls(copper, black, lamps, 0.02f), 0.15);
 }
 
 }  // namespace
