@@ -60,7 +60,7 @@ SgMixture read_lobes(const std::filesystem::path& path) {
   return light_from_array(array.floats());
 }
 
-constexpr int kFit = 1;  // version of fit_lobes(): raise it when the same image gives other lobes
+constexpr int kFit = 2;  // version of fit_lobes(): raise it when the same image gives other lobes
 
 std::filesystem::path cache_file(const LightCache& cache, const LightChoice& choice, Vec3f up) {
   const std::string picture = content_hash(read_file(choice.env));

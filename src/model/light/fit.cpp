@@ -10,6 +10,7 @@
 #include "core/compute/kernels/light.h"
 #include "core/math/fibonacci.h"
 #include "core/math/sg.h"
+#include "model/light/refine_colors.h"
 
 namespace cei3d {
 namespace {
@@ -158,7 +159,7 @@ SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOp
     check_cancelled(progress);
     fit.step(device, t, std::pow(0.02f, float(t) / float(options.steps)));
   }
-  SgMixture light = fit.lobes();
+  SgMixture light = refine_colors(fit.lobes(), kernel > 0 ? map : lat_long, up);
   if (kernel > 0)
     for (SgLobe& l : light.lobes) l = unblurred(l, kernel);
   return light;

@@ -21,7 +21,7 @@ struct LobeFitOptions {
 };
 
 // Lobes that start on a Fibonacci sphere with sharpness lobes / 2 and descend on the squared error of square
-// roots, weighted by solid angle.
+// roots, weighted by solid angle, with refined colors (refine_colors.h).
 SgMixture fit_lobes(const Device&, const Image& lat_long, const LobeFitOptions& = {}, EnvUp up = EnvUp::z,
                     const Progress& progress = Progress());
 
