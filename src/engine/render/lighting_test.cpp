@@ -125,7 +125,7 @@ TEST(Transport, AWhiteCavityGlows) {
   const Mesh mesh = two_spheres(-0.4f);
   const Transport transport(std::make_shared<const Surface>(mesh));
   const SkyRadiance sky(kSkyDirections, Vec3f{1, 1, 1});
-  const auto seen = transport.sky(sky), open = transport.open_sky(sky);
+  const auto seen = transport.sky(sky), open = transport.open_sky(sky, seen);
   const std::vector<Vec3f> one(seen.size(), Vec3f{1, 1, 1});
   const auto bounce = transport.bounce(one);
   for (size_t v = 0; v < seen.size(); ++v) {

@@ -2,11 +2,9 @@
 #include "engine/render/lobe_rays.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "core/math/reflection.h"
-#include "core/math/rng.h"
 #include "core/math/shading.h"
 #include "engine/render/hit_reflection.h"
 
@@ -20,10 +18,9 @@ constexpr int kMaxMetalRays = 24, kMaxDielectricRays = 10;
 constexpr float kFaint = 0.02f;
 constexpr float kGoldenAngle = 2.399963f;
 
-float turn_of(Vec3f position) {  // [0, 2 pi)
-  const auto bits = [](float x) { return uint64_t(std::bit_cast<uint32_t>(x)); };
-  return 2 * kPi * Rng(bits(position.x), bits(position.y), bits(position.z)).uniform();
-}
+// Radians. Several turns from pixel to pixel, and smooth, so that positions which differ by rounding get nearly
+// the same.
+float turn_of(Vec3f position) { return dot(position, Vec3f{11003, 13007, 17011}); }
 
 // Normal to the plane of incidence; where the viewer is above and there is none, any normal to the axis.
 Vec3f across(const LobeFrame<float>& lobe) {

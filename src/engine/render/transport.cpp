@@ -131,19 +131,23 @@ std::vector<std::vector<Vec3f>> Transport::skies(std::span<const SkyRadiance> ra
       radiance, [&](int v, const auto& visit) { for_free(bits + size_t(v) * (kSkyDirections / 8), visit); });
 }
 
-std::vector<std::vector<Vec3f>> Transport::open_skies(std::span<const SkyRadiance> radiance) const {
-  return sums_over_skies(radiance, [](int, const auto& visit) {
-    for (int k = 0; k < kSkyDirections; ++k) visit(k);
+std::vector<std::vector<Vec3f>> Transport::open_skies(std::span<const SkyRadiance> radiance,
+                                                      const std::vector<std::vector<Vec3f>>& visible) const {
+  std::vector<std::vector<Vec3f>> out = sums_over_skies(radiance, [&](int v, const auto& visit) {
+    for (const uint16_t k : blocked_directions(size_t(v))) visit(k);
   });
+  for (size_t s = 0; s < out.size(); ++s)
+    for (size_t v = 0; v < out[s].size(); ++v) out[s][v] += visible[s][v];
+  return out;
 }
 
-std::vector<Vec3f> Transport::open_sky(const SkyRadiance& radiance) const {
-  const Mesh& mesh = surface_->mesh();
+std::vector<Vec3f> Transport::open_sky(const SkyRadiance& radiance, std::vector<Vec3f> visible) const {
   const auto& sky = sky_directions();
   return per_vertex([&](int v) {
-    Vec3f sum{0, 0, 0};
-    for (int k = 0; k < kSkyDirections; ++k) sum += radiance[k] * max(dot(mesh.normals[v], sky[k]), 0.0f);
-    return sum * kSolidAngle;
+    Vec3f blocked{0, 0, 0};
+    for (const uint16_t k : blocked_directions(size_t(v)))
+      blocked += radiance[k] * dot(surface_->mesh().normals[v], sky[k]);
+    return visible[size_t(v)] + blocked * kSolidAngle;
   });
 }
 

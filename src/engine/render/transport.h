@@ -23,11 +23,12 @@ class Transport {
 
   // Irradiance of every vertex from the sky that is visible from it: #V.
   std::vector<Vec3f> sky(const SkyRadiance&) const;
-  // Irradiance of every vertex without occlusion: #V.
-  std::vector<Vec3f> open_sky(const SkyRadiance&) const;
+  // Irradiance of every vertex without occlusion: #V. visible: sky() of the same radiance.
+  std::vector<Vec3f> open_sky(const SkyRadiance&, std::vector<Vec3f> visible) const;
   // The same for several skies at once, several times as fast: [sky][#V].
   std::vector<std::vector<Vec3f>> skies(std::span<const SkyRadiance>) const;
-  std::vector<std::vector<Vec3f>> open_skies(std::span<const SkyRadiance>) const;
+  std::vector<std::vector<Vec3f>> open_skies(std::span<const SkyRadiance>,
+                                             const std::vector<std::vector<Vec3f>>& visible) const;
   // Irradiance of every vertex from the rest of the surface: #V. radiance: #V, leaving each vertex.
   std::vector<Vec3f> bounce(std::span<const Vec3f> radiance) const;
 
@@ -45,6 +46,10 @@ class Transport {
   std::vector<Vec3f> per_vertex(F value) const;
   template <class F>
   void for_blocked(uint32_t vertex, F visit) const;
+  // Blocked directions above the horizon of a vertex.
+  std::span<const uint16_t> blocked_directions(size_t vertex) const {
+    return std::span(directions_).subspan(start_[vertex], start_[vertex + 1] - start_[vertex]);
+  }
 
   std::shared_ptr<const Surface> surface_;
   std::vector<uint8_t> which_;

@@ -87,7 +87,8 @@ std::vector<VertexLight> turned_vertex_lights(const Transport& transport, const 
   std::vector<SkyRadiance> skies;
   for (const Mat3f& room_from_object : turns->bins)
     skies.push_back(sky_radiance(rotated(light, transpose(room_from_object))));
-  const std::vector<std::vector<Vec3f>> visible = transport.skies(skies), open = transport.open_skies(skies);
+  const std::vector<std::vector<Vec3f>> visible = transport.skies(skies),
+                                        open = transport.open_skies(skies, visible);
   std::vector<VertexLight> out;
   for (size_t bin = 0; bin < skies.size(); ++bin) {
     out.push_back(lit({}, transport, visible[bin], open[bin], made_of));
@@ -99,7 +100,8 @@ std::vector<VertexLight> turned_vertex_lights(const Transport& transport, const 
 VertexLight vertex_light_after(VertexLight before, const Transport& transport, const SgMixture& light,
                                VertexMaterials made_of) {
   const SkyRadiance sky = sky_radiance(light);
-  return lit(std::move(before), transport, transport.sky(sky), transport.open_sky(sky), std::move(made_of));
+  const std::vector<Vec3f> visible = transport.sky(sky);
+  return lit(std::move(before), transport, visible, transport.open_sky(sky, visible), std::move(made_of));
 }
 
 }  // namespace cei3d

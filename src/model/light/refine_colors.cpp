@@ -12,7 +12,8 @@
 namespace cei3d {
 namespace {
 
-constexpr int kDirections = 600, kRows = 128;
+constexpr int kDirections = 600;
+constexpr int kRows = 128;                // of the image: fine beside the blurs
 constexpr float kBlurs[] = {0, 44, 217};  // 0: the cosine of irradiance, else the sharpness of a Gaussian
 constexpr double kHold = 1e-3;            // weight of the colors that were there
 constexpr int kSweeps = 300;
@@ -94,7 +95,7 @@ void solve(const Normal& a, int channel, SgMixture& light) {
 }  // namespace
 
 SgMixture refine_colors(SgMixture light, const Image& lat_long, EnvUp up) {
-  const Image map = env_resample(lat_long, std::min(kRows, lat_long.height));
+  const Image map = env_resample(lat_long, kRows);
   const std::vector<Look> views = looks();
   const Normal normal(views, seen(views, map, up), light);
   for (int c = 0; c < 3; ++c) solve(normal, c, light);
