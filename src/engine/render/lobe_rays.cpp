@@ -18,8 +18,8 @@ constexpr int kMaxMetalRays = 24, kMaxDielectricRays = 10;
 constexpr float kFaint = 0.02f;
 constexpr float kGoldenAngle = 2.399963f;
 
-// Radians. Several turns from pixel to pixel, and smooth, so that positions which differ by rounding get nearly
-// the same.
+// Radians. Several turns from pixel to pixel, and smooth, so that positions which differ by rounding get
+// nearly the same.
 float turn_of(Vec3f position) { return dot(position, Vec3f{11003, 13007, 17011}); }
 
 // Normal to the plane of incidence; where the viewer is above and there is none, any normal to the axis.
