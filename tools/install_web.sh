@@ -8,6 +8,8 @@ cd "$(dirname "$0")/.."
 readonly folder=build/web
 command -v npm >/dev/null || { echo "install_web: npm is not installed" >&2; exit 1; }
 mkdir -p "$folder"
+exec 9>"$folder/lock"  # tests that run side by side ask for them at the same time
+flock 9
 if [[ -d $folder/node_modules ]] && cmp -s tests/web/package-lock.json "$folder/package-lock.json"; then exit 0; fi
 cp tests/web/package.json "$folder/package.json"
 cp tests/web/package-lock.json "$folder/package-lock.json.new"

@@ -159,13 +159,16 @@ async function twoWindows(context, page, url) {
   check('a second window shows the same history', (await state(other)).done === before);
   await other.keyboard.press('Control+z');
   await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n - 1, before, { timeout: 20000 });
-  check('undo in one window is seen in the other', (await state(other)).revision === (await state(page)).revision);
+  await other.waitForFunction((r) => globalThis.cei3d.store.state.revision === r, (await state(page)).revision, { timeout: 20000 });
+  say('undo in one window is seen in the other');
   // What happens while a window is not connected is known when it is back, without a full state.
   const asked = [];
   other.on('request', (r) => asked.push(new URL(r.url()).pathname));
-  await other.evaluate(() => { const { line } = globalThis.cei3d.store; line.wait = 3000; line.socket.close(); });
+  await other.evaluate(() => { const { line } = globalThis.cei3d.store; line.wait = 600000; line.socket.close(); });
+  await other.waitForFunction(() => !globalThis.cei3d.store.line.ready);
   await page.evaluate(() => globalThis.cei3d.store.change('redo'));
   check('a window without connection does not know', (await state(other)).done === before - 1);
+  await other.evaluate(() => { const { line } = globalThis.cei3d.store; clearTimeout(line.timer); line.open(); });
   await other.waitForFunction((n) => globalThis.cei3d.store.state.done === n && !globalThis.cei3d.store.lost, before, { timeout: 20000 });
   check('a window that was away for a while gets what it missed', asked.filter((p) => p === '/api/state').length === 1);
   await settled(page);

@@ -10,8 +10,7 @@ command -v node >/dev/null || skip "no node"
 node tools/editor_keys.mjs docs/editor.md
 [[ -n $browser ]] || skip "no Chromium (chromium-headless-shell)"
 modules=build/web/node_modules
-[[ -d $modules/playwright-core && -d $modules/axe-core ]] || tools/install_web.sh 2>/dev/null ||
-  skip "no playwright-core and axe-core (./run web)"
+tools/install_web.sh >/dev/null 2>&1 || skip "no playwright-core and axe-core (./run web)"
 
 cp -r "$object" "$out/spot"
 NODE_PATH=$modules node tests/browser/editor.cjs "$program" "$out/spot" "$out/pictures" "$browser"

@@ -8,8 +8,7 @@ skip() { printf 'SKIP: the tools of the editor in a browser: %s\n' "$1"; exit 77
 command -v node >/dev/null || skip "no node"
 [[ -n $browser ]] || skip "no Chromium (chromium-headless-shell)"
 modules=build/web/node_modules
-[[ -d $modules/playwright-core && -d $modules/axe-core ]] || tools/install_web.sh 2>/dev/null ||
-  skip "no playwright-core and axe-core (./run web)"
+tools/install_web.sh >/dev/null 2>&1 || skip "no playwright-core and axe-core (./run web)"
 
 cp -r "$object" "$out/spot"
 cp -r "$object" "$out/again"
