@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/fibonacci.h"
 #include "core/math/reflection.h"
 #include "core/math/shading.h"
 #include "engine/render/hit_reflection.h"
@@ -16,7 +17,6 @@ namespace {
 constexpr float kMetalRays = 80, kDielectricRays = 28;  // number of rays per unit of roughness
 constexpr int kMaxMetalRays = 24, kMaxDielectricRays = 10;
 constexpr float kFaint = 0.02f;
-constexpr float kGoldenAngle = 2.399963f;
 
 // Radians. Several turns from pixel to pixel, and smooth, so that positions which differ by rounding get
 // nearly the same.
@@ -45,7 +45,7 @@ int lobe_ray_count(const Material& m, float nv) {
 std::vector<Vec2f> lobe_points(int count) {
   std::vector<Vec2f> points;
   for (int k = 0; k < count; ++k) {
-    const float u = (float(k) + 0.5f) / float(count), r = std::sqrt(u / (1 - u)), a = kGoldenAngle * float(k);
+    const float u = (float(k) + 0.5f) / float(count), r = std::sqrt(u / (1 - u)), a = float(kGoldenAngle * k);
     points.push_back({r * std::cos(a), r * std::sin(a)});
   }
   return points;
