@@ -21,23 +21,27 @@ constexpr int kSweeps = 300;
 // What is seen in one direction through one blur: of unit integral.
 struct Look {
   Vec3f direction;
-  float blur;
+  float blur, unit;  // unit: what makes its integral 1
 };
+constexpr float kFar = -12;  // logarithm of what is left out of a blur
 
 float through(const Look& look, Vec3f light) {
   const float c = dot(look.direction, light);
-  return look.blur > 0 ? std::exp(look.blur * (c - 1)) / sg_integral(look.blur) : max(c, 0.0f) / kPi;
+  if (look.blur == 0) return max(c, 0.0f) * look.unit;
+  const float t = look.blur * (c - 1);
+  return t < kFar ? 0 : std::exp(t) * look.unit;
 }
 float through(const Look& look, const SgLobe& lobe) {
   const Vec3f gap = look.direction - lobe.axis;
-  return look.blur > 0 ? sg_inner(lobe.lambda, look.blur, dot(gap, gap)) / sg_integral(look.blur)
-                       : max(sg_irradiance(lobe.lambda, dot(look.direction, lobe.axis)), 0.0f) / kPi;
+  return look.unit * (look.blur > 0 ? sg_inner(lobe.lambda, look.blur, dot(gap, gap))
+                                    : max(sg_irradiance(lobe.lambda, dot(look.direction, lobe.axis)), 0.0f));
 }
 
 std::vector<Look> looks() {
   std::vector<Look> out;
   for (const float blur : kBlurs)
-    for (int i = 0; i < kDirections; ++i) out.push_back({fibonacci_direction(i, kDirections), blur});
+    for (int i = 0; i < kDirections; ++i)
+      out.push_back({fibonacci_direction(i, kDirections), blur, 1 / (blur > 0 ? sg_integral(blur) : kPi)});
   return out;
 }
 
