@@ -1,17 +1,25 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""check_layers.py [ROOT]: do the includes below src/ respect tools/layers.txt? Prints every one that does not; exit 1."""
+"""check_layers.py [ROOT]: do the includes below src/ respect tools/layers.txt, and is every permission in it used?
+Prints each that is not; exit 1."""
 import fnmatch
 import os
 import re
 import sys
+from pathlib import Path
 
 INCLUDE = re.compile(r'\s*#\s*include\s*(?:"([^"]+)"|(<[^>]+>))')
 
 
+def matching(patterns, modules):
+    """What each name or "folder/*" stands for: modules read so far, as in cmake/layers.cmake."""
+    return {p: fnmatch.filter(modules, p) for p in patterns}
+
+
 def read_rules(path):
+    """Modules, each with what it and what its tests may include; third parties, each with its files."""
     modules, third_parties = {}, {}
-    for line in open(path):
+    for line in Path(path).read_text().splitlines():
         line = line.split('#')[0].strip()
         if not line:
             continue
@@ -20,7 +28,7 @@ def read_rules(path):
             third_parties[name] = rest.partition(': ')[2].split()
         else:
             deps, _, test_deps = rest.partition('|')
-            modules[name] = deps.split(), test_deps.split()
+            modules[name] = matching(deps.split(), modules), matching(test_deps.split(), modules)
     return modules, third_parties
 
 
@@ -40,24 +48,43 @@ def module_of(path):
     return '/'.join(path.split('/')[:2])
 
 
-def problems(root, modules, third_parties):
+def includes(root):
+    """(file, line, the module's own header or None, the system's header or None) of every include."""
     for path in sources(root):
+        for number, line in enumerate(Path(root, path).read_text().splitlines(), 1):
+            if match := INCLUDE.match(line):
+                yield path, number, *match.groups()
+
+
+def allows(permissions, module):
+    return any(module in below for below in permissions.values())
+
+
+def forbidden(root, modules, third_parties):
+    for path, number, own, system in includes(root):
         module = module_of(path[len('src/'):])
-        if module not in modules:
-            yield f'{path}: module {module} is not listed in tools/layers.txt'
-            continue
-        deps, test_deps = modules[module]
-        allowed = deps + test_deps if is_test(path) else deps
-        for number, line in enumerate(open(os.path.join(root, path)), 1):
-            match = INCLUDE.match(line)
-            if not match:
-                continue
-            own, system = match.groups()
-            if own and module_of(own) != module and not any(fnmatch.fnmatch(module_of(own), m) for m in allowed):
-                yield f'{path}:{number}: {module} may not include {module_of(own)} ({own})'
-            for prefix, files in third_parties.items():
-                if system and system.startswith(prefix) and path not in files:
-                    yield f'{path}:{number}: {system} belongs behind {", ".join(files)}'
+        deps, test_deps = modules.get(module, ({}, {}))
+        if own and module_of(own) != module and not (
+                allows(deps, module_of(own)) or is_test(path) and allows(test_deps, module_of(own))):
+            yield f'{path}:{number}: {module} may not include {module_of(own)} ({own})'
+        for prefix, files in third_parties.items():
+            if system and system.startswith(prefix) and path not in files:
+                yield f'{path}:{number}: {system} belongs behind {", ".join(files)}'
+
+
+def unused(root, modules):
+    used = {(module_of(path[len('src/'):]), module_of(own)) for path, _, own, _ in includes(root) if own}
+    for module, (deps, test_deps) in modules.items():
+        for pattern, below in [*deps.items(), *test_deps.items()]:
+            if not any((module, m) in used for m in below):
+                yield f'tools/layers.txt: {module} does not use {pattern}'
+
+
+def problems(root, modules, third_parties):
+    for module in sorted({module_of(path[len('src/'):]) for path in sources(root)} - set(modules)):
+        yield f'src/{module}: not listed in tools/layers.txt'
+    yield from forbidden(root, modules, third_parties)
+    yield from unused(root, modules)
 
 
 def main(root):
@@ -66,4 +93,5 @@ def main(root):
     return 1 if found else 0
 
 
-sys.exit(main(sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
+if __name__ == '__main__':
+    sys.exit(main(sys.argv[1] if len(sys.argv) > 1 else os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))
