@@ -19,8 +19,8 @@ check_format() {
   find src tests \( -name '*.h' -o -name '*.cpp' \) -exec "$tool" --dry-run --Werror {} +
 }
 
-# Every file that can hold a comment names its licence in its first two lines.
-check_licence_lines() {
+# Every file that can hold a comment names its license in its first two lines.
+check_license_lines() {
   local file status=0
   while read -r file; do
     case $file in samples/* | docs/* | tests/e2e/data/* | tests/fuzz/*/* | tools/package/copyright | *.md | *.json | *.png | LICENSE | .clang-format | .editorconfig | .gitignore) continue ;; esac
@@ -79,12 +79,14 @@ main() {
   local -a failed=()
   local check
   case $tidy in changed | all | quick) ;; *) echo "usage: lint.sh [changed|all|quick]" >&2; exit 2 ;; esac
-  for check in format licence_lines scripts workflows pages; do
+  for check in format license_lines scripts workflows pages; do
     say "${check//_/ }"
     "check_$check" || failed+=("$check")
   done
   say "layers"
   python3 tools/check_layers.py || failed+=(layers)
+  say "documents"
+  python3 tools/check_docs.py || failed+=(documents)
   if [[ $tidy != quick ]]; then
     say "clang-tidy"
     check_tidy "$tidy" || failed+=(tidy)
