@@ -13,7 +13,7 @@ DOCUMENTS = [*ROOT.glob('*.md'), *(ROOT / 'docs').rglob('*.md'), *(ROOT / 'sampl
 
 CITATION = re.compile(r'\[([^][(){}]*\b(?:1[89]|20)\d\d\b[^][]*)\]')
 KEY = re.compile(r"[A-Z][\w'-]+(?: et al\.| and [A-Z][\w'-]+)? (?:1[89]|20)\d\d")
-OUTSIDE = re.compile(r'\barchitecture \d\.\d|reference-facts|prototype-findings|goals\.md|\.\./shared')
+OUTSIDE = re.compile(r'\barchitecture \d\.\d|reference-facts|prototype-findings|goals\.md|\bmeasure\.py|\.\./shared')
 HEADING_LINK = re.compile(r'(docs/[\w/-]+\.md)(#[\w-]+)?')
 NUMBERED = re.compile(r'\b(decisions|notebook)/(\d{4})')
 MARKDOWN_LINK = re.compile(r'\]\(([^)#\s]*)(#[^)\s]*)?\)')
