@@ -22,6 +22,7 @@ def start(program, project):
             raise SystemExit('FAILED: cei3d open ended')
         text += line
     url = json.loads(text)['url']
+    check('the address', url.startswith('http://127.0.0.1:'), True)  # a name could lead to another user's program
     return process, int(url.split(':')[2].split('/')[0]), url.split('k=')[1]
 
 
@@ -120,6 +121,22 @@ def bad_sockets(client):
     headers = {k.replace('-', '_'): v for k, v in upgrade.items()}
     check('socket from another page', client.ask('GET', '/socket', None, Origin='http://evil.example', **headers)[0], 403)
     check('socket of another host', client.ask('GET', '/socket', None, Host='evil.example', **headers)[0], 403)
+    silent_socket(client, upgrade)
+
+
+def silent_socket(client, upgrade):
+    """One without a key has nothing to say. It must not keep its place."""
+    s = socket.create_connection(('127.0.0.1', client.port), timeout=60)
+    lines = [f'GET /socket HTTP/1.1\r\nHost: 127.0.0.1:{client.port}'] + [f'{k}: {v}' for k, v in upgrade.items()]
+    s.sendall('\r\n'.join(lines + ['', '']).encode())
+    try:
+        check('a silent socket opens', s.recv(1 << 16).split()[1], b'101')
+        while s.recv(1 << 16):
+            pass
+    except ConnectionError:
+        pass
+    except TimeoutError:
+        raise SystemExit('FAILED: a silent socket stays open')
 
 
 def main(program, object_folder, folder):

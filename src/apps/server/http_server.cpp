@@ -36,6 +36,7 @@ constexpr int kMaxConnections = 64;
 constexpr size_t kMaxHeader = size_t(16) << 10;    // bytes
 constexpr size_t kMaxMessage = size_t(256) << 10;  // bytes, from a WebSocket
 constexpr Seconds kIdle{60}, kBodyTime{300}, kLinger{2};
+constexpr Seconds kFirstMessage{5};  // a WebSocket that says nothing for so long is closed
 
 std::string text_of(beast::string_view v) { return {v.data(), v.size()}; }
 
@@ -63,7 +64,7 @@ HttpResponse too_large() { return error_response(413, "This is more than the edi
 class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> {
  public:
   WebSocket(tcp::socket socket, HttpApp& app, std::shared_ptr<std::atomic<int>> count)
-      : stream_(std::move(socket)), app_(app), count_(std::move(count)) {}
+      : stream_(std::move(socket)), silence_(stream_.get_executor()), app_(app), count_(std::move(count)) {}
   ~WebSocket() override { --*count_; }
 
   void accept(const http::request<http::empty_body>& request) {
@@ -76,6 +77,7 @@ class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> 
       if (error) return;
       self->app_.opened(self);
       self->open_ = true;
+      self->end_if_silent();
       self->read();
     });
   }
@@ -122,8 +124,17 @@ class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> 
     });
   }
 
+  // Who has no key has nothing to say, and must not keep a place for a window that has one.
+  void end_if_silent() {
+    silence_.expires_after(kFirstMessage);
+    silence_.async_wait([self = shared_from_this()](BoostError error) {
+      if (!error) self->close();
+    });
+  }
+
   void read() {
     stream_.async_read(buffer_, [self = shared_from_this()](BoostError error, size_t) {
+      self->silence_.cancel();
       if (error) return self->end();
       const std::string text = beast::buffers_to_string(self->buffer_.data());
       self->buffer_.consume(self->buffer_.size());
@@ -139,6 +150,7 @@ class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> 
   }
 
   websocket::stream<beast::tcp_stream> stream_;
+  asio::steady_timer silence_;
   HttpApp& app_;
   std::shared_ptr<std::atomic<int>> count_;
   beast::flat_buffer buffer_;

@@ -9,9 +9,12 @@ namespace {
 
 bool is_loopback(const std::string& host) { return host == "127.0.0.1" || host == "::1"; }
 
+// The number and not the name: `localhost` may also mean ::1, where another user of this machine could listen
+// at the same port and be sent the key.
+std::string loopback_of(const std::string& host) { return host == "::1" ? "[::1]" : "127.0.0.1"; }
+
 std::string host_of_url(const ServeOptions& o) {
-  if (!is_loopback(o.http.host)) return o.allowed_hosts.front();
-  return o.http.host == "::1" ? "[::1]" : "localhost";
+  return is_loopback(o.http.host) ? loopback_of(o.http.host) : o.allowed_hosts.front();
 }
 
 }  // namespace
@@ -29,8 +32,9 @@ void serve(const ServeOptions& options, const std::function<void(const Address&)
   const std::string token = guard.token();
   Editor editor(options.editor, std::move(guard));
   HttpServer server(editor, options.http);
-  announce({fmt::format("http://{}:{}/#k={}", host_of_url(options), server.port(), token),
-            fmt::format("ssh -L {0}:localhost:{0} {1}", server.port(), machine_name())});
+  announce(
+      {fmt::format("http://{}:{}/#k={}", host_of_url(options), server.port(), token),
+       fmt::format("ssh -L {0}:{1}:{0} {2}", server.port(), loopback_of(options.http.host), machine_name())});
   server.run(stop);
   editor.stop();
 }
