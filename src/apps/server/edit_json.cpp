@@ -132,6 +132,7 @@ PartCommand part_from(JsonReader& j, const Uploads& uploads) {
   if (j.has("like")) c.like = pixel_from(j, "like");
   c.like_color = j.optional("like_color", false);
   c.segmenter = j.optional<std::string>("segmenter", "grow");
+  c.network.plan.max_views = j.optional("views", c.network.plan.max_views);
   c.in_view = j.optional("in_view", false);
   c.name = j.optional<std::string>("name", "");
   c.add = j.optional<std::string>("add", "");

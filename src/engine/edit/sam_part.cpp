@@ -5,7 +5,6 @@
 
 #include "engine/edit/handler_colors.h"
 #include "engine/segment/random_walk.h"
-#include "engine/segment/sam.h"
 
 namespace cei3d {
 namespace {
@@ -16,16 +15,16 @@ constexpr float kSure = 0.9f;  // scores from which (and 1 minus it, below which
 // such neighbors.
 constexpr float kUntold = 0.49f;
 
-// Runs the network on images of the views, each encoded once.
+// Runs the network on images of the views, each made once.
 class EncodedViews : public ViewSegmenter {
  public:
-  EncodedViews(const Device& device, const Scene& scene, const SamPartRequest& request)
-      : device_(device), scene_(scene), request_(request), sam_(request.networks, request.threads) {}
+  EncodedViews(const Device& device, const Scene& scene, const SamPartRequest& request, SamMemory& sam)
+      : device_(device), scene_(scene), request_(request), sam_(sam) {}
 
   Image mask(int view, std::span<const Vec2f> positive, std::span<const Vec2f> negative) override {
-    auto it = pictures_.find(view);
-    if (it == pictures_.end()) it = pictures_.emplace(view, sam_.encode(image(view))).first;
-    return sam_.mask(it->second, positive, negative);
+    std::shared_ptr<const SamImage>& encoded = encoded_[view];
+    if (!encoded) encoded = sam_.encoded(image(view));
+    return sam_.network().mask(*encoded, positive, negative);
   }
 
  private:
@@ -37,15 +36,15 @@ class EncodedViews : public ViewSegmenter {
   const Device& device_;
   const Scene& scene_;
   const SamPartRequest& request_;
-  Sam sam_;
-  std::map<int, SamImage> pictures_;
+  SamMemory& sam_;
+  std::map<int, std::shared_ptr<const SamImage>> encoded_;  // by view
 };
 
 }  // namespace
 
 PropagateResult sam_part(const Device& device, const Scene& scene, const SamPartRequest& request,
-                         Progress& progress) {
-  EncodedViews views(device, scene, request);
+                         SamMemory& sam, Progress& progress) {
+  EncodedViews views(device, scene, request, sam);
   PropagateResult result = propagate(*scene.handlers, *scene.surface, request.views, views, progress);
   std::vector<Seed> seeds;
   for (float& score : result.scores) {

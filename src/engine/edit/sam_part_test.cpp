@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "core/base/error.h"
 #include "core/compute/device.h"
 #include "engine/edit/handler_colors.h"
 #include "engine/render/sphere_scene.h"
@@ -53,22 +52,6 @@ TEST(HandlerColors, PictureShowsTheColorWhereThePointIs) {
   const std::vector<Hit> hit{{n * kSphereRadius, n, n, 0, 0, 0}};
   const Vec3f truth = appearance_at(device, scene, hit).albedo[0];
   EXPECT_NEAR(length(Vec3f{middle[0], middle[1], middle[2]} - truth), 0, 0.02);  // within a pixel's extent
-}
-
-TEST(SamPart, WithoutNetworksSaysWhatToDo) {
-  const Device device = make_device();
-  const Scene scene = scene_with_handlers();
-  SamPartRequest request;
-  request.networks = "nowhere";
-  request.views.cameras = {camera_towards_origin({2, 1, 0.5}, 64)};
-  request.views.clicks.positive = {{32, 32}};
-  Progress silent;
-  try {
-    sam_part(device, scene, request, silent);
-    FAIL();
-  } catch (const Error& e) {
-    EXPECT_NE(std::string(e.what()).find("./run sam"), std::string::npos) << e.what();
-  }
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 namespace cei3d {
 
 class RenderCache;
+class SamMemory;
 struct EditRecord;
 using EditInputs = std::vector<std::pair<std::string, std::string>>;  // file name, bytes
 
@@ -24,6 +25,7 @@ struct EditContext {
   const Capture& capture;
   const Scene& scene;  // the scene below the edit
   RenderCache& frames;
+  SamMemory& sam;
   Progress& progress;
 };
 

@@ -11,7 +11,6 @@
 #include "engine/edit/sam_part.h"
 #include "engine/io/image_file.h"
 #include "engine/io/png_file.h"
-#include "engine/segment/sam.h"
 #include "engine/session/edit_ops.h"
 #include "engine/session/edit_params.h"
 
@@ -104,7 +103,6 @@ NetworkViews network_from(JsonReader& params) {
 std::vector<float> scores_by_network(const EditContext& context, const NetworkViews& network,
                                      const Scene& scene, const PartRequest& r, Progress& progress) {
   SamPartRequest request;
-  request.networks = installed_sam();
   request.views.cameras = {r.camera};
   std::vector<const View*> views{nullptr};
   for (const View& v : context.capture.views) {
@@ -118,7 +116,7 @@ std::vector<float> scores_by_network(const EditContext& context, const NetworkVi
   request.views.clicks = network_prompts(context.device, scene, r);
   if (r.scribble || !r.mask.empty()) request.certain = part_seeds(context.device, scene, r);
   if (network.photographs) request.image = [&](int view) { return load_linear_rgba(*views[size_t(view)]); };
-  return sam_part(context.device, scene, request, progress).scores;
+  return sam_part(context.device, scene, request, context.sam, progress).scores;
 }
 
 PartRequest request_of(const EditContext& context, const EditJob& job) {

@@ -14,6 +14,7 @@
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
 #include "engine/render/render_cache.h"
+#include "engine/segment/sam_memory.h"
 #include "engine/session/object_summary.h"
 #include "engine/session/version.h"
 #include "engine/session/vertex_look.h"
@@ -67,7 +68,8 @@ void write_repaired(const CheckRequest& request, CheckReport& r) {
 Session::Session(const std::string& device, int threads)
     : device_(std::make_unique<Device>(make_device(device))),
       threads_(std::make_unique<Threads>(threads)),
-      frames_(std::make_unique<RenderCache>(*device_)) {}
+      frames_(std::make_unique<RenderCache>(*device_)),
+      sam_(std::make_unique<SamMemory>(installed_sam())) {}
 Session::~Session() = default;
 
 MachineInfo Session::machine() {

@@ -21,6 +21,7 @@ namespace cei3d {
 class Device;
 class Project;
 class RenderCache;
+class SamMemory;
 class Threads;
 class Stack;
 class TiledFrame;
@@ -129,6 +130,7 @@ class Session {
   std::unique_ptr<Threads> threads_;
   std::unique_ptr<Project> project_;
   std::unique_ptr<RenderCache> frames_;  // of the open project
+  std::unique_ptr<SamMemory> sam_;
   struct VertexLook;
   std::unique_ptr<VertexLook> vertex_look_;  // of the last look that was packed; null: none
 };

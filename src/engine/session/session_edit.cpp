@@ -25,7 +25,11 @@ namespace {
 struct Tools {
   const Device& device;
   RenderCache& frames;
+  SamMemory& sam;
   Progress& progress;
+  EditContext on(const Capture& capture, const Scene& below) const {
+    return {device, capture, below, frames, sam, progress};
+  }
 };
 
 // Usage error: the last edit that is done is not one of this kind and on the same part.
@@ -49,7 +53,7 @@ EditPreview made_of(const Project& project, const Tools& tools, EditPlan plan, b
       amend ? project.scene_below(p.stack, p.stack.entries()[p.stack.cursor() - 1].id) : project.scene();
   p.load_seconds = watch.lap();
   const EditJob job{p.stack.next_id(plan.op), std::move(plan.params), std::move(plan.inputs)};
-  EditOutcome made = op.make({tools.device, project.capture(), p.below, tools.frames, tools.progress}, job);
+  EditOutcome made = op.make(tools.on(project.capture(), p.below), job);
   const double seconds = watch.lap();
   if (!made.report.contains("seconds")) made.report["seconds"] = {{plan.op, seconds}};
   p.record = {job.id, plan.op, op.version, job.params, op.depends(job.params), made.report, job.inputs};
@@ -78,8 +82,8 @@ void make_anew(Project& project, const Tools& tools, const Stack& next) {
     try {
       const Json params = present_params(op, record);
       const Scene below = project.scene_below(next, *id);
-      const EditOutcome made = op.make({tools.device, project.capture(), below, tools.frames, tools.progress},
-                                       {*id, params, project.edit_inputs(*id)});
+      const EditOutcome made =
+          op.make(tools.on(project.capture(), below), {*id, params, project.edit_inputs(*id)});
       project.add_result(next, *id, made.layer, op.version);
     } catch (const Error& e) {
       if (e.code() == ErrorCode::interrupted) throw;
@@ -123,7 +127,8 @@ bool toggle_edit(Project& project, const Tools& tools, const std::string& id) {
 EditSummary Session::edit(const EditCommand& command, Progress& progress, bool amend) {
   return threads_->run([&]() -> EditSummary {
     const auto make_plan = [&](const auto& c) { return plan(c); };
-    return add_edit_to(project(), {*device_, *frames_, progress}, std::visit(make_plan, command), amend);
+    return add_edit_to(project(), {*device_, *frames_, *sam_, progress}, std::visit(make_plan, command),
+                       amend);
   });
 }
 
@@ -133,7 +138,7 @@ std::shared_ptr<const EditPreview> Session::preview(const EditCommand& command, 
     const auto make_plan = [&](const auto& c) { return plan(c); };
     EditPlan edit = std::visit(make_plan, command);
     return std::make_shared<const EditPreview>(
-        made_of(project(), {*device_, *frames_, progress}, std::move(edit), amend));
+        made_of(project(), {*device_, *frames_, *sam_, progress}, std::move(edit), amend));
   });
 }
 
@@ -218,7 +223,7 @@ std::string Session::undo(Progress& progress) {
   return threads_->run([&]() -> std::string {
     Stack next = project().stack();
     next.undo();
-    make_anew(project(), {*device_, *frames_, progress}, next);
+    make_anew(project(), {*device_, *frames_, *sam_, progress}, next);
     return project().undo();
   });
 }
@@ -227,14 +232,14 @@ std::string Session::redo(Progress& progress) {
   return threads_->run([&]() -> std::string {
     Stack next = project().stack();
     next.redo();
-    make_anew(project(), {*device_, *frames_, progress}, next);
+    make_anew(project(), {*device_, *frames_, *sam_, progress}, next);
     return project().redo();
   });
 }
 
 void Session::move_to(const Stack& next, Json event, Progress& progress) {
   threads_->run([&] {
-    make_anew(project(), {*device_, *frames_, progress}, next);
+    make_anew(project(), {*device_, *frames_, *sam_, progress}, next);
     project().move_to(next, std::move(event));
   });
 }
@@ -260,12 +265,14 @@ void Session::restore(const std::string& id, Progress& progress) {
 void Session::forget_set_aside() { project().forget_set_aside(); }
 
 bool Session::toggle(const std::string& id, Progress& progress) {
-  return threads_->run([&]() -> bool { return toggle_edit(project(), {*device_, *frames_, progress}, id); });
+  return threads_->run([&]() -> bool {
+    return toggle_edit(project(), {*device_, *frames_, *sam_, progress}, id);
+  });
 }
 
 EditSummary Session::edit_by_params(const std::string& op, const Json& params, Progress& progress) {
   return threads_->run([&]() -> EditSummary {
-    return add_edit_to(project(), {*device_, *frames_, progress}, {edit_op(op).name, params, {}});
+    return add_edit_to(project(), {*device_, *frames_, *sam_, progress}, {edit_op(op).name, params, {}});
   });
 }
 
@@ -275,7 +282,7 @@ ReplayReport Session::replay(const std::filesystem::path& on, Progress& progress
     if (std::filesystem::equivalent(project().folder(), on, error))
       fail_usage("{} is the project itself; name another one with --on.", on.string());
     Project other = Project::open(on, Project::Mode::write);
-    const Tools tools{*device_, *frames_, progress};
+    const Tools tools{*device_, *frames_, *sam_, progress};
     const Stack& stack = project().stack();
     ReplayReport report;
     for (size_t i = 0; i < stack.cursor(); ++i) {

@@ -221,7 +221,8 @@ export class PartTool {
     return true;
   }
 
-  async preview() {
+  /** @param {boolean} [quick] first the network's answer for the view of the clicks alone */
+  async preview(quick = true) {
     const number = ++this.number;
     if (!this.outline.length && !this.clicks.some((c) => !c.out)) return;
     const of = (/** @type {boolean} */ out) => this.clicks.filter((c) => c.out === out).map((c) => [c.x, c.y]);
@@ -230,7 +231,13 @@ export class PartTool {
     try {
       const what = this.outline.length ? { mask: await upload(await this.maskPicture(), 'mask.png'), in_view: !this.through }
         : { positive: of(false), negative: of(true), segmenter: this.segmenter };
-      const made = await postJson('preview', { op: 'part', params: { camera: this.camera, ...what, ...combine, ...(name ? { name } : {}) } });
+      const ask = (/** @type {any} */ more) => postJson('preview', { op: 'part', params: { camera: this.camera, ...what, ...combine, ...(name ? { name } : {}), ...more } });
+      if (quick && what.segmenter === 'sam') {
+        const seen = await ask({ views: 1 });
+        if (number !== this.number) return;
+        this.overlay.show(seen.token);
+      }
+      const made = await ask({});
       if (number !== this.number) return;
       this.token = made.token;
       this.report = made.report;
@@ -243,7 +250,7 @@ export class PartTool {
 
   async keep() {
     if (!this.clicks.length && !this.outline.length) return;
-    await this.preview();  // with the name as it is now
+    await this.preview(false);  // with the name as it is now
     const token = this.token;
     if (!token) return;
     const done = await this.store.change('commit', { token });
