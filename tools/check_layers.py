@@ -72,8 +72,20 @@ def forbidden(root, modules, third_parties):
                 yield f'{path}:{number}: {system} belongs behind {", ".join(files)}'
 
 
+def used_modules(path, own_includes):
+    """What a file includes, and what the test headers need that it includes: its program is linked to that, too."""
+    for own in own_includes.get(path, ()):
+        yield module_of(own)
+        if is_test(own):
+            yield from used_modules(own, own_includes)
+
+
 def unused(root, modules):
-    used = {(module_of(path[len('src/'):]), module_of(own)) for path, _, own, _ in includes(root) if own}
+    own_includes = {}
+    for path, _, own, _ in includes(root):
+        if own:
+            own_includes.setdefault(path[len('src/'):], []).append(own)
+    used = {(module_of(path), module) for path in own_includes for module in used_modules(path, own_includes)}
     for module, (deps, test_deps) in modules.items():
         for pattern, below in [*deps.items(), *test_deps.items()]:
             if not any((module, m) in used for m in below):
