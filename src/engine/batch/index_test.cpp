@@ -95,19 +95,19 @@ TEST_F(BatchIndexTest, ThumbnailsAndViewersAreThoseOfTheirObjectsWorstFirst) {
   ended("bad", BatchOutcome::failed, Json::object(), "No <mask> is & was there.");
   lines.push_back({{"id", "open"}, {"capture", "c"}});
 
-  const std::string page = index("catalogue.html");
+  const std::string page = index("catalog.html");
   EXPECT_THAT(all_between(page, "<tr id=\"", "\""), ElementsAre("bad", "o1", "o3", "o0", "o2", "open"));
   const std::vector<std::string> images = all_between(page, "src=\"", "\"");
   ASSERT_EQ(images.size(), figures.size());
   std::vector<int> grays;
   for (const std::string& address : images) {
-    const Image picture = decode_png(read_file(file_of(folder.path() / "catalogue.html", address)), address);
+    const Image picture = decode_png(read_file(file_of(folder.path() / "catalog.html", address)), address);
     grays.push_back(int(std::lround(255 * picture.data[0])));
   }
   EXPECT_THAT(grays, ElementsAre(24, 27, 31, 40));
   std::vector<std::string> viewers;
   for (const std::string& address : all_between(page, "<td><a href=\"", "\"><img"))
-    viewers.push_back(read_file(file_of(folder.path() / "catalogue.html", address)));
+    viewers.push_back(read_file(file_of(folder.path() / "catalog.html", address)));
   EXPECT_THAT(viewers, ElementsAre("viewer of o1", "viewer of o3", "viewer of o0", "viewer of o2"));
 
   // Nothing that people wrote is a tag.

@@ -310,7 +310,7 @@ PaintRequest routed(Routing routing) {
   return r;
 }
 
-TEST_F(PaintTest, WithoutRoutingTheScribbleIsLearntAndTheUnseenSideChanges) {
+TEST_F(PaintTest, WithoutRoutingTheScribbleIsLearnedAndTheUnseenSideChanges) {
   const Scene spilled = painted(*before_, routed(Routing::none));
   EXPECT_TRUE(spilled.layers[0].everywhere);
   std::vector<Hit> hits;

@@ -54,7 +54,7 @@ struct Costs {
   double surface, full_appearance, brief_appearance, refinement, finer_mesh;
   double look;      // of a polishing round
   double polish;    // all steps of a round
-  double joint;     // all steps of it, hits and judgement
+  double joint;     // all steps of it, hits and judgment
   double residual;  // all steps of its training
   double residual_hit;
 };

@@ -23,7 +23,7 @@ struct Plan {
   int refinements = 0;           // of the albedo, each on another random subset of the pixels
   double refinement = 0;         // s of one refinement
   int joint_steps = 0;           // of the joint descent, at most; 0: none
-  double joint = 0;              // s of the joint descent, with the judgement of its result
+  double joint = 0;              // s of the joint descent, with the judgment of its result
   bool has_finer_mesh = false;   // Preset::finer_meshing
   double finer_mesh = 0;         // s of the finer mesh
   int residual_steps = 0;        // of training the correction network, at most; 0: none

@@ -75,7 +75,7 @@ void add_mean(const Image& rendered, const Image& photo, size_t views, EvalRepor
   mean.psnr_masked += psnr_in_mask(a, b, mask_of(photo)).value_or(0) / double(views);
 }
 
-void summarise(EvalReport& r) {
+void summarize(EvalReport& r) {
   size_t masked = 0;
   r.psnr_worst = INFINITY;
   for (const ViewScore& v : r.views) {
@@ -155,7 +155,7 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
       if (edit) scorer.add(views[i], p, edited_area(scene, *edit, trace(scene, views[i])->buffer, p));
       if (!request.pictures.empty()) write_png(image_like(request.pictures, views[i]), side_by_side(p, edit));
     }
-    summarise(report);
+    summarize(report);
     report.residual = bool(scene.residual);
     report.fid = perceptual.frechet(sets.rendered, sets.photos);
     if (edit) report.edit = scorer.result();

@@ -8,7 +8,7 @@ import { dashed, polygon, ring } from './paint.js';
 /** Colors of parts, by their place in the list; names and outlines tell them apart, too. */
 export const partColors = ['#ffb454', '#6ea8ff', '#6fd08c', '#e58cff', '#ff8080', '#5fd7d7', '#d7c75f', '#b0a0ff'];
 
-/** @param {Blob} png grey @param {string} color @returns {Promise<HTMLCanvasElement>} the mask in that color, with a rim */
+/** @param {Blob} png gray @param {string} color @returns {Promise<HTMLCanvasElement>} the mask in that color, with a rim */
 async function tinted(png, color) {
   const picture = await createImageBitmap(png);
   const canvas = document.createElement('canvas');

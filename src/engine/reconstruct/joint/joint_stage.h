@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A whole joint descent, and the judgement whether it was worth it.
+// A whole joint descent, and the judgment whether it was worth it.
 #pragma once
 
 #include "core/base/clock.h"
