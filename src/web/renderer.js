@@ -255,7 +255,7 @@ export class Renderer {
     gl.uniform1f(u.uReflectionSide, light.reflection_side);
     gl.uniform1f(u.uReflectionLevels, light.reflection_levels);
     gl.uniform2f(u.uTableSize, tables.columns, tables.rows);
-    gl.uniform1f(u.uMinRoughness, tables.least_roughness);
+    gl.uniform1f(u.uMinRoughness, tables.min_roughness);
     gl.uniform1f(u.uMiddleShare, tables.middle_share);
     gl.uniform1f(u.uDielectricF0, tables.dielectric_f0);
     gl.uniform1f(u.uMetalF0, tables.metal_f0);

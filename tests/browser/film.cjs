@@ -5,7 +5,7 @@ const { withEditor, settled } = require('./serve.cjs');
 const { middle, put } = require('./page.cjs');
 
 const [program, project, executablePath, out] = process.argv.slice(2);
-const kMost = 1e6;  // bytes
+const kMaxBytes = 1e6;
 
 /** A chunk of RIFF. @param {string} name @param {Buffer} data */
 function chunk(name, data) {
@@ -115,5 +115,5 @@ withEditor({ program, project, executablePath, copy: true }, async ({ server, br
   const bytes = film(camera.frames, camera.width, camera.height);
   fs.writeFileSync(out, bytes);
   console.log(`${out}: ${camera.frames.length} frames of ${camera.width} x ${camera.height}, ${Math.round(bytes.length / 1000)} kB`);
-  if (bytes.length > kMost) throw new Error('The film is too large for the README.');
+  if (bytes.length > kMaxBytes) throw new Error('The film is too large for the README.');
 }).catch((error) => { console.error(error); process.exit(1); });

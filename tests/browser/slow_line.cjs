@@ -20,7 +20,7 @@ class Pipe {
 
   /** @param {Buffer} data */
   take(data) {
-    const kPiece = 8192, kMostWaiting = 1 << 16;
+    const kPiece = 8192, kMaxWaiting = 1 << 16;
     for (let begin = 0; begin < data.length; begin += kPiece) {
       const piece = data.subarray(begin, begin + kPiece);
       this.line.free = Math.max(this.now(), this.line.free) + piece.length / this.line.rate;
@@ -28,10 +28,10 @@ class Pipe {
       this.at(this.line.free + this.line.seconds, () => {
         this.waiting -= piece.length;
         this.to.write(piece);
-        if (this.waiting < kMostWaiting) this.from.resume();
+        if (this.waiting < kMaxWaiting) this.from.resume();
       });
     }
-    if (this.waiting >= kMostWaiting) this.from.pause();  // as full buffers do
+    if (this.waiting >= kMaxWaiting) this.from.pause();  // as full buffers do
   }
 }
 

@@ -43,7 +43,7 @@ TEST(Eikonal, GradientEqualsDualNumbers) {
   for (double e : kErrors) expect_gradient({0.3 + e, -0.8, 0.1}, [](auto g) { return eikonal(g); });
 }
 
-TEST(Eikonal, IsLeastForUnitGradients) {
+TEST(Eikonal, IsMinimalForUnitGradients) {
   const auto unit = eikonal(Vec3<double>{0.6, 0, -0.8});
   EXPECT_NEAR(unit.value, 0, 1e-12);
   EXPECT_NEAR(length(unit.gradient), 0, 1e-6);

@@ -34,21 +34,21 @@ inline Vec3d turn_of(const Mat3d& r) {
 
 // Derivative of the continuous pixel position of a world point by a motion of the camera, at no motion:
 // row 0 of x, row 1 of y; columns turn (3) and shift (3).
-struct MotionSlopes {
-  Vec3d turn[2], shift[2];
+struct MotionGrad {
+  Vec3d d_turn[2], d_shift[2];
 };
-inline MotionSlopes motion_slopes(const Camera& camera, Vec3d point) {
+inline MotionGrad motion_grad(const Camera& camera, Vec3d point) {
   const Mat3d cam_from_world = transpose(camera.world_from_cam);
   const Vec3d c = cam_from_world * (point - camera.center);
-  const Vec3d by_c[2] = {
+  const Vec3d d_c[2] = {
       {camera.fx / c.z, camera.skew / c.z, -(camera.fx * c.x + camera.skew * c.y) / (c.z * c.z)},
       {0, camera.fy / c.z, -camera.fy * c.y / (c.z * c.z)}};
-  MotionSlopes out;
+  MotionGrad out;
   for (int i = 0; i < 2; ++i) {
     // Seen from the moved camera the point moves by -(turn x point + shift).
-    const Vec3d by_point = camera.world_from_cam * by_c[i];
-    out.shift[i] = -by_point;
-    out.turn[i] = cross(by_point, point);
+    const Vec3d d_point = camera.world_from_cam * d_c[i];
+    out.d_shift[i] = -d_point;
+    out.d_turn[i] = cross(d_point, point);
   }
   return out;
 }

@@ -29,7 +29,7 @@ TEST(RigidMotion, TurnsAboutTheOriginBeforeItShifts) {
   EXPECT_LT(length(turned.world_from_cam * Vec3d{1, 0, 0} - Vec3d{0, 1, 0}), 1e-12);
 }
 
-TEST(MotionSlopes, AreThoseOfFiniteDifferences) {
+TEST(MotionGrad, AreThoseOfFiniteDifferences) {
   Camera camera;
   camera.fx = 90, camera.fy = 110, camera.cx = 48, camera.cy = 40, camera.skew = 0.7;
   camera.world_from_cam = rotation_of({0.3, -1.2, 0.5});
@@ -37,7 +37,7 @@ TEST(MotionSlopes, AreThoseOfFiniteDifferences) {
   for (uint64_t i = 0; i < 20; ++i) {
     Rng rng(4, 0, i);
     const Vec3d point = 0.3 * Vec3d{rng.normal(), rng.normal(), rng.normal()};
-    const MotionSlopes slopes = motion_slopes(camera, point);
+    const MotionGrad grad = motion_grad(camera, point);
     constexpr double kStep = 1e-6;
     for (int axis = 0; axis < 3; ++axis) {
       Vec3d d{0, 0, 0};
@@ -47,8 +47,8 @@ TEST(MotionSlopes, AreThoseOfFiniteDifferences) {
                   shifted = moved(camera, {{0, 0, 0}, d}).project(point) -
                             moved(camera, {{0, 0, 0}, -d}).project(point);
       for (int k = 0; k < 2; ++k) {
-        EXPECT_NEAR(slopes.turn[k][axis], turned[k] / (2 * kStep), 1e-4);
-        EXPECT_NEAR(slopes.shift[k][axis], shifted[k] / (2 * kStep), 1e-4);
+        EXPECT_NEAR(grad.d_turn[k][axis], turned[k] / (2 * kStep), 1e-4);
+        EXPECT_NEAR(grad.d_shift[k][axis], shifted[k] / (2 * kStep), 1e-4);
       }
     }
   }

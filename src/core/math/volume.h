@@ -38,10 +38,10 @@ HD NeusSample<T> neus_alpha(T sdf, T cosine, T delta, T inv_s) {
   const T raw = neus_ratio(before.value, after.value, eps), q = before.value + eps;
   const auto inside = (raw > zero) & (raw < one);
   // raw = 1 - after / q
-  const T by_before = after.value / (q * q) * before.first * inv_s;
-  const T by_after = -(after.first * inv_s / q);
-  const T d_sdf = by_before + by_after;
-  const T d_cosine = half * delta * d_slope * (by_after - by_before);
+  const T d_before = after.value / (q * q) * before.first * inv_s;
+  const T d_after = -(after.first * inv_s / q);
+  const T d_sdf = d_before + d_after;
+  const T d_cosine = half * delta * d_slope * (d_after - d_before);
   return {clamp(raw, zero, one), select(inside, d_sdf, zero), select(inside, d_cosine, zero)};
 }
 

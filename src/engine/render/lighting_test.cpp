@@ -229,7 +229,7 @@ class LightingGrad : public testing::Test {
       albedo_.push_back({random(0), random(1), random(2)});
       weight_.push_back({2 * random(3) - 1, 2 * random(4) - 1, 2 * random(5) - 1});
     }
-    slopes_ = std::make_unique<ShadingGrads>(lighting_->grad(
+    grads_ = std::make_unique<ShadingGrads>(lighting_->grad(
         {hits_, materials_}, lighting_->incident_light({hits_, materials_}), albedo_, weight_));
   }
   double loss(size_t i, const Hit& hit, const Material& material, Vec3f albedo) const {
@@ -249,7 +249,7 @@ class LightingGrad : public testing::Test {
   std::vector<Hit> hits_;
   std::vector<Material> materials_;
   std::vector<Vec3f> albedo_, weight_;
-  std::unique_ptr<ShadingGrads> slopes_;
+  std::unique_ptr<ShadingGrads> grads_;
 };
 
 TEST_F(LightingGrad, OfMaterialAndAlbedoEqualsDifferences) {
@@ -261,12 +261,12 @@ TEST_F(LightingGrad, OfMaterialAndAlbedoEqualsDifferences) {
         return loss(i, hits_[i], m, albedo_[i]);
       };
     };
-    expect_slope(slopes_->d_material[i].roughness, at(&Material::roughness), 0.004, "roughness");
-    expect_slope(slopes_->d_material[i].specular, at(&Material::specular), 0.02, "specular");
-    expect_slope(slopes_->d_material[i].metalness, at(&Material::metalness), 0.02, "metalness");
+    expect_slope(grads_->d_material[i].roughness, at(&Material::roughness), 0.004, "roughness");
+    expect_slope(grads_->d_material[i].specular, at(&Material::specular), 0.02, "specular");
+    expect_slope(grads_->d_material[i].metalness, at(&Material::metalness), 0.02, "metalness");
     for (int c = 0; c < 3; ++c)
       expect_slope(
-          slopes_->d_albedo[i][c],
+          grads_->d_albedo[i][c],
           [&](float h) {
             Vec3f a = albedo_[i];
             a[c] += h;
@@ -288,15 +288,15 @@ TEST_F(LightingGrad, OfNormalAndViewEqualsDifferencesAlongTheSphere) {
     const Vec3f axis{0.3f, 0.5f, 0.8f};
     const Vec3f by_n = normalize(cross(hits_[i].normal, axis)),
                 by_v = normalize(cross(hits_[i].to_camera, axis));
-    expect_slope(dot(slopes_->d_normal[i], by_n), turned(&Hit::normal, by_n), 0.004, "normal");
-    expect_slope(dot(slopes_->d_view[i], by_v), turned(&Hit::to_camera, by_v), 0.004, "view");
+    expect_slope(dot(grads_->d_normal[i], by_n), turned(&Hit::normal, by_n), 0.004, "normal");
+    expect_slope(dot(grads_->d_view[i], by_v), turned(&Hit::to_camera, by_v), 0.004, "view");
   }
 }
 
 TEST_F(LightingGrad, OfNormalsIncludesIrradianceWhereItIsTakenAtHits) {
   lighting_->use_hit_normals();
   const HitBatch batch{hits_, materials_};
-  const ShadingGrads slopes = lighting_->grad(batch, lighting_->incident_light(batch), albedo_, weight_);
+  const ShadingGrads grads = lighting_->grad(batch, lighting_->incident_light(batch), albedo_, weight_);
   double changed = 0;
   for (size_t i = 0; i < kHits; ++i) {
     const Vec3f t = normalize(cross(hits_[i].normal, Vec3f{0.3f, 0.5f, 0.8f}));
@@ -305,8 +305,8 @@ TEST_F(LightingGrad, OfNormalsIncludesIrradianceWhereItIsTakenAtHits) {
       hit.normal = normalize(hit.normal + t * h);
       return loss(i, hit, materials_[i], albedo_[i]);
     };
-    expect_slope(dot(slopes.d_normal[i], t), turned, 0.012, "normal");  // over kinks of the table
-    changed += length(slopes.d_normal[i] - slopes_->d_normal[i]);
+    expect_slope(dot(grads.d_normal[i], t), turned, 0.012, "normal");  // over kinks of the table
+    changed += length(grads.d_normal[i] - grads_->d_normal[i]);
   }
   EXPECT_GT(changed, 0.1);
 }
@@ -316,8 +316,8 @@ TEST_F(LightingGrad, OfTheEnvironmentsLightEqualsDifferences) {
   const std::vector<IncidentLight<float>> light = lighting_->incident_light({hits_, materials_});
   double slope = 0;
   for (size_t i = 0; i < kHits; ++i)
-    slope += double(dot(slopes_->d_sky_irradiance[i], light[i].sky_irradiance) +
-                    dot(slopes_->d_sky_reflection[i], light[i].sky_reflection));
+    slope += double(dot(grads_->d_sky_irradiance[i], light[i].sky_irradiance) +
+                    dot(grads_->d_sky_reflection[i], light[i].sky_reflection));
   const auto scaled_loss = [&](float h) {
     lighting_->set_lobes(scaled(some_sky(), {1 + h, 1 + h, 1 + h}));
     double sum = 0;

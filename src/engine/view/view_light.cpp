@@ -122,7 +122,7 @@ std::string view_tables() {
   Pack pack("tables");
   pack["columns"] = kColumns;
   pack["rows"] = kRows;
-  pack["least_roughness"] = kMinRoughness;
+  pack["min_roughness"] = kMinRoughness;
   pack["middle_share"] = kMiddleShare;
   pack["dielectric_f0"] = kDielectricF0;
   pack["metal_f0"] = kMetalF0;

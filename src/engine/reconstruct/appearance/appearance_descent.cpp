@@ -150,10 +150,10 @@ void AppearanceDescent::joint_step(float rate, float albedo_rate) {
     });
   };
   albedo_trainer_.step(device_, points_, loss, albedo_rate * rate);
-  const ShadingGrads slopes = lighting_->grad(batch, light, albedo, d_radiance);
-  light_->step(device_, batch, slopes.d_sky_irradiance, slopes.d_sky_reflection, rate);
+  const ShadingGrads grads = lighting_->grad(batch, light, albedo, d_radiance);
+  light_->step(device_, batch, grads.d_sky_irradiance, grads.d_sky_reflection, rate);
   result_.light = light_->light();
-  if (materials_) descend_materials(positions, slopes.d_material, rate);
+  if (materials_) descend_materials(positions, grads.d_material, rate);
 }
 
 void AppearanceDescent::descend_materials(const std::vector<Vec3f>& positions,

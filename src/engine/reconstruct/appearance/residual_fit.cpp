@@ -113,7 +113,7 @@ class Trainer {
     std::vector<Hit> hits;
     for (const uint32_t s : chosen) hits.push_back(hit(s));
     const int n = pass.forward(device_, *features_, feature_weights, weights, hits);
-    for (int i = 0; i < n; ++i) pass.set_output_grad(i, slope(chosen[i], pass.output(i)));
+    for (int i = 0; i < n; ++i) pass.set_output_grad(i, output_grad(chosen[i], pass.output(i)));
     pass.backward(device_, weights, n, gradient);
     return n;
   }
@@ -135,7 +135,7 @@ class Trainer {
   }
 
   // dL/d(output of the network).
-  Vec3f slope(uint32_t sample, Vec3f residual) const {
+  Vec3f output_grad(uint32_t sample, Vec3f residual) const {
     Vec3f out;
     for (int c = 0; c < 3; ++c)
       out[c] = display_loss_grad(sent_[sample][c] + residual[c], samples_.colors[sample][c],

@@ -121,7 +121,7 @@ DiffuseLightGrad TurningIrradiance::turn(const SplitUnknowns& x, const SplitMate
   for (size_t v = 0; v < bounce.size(); ++v) light.mean[v] += bounce[v] + dark;
   for (std::vector<Vec3f>& bin : light.by_bin)
     for (size_t v = 0; v < bin.size(); ++v) bin[v] = (bin[v] + bounce[v] + dark) / light.mean[v];
-  DiffuseLightGrad slopes{std::vector<DiffuseLightGrad::OfRow>(rows.size()), harmonics_.of(x.light)};
+  DiffuseLightGrad grad{std::vector<DiffuseLightGrad::OfRow>(rows.size()), harmonics_.of(x.light)};
   parallel_ranges(int(rows.size()), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       SplitRow& row = rows[size_t(i)];
@@ -130,17 +130,17 @@ DiffuseLightGrad TurningIrradiance::turn(const SplitUnknowns& x, const SplitMate
       const Harmonics here = at(row), in_view = views_[row.view] * here,
                       in_bin = bins_[turns_.bin[row.view]] * here, mean = mean_ * here;
       const Vec3f mean_light = between(light.mean, row.vertices, row.barycentric),
-                  more = (dot(in_view, slopes.light) - dot(in_bin, slopes.light)) / mean_light;
+                  more = (dot(in_view, grad.light) - dot(in_bin, grad.light)) / mean_light;
       row.diffuse_light = between(bin, row.vertices, row.barycentric) + more;
       for (int c = 0; c < 3; ++c) row.diffuse_light[c] = max(row.diffuse_light[c], 0.0f);
       if (row.blocked) row.far_diffuse_light = between(bin, row.far_vertices, row.far_barycentric);
-      DiffuseLightGrad::OfRow& slope = slopes.rows[size_t(i)];
+      DiffuseLightGrad::OfRow& of_row = grad.rows[size_t(i)];
       const float share = luminance(row.diffuse_light);
-      for (size_t j = 0; j < kHarmonics; ++j) slope.by_light[j] = in_view[j] - share * mean[j];
-      slope.gain = between(x.diffuse, row.vertices, row.barycentric) / mean_light;
+      for (size_t j = 0; j < kHarmonics; ++j) of_row.d_light[j] = in_view[j] - share * mean[j];
+      of_row.gain = between(x.diffuse, row.vertices, row.barycentric) / mean_light;
     }
   });
-  return slopes;
+  return grad;
 }
 
 }  // namespace cei3d

@@ -73,13 +73,13 @@ SplitSystem::Sky SplitSystem::sky_of(const std::vector<Vec3f>& light) const {
   Sky out;
   for (int i = 0; i < BlurLadder::kLevels; ++i)
     if (in_use_[size_t(i)]) blurs_.level(i).apply(light, out.blurred[size_t(i)]);
-  if (!slopes_.rows.empty()) out.harmonics = harmonics_.of(light);
+  if (!diffuse_light_grad_.rows.empty()) out.harmonics = harmonics_.of(light);
   return out;
 }
 
 SplitSystem::Sky SplitSystem::sky_change(const std::vector<Vec3f>& light) const {
   Sky sky = sky_of(light);
-  for (size_t j = 0; j < kHarmonics; ++j) sky.harmonics[j] += -slopes_.light[j];
+  for (size_t j = 0; j < kHarmonics; ++j) sky.harmonics[j] += -diffuse_light_grad_.light[j];
   return sky;
 }
 
@@ -87,7 +87,8 @@ Vec3f SplitSystem::predict(size_t i, const SplitUnknowns& x, const Sky& sky) con
   const SplitRow& row = rows_[i];
   const Optics& o = optics_[i];
   Vec3f diffuse = between(x.diffuse, row.vertices, row.barycentric) * row.diffuse_light;
-  if (!slopes_.rows.empty()) diffuse += slopes_.rows[i].gain * dot(slopes_.rows[i].by_light, sky.harmonics);
+  if (!diffuse_light_grad_.rows.empty())
+    diffuse += diffuse_light_grad_.rows[i].gain * dot(diffuse_light_grad_.rows[i].d_light, sky.harmonics);
   diffuse = diffuse * o.diffuse_view;
   if (row.blocked)
     return diffuse +
@@ -136,9 +137,10 @@ void SplitSystem::add_row(size_t i, Vec3f y, RowSums& sum) const {
   const Optics& o = optics_[i];
   const Vec3f here = y * row.diffuse_light * o.diffuse_view;
   for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += here * row.barycentric[k];
-  if (!slopes_.rows.empty()) {
-    const Vec3f by_light = y * slopes_.rows[i].gain * o.diffuse_view;
-    for (size_t j = 0; j < kHarmonics; ++j) sum.harmonics[j] += by_light * slopes_.rows[i].by_light[j];
+  if (!diffuse_light_grad_.rows.empty()) {
+    const Vec3f weight = y * diffuse_light_grad_.rows[i].gain * o.diffuse_view;
+    for (size_t j = 0; j < kHarmonics; ++j)
+      sum.harmonics[j] += weight * diffuse_light_grad_.rows[i].d_light[j];
   }
   if (row.blocked) {
     const Vec3f g = y * o.gain() * row.far_diffuse_light;
@@ -161,7 +163,7 @@ void SplitSystem::gather_light(const std::vector<RowSums>& parts, std::vector<Ve
     for (size_t i = 0; i < cells(); ++i) out[i] += light[i];
   }
   for (const RowSums& part : parts)
-    if (!slopes_.rows.empty()) harmonics_.add_transposed(part.harmonics, out);
+    if (!diffuse_light_grad_.rows.empty()) harmonics_.add_transposed(part.harmonics, out);
 }
 
 template <class F>
@@ -214,9 +216,9 @@ void SplitSystem::normal(const SplitUnknowns& x, SplitUnknowns& out) const {
 void SplitSystem::right_side(SplitUnknowns& out) const {
   // Minus the constant term of the linearization.
   const auto constant = [&](size_t row) {
-    if (slopes_.rows.empty()) return Vec3f{0, 0, 0};
-    const DiffuseLightGrad::OfRow& s = slopes_.rows[row];
-    return s.gain * dot(s.by_light, slopes_.light) * (-optics_[row].diffuse_view);
+    if (diffuse_light_grad_.rows.empty()) return Vec3f{0, 0, 0};
+    const DiffuseLightGrad::OfRow& s = diffuse_light_grad_.rows[row];
+    return s.gain * dot(s.d_light, diffuse_light_grad_.light) * (-optics_[row].diffuse_view);
   };
   accumulate([&](size_t row) { return rows_[row].color - constant(row); }, out);
 }

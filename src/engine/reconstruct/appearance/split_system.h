@@ -17,8 +17,8 @@ namespace cei3d {
 // Derivative of the rows' diffuse radiance by a turning light, in spherical harmonics.
 struct DiffuseLightGrad {
   struct OfRow {
-    Harmonics by_light;  // derivative of (irradiance over its mean), times that mean
-    Vec3f gain;          // D over the mean irradiance
+    Harmonics d_light;  // derivative of (irradiance over its mean), times that mean
+    Vec3f gain;         // D over the mean irradiance
   };
   std::vector<OfRow> rows;  // #rows; empty: the light does not turn
   HarmonicLight light{};    // the light at which the derivative was taken
@@ -50,7 +50,7 @@ class SplitSystem {
   // Metals have no D, and rows on metals whose mirror ray is blocked are not used.
   void set_materials(SplitMaterials);
   const SplitMaterials& materials() const { return materials_; }
-  void set_diffuse_light_grad(DiffuseLightGrad slopes) { slopes_ = std::move(slopes); }
+  void set_diffuse_light_grad(DiffuseLightGrad grad) { diffuse_light_grad_ = std::move(grad); }
 
   // Improves x by rounds of conjugate gradients, with light and D >= 0, and clipped channels as lower bounds.
   void solve(SplitUnknowns& x, int rounds, int steps);
@@ -106,7 +106,7 @@ class SplitSystem {
   std::vector<std::array<uint32_t, 2>> edges_;
   mutable BlurLadder blurs_;
   LightHarmonics harmonics_;
-  DiffuseLightGrad slopes_;
+  DiffuseLightGrad diffuse_light_grad_;
   SplitMaterials materials_;
   std::vector<Optics> optics_;  // #rows
   std::array<bool, BlurLadder::kLevels> in_use_{};

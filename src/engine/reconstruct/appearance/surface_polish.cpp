@@ -45,7 +45,7 @@ class Polish {
     std::vector<Vec3f> d_normals = lighting_.grad(batch, light, colors_, d_radiance_).d_normal, points;
     std::vector<float> d_values;
     for (Vec3f& d : d_normals) d = d * options_.weight;
-    add_value_slopes(stage_.sdf().config(), positions, d_normals, edges_, points, d_values);
+    add_value_grads(stage_.sdf().config(), positions, d_normals, edges_, points, d_values);
     return stage_.step(options_.first_step + step, options_.from + (1 - options_.from) * share,
                        {points, d_values}, progress_);
   }

@@ -35,7 +35,7 @@ struct GeometryStageProbe {
     }
     return out;
   }
-  static GeometryStats accumulate(GeometryStage& stage, double u, const ValueSlopes& more) {
+  static GeometryStats accumulate(GeometryStage& stage, double u, const ValueGrads& more) {
     return stage.accumulate(stage.step_at(0, u), more);
   }
   static ParamSet& sdf(GeometryStage& stage) { return stage.sdf_.params(); }
@@ -48,7 +48,7 @@ struct GeometryStageProbe {
 namespace {
 
 using P = Dual<double>;  // derivative by a parameter
-using S = Dual<P>;       // ... and by a coordinate of a point
+using S = Dual<P>;       // derivative by a parameter and a coordinate of a point
 using Params = std::vector<std::vector<P>>;
 
 constexpr uint64_t kSeed = 5;
@@ -244,7 +244,7 @@ struct Setting {
   GeometryOptions options = tiny_networks();
   bool anchored = false;
   float matte_until = 0;
-  bool slopes = false;  // somebody else's loss, too
+  bool value_grads = false;  // somebody else's loss, too
 };
 
 class GradientOf {
@@ -252,17 +252,17 @@ class GradientOf {
   explicit GradientOf(const Setting& setting)
       : setting_(setting), stage_(device_, pixels_, setting.options, kSeed) {
     stage_.prefit({start_, setting.anchored, setting.matte_until});
-    // So that neither features nor their slopes are small.
+    // So that neither features nor their derivatives are small.
     for (Param& p : GeometryStageProbe::sdf(stage_).all())
       if (p.name.starts_with("encoding"))
         for (size_t i = 0; i < p.count(); ++i) p.value[i] += 0.05f * Rng(9, 1, i).normal();
-    for (uint64_t i = 0; setting.slopes && i < 600; ++i) {
+    for (uint64_t i = 0; setting.value_grads && i < 600; ++i) {
       Rng rng(7, 0, i);
       points_.push_back(Vec3f{rng.uniform(), rng.uniform(), rng.uniform()} * 1.6f - Vec3f{0.8f, 0.8f, 0.8f});
-      slopes_.push_back(0.1f * rng.normal());
+      value_grads_.push_back(0.1f * rng.normal());
     }
     chunks_ = GeometryStageProbe::chunks(stage_, kPosition);
-    stats_ = GeometryStageProbe::accumulate(stage_, kPosition, {points_, slopes_});
+    stats_ = GeometryStageProbe::accumulate(stage_, kPosition, {points_, value_grads_});
   }
 
   void expect_samples() const {
@@ -285,15 +285,15 @@ class GradientOf {
   }
 
  private:
-  P loss(const Reference& reference, bool slopes = true) const {
+  P loss(const Reference& reference, bool value_grads = true) const {
     GeometrySchedule s = schedule_at(setting_.options, kPosition);
     s.view_dependent = kPosition >= setting_.matte_until;
     if (!setting_.anchored && !setting_.options.hold_start) s.anchor = 0;
     P sum(0.0);
     for (const auto& chunk : chunks_) sum += reference.rays_loss(chunk, s);
     if (setting_.options.hold_start) sum += reference.hold_loss(s);
-    for (size_t i = 0; slopes && i < points_.size(); ++i)
-      sum += P(double(slopes_[i])) * reference.distance(points_[i]);
+    for (size_t i = 0; value_grads && i < points_.size(); ++i)
+      sum += P(double(value_grads_[i])) * reference.distance(points_[i]);
     return sum;
   }
 
@@ -334,7 +334,7 @@ class GradientOf {
   DistanceGrid start_ = ball();
   GeometryStage stage_;
   std::vector<Vec3f> points_;
-  std::vector<float> slopes_;
+  std::vector<float> value_grads_;
   std::vector<GeometryStageProbe::Chunk> chunks_;
   GeometryStats stats_;
 };
@@ -387,7 +387,7 @@ TEST(GeometryGradient, OfTheHeldStart) {
 
 TEST(GeometryGradient, OfAllTogetherAndALossFromOutside) {
   Setting s{"all"};
-  s.anchored = s.options.hold_start = s.slopes = true;
+  s.anchored = s.options.hold_start = s.value_grads = true;
   expect_gradient(s);
 }
 

@@ -92,10 +92,10 @@ GeometryStats GeometryStage::ray_gradients(const Step& step, int chunk, Work& w,
   return stats;
 }
 
-void GeometryStage::slope_gradients(const Step& step, const ValueSlopes& more, Work& w,
+void GeometryStage::value_gradients(const Step& step, const ValueGrads& more, Work& w,
                                     ChunkGradients& g) const {
   w.values.gradient(
-      step.networks, more.points, [&](int i, float) { return more.slopes[i]; }, g);
+      step.networks, more.points, [&](int i, float) { return more.d_values[i]; }, g);
 }
 
 GeometryStats GeometryStage::hold_gradients(const Step& step, Work& w, ChunkGradients& g) const {
@@ -111,7 +111,7 @@ GeometryStats GeometryStage::hold_gradients(const Step& step, Work& w, ChunkGrad
   return stats;
 }
 
-GeometryStats GeometryStage::accumulate(const Step& step, const ValueSlopes& more) {
+GeometryStats GeometryStage::accumulate(const Step& step, const ValueGrads& more) {
   constexpr int kBlock = PointValues::kBlock;
   const int ray_chunks = options_.rays / kChunkRays;
   const int value_chunks = (int(more.points.size()) + kBlock - 1) / kBlock;
@@ -126,7 +126,7 @@ GeometryStats GeometryStage::accumulate(const Step& step, const ValueSlopes& mor
     } else if (c < ray_chunks + value_chunks) {
       const size_t first = size_t(c - ray_chunks) * kBlock,
                    n = std::min<size_t>(kBlock, more.points.size() - first);
-      slope_gradients(step, {more.points.subspan(first, n), more.slopes.subspan(first, n)}, w,
+      value_gradients(step, {more.points.subspan(first, n), more.d_values.subspan(first, n)}, w,
                       sdf_gradients_[c]);
     } else {
       stats[c] = hold_gradients(step, w, sdf_gradients_[c]);
@@ -145,8 +145,7 @@ GeometryStats GeometryStage::accumulate(const Step& step, const ValueSlopes& mor
   return total;
 }
 
-GeometryStats GeometryStage::step(int64_t index, double u, const ValueSlopes& more,
-                                  const Progress& progress) {
+GeometryStats GeometryStage::step(int64_t index, double u, const ValueGrads& more, const Progress& progress) {
   StepTimes::process(times_, StepPart::occupancy, [&] { refresh_grid(index, u, progress); });
   const GeometryStats stats = accumulate(step_at(index, u), more);
   StepTimes::process(times_, StepPart::adam, [&] { optimizer_.step(device_, rate_at(options_, u)); });

@@ -107,7 +107,7 @@ void TracedHits::backward(const Device& device, std::span<const float> d_depths,
     out.d_values.push_back(d_values[i]);
     d_gradients.push_back(load_planes<float>(d_planes.data(), in.stride, int(i)));
   }
-  add_value_slopes(config_, positions_of(hits_), d_gradients, edges_, out.points, out.d_values);
+  add_value_grads(config_, positions_of(hits_), d_gradients, edges_, out.points, out.d_values);
 }
 
 }  // namespace cei3d

@@ -71,11 +71,11 @@ Image blurred(const Image& image, int radius) {
 }
 
 struct Sampled {
-  Vec3d color, by_x, by_y;  // and its derivatives by the position, in pixels
+  Vec3d color, d_x, d_y;  // and its derivatives by the position, in pixels
   double known;
 };
 
-// Bilinear at a continuous position, with the slopes of the same interpolation.
+// Bilinear at a continuous position, with the derivatives of the same interpolation.
 Sampled sample(const Image& image, double u, double v) {
   const double x = std::clamp(u - 0.5, 0.0, image.width - 1.001),
                y = std::clamp(v - 0.5, 0.0, image.height - 1.001);
@@ -89,8 +89,8 @@ Sampled sample(const Image& image, double u, double v) {
   };
   for (int k = 0; k < 3; ++k) {
     s.color[k] = mix(k);
-    s.by_x[k] = (1 - fy) * (b[k] - a[k]) + fy * (d[k] - c[k]);
-    s.by_y[k] = (1 - fx) * (c[k] - a[k]) + fx * (d[k] - b[k]);
+    s.d_x[k] = (1 - fy) * (b[k] - a[k]) + fy * (d[k] - c[k]);
+    s.d_y[k] = (1 - fx) * (c[k] - a[k]) + fx * (d[k] - b[k]);
   }
   s.known = image.channels > 3 ? mix(3) : 1;
   return s;
@@ -112,13 +112,13 @@ void add_point(const Camera& camera, const Point& p, const Image& model, const I
   if (at.z <= 0 || !inside(at.x, photograph.width) || !inside(at.y, photograph.height)) return;
   const Sampled got = sample(photograph, at.x, at.y), want = sample(model, p.x + 0.5, p.y + 0.5);
   if (got.known < 0.999) return;
-  const MotionSlopes slopes = motion_slopes(camera, p.at);
-  const Vector6 x = vector_of(slopes.turn[0], slopes.shift[0]),
-                y = vector_of(slopes.turn[1], slopes.shift[1]);
+  const MotionGrad grad = motion_grad(camera, p.at);
+  const Vector6 x = vector_of(grad.d_turn[0], grad.d_shift[0]),
+                y = vector_of(grad.d_turn[1], grad.d_shift[1]);
   for (int c = 0; c < 3; ++c) {
     const double r = got.color[c] - want.color[c], w = std::min(1.0, kHuber / std::max(std::abs(r), 1e-9));
-    // The mean slope of both images: the step is then right to second order [Malis 2004].
-    const Vector6 row = 0.5 * (got.by_x[c] + want.by_x[c]) * x + 0.5 * (got.by_y[c] + want.by_y[c]) * y;
+    // The mean gradient of both images: the step is then right to second order [Malis 2004].
+    const Vector6 row = 0.5 * (got.d_x[c] + want.d_x[c]) * x + 0.5 * (got.d_y[c] + want.d_y[c]) * y;
     e.matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, w);
     e.right -= w * r * row;
     e.squares += w * r * r;
@@ -153,9 +153,9 @@ RigidMotion motion_of(const Vector6& v) { return {{v(0), v(1), v(2)}, {v(3), v(4
 MotionInformation information_of(const Camera& camera, std::span<const Vec3d> points) {
   MotionInformation sum{};
   for (const Vec3d p : points) {
-    const MotionSlopes s = motion_slopes(camera, p);
+    const MotionGrad grad = motion_grad(camera, p);
     for (int k = 0; k < 2; ++k) {
-      const Vector6 row = vector_of(s.turn[k], s.shift[k]);
+      const Vector6 row = vector_of(grad.d_turn[k], grad.d_shift[k]);
       for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j) sum[size_t(i)][size_t(j)] += row(i) * row(j);
     }

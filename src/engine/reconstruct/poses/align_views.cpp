@@ -28,16 +28,16 @@ void keep_frame(std::span<const Camera> cameras, std::vector<Alignment>& views) 
     const RigidMotion& m = views[v].motion;
     const Vec3d c = cameras[v].center;
     // Of the view's six numbers by those of the common motion; the last one is a step along its center.
-    Eigen::Matrix<double, 6, 7> by_common = Eigen::Matrix<double, 6, 7>::Zero();
-    by_common.leftCols<6>().setIdentity();
-    by_common.col(6) << 0, 0, 0, c.x, c.y, c.z;
+    Eigen::Matrix<double, 6, 7> d_common = Eigen::Matrix<double, 6, 7>::Zero();
+    d_common.leftCols<6>().setIdentity();
+    d_common.col(6) << 0, 0, 0, c.x, c.y, c.z;
     Eigen::Matrix<double, 6, 6> weight;
     for (int i = 0; i < 6; ++i)
       for (int j = 0; j < 6; ++j) weight(i, j) = views[v].information[size_t(i)][size_t(j)];
     Eigen::Matrix<double, 6, 1> own;
     own << m.turn.x, m.turn.y, m.turn.z, m.shift.x, m.shift.y, m.shift.z;
-    matrix += by_common.transpose() * weight * by_common;
-    right += by_common.transpose() * weight * own;
+    matrix += d_common.transpose() * weight * d_common;
+    right += d_common.transpose() * weight * own;
   }
   const Vector7 common = matrix.ldlt().solve(right);
   for (size_t v = 0; v < views.size(); ++v) {

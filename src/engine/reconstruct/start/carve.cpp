@@ -20,10 +20,10 @@ constexpr float kDark = 0.01f;  // a ray ends where less light is left
 
 using Cell = std::array<float, 4>;  // density, display-encoded color
 
-struct Slope {
+struct CellGrad {
   uint32_t cell;
   float light;  // transmittance at which the ray reached the cell
-  Cell d;       // of the loss
+  Cell d;       // derivative of the loss by the cell's values
 };
 
 class Fog {
@@ -41,7 +41,7 @@ class Fog {
         place_.push_back(uint32_t(i));
       }
     cells_.assign(place_.size(), {options.density, 0.5f, 0.5f, 0.5f});
-    for (auto* v : {&slope_, &mean_, &square_}) v->assign(place_.size(), {});
+    for (auto* v : {&grad_, &mean_, &square_}) v->assign(place_.size(), {});
     lit_.assign(place_.size(), 0);
   }
 
@@ -53,9 +53,9 @@ class Fog {
     });
     const bool settled = step > options_.steps * 3 / 4;
     std::vector<uint32_t> touched;
-    for (const auto& slopes : chunks_)
-      for (const Slope& s : slopes) {
-        Cell& sum = slope_[s.cell];
+    for (const auto& grads : chunks_)
+      for (const CellGrad& s : grads) {
+        Cell& sum = grad_[s.cell];
         if (sum == Cell{}) touched.push_back(s.cell);
         for (int k = 0; k < 4; ++k) sum[k] += s.d[k];
         if (settled) lit_[s.cell] = std::max(lit_[s.cell], s.light);
@@ -83,7 +83,7 @@ class Fog {
   }
 
   // One pixel's ray: its loss is |color - image|^2 / 2 over white, and the same of the opacity.
-  void trace(Rng rng, std::vector<Slope>& out) const {
+  void trace(Rng rng, std::vector<CellGrad>& out) const {
     const Pixel& p = pixels_.pixels()[rng.below(uint32_t(pixels_.pixels().size()))];
     const float u = rng.uniform(), v = rng.uniform();
     const Ray ray = pixels_.cameras()[p.view].ray(p.x + u, p.y + v);
@@ -106,7 +106,7 @@ class Fog {
     const float error_opacity = options_.opacity_weight * (1 - light - target.alpha);
     Vec3f behind{light, light, light};  // color from the rest of the ray
     for (size_t k = out.size(); k-- > first;) {
-      Slope& s = out[k];
+      CellGrad& s = out[k];
       const Cell& c = cells_[s.cell];
       const float weight = s.d[1], through = s.light - weight;
       s.d[0] = error_opacity * size_ * light;
@@ -124,13 +124,13 @@ class Fog {
                            options_.color_rate};
     const float high[] = {3 / size_, 1, 1, 1};
     for (int k = 0; k < 4; ++k) {
-      const float d = slope_[i][k];
+      const float d = grad_[i][k];
       float &m = mean_[i][k], &v = square_[i][k];
       m = 0.8f * m + 0.2f * d;
       v = 0.95f * v + 0.05f * d * d;
       cells_[i][k] = std::clamp(cells_[i][k] - decay * rates[k] * m / (std::sqrt(v) + 1e-7f), 0.0f, high[k]);
     }
-    slope_[i] = {};
+    grad_[i] = {};
   }
 
   const PixelStore& pixels_;
@@ -139,9 +139,9 @@ class Fog {
   float size_;                   // of a cell
   std::vector<uint32_t> id_;     // of the hull's cells among those inside, or kNone
   std::vector<uint32_t> place_;  // and back
-  std::vector<Cell> cells_, slope_, mean_, square_;
+  std::vector<Cell> cells_, grad_, mean_, square_;
   std::vector<float> lit_;  // maximum light that reached the cell in the last steps
-  std::vector<std::vector<Slope>> chunks_;
+  std::vector<std::vector<CellGrad>> chunks_;
 };
 
 // Cells next to one that has `value` (edges and corners count) take it.

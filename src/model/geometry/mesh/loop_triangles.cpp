@@ -12,10 +12,10 @@ constexpr size_t kMaxCorners = 200;  // time grows with the cube
 using Triangles = std::vector<std::array<uint32_t, 3>>;
 
 // Dynamic programming over the sub-polygons i .. j, whose last side is the diagonal j -> i.
-class LeastArea {
+class MinArea {
  public:
   // corners: indices into the loop, in its order.
-  LeastArea(std::span<const Vec3f> loop, std::vector<uint32_t> corners, const IsJoined& joined)
+  MinArea(std::span<const Vec3f> loop, std::vector<uint32_t> corners, const IsJoined& joined)
       : loop_(loop), corners_(std::move(corners)), n_(corners_.size()), cost_(n_ * n_, 0), apex_(n_ * n_, 0) {
     for (size_t span = 2; span < n_; ++span)
       for (size_t i = 0; i + span < n_; ++i) solve(i, i + span, joined);
@@ -74,9 +74,9 @@ std::vector<std::array<uint32_t, 3>> triangulate_loop(std::span<const Vec3f> loo
     chords.push_back(uint32_t(begin));
     std::vector<uint32_t> run;
     for (size_t k = begin; k <= end; ++k) run.push_back(uint32_t(k % n));
-    if (run.size() > 2) LeastArea(loop, std::move(run), joined).collect(triangles);
+    if (run.size() > 2) MinArea(loop, std::move(run), joined).collect(triangles);
   }
-  LeastArea(loop, std::move(chords), joined).collect(triangles);
+  MinArea(loop, std::move(chords), joined).collect(triangles);
   return triangles;
 }
 

@@ -94,9 +94,8 @@ void sdf_normals(const Device& device, const Field& sdf, std::span<const Vec3f> 
   for (size_t i = 0; i < x.size(); ++i) out[i] = normalize(gradients[i]);
 }
 
-void add_value_slopes(const FieldConfig& config, std::span<const Vec3f> x, std::span<const Vec3f> d_gradients,
-                      std::span<const float> edges, std::vector<Vec3f>& points,
-                      std::vector<float>& d_values) {
+void add_value_grads(const FieldConfig& config, std::span<const Vec3f> x, std::span<const Vec3f> d_gradients,
+                     std::span<const float> edges, std::vector<Vec3f>& points, std::vector<float>& d_values) {
   const NormalSteps steps = normal_steps(config);
   const auto add = [&](size_t i, float share, float step) {
     if (share == 0) return;

@@ -34,7 +34,7 @@ std::vector<Vec3f> sdf_gradients_along(const Device&, const Field& sdf, std::spa
 // Adjoint of sdf_gradients(): appends the points whose field values enter the gradients, and dL/d(those
 // values), from d_gradients. Takes `edges`, #N, as constant. For gradients of length one and d_gradients
 // tangent to the surface it is the adjoint of sdf_normals(), too.
-void add_value_slopes(const FieldConfig&, std::span<const Vec3f> x, std::span<const Vec3f> d_gradients,
-                      std::span<const float> edges, std::vector<Vec3f>& points, std::vector<float>& d_values);
+void add_value_grads(const FieldConfig&, std::span<const Vec3f> x, std::span<const Vec3f> d_gradients,
+                     std::span<const float> edges, std::vector<Vec3f>& points, std::vector<float>& d_values);
 
 }  // namespace cei3d

@@ -98,7 +98,7 @@ TEST(SdfNormals, AdjointTellsWhatAChangeOfTheFieldDoesToALoss) {
     slopes.push_back(edges[i] == edges_moved[i] ? along : Vec3f{0, 0, 0});
     change += dot(slopes[i], n_moved[i] - n[i]);
   }
-  add_value_slopes(field.config(), x, slopes, edges, points, d_values);
+  add_value_grads(field.config(), x, slopes, edges, points, d_values);
   const std::vector<float> before = first_output(d, field, points), after = first_output(d, moved, points);
   double predicted = 0;
   for (size_t i = 0; i < points.size(); ++i) predicted += double(d_values[i]) * (after[i] - before[i]);

@@ -99,7 +99,7 @@ TEST(TraceField, RaysBesideTheUnitSphereMiss) {
   EXPECT_NEAR(found.value, 1, 1e-5);
 }
 
-TEST(LeastAlong, IsTheNearestPointOfARayToASphere) {
+TEST(LowestAlong, IsTheNearestPointOfARayToASphere) {
   const std::vector<Ray> all = rays(100);
   const std::vector<FieldTrace> lowest = lowest_along(make_device("cpu"), sphere(), all);
   for (size_t i = 0; i < all.size(); ++i) {
