@@ -9,7 +9,7 @@ layout(location = 0) in vec4 aPosition;
 layout(location = 1) in vec2 aNormal;
 layout(location = 2) in vec4 aAlbedo;
 layout(location = 3) in vec4 aMaterial;
-layout(location = 4) in vec4 aOpenness;
+layout(location = 4) in vec4 aVisibility;
 layout(location = 5) in uint aBounce;
 layout(location = 6) in vec4 aVisibility0;
 layout(location = 7) in vec4 aVisibility1;
@@ -17,7 +17,7 @@ layout(location = 8) in vec4 aVisibility2;
 uniform mat4 uClip;
 uniform vec3 uBoxMin, uBoxSize;  // relative to the camera
 uniform float uVisibilityScale;
-out vec3 vPosition, vNormal, vOpenness, vBounce, vMaterial;
+out vec3 vPosition, vNormal, vVisibility, vBounce, vMaterial;
 out vec4 vAlbedo, vVisibility1, vVisibility2;
 out float vVisibility0;
 flat out int vPart;
@@ -37,7 +37,7 @@ void main() {
   vNormal = fromOctahedron(aNormal);
   vAlbedo = vec4(aAlbedo.rgb * aAlbedo.rgb, aAlbedo.a);
   vMaterial = aMaterial.xyz;
-  vOpenness = aOpenness.rgb;
+  vVisibility = aVisibility.rgb;
   vBounce = fromSharedExponent(aBounce);
   vVisibility0 = aVisibility0.x * uVisibilityScale;
   vVisibility1 = vec4(aVisibility0.yzw, aVisibility1.x) * uVisibilityScale;
@@ -54,7 +54,7 @@ const surfaceWith = (before, color) => `#version 300 es
 precision highp float;
 precision highp int;
 precision highp sampler3D;
-in vec3 vPosition, vNormal, vOpenness, vBounce, vMaterial;
+in vec3 vPosition, vNormal, vVisibility, vBounce, vMaterial;
 in vec4 vAlbedo, vVisibility1, vVisibility2;
 in float vVisibility0;
 flat in int vPart;
@@ -135,7 +135,7 @@ vec3 lit(vec3 n, vec3 v, float roughness, float specular, float metalness) {
   float blocked = 1.0 - visibility(n, vec2(2.0 / 3.0, 0.25));
   vec3 object = vBounce / (kPi * max(blocked, 0.05));
   vec3 reflected = sky * free + object * (1.0 - free);
-  vec3 irradiance = texture(uIrradiance, octahedral(uRoom * n, uIrradianceSide)).rgb * vOpenness + vBounce;
+  vec3 irradiance = texture(uIrradiance, octahedral(uRoom * n, uIrradianceSide)).rgb * vVisibility + vBounce;
   vec3 color = albedo * irradiance * ((1.0 - metalness) / kPi * surface.z) +
                ((albedo * metalness + dielectric) * surface.x + surface.y) * reflected;
   return mix(max(color, 0.0), albedo, vAlbedo.a);

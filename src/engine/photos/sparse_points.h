@@ -13,11 +13,11 @@ namespace cei3d {
 
 struct SparsePoints {
   std::vector<Vec3d> positions;  // capture frame
-  struct Seen {
+  struct Observation {
     uint32_t point;
     Vec2f pixel;  // of the photograph
   };
-  std::vector<std::vector<Seen>> views;  // one for each view: the points that it shows
+  std::vector<std::vector<Observation>> views;  // one for each view: the points that it shows
 };
 SparsePoints sparse_points(std::span<const View> views);
 

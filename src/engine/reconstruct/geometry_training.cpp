@@ -148,14 +148,14 @@ class Training {
 
 // Sum of squared differences from the part of the photograph that begins at (column, row), over white,
 // display-encoded.
-double squared_error(const Image& got, const Image& photograph, int column, int row) {
+double squared_error(const Image& rendered, const Image& photograph, int column, int row) {
   double sum = 0;
-  for (int y = 0; y < got.height; ++y)
-    for (int x = 0; x < got.width; ++x) {
+  for (int y = 0; y < rendered.height; ++y)
+    for (int x = 0; x < rendered.width; ++x) {
       const float* want = photograph.at(column + x, row + y);
       for (int c = 0; c < 3; ++c) {
         const float over_white = srgb_from_linear(want[c]) * want[3] + 1 - want[3];
-        sum += square(double(got.at(x, y)[c]) - over_white);
+        sum += square(double(rendered.at(x, y)[c]) - over_white);
       }
     }
   return sum;

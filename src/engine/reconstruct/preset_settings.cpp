@@ -129,7 +129,7 @@ void add_appearance(const Group<AppearanceOptions>& g) {
   add_network(g.part("materials.", &AppearanceOptions::materials));
   g.add("albedo_steps", &AppearanceOptions::albedo_steps, {-1, 1e6}, "steps",
         "Of the albedo under the separated light; -1: by the time")
-      .add("joint_steps", &AppearanceOptions::joint_steps, {-1, 1e6}, "steps",
+      .add("refine_steps", &AppearanceOptions::refine_steps, {-1, 1e6}, "steps",
            "Of albedo, material and light together; -1: by the time")
       .add("lobe_steps", &AppearanceOptions::lobe_steps, {0, 1e6}, "steps",
            "That fit lobes to the separated light", "[paper eq. 12]")

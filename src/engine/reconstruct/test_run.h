@@ -101,7 +101,7 @@ inline Preset shrunken(Preset p) {
   shrink(p.appearance.albedo);
   p.appearance.batch = p.polish.batch = 64;
   p.appearance.albedo_steps = 6;
-  p.appearance.joint_steps = 28;  // two refreshes of the bounce
+  p.appearance.refine_steps = 28;  // two refreshes of the bounce
   p.appearance.lobe_steps = 20;
   p.appearance.roughness = 0.3f;
   p.trial.shapes.cells = p.trial.shapes.stereo_cells = 32;

@@ -169,7 +169,7 @@ std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
 }
 
 IncidentLight<float> Lighting::incident_at(const HitBatch& batch, size_t hit, Vec3f sky_reflection,
-                                           const SelfReflection::Seen& seen) const {
+                                           const SelfReflection::Reflected& seen) const {
   const Mesh& mesh = surface_->mesh();
   const Hit& h = batch.hits[hit];
   const auto& t = mesh.triangles[h.triangle];
@@ -191,7 +191,7 @@ std::vector<IncidentLight<float>> Lighting::incident_light(const HitBatch& batch
   parallel_ranges(int(batch.size()), kBlock, [&](int begin, int end) {
     const HitBatch part = batch.part(begin, end);
     const std::vector<Vec3f> sky = sky_reflection(part);
-    const std::vector<SelfReflection::Seen> object = own.seen_by(part);
+    const std::vector<SelfReflection::Reflected> object = own.seen_by(part);
     for (size_t i = 0; i < part.size(); ++i) out[size_t(begin) + i] = incident_at(part, i, sky[i], object[i]);
   });
   return out;

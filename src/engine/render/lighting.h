@@ -81,7 +81,7 @@ class Lighting {
   ShadingGrads block_grad(const HitBatch&, std::span<const IncidentLight<float>>,
                           std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const;
   IncidentLight<float> incident_at(const HitBatch&, size_t hit, Vec3f sky_reflection,
-                                   const SelfReflection::Seen&) const;
+                                   const SelfReflection::Reflected&) const;
 
   const Device& device_;
   std::shared_ptr<const Surface> surface_;

@@ -168,7 +168,7 @@ Vec3f SelfReflection::sky_over(const HitBatch& batch, size_t hit, const std::vec
   return sum / float(points.size());
 }
 
-std::vector<SelfReflection::Seen> SelfReflection::seen_by(const HitBatch& batch) const {
+std::vector<SelfReflection::Reflected> SelfReflection::seen_by(const HitBatch& batch) const {
   const auto& [hits, materials, turned] = batch;
   Rays rays;
   rays.reserve(hits.size() * kMinLobeRays);
@@ -177,7 +177,7 @@ std::vector<SelfReflection::Seen> SelfReflection::seen_by(const HitBatch& batch)
     add_rays(hits[i], materials[i], uint32_t(i), points.of(hits[i], materials[i]), rays);
   const Met met = met_by(rays, turned);
   const std::vector<Vec3f> radiance = radiance_of(met, turned);
-  std::vector<Seen> out(hits.size());
+  std::vector<Reflected> out(hits.size());
   std::vector<Vec3f> blocked(hits.size());  // radiance of the sky along rays that meet the surface
   for (size_t k = 0; k < met.hits.size(); ++k) {
     const size_t i = met.owner[k];

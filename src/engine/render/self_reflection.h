@@ -23,14 +23,14 @@ class SelfReflection {
   SelfReflection(const Device&, const Surface&, std::span<const VertexLight> vertices, LobePlanes light,
                  const DirectionMap& radiance, const VertexMaterials& seen);
 
-  struct Seen {
+  struct Reflected {
     // Fraction of the sky's mean radiance over the lobe that is not blocked by the surface, per channel.
     Vec3f visibility{1, 1, 1};
     // Mean radiance over the whole lobe of the surface that blocks it; 0 where it is not blocked.
     Vec3f radiance{0, 0, 0};
   };
   // #hits. Each result depends only on its hit and material.
-  std::vector<Seen> seen_by(const HitBatch&) const;
+  std::vector<Reflected> seen_by(const HitBatch&) const;
 
  private:
   struct Rays;

@@ -155,7 +155,7 @@ Appearance appearance(const Device& device, const Scene& scene, std::span<const 
   return appearance_after(device, scene, hits, *memory.shown, memory.lit->look);
 }
 
-Vec3f sent(const Shading& shading, const std::vector<Vec3f>& residual, size_t hit) {
+Vec3f radiance_of(const Shading& shading, const std::vector<Vec3f>& residual, size_t hit) {
   const Vec3f sum = shading.diffuse[hit] + shading.specular[hit] + residual[hit];
   return {std::max(sum.x, 0.0f), std::max(sum.y, 0.0f), std::max(sum.z, 0.0f)};
 }
@@ -181,7 +181,7 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
         albedo += w * look.albedo[i];
         diffuse += w * shading.diffuse[i];
         specular += w * shading.specular[i];
-        rgb += w * sent(shading, residual, i);
+        rgb += w * radiance_of(shading, residual, i);
         normal += w * g.hits[i].normal;
         depth += w * g.depths[i];
         roughness += w * look.material[i].roughness;

@@ -136,15 +136,15 @@ std::string view_look(const Scene& scene, const ViewMesh& view, const Appearance
 }
 
 std::string view_vertex_light(const VertexLight& light, const ViewMesh& view) {
-  std::vector<uint8_t> openness;
+  std::vector<uint8_t> visibility;
   std::vector<uint32_t> bounce;
   for (const uint32_t v : view.vertices) {
-    for (int c = 0; c < 3; ++c) openness.push_back(unorm8(light.visibility[v][c]));
-    openness.push_back(255);
+    for (int c = 0; c < 3; ++c) visibility.push_back(unorm8(light.visibility[v][c]));
+    visibility.push_back(255);
     bounce.push_back(shared_exponent(light.bounce[v]));
   }
   Pack pack("vertex_light");
-  pack.add("openness", openness, 4);
+  pack.add("visibility", visibility, 4);
   pack.add("bounce", bounce, 1);
   return pack.bytes();
 }

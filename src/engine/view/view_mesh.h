@@ -37,7 +37,7 @@ std::string view_look(const Device&, const Scene&, const ViewMesh&);
 // look: appearance_at() of vertex_hits() of the present surface.
 std::string view_look(const Scene&, const ViewMesh&, const Appearance& look);
 
-// "vertex_light": openness u8 [#V, 4], VertexLight::visibility in 255ths; bounce u32 [#V, 1],
+// "vertex_light": visibility u8 [#V, 4], VertexLight::visibility in 255ths; bounce u32 [#V, 1],
 // VertexLight::bounce with a shared exponent. light: at the vertices of the present surface,
 // SceneLight::vertices().
 std::string view_vertex_light(const VertexLight& light, const ViewMesh&);

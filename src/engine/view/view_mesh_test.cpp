@@ -120,10 +120,10 @@ TEST(ViewMesh, VertexLightIsThatOfTheScene) {
   const SceneLight light(device, scene, scene_transports(scene));
   const ViewMesh view = view_mesh(scene);
   const ReadPack pack(view_vertex_light(light.vertices(), view));
-  const auto openness = pack.array<uint8_t>("openness");
+  const auto visibility = pack.array<uint8_t>("visibility");
   const auto bounce = pack.array<uint32_t>("bounce");
   for (size_t i = 0; i < view.vertices.size(); i += 41) {
-    EXPECT_NEAR(float(openness[4 * i]) / 255, light.vertices().visibility[view.vertices[i]].x, 0.003);
+    EXPECT_NEAR(float(visibility[4 * i]) / 255, light.vertices().visibility[view.vertices[i]].x, 0.003);
     EXPECT_EQ(bounce[i], shared_exponent(light.vertices().bounce[view.vertices[i]]));
   }
 }

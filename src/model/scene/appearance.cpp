@@ -13,7 +13,7 @@ constexpr int kGrain = 4096;  // hits per chunk
 
 // One contribution to a hit's albedo.
 struct Op {
-  enum class Kind { branch, base, matter, tint } kind;
+  enum class Kind { branch, base, added, tint } kind;
   int layer;
   uint32_t hit;
   float weight;    // of the color; the rest is the albedo below
@@ -104,16 +104,16 @@ class Walk {
     if (layer.albedo) add(Op::Kind::branch, l, weight, p.position, {});
     if (layer.erase && born_ == 0)
       add(Op::Kind::base, l, weight, in_version(scene_.shape_versions, hit_, 0).position, {});
-    if (layer.erase && born_ > 0) add(Op::Kind::matter, l, weight, {}, matter_color());
+    if (layer.erase && born_ > 0) add(Op::Kind::added, l, weight, {}, own_color());
   }
 
   // For a layer that made this shape version.
   void visit_change(int l, int version) {
     if (r_.layer < 0 && shaped_ == version) r_.layer = l;
-    if (r_.base && born_ == version) add(Op::Kind::matter, l, 1, {}, matter_color());
+    if (r_.base && born_ == version) add(Op::Kind::added, l, 1, {}, own_color());
   }
 
-  Vec3f matter_color() const {
+  Vec3f own_color() const {
     const ShapeVersion& now = *scene_.shape_versions.back();
     const auto& t = now.surface->mesh().triangles[hit_.triangle];
     return now.colors[t[0]] * (1 - hit_.b1 - hit_.b2) + now.colors[t[1]] * hit_.b1 +

@@ -54,7 +54,7 @@ void AppearanceDescent::run(const DescentSchedule& schedule, const DescentStore&
   else
     load(store.from, schedule);
   fit_albedo(schedule, store);
-  fit_jointly(schedule, store);
+  refine(schedule, store);
 }
 
 // The radiance of a sample is linear in its albedo.
@@ -77,18 +77,18 @@ void AppearanceDescent::fit_albedo(const DescentSchedule& schedule, const Descen
 }
 
 // Visibility and bounces are recomputed now and then.
-void AppearanceDescent::fit_jointly(const DescentSchedule& schedule, const DescentStore& store) {
+void AppearanceDescent::refine(const DescentSchedule& schedule, const DescentStore& store) {
   const int refresh = input_.samples.turned.turns ? kTurningRefresh : kRefresh;
   if (!light_) light_.emplace(result_.light, schedule.keep_power);
-  for (; step_ < schedule.albedo + schedule.joint; ++step_) {
+  for (; step_ < schedule.albedo + schedule.refine; ++step_) {
     const int64_t step = step_ - schedule.albedo;
-    const double u = double(step) / schedule.joint;
+    const double u = double(step) / schedule.refine;
     between_steps(store, "light and albedo", 0.5 + 0.5 * u);
     if (step % refresh == 0)
       relight(albedo_.eval3(device_, input_.surface->mesh().positions));
     else
       lighting_->set_lobes(result_.light);
-    joint_step(std::pow(0.1f, float(u)), schedule.joint_albedo_rate);
+    refine_step(std::pow(0.1f, float(u)), schedule.refine_albedo_rate);
   }
 }
 
@@ -130,7 +130,7 @@ void AppearanceDescent::choose_batch() {
   }
 }
 
-void AppearanceDescent::joint_step(float rate, float albedo_rate) {
+void AppearanceDescent::refine_step(float rate, float albedo_rate) {
   choose_batch();
   std::vector<Hit> hits(options_.batch);
   for (int i = 0; i < options_.batch; ++i) hits[i] = input_.samples.hits[batch_[i]];

@@ -14,16 +14,16 @@ namespace cei3d {
 
 // Rates are those of the begin, of the full rates; they fall to a tenth.
 struct DescentSchedule {
-  int albedo = 0, joint = 0;    // steps, one after the other
-  float albedo_rate = 1;        // of the albedo on its own
-  float joint_albedo_rate = 1;  // of the albedo while all descend
-  bool keep_power = false;      // see LightDescent
+  int albedo = 0, refine = 0;    // steps, one after the other
+  float albedo_rate = 1;         // of the albedo on its own
+  float refine_albedo_rate = 1;  // of the albedo while all descend
+  bool keep_power = false;       // see LightDescent
 };
 
 class AppearanceDescent {
  public:
   // result: light and material to begin with; gets those that were reached. bouncing: albedo of the vertices
-  // for bounces, until the joint descent takes its own, #V.
+  // for bounces, until all descend together and it takes its own, #V.
   AppearanceDescent(const Device&, const AppearanceInput&, std::shared_ptr<const Transport>,
                     const AppearanceOptions&, Field albedo, const std::vector<Vec3f>& bouncing,
                     AppearanceResult& result, Progress&);
@@ -34,13 +34,13 @@ class AppearanceDescent {
 
  private:
   void fit_albedo(const DescentSchedule&, const DescentStore&);
-  void fit_jointly(const DescentSchedule&, const DescentStore&);
+  void refine(const DescentSchedule&, const DescentStore&);
   void between_steps(const DescentStore&, const char* what, double done) const;
   void learn_materials(const Field&);
   void relight(std::vector<Vec3f> albedo);
   void light_up();
   void choose_batch();
-  void joint_step(float rate, float albedo_rate);
+  void refine_step(float rate, float albedo_rate);
   void descend_materials(const std::vector<Vec3f>& positions, const std::vector<Material>& d_material,
                          float rate);
   DescentState state() const;
@@ -56,7 +56,7 @@ class AppearanceDescent {
   FieldTrainer albedo_trainer_;
   std::shared_ptr<Field> materials_;  // null: one material, held constant
   std::unique_ptr<FieldTrainer> material_trainer_;
-  std::optional<LightDescent> light_;  // in the joint descent
+  std::optional<LightDescent> light_;  // while all descend
 
   // What visibility, bounces and reflections were last computed from, at the vertices.
   struct {

@@ -39,15 +39,15 @@ constexpr float kAllMetal = 0.97f;  // mean metalness
 
 bool all_metal(const MaterialField& material) { return material.mean().metalness > kAllMetal; }
 
-// Steps of the joint descent (docs/notebook/0023).
-int joint_steps_for(const MaterialField& material, bool brief) {
+// Steps of the descent on albedo, material and light together (docs/notebook/0023).
+int refine_steps_for(const MaterialField& material, bool brief) {
   if (all_metal(material)) return brief ? 120 : 400;
   return material.varying() ? (brief ? 60 : 600) : (brief ? 30 : 400);
 }
 
-// Rate of the albedo in the joint descent, of its full rates. Nothing but the albedo holds the light of
+// Rate of the albedo while all descend, of its full rates. Nothing but the albedo holds the light of
 // metals: at full rates both wander.
-float joint_albedo_rate(const MaterialField& material) { return all_metal(material) ? 0.1f : 1.0f; }
+float refine_albedo_rate(const MaterialField& material) { return all_metal(material) ? 0.1f : 1.0f; }
 
 // Fits a field to the materials of the vertices, at the samples.
 MaterialField fit_materials(const Device& device, const AppearanceInput& input,
@@ -119,9 +119,9 @@ void descend_on_appearance(const Device& device, const AppearanceInput& input,
       {.albedo = options.albedo_steps >= 0 ? options.albedo_steps
                  : brief                   ? 300
                                            : 800,
-       .joint = options.joint_steps >= 0 ? options.joint_steps : joint_steps_for(result.material, brief),
+       .refine = options.refine_steps >= 0 ? options.refine_steps : refine_steps_for(result.material, brief),
        .albedo_rate = 1,
-       .joint_albedo_rate = joint_albedo_rate(result.material),
+       .refine_albedo_rate = refine_albedo_rate(result.material),
        .keep_power = !all_metal(result.material)},
       store);
   result.albedo = std::make_shared<const Field>(descent.take_albedo());

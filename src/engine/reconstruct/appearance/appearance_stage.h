@@ -30,7 +30,7 @@ enum class Effort { brief, full };  // brief: fewer samples and steps, half the 
 struct AppearanceOptions {
   Effort effort = Effort::full;
   int albedo_steps = -1;     // of the albedo field under the separated light; -1: by `effort`
-  int joint_steps = -1;      // of albedo, material and light together; -1: by `effort`
+  int refine_steps = -1;     // of albedo, material and light together; -1: by `effort`
   int lobe_steps = 800;      // of the fit of lobes to the separated light
   int material_steps = 400;  // of the fit of a field to the separated materials
   float roughness = 0;       // > 0: known; 0: searched

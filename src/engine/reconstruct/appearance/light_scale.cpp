@@ -21,9 +21,9 @@ Mat3d scaled(Vec3d a, const Mat3d& m, Vec3d b) {
 
 // The inverse of the covariance of a sample's error. [Sherman and Morrison 1950]
 Mat3d precision_of(const ReflectionSample& s, Vec3f d, const SampleNoise& noise) {
-  const Vec3d w = to_double(s.weight) / noise.color, sent = to_double(d * s.diffuse), u = w * sent;
+  const Vec3d w = to_double(s.weight) / noise.color, diffuse = to_double(d * s.diffuse), u = w * diffuse;
   Mat3d p = diagonal(w);
-  add(p, outer(u, u), -noise.diffuse / (1 + noise.diffuse * dot(sent, u)));
+  add(p, outer(u, u), -noise.diffuse / (1 + noise.diffuse * dot(diffuse, u)));
   return p;
 }
 
@@ -58,10 +58,10 @@ void NoiseSums::add(const std::vector<ReflectionSample>& samples) {
   const Vec3f d = diffuse_of(samples), mean = mean_reflected(samples);
   for (const ReflectionSample& s : samples) {
     const Vec3f root{std::sqrt(s.weight.x), std::sqrt(s.weight.y), std::sqrt(s.weight.z)};
-    const Vec3d sent = to_double(root * d * s.diffuse),
+    const Vec3d diffuse = to_double(root * d * s.diffuse),
                 error = to_double(root * (s.color - s.reflected - d * s.diffuse));
-    const double square = dot(sent, sent),
-                 along = square > 0 ? dot(error, sent) * dot(error, sent) / square : 0;
+    const double square = dot(diffuse, diffuse),
+                 along = square > 0 ? dot(error, diffuse) * dot(error, diffuse) / square : 0;
     reflected_ += to_double(s.weight * (s.reflected - mean) * (s.reflected - mean));
     along_ += along;
     across_ += (dot(error, error) - along) / 2;

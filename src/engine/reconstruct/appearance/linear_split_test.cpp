@@ -350,7 +350,7 @@ AppearanceOptions brief(float roughness) {
   o.effort = Effort::brief;
   o.roughness = roughness;
   o.albedo_steps = 150;
-  o.joint_steps = 12;
+  o.refine_steps = 12;
   return o;
 }
 
@@ -406,7 +406,7 @@ TEST(AppearanceStage, TakesClippedChannelsForLowerBounds) {
   Progress quiet;
   const Device device = make_device();
   AppearanceOptions options = brief(0.3f);
-  options.joint_steps = 50;  // after fewer, colors still move
+  options.refine_steps = 50;  // after fewer, colors still move
   const auto means = [&] {
     const std::vector<Vec3f> got =
         redrawn(device, d, fit_appearance(device, {d.surface, d.samples()}, options, quiet));

@@ -66,7 +66,7 @@ LitSamples::LitSamples(size_t vertices, const std::vector<SplitRow>& rows, std::
   for (uint32_t i = 0; i < rows.size(); ++i) order_[at[nearest_vertex(rows[i])]++] = i;
 }
 
-LitSamples::Seen LitSamples::seen_by(const SplitRow& row, float roughness) const {
+LitSamples::RowLight LitSamples::light_of(const SplitRow& row, float roughness) const {
   const SplitSum<float> s = split_sum(split_sum_table(), row.nv, roughness);
   const auto sky = [&](ReflectionPart part) {
     return radiance_at(sky_, reflected_sky(row, part, roughness, light_height_));
@@ -75,14 +75,14 @@ LitSamples::Seen LitSamples::seen_by(const SplitRow& row, float roughness) const
           row.diffuse_light * diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness)};
 }
 
-// Calls visit(row, its color, Seen) for the vertex' samples that mirror the sky. Returns their number.
+// Calls visit(row, its color, RowLight) for the vertex' samples that mirror the sky. Returns their number.
 template <class F>
 int LitSamples::for_samples(uint32_t vertex, float roughness, const F& visit) const {
   int count = 0;
   for (uint32_t k = start_[vertex]; k < start_[vertex + 1]; ++k) {
     const SplitRow& row = rows_[order_[k]];
     if (row.blocked) continue;
-    visit(row, colors_[order_[k]], seen_by(row, roughness));
+    visit(row, colors_[order_[k]], light_of(row, roughness));
     ++count;
   }
   return count;
@@ -92,11 +92,11 @@ int LitSamples::for_samples(uint32_t vertex, float roughness, const F& visit) co
 int LitSamples::add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float* errors) const {
   const Vec3f black{0, 0, 0}, white{1, 1, 1}, f0 = f0_of(black, kSpecular, 0.0f);
   OneCoefficient dielectric, metal;
-  const int count =
-      for_samples(vertex, BlurLadder::roughness(level), [&](const SplitRow& row, Vec3f color, const Seen& s) {
-        dielectric.add(row.weight, s.diffuse, color - s.fresnel - s.base * f0);
-        metal.add(row.weight, s.base, color - s.fresnel);
-      });
+  const int count = for_samples(vertex, BlurLadder::roughness(level),
+                                [&](const SplitRow& row, Vec3f color, const RowLight& s) {
+                                  dielectric.add(row.weight, s.diffuse, color - s.fresnel - s.base * f0);
+                                  metal.add(row.weight, s.base, color - s.fresnel);
+                                });
   errors[level] = dielectric.error(black, max_diffuse);
   errors[kLevels + level] = metal.error(white * kMinMetal, white * kMaxMetal);
   return count;
@@ -133,7 +133,7 @@ size_t place_of(Vec3f p) {
 std::vector<ReflectionSample> LitSamples::of_dielectric(uint32_t vertex, const Material& m) const {
   const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kSpecular, 0.0f);
   std::vector<ReflectionSample> out;
-  for_samples(vertex, m.roughness, [&](const SplitRow& row, Vec3f color, const Seen& s) {
+  for_samples(vertex, m.roughness, [&](const SplitRow& row, Vec3f color, const RowLight& s) {
     out.push_back({row.weight, s.diffuse, s.base * f0 + s.fresnel, color});
   });
   return out;

@@ -43,11 +43,11 @@ class LitSamples {
   LightScale light_scale(const SplitMaterials&, const std::vector<Vec3f>& positions,
                          const SampleNoise&) const;
   // Light seen by a row if its surface has a given roughness.
-  struct Seen {
+  struct RowLight {
     Vec3f base, fresnel;  // reflected radiance: the part scaled by F0, and the rest
     Vec3f diffuse;        // factor from D to the diffuse radiance of the row
   };
-  Seen seen_by(const SplitRow&, float roughness) const;
+  RowLight light_of(const SplitRow&, float roughness) const;
   int add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float* errors) const;
   std::vector<ReflectionSample> of_dielectric(uint32_t vertex, const Material&) const;
   template <class F>

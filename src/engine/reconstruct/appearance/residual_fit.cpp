@@ -34,7 +34,7 @@ class Trainer {
         samples_(samples),
         seed_(options.seed),
         warm_up_(kWarmUp * options.steps),
-        sent_(radiance_of(device, scene, samples, progress)),
+        radiance_(radiance_of(device, scene, samples, progress)),
         features_(std::make_shared<Field>(*scene.sdf)),
         features_learn_(features_->config().encoding.levels > 0),
         residual_(make_residual(features_learn_ ? features_ : scene.sdf, options.seed)),
@@ -65,8 +65,8 @@ class Trainer {
       for (const uint32_t s : some) hits.push_back(hit(s));
       const std::vector<Vec3f> values = residual_at(device_, residual_, hits);
       for (size_t i = 0; i < some.size(); ++i) {
-        with += squared_error(some[i], sent_[some[i]] + values[i]);
-        without += squared_error(some[i], sent_[some[i]]);
+        with += squared_error(some[i], radiance_[some[i]] + values[i]);
+        without += squared_error(some[i], radiance_[some[i]]);
       }
     }
     const auto psnr = [&](double sum) { return -10 * std::log10(sum / (3 * double(judged.size()))); };
@@ -126,10 +126,10 @@ class Trainer {
                         : h;
   }
 
-  double squared_error(uint32_t sample, Vec3f got) const {
+  double squared_error(uint32_t sample, Vec3f radiance) const {
     double sum = 0;
     for (int c = 0; c < 3; ++c)
-      sum += square(srgb_from_linear(clamp(got[c], 0.0f, 1.0f)) -
+      sum += square(srgb_from_linear(clamp(radiance[c], 0.0f, 1.0f)) -
                     srgb_from_linear(min(samples_.colors[sample][c], 1.0f)));
     return sum;
   }
@@ -138,7 +138,7 @@ class Trainer {
   Vec3f output_grad(uint32_t sample, Vec3f residual) const {
     Vec3f out;
     for (int c = 0; c < 3; ++c)
-      out[c] = display_loss_grad(sent_[sample][c] + residual[c], samples_.colors[sample][c],
+      out[c] = display_loss_grad(radiance_[sample][c] + residual[c], samples_.colors[sample][c],
                                  samples_.is_clipped(sample, c)) /
                float(kBatch);
     return out;
@@ -149,7 +149,7 @@ class Trainer {
   std::vector<uint32_t> training_, validation_;  // samples
   uint64_t seed_;
   double warm_up_;  // steps
-  std::vector<Vec3f> sent_;
+  std::vector<Vec3f> radiance_;
   std::shared_ptr<Field> features_;
   bool features_learn_;
   Residual residual_;

@@ -20,6 +20,6 @@ std::vector<Vec3f> pixel_colors(const Device&, const Field& albedo, std::span<co
 std::vector<Vec3f> radiance_of(const Device&, const Scene&, const SurfaceSamples&, const Progress&);
 
 // Squared error of a pixel, summed over its channels; display-encoded. Both linear.
-double display_error(Vec3f got, Vec3f photo);
+double display_error(Vec3f radiance, Vec3f photo);
 
 }  // namespace cei3d

@@ -31,10 +31,10 @@ DirectLight direct_light(const Transport& transport, const Image& light, const L
 // Irradiance of every vertex from the surface. Metals count as diffuse emitters of their mean reflection.
 std::vector<Vec3f> bounce_of(const Transport& transport, const SplitUnknowns& x,
                              const SplitMaterials& materials, const std::vector<Vec3f>& direct) {
-  std::vector<Vec3f> sent = x.diffuse;
-  for (uint32_t v = 0; v < sent.size(); ++v)
-    if (materials.is_metal(v)) sent[v] = materials.color[v] * direct[v] / kPi;
-  return transport.bounce(sent);
+  std::vector<Vec3f> emitted = x.diffuse;
+  for (uint32_t v = 0; v < emitted.size(); ++v)
+    if (materials.is_metal(v)) emitted[v] = materials.color[v] * direct[v] / kPi;
+  return transport.bounce(emitted);
 }
 
 }  // namespace

@@ -68,10 +68,10 @@ double held_out_psnr(const Device& device, const Scene& scene, const SurfaceSamp
   const std::vector<uint16_t> views = views_of(samples.turned, met);
   const std::vector<Vec3f> radiance =
       radiance_of(device, scene, {hits, {}, {}, footprints, {samples.turned.turns, views}}, progress);
-  std::vector<Vec3f> got(judged.size(), Vec3f{0, 0, 0});
-  for (size_t k = 0; k < radiance.size(); ++k) got[ray_of_hit[k]] = radiance[k];
+  std::vector<Vec3f> of_judged(judged.size(), Vec3f{0, 0, 0});
+  for (size_t k = 0; k < radiance.size(); ++k) of_judged[ray_of_hit[k]] = radiance[k];
   double sum = 1e-12;
-  for (size_t k = 0; k < judged.size(); ++k) sum += display_error(got[k], samples.colors[judged[k]]);
+  for (size_t k = 0; k < judged.size(); ++k) sum += display_error(of_judged[k], samples.colors[judged[k]]);
   return -10 * std::log10(sum / (3 * double(std::max<size_t>(judged.size(), 1))));
 }
 

@@ -110,15 +110,17 @@ void add_point(const Camera& camera, const Point& p, const Image& model, const I
   const Vec3d at = camera.project(p.at);
   const auto inside = [](double u, int size) { return u > 0.5 && u < size - 0.5; };
   if (at.z <= 0 || !inside(at.x, photograph.width) || !inside(at.y, photograph.height)) return;
-  const Sampled got = sample(photograph, at.x, at.y), want = sample(model, p.x + 0.5, p.y + 0.5);
-  if (got.known < 0.999) return;
+  const Sampled shown = sample(photograph, at.x, at.y), rendered = sample(model, p.x + 0.5, p.y + 0.5);
+  if (shown.known < 0.999) return;
   const MotionGrad grad = motion_grad(camera, p.at);
   const Vector6 x = vector_of(grad.d_turn[0], grad.d_shift[0]),
                 y = vector_of(grad.d_turn[1], grad.d_shift[1]);
   for (int c = 0; c < 3; ++c) {
-    const double r = got.color[c] - want.color[c], w = std::min(1.0, kHuber / std::max(std::abs(r), 1e-9));
+    const double r = shown.color[c] - rendered.color[c],
+                 w = std::min(1.0, kHuber / std::max(std::abs(r), 1e-9));
     // The mean gradient of both images: the step is then right to second order [Malis 2004].
-    const Vector6 row = 0.5 * (got.d_x[c] + want.d_x[c]) * x + 0.5 * (got.d_y[c] + want.d_y[c]) * y;
+    const Vector6 row =
+        0.5 * (shown.d_x[c] + rendered.d_x[c]) * x + 0.5 * (shown.d_y[c] + rendered.d_y[c]) * y;
     e.matrix.selfadjointView<Eigen::Lower>().rankUpdate(row, w);
     e.right -= w * r * row;
     e.squares += w * r * r;
@@ -168,10 +170,10 @@ Alignment align_view(const Camera& given, const ModelView& model, const Image& p
   const std::vector<Point> points = points_of(given, model);
   Camera camera = given;
   for (const int blur : kBlurs) {
-    const Image want = blurred(model.srgb, blur), got = blurred(photograph, blur);
+    const Image rendered = blurred(model.srgb, blur), shown = blurred(photograph, blur);
     for (int i = 0; i < options.steps; ++i) {
       Equations e;
-      for (const Point& p : points) add_point(camera, p, want, got, e);
+      for (const Point& p : points) add_point(camera, p, rendered, shown, e);
       const RigidMotion so_far = motion_between(given, camera);
       const Camera next = moved(camera, motion_of(step_of(e, vector_of(so_far.turn, so_far.shift), options)));
       const double way = mean_way(camera, next, points);
