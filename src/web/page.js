@@ -149,7 +149,7 @@ class Page {
     this.mark(Math.max(part, 0));
   }
 
-  /** Of the canvas as it is now. @returns {Camera} */
+  /** The camera of the canvas as it is now. @returns {Camera} */
   camera() {
     const {clientWidth: w, clientHeight: h} = this.canvas;
     const scale = Math.min(window.devicePixelRatio || 1, kMaxPixels / Math.max(w, h, 1));

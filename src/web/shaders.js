@@ -160,8 +160,8 @@ void main() {
   gl_Position = vec4(corner * 4.0 - 1.0, 0.0, 1.0);
 }`;
 
-// Of 2 x 2 samples a pixel, the mean with the weights of a tent of two pixels' width, as the program's own pictures;
-// of one sample, that. From linear to display-encoded color.
+// The mean of a pixel's 2 x 2 samples by the weights of a tent of two pixels' width, as in the program's own pictures; a
+// single sample as it is. From linear to display-encoded color.
 export const filterShader = `#version 300 es
 precision highp float;
 uniform sampler2D uSamples;

@@ -295,7 +295,7 @@ std::vector<BatchWorkReport> reports_of(const WorkOptions& o, Session& session, 
   return out;
 }
 
-// Of several objects, the code that most asks for another attempt.
+// The exit code is that of the object that most needs another attempt.
 void work(const WorkOptions& o, Session& session, Console& console) {
   if (int(!o.index.empty()) + int(!o.id.empty()) + int(o.claim) != 1)
     fail_usage("Say which objects: --index I, --id ID or --claim.");

@@ -99,7 +99,7 @@ EvaluationRequest request_of(const Options& o) {
   return r;
 }
 
-// Of several captures, smaller objects are made only where they are asked for.
+// Where there are several captures, smaller objects are made only if they are asked for.
 EvaluationSetRequest set_of(const Options& o) {
   EvaluationSetRequest set;
   set.each = request_of(o);

@@ -13,7 +13,7 @@ std::string one_line(const std::string& text) {
   return out;
 }
 
-// Of "TEXT:{a,b}", as CLI11 describes a choice.
+// The choices in "TEXT:{a,b}", as CLI11 describes them.
 std::vector<std::string> choices_of(const std::string& type) {
   const size_t begin = type.find('{'), end = type.rfind('}');
   std::vector<std::string> out;

@@ -39,7 +39,7 @@ std::string specification(const OptionNode& option) {
   return out + "'";
 }
 
-// Of the program: whether the command has no option of that name of its own.
+// Whether an option is the program's: the command has none of that name of its own.
 bool is_common(const OptionNode& option, const CommandNode& command) {
   const std::string& name = option.names.back();
   return name != "--version" && std::none_of(command.options.begin(), command.options.end(),

@@ -6,8 +6,8 @@
 
 namespace cei3d {
 
-// Of a program in PREFIX/bin: PREFIX/share/cei3d/samples/spot; of one that was built in the source tree:
-// samples/spot there. program: its file. Error: neither is there.
+// The sample capture: PREFIX/share/cei3d/samples/spot for a program in PREFIX/bin, samples/spot of the source
+// tree for one that was built there. program: its file. Error: neither is there.
 std::filesystem::path demo_sample(const std::filesystem::path& program);
 
 }  // namespace cei3d

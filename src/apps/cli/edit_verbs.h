@@ -17,7 +17,7 @@ std::string stages_text(const EditSummary&);
 
 std::string remove_text(const EditSummary&);
 
-// Of --camera.
+// Help of --camera.
 inline constexpr const char* kCameraHelp =
     "a camera of its own, FILE.json as a render.json with one camera; the scribble or mask has its size";
 

@@ -59,7 +59,7 @@ class MessagesTest : public EditorTest {
  protected:
   void add(const std::string& name, const Json& example) { examples_[name].push_back(example); }
 
-  // Of every kind of edit: their entries in the history differ.
+  // One edit of every kind: their entries in the history differ.
   void edit_all() {
     const auto done = [&](const std::string& op, const Json& params) {
       const HttpResponse r = post("/api/edit", {{"op", op}, {"params", params}});

@@ -66,7 +66,7 @@ struct LobeScene {
     d.launch<SgIrradiance>({planes(), kPoints, normals.data(), out.data()}, kPoints);
     return out;
   }
-  // Of points that get no light the adjoint stands for a free slope, because the forward pass clamps at zero.
+  // Leaves out points that get no light: there the forward pass clamps at zero, but the adjoint does not.
   void leave_out_dark_points(const Device& d) {
     const std::vector<float> e = irradiance(d);
     for (size_t i = 0; i < e.size(); ++i)

@@ -11,7 +11,7 @@ namespace {
 
 using D = Dual<double>;
 
-// Of loss(Vec3<T>), at g.
+// Expects the gradient of loss(Vec3<T>) at g to equal that of dual numbers.
 template <class Loss>
 void expect_gradient(Vec3<double> g, const Loss& loss) {
   const Vec3<double> gradient = loss(g).gradient;

@@ -12,7 +12,7 @@ struct BatchItemStatus {
   bool running = false;  // a worker has it, as far as can be told
 };
 
-// Of all objects, in the order of the manifest, read on all threads of the caller.
+// States of all objects, in the order of the manifest, read on all threads of the caller.
 std::vector<BatchItemStatus> batch_item_states(const BatchCatalog&, const BatchManifest&);
 
 struct BatchStatus {

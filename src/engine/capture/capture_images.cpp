@@ -53,7 +53,8 @@ Image read_mask_file(const View& view) {
   return scaled_to(coverage, c.width, c.height);
 }
 
-// Of the photograph's size, before any lens is undone. Colors need not be decoded to linear for a mask.
+// The mask in the photograph's size, before any lens is undone. Colors need not be decoded to linear for a
+// mask.
 Image file_coverage(const View& view, bool& stated) {
   stated = true;
   if (!view.mask_path.empty()) return read_mask_file(view);

@@ -227,8 +227,8 @@ Explanation explanation(size_t suspect, const Area& object, std::span<const Judg
   return found;
 }
 
-// Of all views that stand out. Where the image of one belongs to the camera of another, that one's image is
-// wrong, too.
+// What explains each view that stands out. Where the image of one belongs to the camera of another, that
+// one's image is wrong, too.
 std::vector<std::string> explanations_of(std::span<const JudgedMask> masks, const SmallMasks& small,
                                          const std::vector<MaskDoubt>& doubts) {
   std::vector<Explanation> found(doubts.size());

@@ -43,7 +43,7 @@ std::vector<Neighbor> neighbors_of(std::span<const Vec3d> directions, std::span<
   return out;
 }
 
-// Of the weighted squares of a function's value at the judged direction and its slopes.
+// Normal equations of the weighted squares, for a function's value at the judged direction and its slopes.
 Matrix4 normal_matrix(const std::vector<Neighbor>& neighbors, const std::vector<double>& weights) {
   Matrix4 m = Matrix4::Zero();
   for (size_t k = 0; k < neighbors.size(); ++k)

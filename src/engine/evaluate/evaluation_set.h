@@ -10,7 +10,8 @@ namespace cei3d {
 
 struct EvaluationSetRequest {
   std::vector<std::filesystem::path> captures;
-  // Of each capture; `capture`, `out` and the edits are filled in: the capture's own edits, or made ones.
+  // What is asked of each capture; `capture`, `out` and the edits (the capture's own, or made ones) are
+  // filled in.
   EvaluationRequest each;
   int seeds = 1;        // objects of each capture, of seeds options.seed, options.seed + 1, ...
   bool boards = false;  // also write_boards()

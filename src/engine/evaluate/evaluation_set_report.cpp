@@ -83,7 +83,7 @@ const EvaluationRow* paint_of(const EvaluationReport& r) {
 }
 const EvaluationRow* part_of(const EvaluationReport& r) { return r.part.empty() ? nullptr : &r.part.front(); }
 
-// Of a capture's seeds.
+// Mean and spread of a score over a capture's seeds.
 Spread score_of(const EvaluatedCapture& c, RowOf row_of, const Score& score) {
   std::vector<double> values;
   for (const EvaluationReport& r : c.reports)
@@ -92,7 +92,7 @@ Spread score_of(const EvaluatedCapture& c, RowOf row_of, const Score& score) {
   return spread_of(values);
 }
 
-// Of the captures' means.
+// Mean and spread of a score over the captures' means.
 Spread mean_of(const std::vector<EvaluatedCapture>& captures, RowOf row_of, const Score& score) {
   std::vector<double> values;
   for (const EvaluatedCapture& c : captures)

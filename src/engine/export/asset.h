@@ -48,7 +48,8 @@ struct Asset {
   Placement placement;
 };
 
-// Of the mean specular strength, F0 = 0.08 specular, for formats that know no other measure.
+// Index that the mean specular strength stands for, F0 = 0.08 specular, for formats that know no other
+// measure.
 double index_of_refraction(const AssetPictures& pictures);
 
 // Single channels as gray pictures, for formats without packed ones. name: "roughness", without suffix.

@@ -89,7 +89,7 @@ TEST_F(MakeAsset, IsTheSurfaceInTheFrameOfTheCapture) {
     EXPECT_NEAR(length(p - Vec3f{1, 2, 3}), kBallRadius / 2, 1e-4);
 }
 
-// Of the fine surface, not of the flat faces.
+// Viewers see the normals of the fine surface, not of the flat faces.
 TEST_F(MakeAsset, NormalsThatAViewerComputesAreThoseOfTheBall) {
   const TexturedMesh& m = made_->asset.mesh;
   size_t seen = 0;

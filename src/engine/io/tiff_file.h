@@ -10,7 +10,7 @@
 namespace cei3d {
 
 ImageSize tiff_size(const std::string& bytes, const std::string& name);
-// Of a channel: 8, 16, or 32 of floating point.
+// Bits of a channel: 8, 16, or 32 of floating point.
 int tiff_bits(const std::string& bytes, const std::string& name);
 
 struct TiffImage {

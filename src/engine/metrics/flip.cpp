@@ -20,8 +20,8 @@ constexpr Vec3d kToXyz[3] = {
     {0.4124564, 0.3575761, 0.1804375}, {0.2126729, 0.7151522, 0.0721750}, {0.0193339, 0.1191920, 0.9503041}};
 constexpr Vec3d kWhite{0.9504700, 1.0000001, 1.0888300};
 
-// Constants of the paper: exponent of color differences; break of their scale and its value there; exponent
-// of feature differences and width of features, in degrees.
+// Constants of Andersson et al.: exponent of color differences; break of their scale and its value there;
+// exponent of feature differences and width of features, in degrees.
 constexpr double kColorExponent = 0.7, kBreak = 0.4, kAtBreak = 0.95, kFeatureExponent = 0.5,
                  kFeatureWidth = 0.082;
 
@@ -126,7 +126,7 @@ Vec3d lab_from_linear(Vec3d c) {
 // [Abasi et al. 2020]
 double hyab(Vec3d a, Vec3d b) { return std::abs(a.x - b.x) + std::hypot(a.y - b.y, a.z - b.z); }
 
-// Of two seen colors, [0, 1].
+// Difference of two filtered colors, [0, 1].
 double color_error(Vec3d a, Vec3d b) {
   static const double largest =
       std::pow(hyab(lab_from_linear({0, 1, 0}), lab_from_linear({0, 0, 1})), kColorExponent);

@@ -9,7 +9,7 @@
 
 namespace cei3d {
 
-// The paper's own viewing conditions: 0.7 m before a display of 3840 pixels and 0.7 m.
+// Viewing conditions of Andersson et al.: 0.7 m before a display of 3840 pixels and 0.7 m.
 inline constexpr double kFlipPixelsPerDegree = 0.7 * 3840 / 0.7 * 3.14159265358979 / 180;
 
 // Error of each pixel, [0, 1], 0: no difference can be seen. reference, test: RGB of one size, sRGB-encoded,

@@ -51,7 +51,7 @@ Plane blur(const Plane& in) {
   return out;
 }
 
-// Of each window; see blur().
+// SSIM of each window; see blur().
 Plane ssim_map(const Image& a, const Image& b, int c) {
   const Plane ma = blur(plane(a, c, nullptr, 0)), mb = blur(plane(b, c, nullptr, 0));
   const Plane aa = blur(plane(a, c, &a, c)), bb = blur(plane(b, c, &b, c));

@@ -156,8 +156,8 @@ class Project {
   Scene with_results(const Scene& base, std::span<const StoredResult>) const;  // the base and those
   void collect_garbage();
 
-  // Of the layers' regions and networks: a thousand strokes. Where the layers of one view do not fit, each
-  // stroke reads most of them again.
+  // Memory for the layers' regions and networks: a thousand strokes. Where the layers of one view do not fit,
+  // each stroke reads most of them again.
   static constexpr size_t kMaxLayerBytes = size_t(128) << 20;
   std::filesystem::path folder_;
   ProjectLock lock_;

@@ -54,7 +54,7 @@ const EditLayer& SceneCache::kept(const std::string& key, size_t i,
   return layers_.emplace(key, layer(i)).first->second;
 }
 
-// Of layers that this stack does not have, a few stay for the next one.
+// Forgets layers that this stack does not have, but for a few that the next one may need.
 void SceneCache::drop_others(std::span<const std::string> layer_keys) {
   constexpr size_t kFew = 64;
   if (layers_.size() <= layer_keys.size() + kFew) return;

@@ -43,7 +43,7 @@ class PixelStore {
   Target target(const Pixel&) const;
   // Bit c: channel c is at the upper limit of its file, its radiance may be higher.
   uint8_t clipped(size_t pixel) const;
-  // Of each view, row-major: kObject where alpha > 0.5, kUnknown where alpha < 0 (visual_hull.h).
+  // The mask of each view, row-major: kObject where alpha > 0.5, kUnknown where alpha < 0 (visual_hull.h).
   const std::vector<std::vector<uint8_t>>& masks() const { return masks_; }
   // Ray through the center of a pixel plus `away` (pixels), unit frame.
   Ray ray(const Pixel& p, Vec2f away = {0, 0}) const {

@@ -9,7 +9,8 @@
 
 namespace cei3d {
 
-// Of a run by steps all seconds are 0: no limit, the step counts decide.
+// How much time and how many steps each stage gets. In a run by steps all seconds are 0: no limit, the step
+// counts decide.
 struct Plan {
   int trial_steps = 0;    // of each training that tries one of three start shapes; 0: the visual hull
   double geometry = 0;    // s, the comparison of starts included

@@ -50,7 +50,7 @@ struct Owner {
   C own;
 };
 
-// Of an object of one material under a light that stands still.
+// A run on an object of one material under a light that stands still.
 class SmallRun : Owner<BoxCapture>, public AnyRun {
  public:
   SmallRun() : AnyRun(own.capture(), own) {}

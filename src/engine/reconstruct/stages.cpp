@@ -16,9 +16,9 @@ namespace cei3d {
 
 namespace {
 
-// Of pixels; the albedo's refinements take 1, 2, ...
+// Numbers of random subsets of the pixels; the albedo's refinements take 1, 2, ...
 constexpr uint64_t kResidualSubset = 1000, kJointSubset = 1001;
-// Of the joint descent's time; the rest is hits, a mesh and the judgment.
+// Share of the joint stage's time that is descent; the rest is hits, a mesh and the judgment.
 constexpr double kJointDescentShare = 0.7;
 constexpr double kMinJointGain = 0.02;   // dB on pixels that the joint descent does not see
 constexpr float kHandlerSpacing = 1.5f;  // of handler points, in pixels

@@ -11,8 +11,8 @@ namespace cei3d {
 
 struct TrainingViews {
   PixelStore train, held_out;
-  // Of the training views, by their cameras' notes, for each channel; their geometric mean is 1. Empty: some
-  // view has none, or all are alike.
+  // Exposures of the training views by their cameras' notes, for each channel; their geometric mean is 1.
+  // Empty: some view has none, or all are alike.
   std::vector<Vec3f> noted_exposures;
   double footprint = 0;  // of a pixel at the object's center, mean over the training views, unit frame
 };

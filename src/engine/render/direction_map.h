@@ -16,7 +16,7 @@ class DirectionMap {
   // nodes: values at node_directions(cells).
   DirectionMap(int cells, std::vector<Vec3f> nodes) : cells_(cells), nodes_(std::move(nodes)) {}
 
-  // Of a square of `cells` cells a side, row by row: #(cells + 1)^2.
+  // Directions of the nodes of a square of `cells` cells a side, row by row: #(cells + 1)^2.
   static std::vector<Vec3f> node_directions(int cells);
 
   Vec3f at(Vec3f direction) const;  // direction: unit

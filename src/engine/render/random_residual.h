@@ -9,7 +9,8 @@
 
 namespace cei3d {
 
-// Of a field like the albedo's, its last weights random numbers of this standard deviation.
+// A correction network of a field like the albedo's, whose last weights are random numbers of standard
+// deviation `size`.
 inline std::shared_ptr<const Residual> random_residual(const Field& albedo, float size) {
   FieldConfig config = albedo.config();
   config.outputs = 4;

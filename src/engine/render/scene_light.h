@@ -31,7 +31,7 @@ std::shared_ptr<const VersionLight> light_on_version(const Device&, const Scene&
                                                      const VersionLight* before);
 // The same from the light at the vertices of version k.
 std::shared_ptr<const VersionLight> light_on_version(const Device&, const Scene&, size_t k, VertexLight);
-// Of the vertices of version 0, as reconstructed.
+// Materials of the vertices of shape version 0, as reconstructed.
 VertexMaterials rest_materials(const Device&, const Scene&);
 
 // Hits grouped by the shape version that lights them and the last layer that affects them (-1: none).

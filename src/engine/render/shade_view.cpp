@@ -53,7 +53,7 @@ class PixelFilter {
     float sum = 0;
   };
 
-  // Of the samples of the nine pixels, row by row; each pixel's share of the image is the same.
+  // Weights of the samples of the nine pixels, row by row; each pixel's share of the image is the same.
   static std::vector<Grid> weights(int samples) {
     std::vector<Grid> out(9);
     for (int q = 0; q < 9; ++q)

@@ -54,8 +54,8 @@ class Transport {
   std::shared_ptr<const Surface> surface_;
   std::vector<uint8_t> which_;
   std::vector<uint32_t> start_;  // #V + 1
-  // Of each vertex's blocked directions above its horizon, in their order: the direction and the vertex
-  // nearest to what blocks it.
+  // Each vertex's blocked directions above its horizon, in their order, and the vertex nearest to what blocks
+  // each.
   std::vector<uint16_t> directions_;
   std::vector<uint32_t> blockers_;
 };

@@ -32,7 +32,7 @@ class DecalTest : public EditTest {
     s.decal = DecalPlace{pixel, width, turn};
     return {{s}};
   }
-  // Of the painted object, at a pixel of the first view.
+  // Albedo of the painted object at a pixel of the first view.
   Vec3f albedo_at(Vec2<double> pixel) {
     const Scene now = scene("a");
     const Ray rays[] = {three_views().views[0].camera.ray(pixel.x, pixel.y)};

@@ -231,8 +231,7 @@ struct ExportReport {
   std::filesystem::path out;
   std::vector<std::filesystem::path> files;
   size_t vertices = 0, triangles = 0, lobes = 0;
-  // Of the texture; 0 without one.
-  int texture = 0;
+  int texture = 0;  // side in pixels; 0 without one
   size_t charts = 0;
   double used = 0, stretch = 0;     // share of the texture that charts cover; L2 stretch, 1: isometric
   double simplification_error = 0;  // capture units

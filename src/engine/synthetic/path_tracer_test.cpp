@@ -149,7 +149,7 @@ TEST(Picture, TellsWhereTheBallIs) {
   EXPECT_NEAR(covered, M_PI * reach * reach, 0.01 * covered);
 }
 
-// Of RGB times alpha: the color of a pixel that one path has met is as noisy as that path.
+// Mean difference of RGB times alpha: the color of a pixel that one path has met is as noisy as that path.
 double mean_difference(const Image& a, const Image& b) {
   double sum = 0;
   for (size_t i = 0; i < a.data.size(); i += 4)

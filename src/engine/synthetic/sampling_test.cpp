@@ -43,7 +43,7 @@ TEST(SampleSequence, PairsOfASampleKnowNothingOfEachOther) {
     sum[1] += (a.x - 0.5) * (b.x - 0.5);
     sum[2] += (a.y - 0.5) * (b.x - 0.5);
   }
-  // Of independent numbers: variance 1/144 a product.
+  // A product of independent numbers has variance 1/144.
   for (const double s : sum) EXPECT_LT(std::abs(s / kKeys), 4.0 / 12 / std::sqrt(double(kKeys)));
 }
 

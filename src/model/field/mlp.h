@@ -74,9 +74,9 @@ class MlpPass {
   struct Hidden {
     AlignedVector<float> z;  // before the activation; of jets the activation's slope there
     AlignedVector<float> h;  // after it; wide
-    // Of jets:
+    // The rest is filled by passes of jets only.
     AlignedVector<float> curvature;  // second derivative of the activation
-    AlignedVector<float> d_h, d_z;   // derivatives of output 0 by them; d_h is wide
+    AlignedVector<float> d_h, d_z;   // derivatives of output 0 by h and z; d_h is wide
     AlignedVector<float> loss_by_z;  // derivative by z of a loss of the gradient
   };
   struct Batch {  // samples, in whole panels

@@ -32,7 +32,7 @@ TEST(LightColor, WithoutHighlightsTheLightIsNearlyWhiteAndAsBright) {
   EXPECT_NEAR(color.x * color.y * color.z, kOrange.x * kOrange.y * kOrange.z, 0.01f);
 }
 
-// Of two channels the one that is known better stays.
+// The channel that is known better stays.
 TEST(LightColor, TheUncertainChannelMoves) {
   LightScale evidence = errors_of(0.05);
   evidence.covariance.row[2].z = 4;

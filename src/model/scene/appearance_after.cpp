@@ -11,7 +11,7 @@ namespace {
 
 bool is_global(const EditLayer& l) { return l.everywhere || l.reshape; }
 
-// Of the first layers that both have.
+// Number of the first layers that both have.
 size_t common_layers(const AppearanceKey& a, const AppearanceKey& b) {
   const size_t count = std::min(a.layers.size(), b.layers.size());
   size_t n = 0;

@@ -15,7 +15,7 @@ const EditLayer& part_layer(const Scene&, const std::string& part);
 
 std::vector<std::string> part_names(const Scene&);  // sorted
 
-// Of hits of the present surface, the part that each is in. Where parts overlap, the one that was made later
+// The part that each hit of the present surface is in. Where parts overlap, the one that was made later
 // counts.
 struct PartsOfHits {
   std::vector<std::string> names{""};  // at most 256; the first stands for no part

@@ -12,7 +12,7 @@
 
 namespace cei3d {
 
-// Of one channel, with dL/d(radiance); radiance and photo are linear. The slope of the display curve is
+// Loss of one channel, with dL/d(radiance); radiance and photo are linear. The slope of the display curve is
 // bounded near black. clipped: `photo` is only a lower bound of the true radiance.
 inline LossValue<float> display_loss(float radiance, float photo, bool clipped = false) {
   constexpr float kWidth = 0.05f, kDarkest = 0.004f;

@@ -56,7 +56,7 @@ std::array<D, 7> dual_lobe(const SgLobe& l, int varied) {
   return d;
 }
 
-// Of the loss sum(d_irradiance . irradiance + d_reflected . reflection) by one number of a lobe.
+// Derivative of the loss sum(d_irradiance . irradiance + d_reflected . reflection) by one number of a lobe.
 double slope(const Problem& p, int lobe, int member) {
   const std::array<D, 7> x = dual_lobe(p.light.lobes[size_t(lobe)], member);
   const Vec3<D> axis{x[0], x[1], x[2]};

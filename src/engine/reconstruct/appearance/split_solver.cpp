@@ -15,9 +15,9 @@ namespace {
 
 constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
 
-// Of materials and light. A light that is too sharp and surfaces that are too rough explain the pictures
-// nearly as well as the truth, and each round takes off a fifth of what is wrong; but the strength of the
-// light creeps, too (docs/notebook/0022).
+// Rounds of materials and light. A light that is too sharp and surfaces that are too rough explain the
+// pictures nearly as well as the truth, and each round takes off a fifth of what is wrong; but the strength
+// of the light creeps, too (docs/notebook/0022).
 constexpr int kRounds = 6;
 // Rounds of linearization for a turning light: without a guess, and with one.
 constexpr int kFirstTurns = 3, kTurns = 2;

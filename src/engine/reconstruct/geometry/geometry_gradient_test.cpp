@@ -115,7 +115,7 @@ class Reference {
   }
   P distance(Vec3f p) const { return field(p, 0)[0].value; }
 
-  // Of the rays, and their samples; the weights are those of GeometryOptions.
+  // Loss of the rays and their samples; the weights are those of GeometryOptions.
   P rays_loss(const GeometryStageProbe::Chunk& chunk, const GeometrySchedule& s) const {
     P sum(0.0);
     for (int r = 0; r < chunk.batch.count(); ++r) sum += ray_loss(chunk, r, s);

@@ -21,7 +21,7 @@ class PixelErrors {
   explicit PixelErrors(size_t pixels)
       : pixels_(pixels), errors_((pixels + kBlock - 1) / kBlock, std::numeric_limits<float>::max()) {}
 
-  // Of three random pixels the one with the largest error in its block; blocks not rendered yet come first.
+  // The one of three random pixels whose block has the largest error; blocks not rendered yet come first.
   size_t choose(Rng& rng) const {
     size_t worst = rng.below(uint32_t(pixels_));
     for (int k = 1; k < kDraws; ++k) {

@@ -75,7 +75,8 @@ bool RaySampler::finished(const GeometrySchedule& s, RayState& state, bool empty
   return state.first + state.known == state.end || (!empty && state.light.left <= options_.keep_weight);
 }
 
-// Of candidate i of a ray. Neighbors farther than a step apart lie on different stretches near the surface.
+// Opacity of candidate i of a ray. Neighbors farther than a step apart lie on different stretches near the
+// surface.
 float RaySampler::alpha(const GeometrySchedule& s, const RayState& state, int i) const {
   const int at = state.first + i;
   const bool has_previous = i > 0 && depths_[at] - depths_[at - 1] < 1.5f * s.step;

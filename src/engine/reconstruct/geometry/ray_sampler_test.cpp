@@ -67,7 +67,7 @@ struct Ball {
   }
 };
 
-// Of one ray, from all of its candidates.
+// Samples of one ray, from all of its candidates.
 std::vector<float> brute_force(const Ball& ball, std::span<const float> depths, const Ray& ray, bool empty) {
   const float keep = ball.options.sampling.keep_weight, step = ball.schedule.step;
   std::vector<Vec3f> x;

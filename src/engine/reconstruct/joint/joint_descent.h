@@ -18,7 +18,7 @@ namespace cei3d {
 
 enum class ColorLoss { display, linear };  // Huber of display-encoded colors; L1 of linear ones, the paper's
 
-// Of Adam, at the beginning. 0: held constant.
+// Learning rates of Adam at the beginning. 0: held constant.
 struct JointRates {
   float sdf_tables = 1e-4f, sdf_layers = 5e-5f;
   float albedo = 0.05f;    // times the default rates of FieldTrainer

@@ -27,7 +27,8 @@ void keep_frame(std::span<const Camera> cameras, std::vector<Alignment>& views) 
   for (size_t v = 0; v < views.size(); ++v) {
     const RigidMotion& m = views[v].motion;
     const Vec3d c = cameras[v].center;
-    // Of the view's six numbers by those of the common motion; the last one is a step along its center.
+    // Derivative of the view's six numbers by those of the common motion; the last one is a step along its
+    // center.
     Eigen::Matrix<double, 6, 7> d_common = Eigen::Matrix<double, 6, 7>::Zero();
     d_common.leftCols<6>().setIdentity();
     d_common.col(6) << 0, 0, 0, c.x, c.y, c.z;

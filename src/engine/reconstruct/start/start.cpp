@@ -30,7 +30,7 @@ constexpr double kMinGain = 0.3;
 // views, floating blobs in front of the surface remain.
 constexpr int kMinViews = 3;
 constexpr int kCompareSide = 160;  // of the images that show what is wrong with views, at most; pixels
-// Of cameras: alignments at most, and pixels by which one has to move the object in the images (median of the
+// Alignments of cameras at most, and pixels by which one has to move the object in the images (median of the
 // views).
 constexpr int kMaxAlignments = 5;
 constexpr double kMinAlignment = 0.5;

@@ -71,7 +71,7 @@ std::optional<AxisBox> Region::box_of(const Data& d) {
 }
 
 size_t Region::Data::bytes() const {
-  // Of the points themselves and, in the index, of their copy, ids and buckets.
+  // Bytes of a point itself and, in the index, of its copy, ids and buckets.
   constexpr size_t kPoint = 3 * sizeof(Vec3f) + sizeof(float) + 1 + 3 * sizeof(uint32_t);
   return sizeof(Data) + kPoint * points.positions.size() +
          sizeof(float) * (projector.alpha.data.size() + projector.depth.data.size());

@@ -73,7 +73,7 @@ class Region {
     size_t bytes() const;
 
    private:
-    // Of the labeled points within reach on the same side.
+    // Whether the nearest one, or any, of the labeled points within reach on the same side is edited.
     bool nearest_is_edited(Vec3f position, Vec3f normal) const;
     bool any_is_edited(Vec3f position, Vec3f normal) const;
   };

@@ -150,7 +150,7 @@ class Flattener {
     return out;
   }
 
-  // Of the covariance of the faces' centers, by power iteration.
+  // First eigenvector of the covariance of the faces' centers, by power iteration.
   Vec3f longest_axis(const std::vector<uint32_t>& faces) const {
     Vec3f mean{0, 0, 0}, axis{0.7f, 0.6f, 0.4f};
     for (const uint32_t f : faces) mean += graph_.centers[f] / float(faces.size());

@@ -199,7 +199,7 @@ class Packer {
     return grid;
   }
 
-  // Of a piece, in all poses, each turned by all quarters.
+  // The footprints of a piece in all poses, each turned by all quarters.
   using Footprints = std::array<Footprint, kPoses * 4>;
 
   std::vector<Footprints> footprints_at(double scale) const {
