@@ -34,8 +34,7 @@ constexpr const char* kFooter =
     "Pixels are (column,row) from the top left corner, centers at +0.5. Positions and lengths are in the\n"
     "capture's own frame and unit.\n"
     "Exit codes: 0 done, 1 failed, 2 wrong usage, 130 interrupted (state saved); of `batch work` also 75, "
-    "try "
-    "again later.";
+    "try again later.";
 
 constexpr const char* kCommandFooter =
     "Options of every command: --quiet, --json, --log-level, --device, --threads (see `cei3d -h`).";

@@ -198,21 +198,18 @@ void add_objects_options(CLI::App* verb, RunOptions& o) {
   verb->add_option("--for", o.purpose, "What exports are for: web, ar, dcc");
   verb->add_option("--variants", o.variants,
                    "JSON file of edits to make on every object: {\"red\": [{\"edit\": \"material\", "
-                   "\"part\": \"sole\", "
-                   "\"color\": \"#c04020\"}], ...}; each variant is exported, too")
+                   "\"part\": \"sole\", \"color\": \"#c04020\"}], ...}; each variant is exported, too")
       ->check(CLI::ExistingFile);
   verb->add_option("--keep", o.keep,
                    "What stays of an object that is done. all: every project. project: not those of "
-                   "variants. exports: "
-                   "no project (default: project)")
+                   "variants. exports: no project (default: project)")
       ->check(CLI::IsMember({"all", "project", "exports"}));
 }
 
 void add_engine_options(CLI::App* verb, RunOptions& o) {
   verb->add_option("--engine", o.engine,
                    "local: processes here, --threads each (default 1). slurm: submit job arrays. kubernetes, "
-                   "parallel: "
-                   "print what an Indexed Job or GNU parallel needs")
+                   "parallel: print what an Indexed Job or GNU parallel needs")
       ->check(CLI::IsMember({"local", "slurm", "kubernetes", "parallel"}))
       ->capture_default_str();
   verb->add_option("--jobs", o.jobs,
@@ -323,8 +320,8 @@ void add_work(Commands& commands, CLI::App* batch) {
   auto o = std::make_shared<WorkOptions>();
   CLI::App* verb = commands.add("work",
                                 "Make one object, whoever asks and however often: what schedulers call. Exit "
-                                "codes: 0 done, 1 failed and would "
-                                "fail again, 75 try again later, 130 interrupted and saved",
+                                "codes: 0 done, 1 failed and would fail again, 75 try again later, 130 "
+                                "interrupted and saved",
                                 batch);
   verb->add_option("manifest", o->manifest, "Manifest")->required()->check(CLI::ExistingFile);
   verb->add_option("-o,--output", o->catalog, "Folder of the catalog")->required();

@@ -73,8 +73,7 @@ void capture(const Options& o, Session& session, Console& console) {
 void add_mask_options(CLI::App* verb, Options& o) {
   verb->add_option("--click", o.clicks,
                    "PHOTOGRAPH:X,Y ...: pixels of the object, of one photograph or several. Without clicks "
-                   "the object is what "
-                   "stands in the middle of what the photographs show");
+                   "the object is what stands in the middle of what the photographs show");
   verb->add_option("--negative-click", o.negative, "PHOTOGRAPH:X,Y ...: pixels that are not of the object");
   verb->add_option(
           "--background", o.request.plate,

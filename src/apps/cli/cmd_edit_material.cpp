@@ -38,8 +38,8 @@ void add_effects(CLI::App* verb, MaterialEffects& e) {
   add_blend(verb, e);
   CLI::Option* color = verb->add_option(
       "--color", e.color,
-      "'#RRGGBB', sRGB: new mean albedo; the present texture is scaled to it. With --material: "
-      "instead of the material's color, which replaces the texture");
+      "'#RRGGBB', sRGB: new mean albedo; the present texture is scaled to it. With --material: instead of "
+      "the material's color, which replaces the texture");
   verb->add_flag("--replace", e.replace, "Replace the texture by --color")->needs(color);
 }
 

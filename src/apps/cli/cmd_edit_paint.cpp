@@ -98,8 +98,8 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
       ->take_all();
   CLI::Option* decal = verb->add_option(
       "--decal", o->decal,
-      "Instead of --scribble: a picture, PNG or JPEG, that is laid onto the surface at --at, "
-      "upright in the view, seen along the surface's normal there");
+      "Instead of --scribble: a picture, PNG or JPEG, that is laid onto the surface at --at, upright in the "
+      "view, seen along the surface's normal there");
   verb->add_option("--at", o->at, "Pixel of the view where the decal's middle is, X,Y")->needs(decal);
   verb->add_option("--width", o->place.width, "Width of the decal, capture units")->needs(decal);
   verb->add_option("--turn", o->place.turn_degrees, "Turn the decal clockwise in the view, degrees")
@@ -115,10 +115,9 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
       ->excludes(target);
   verb->add_option(
           "--routing", o->routing,
-          "How painted surface is found. both: near edited handler points and inside the scribble's "
-          "outline. points: where the nearest handler point is edited. outline: without handler "
-          "points. none: retrain the object's albedo field instead, which changes other places, too; "
-          "for comparison")
+          "How painted surface is found. both: near edited handler points and inside the scribble's outline. "
+          "points: where the nearest handler point is edited. outline: without handler points. none: retrain "
+          "the object's albedo field instead, which changes other places, too; for comparison")
       ->check(CLI::IsMember({"both", "points", "outline", "none"}))
       ->capture_default_str();
   verb->add_option("--theta", o->command.theta,

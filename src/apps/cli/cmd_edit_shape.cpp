@@ -84,8 +84,7 @@ void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
   each("--to", o->to, "Where the point goes, X,Y,Z in the capture's frame; one for each --from");
   each("--turn", o->turn,
        "Rotation of the surface around the point, X,Y,Z: axis in the capture's frame times angle in degrees; "
-       "one "
-       "for each --from, or none");
+       "one for each --from, or none");
   each(
       "--pin", o->pin,
       "Point on the surface around which nothing moves, X,Y,Z in the capture's frame; again for more points");

@@ -19,8 +19,7 @@ std::string report_text(const ExportReport& r) {
   if (r.texture > 0)
     text += fmt::format(
         ", textures of {0} x {0} texels, {1:.0f} % of them used by {2} charts (stretch {3:.3f}). Simplified "
-        "by up to "
-        "{4:.2g} capture units",
+        "by up to {4:.2g} capture units",
         r.texture, 100 * r.used, r.charts, r.stretch, r.simplification_error);
   text += ".";
   for (const auto& f : r.files)
@@ -52,8 +51,8 @@ void add_asset_options(CLI::App* verb, Options& o) {
       "texture: all)");
   verb->add_option(
       "--texture", o.request.texture,
-      "Texels of the textures' sides: base color, occlusion-roughness-metalness, normals (default: "
-      "2048; 0, for .glb: no textures, base color by vertex)");
+      "Texels of the textures' sides: base color, occlusion-roughness-metalness, normals (default: 2048; 0, "
+      "for .glb: no textures, base color by vertex)");
   verb->add_option(
           "--for", o.purpose,
           "Sizes by purpose. web: 30000 faces, 1024 texels, JPEG; ar: 50000, 2048, JPEG, origin at the "
@@ -61,8 +60,7 @@ void add_asset_options(CLI::App* verb, Options& o) {
       ->check(CLI::IsMember({"web", "ar", "dcc"}));
   verb->add_option("--image", o.image,
                    "How base color and material are stored (default: png); normals are not lossy. webp: .glb "
-                   "and .gltf "
-                   "only, for readers with EXT_texture_webp")
+                   "and .gltf only, for readers with EXT_texture_webp")
       ->check(CLI::IsMember({"png", "jpeg", "webp"}));
   verb->add_option(
           "--origin", o.origin,
@@ -86,10 +84,10 @@ void add_export(Commands& commands) {
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option(
           "-o,--output", o->request.out,
-          "By its ending. .glb, .gltf, .obj, .usdz: textured mesh; .ply: mesh with albedo per vertex; "
-          ".html: a page in one file that shows object and light in any browser, without network. "
-          ".hdr, .exr: the light as latitude-longitude picture; .npy, .json: its lobes ([M,7]: axis, "
-          "sharpness, RGB peak radiance)")
+          "By its ending. .glb, .gltf, .obj, .usdz: textured mesh; .ply: mesh with albedo per vertex; .html: "
+          "a page in one file that shows object and light in any browser, without network. .hdr, .exr: the "
+          "light as latitude-longitude picture; .npy, .json: its lobes ([M,7]: axis, sharpness, RGB peak "
+          "radiance)")
       ->required();
   add_asset_options(verb, *o);
   verb->add_flag("--points", o->request.points,

@@ -24,8 +24,7 @@ void serve(const ServeOptions& options, const std::function<void(const Address&)
   if (!is_loopback(options.http.host) && options.allowed_hosts.empty())
     fail_usage(
         "--host {} can be reached from other machines, and what is sent is not encrypted. An ssh tunnel to "
-        "this "
-        "machine's own address is safer; if you mean it, name this machine with --allow-host, too.",
+        "this machine's own address is safer; if you mean it, name this machine with --allow-host, too.",
         options.http.host);
   give_back_freed_memory();
   Guard guard(new_token(), options.allowed_hosts);

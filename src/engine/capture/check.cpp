@@ -217,8 +217,8 @@ void check_polarity(const std::vector<Checked>& all, CaptureReport& report) {
   if (stated < 2 || double(inside_out) < 0.8 * double(stated)) return;
   report.findings.push_back(
       {Severity::error,
-       fmt::format("The masks cover the borders of {} of {} images: they seem to mean the "
-                   "background, not the object.",
+       fmt::format("The masks cover the borders of {} of {} images: they seem to mean the background, not "
+                   "the object.",
                    inside_out, stated),
        "Invert them: `cei3d check --fix -o CAPTURE2` does.", [](Capture& c) {
          for (View& v : c.views) v.dark_object = !v.dark_object;

@@ -32,8 +32,7 @@ const ColmapCameraModel& supported(const ColmapCameraModel& model, const std::st
   if (model.params == 0)
     fail(
         "{} has the camera model {}, which is not supported. Undistort with `colmap image_undistorter` and "
-        "use the "
-        "folder that it writes.",
+        "use the folder that it writes.",
         where, model.name);
   return model;
 }

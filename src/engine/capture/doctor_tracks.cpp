@@ -189,8 +189,8 @@ void check_intrinsics(const Capture& capture, std::vector<Finding>& findings) {
   if (f < 0.35 || f > 30)
     findings.push_back(
         {Severity::warning,
-         fmt::format("The focal length is {:.2g} times the image's longer side, a field of view of "
-                     "{:.3g} degrees.",
+         fmt::format("The focal length is {:.2g} times the image's longer side, a field of view of {:.3g} "
+                     "degrees.",
                      f, 2 * std::atan(0.5 / f) * 180 / M_PI),
          "Give focal lengths in pixels. In millimeters they have to be multiplied by the image width and "
          "divided by the sensor width (36 mm for a 35 mm equivalent)."});

@@ -85,8 +85,7 @@ Normalization first_box(const std::vector<Silhouette>& silhouettes) {
   if (!std::isfinite(dot(center, center)))
     fail(
         "The cameras do not determine where the object is: their lines of sight are parallel, or poses are "
-        "not "
-        "finite. Photograph the object from several sides, and check the poses.");
+        "not finite. Photograph the object from several sides, and check the poses.");
   std::vector<double> reaches;
   for (const Silhouette& s : silhouettes) reaches.push_back(reach(s, center));
   // One mask with a stray pixel must not enlarge the box: long objects are within 3 medians, stray pixels

@@ -102,16 +102,14 @@ Camera pinhole_around(const PhotoCamera& photo, const PhotoBox& box, const std::
       std::max({c.cx - b.x0, b.x1 - c.cx, c.cy - b.y0, b.y1 - c.cy}) > widest + 1)
     fail(
         "The lens of view {} sees the object farther than 60 degrees from its axis, or its coefficients are "
-        "wrong. "
-        "Check the camera model and the order of its coefficients.",
+        "wrong. Check the camera model and the order of its coefficients.",
         name);
   const int x0 = int(std::floor(b.x0)) - kMargin, y0 = int(std::floor(b.y0)) - kMargin;
   const int width = int(std::ceil(b.x1)) + kMargin - x0, height = int(std::ceil(b.y1)) + kMargin - y0;
   if (width > 2 * c.width + 2 * kMargin || height > 2 * c.height + 2 * kMargin)
     fail(
         "Undistorted, view {} would be {} x {} pixels, more than twice its photograph. Check the camera "
-        "model and "
-        "the order of its coefficients.",
+        "model and the order of its coefficients.",
         name, width, height);
   const bool same_size = width == c.width && height == c.height;
   c.width = width + same_size;

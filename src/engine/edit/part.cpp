@@ -95,8 +95,8 @@ void set_pattern(const Device& device, const Scene& scene, const PartRequest& r,
                  Progress& progress) {
   if (r.keep_texture || r.change.blend < 1)
     fail_usage(
-        "The scribble has several colors, a pattern, which replaces the texture; leave out "
-        "--keep-texture and --blend, or give one --color.");
+        "The scribble has several colors, a pattern, which replaces the texture; leave out --keep-texture "
+        "and --blend, or give one --color.");
   const std::vector<Vec2f> drawn = drawn_on_object(device, scene, r, r.scribble->positive);
   const Vec2f middle = spread(drawn, 1).front();
   const Hit hit = clicked_hits(device, scene, r, std::span(&middle, 1)).front();

@@ -26,8 +26,8 @@ struct Dialect {
 
 Dialect dialect() {
   constexpr const char* kHint =
-      "`apt-get install colmap` installs it. Photographs with known cameras need no "
-      "COLMAP: `cei3d -h` lists the formats.";
+      "`apt-get install colmap` installs it. Photographs with known cameras need no COLMAP: `cei3d -h` lists "
+      "the formats.";
   try {
     const std::string help = run_program({"colmap", "feature_extractor", "-h"}).text;
     if (help.find("FeatureExtraction.use_gpu") != std::string::npos)

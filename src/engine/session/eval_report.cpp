@@ -170,8 +170,7 @@ std::string EvalReport::markdown() const {
   if (fid)
     text += fmt::format(
         "\nFID between {} renders and as many photographs: so few bias it upwards; compare it with sets of "
-        "the same "
-        "size only.\n",
+        "the same size only.\n",
         views.size());
   text += residual ? "\nWith the correction network; --no-residual leaves it out.\n"
                    : "\nLight and material alone.\n";

@@ -85,8 +85,7 @@ void check_request(const ExportRequest& r, const std::string& kind) {
   if (!has(kind, {".glb", ".gltf", ".obj", ".usdz", ".ply", ".html", ".hdr", ".exr", ".npy", ".json"}))
     fail_usage(
         "{}: the ending says what to write: .glb, .gltf, .obj, .usdz or .ply for the object, .html for a "
-        "page "
-        "that shows it, .hdr, .exr, .npy or .json for its light.",
+        "page that shows it, .hdr, .exr, .npy or .json for its light.",
         r.out.string());
   if (r.points && kind != ".ply") fail_usage("--points are written as .ply, not {}.", kind);
   if (has(kind, {".ply", ".html"}) && r.texture.value_or(0) > 0)
