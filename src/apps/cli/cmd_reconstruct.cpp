@@ -70,7 +70,8 @@ void add_schedule_options(CLI::App* verb, Options& o) {
   verb->add_option(
           "--joint", options.joint_steps,
           "Steps, at most, of a last descent on surface, albedo, material and light together, which is "
-          "kept if it explains pixels better that it has not seen; 0: none; -1: the preset's")
+          "kept if it explains pixels better that it has not seen; 0: none; -1: the preset's, which is 0 in "
+          "all of them")
       ->check(CLI::Range(-1, 1000000))
       ->capture_default_str();
   verb->add_option("--seed", options.seed,

@@ -96,10 +96,8 @@ std::string table_row(const Json& row, const fs::path& page_folder) {
   const fs::path folder = fs::path(row.at("folder").get<std::string>()).lexically_relative(page_folder);
   const std::string id = html_escaped(row.at("id")), state = row.at("state");
   return fmt::format(
-      "<tr id=\"{}\"><td>{}<td><b>{}</b><br><small>{}</small><td class=\"{}\">{}<td class=n>{}<td "
-      "class=n>{}<td "
-      "class=n>{}"
-      "<td class=n>{}<td class=n>{}<td>{}<td>{}</tr>\n",
+      "<tr id=\"{}\"><td>{}<td><b>{}</b><br><small>{}</small><td class=\"{}\">{}<td class=n>{}"
+      "<td class=n>{}<td class=n>{}<td class=n>{}<td class=n>{}<td>{}<td>{}</tr>\n",
       id, picture(row, folder), id, row.at("material").is_string() ? html_escaped(row.at("material")) : "",
       state, state, worst(row), number(row.at("psnr"), 1), number(row.at("psnr_alone"), 1),
       number(row.at("vertices"), 0), number(row.at("seconds"), 0), links(row, folder), remarks(row));
