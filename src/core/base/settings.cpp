@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "core/base/json_reader.h"
 #include "core/base/name_distance.h"
 
 namespace cei3d {
@@ -63,8 +64,11 @@ void add_file(std::span<const SettingInfo> known, const std::string& path, Json&
   const Json file = Json::parse(read_file(path), nullptr, false);
   if (!file.is_object() || !file.contains("set") || !file.at("set").is_object())
     fail_usage("{} should hold {{\"set\": {{\"key\": value, ...}}}}.", path);
-  check_settings(known, file.at("set"));
-  values.update(file.at("set"));
+  JsonReader reader(file, path);
+  const Json& set = reader.member("set");
+  reader.finish();
+  check_settings(known, set);
+  values.update(set);
 }
 
 }  // namespace

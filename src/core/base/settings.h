@@ -36,7 +36,7 @@ std::string range_text(const SettingInfo&);  // "1 to 100, a multiple of 4", "tr
 
 // Adds to `values` (an object, by key) what was written: "key=value", or "@FILE.json" for a file that holds
 // {"set": {"key": value, ...}}. Usage errors: another form, an unknown key (the nearest one is named), a
-// value that its setting does not allow. Error: a file that cannot be read.
+// value that its setting does not allow. Errors: a file that cannot be read, that has another key than "set".
 void add_setting(std::span<const SettingInfo> known, const std::string& written, Json& values);
 // The same checks of values that were stored.
 void check_settings(std::span<const SettingInfo> known, const Json& values);

@@ -99,6 +99,8 @@ TEST(Settings, OfAFile) {
   EXPECT_EQ(cake.filling.taste, Taste::sour);
   write_file_atomic(file, R"({"set": {"layers": 7}})");
   EXPECT_THAT(refusal(("@" + file).c_str()), HasSubstr("multiple of 2"));
+  write_file_atomic(file, R"({"set": {"layers": 8}, "sets": {"sugar": 1}})");
+  EXPECT_THAT(error_of([&] { made({("@" + file).c_str()}); }).what(), HasSubstr("'sets'"));
   write_file_atomic(file, R"({"settings": {}})");
   EXPECT_THAT(refusal(("@" + file).c_str()), HasSubstr("\"set\""));
   write_file_atomic(file, "{");
