@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""check_layers.py [ROOT]: do the includes below src/ respect tools/layers.txt, and is every permission in it used?
-Prints each that is not; exit 1."""
+"""check_layers.py [ROOT]: do the includes below src/ respect tools/layers.txt, is every permission in it used, and do only
+the apps name options of the command line? Prints each fault; exit 1."""
 import fnmatch
 import os
 import re
 import sys
 from pathlib import Path
 
+STRING = re.compile(r'"((?:[^"\\]|\\.)*)"')
+OPTION = re.compile(r'(?<![-\w])--[a-z][a-z-]*')
 INCLUDE = re.compile(r'\s*#\s*include\s*(?:"([^"]+)"|(<[^>]+>))')
 
 
@@ -92,11 +94,27 @@ def unused(root, modules):
                 yield f'tools/layers.txt: {module} does not use {pattern}'
 
 
+# Arguments of other programs, and of this one when it calls itself.
+OPTIONS_ALLOWED = ('src/apps/', 'src/engine/batch/', 'src/engine/photos/colmap_run.cpp')
+
+
+def named_options(root):
+    """Sentences of the engine reach the editor, too, where options mean nothing; `commands` may be quoted."""
+    for path in sources(root):
+        if path.startswith(OPTIONS_ALLOWED) or is_test(path):
+            continue
+        for number, line in enumerate(Path(root, path).read_text().splitlines(), 1):
+            for text in STRING.findall(line):
+                if match := OPTION.search(re.sub('`[^`]*`', '', text)):
+                    yield f'{path}:{number}: a sentence names the option {match.group()}, which only apps know'
+
+
 def problems(root, modules, third_parties):
     for module in sorted({module_of(path[len('src/'):]) for path in sources(root)} - set(modules)):
         yield f'src/{module}: not listed in tools/layers.txt'
     yield from forbidden(root, modules, third_parties)
     yield from unused(root, modules)
+    yield from named_options(root)
 
 
 def main(root):

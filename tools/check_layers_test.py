@@ -53,6 +53,10 @@ class CheckLayers(unittest.TestCase):
     def test_a_module_that_is_not_listed(self):
         self.assertEqual(self.found({'engine/new/e.h': ''}), ['src/engine/new: not listed in tools/layers.txt'])
 
+    def test_an_option_in_a_sentence(self):
+        self.assertEqual(self.found({'engine/low/g.cpp': 'fail("Give `cei3d --all`, or --some of it.");'}),
+                         ['src/engine/low/g.cpp:1: a sentence names the option --some, which only apps know'])
+
     def test_a_third_party_elsewhere(self):
         self.assertEqual(self.found({'engine/low/f.h': '#include <png.h>'}),
                          ['src/engine/low/f.h:1: <png.h> belongs behind src/engine/low/png_file.cpp'])

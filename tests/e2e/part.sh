@@ -21,7 +21,7 @@ cei3d edit "$project" material --part star --metalness 1
 contents "$project" >"$out/before.txt"
 refused 1 'background' edit "$project" part --view train/r_055 --positive 1,1
 refused 2 'r_055' edit "$project" part --view train/r_055 --positive 128,1000
-refused 2 '--positive' edit "$project" part --view train/r_055
+refused 2 'positive' edit "$project" part --view train/r_055
 refused 2 '--positive' edit "$project" part --view train/r_055 --positive 12
 refused 2 'ear' edit "$project" part --view train/r_055 --mask "$scribble" --add ear
 refused 2 'ear' parts "$project" --masks "$sample:test" -o "$out/none" --part ear

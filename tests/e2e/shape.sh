@@ -22,7 +22,7 @@ refused_edit 1 'background' edit "$project" deform --view train/r_055 --pixel 1,
 refused_edit 2 'r_055' edit "$project" deform --view train/r_055 --pixel 1000,1 --drag 9,0
 refused_edit 1 'sphere' edit "$project" deform "${seen[@]}" --drag 5000,0
 refused_edit 2 'drag' edit "$project" deform "${seen[@]}" --drag 0,0
-refused_edit 2 '--radius' edit "$project" deform "${seen[@]}" --drag 9,0 --radius -1
+refused_edit 2 'radius' edit "$project" deform "${seen[@]}" --drag 9,0 --radius -1
 refused_edit 1 'whole|radius' edit "$project" deform "${seen[@]}" --drag 9,0 --radius 50
 refused_edit 2 'ear' edit "$project" deform "${seen[@]}" --drag 9,0 --part ear
 refused_edit 2 'ear' edit "$project" remove --part ear

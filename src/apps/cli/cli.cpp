@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <ostream>
 #include <sstream>
 #include <utility>
@@ -105,14 +106,27 @@ void wrap_help(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands({})) wrap_help(*verb);
 }
 
-// Runs the command; turns an exception into a message and an exit code.
+// The help of the command that was typed.
+std::string help_to_call(const CLI::App& app) {
+  std::string verb;
+  const CLI::App* at = &app;
+  while (!at->get_subcommands().empty()) {
+    at = at->get_subcommands().front();
+    verb += " " + at->get_name();
+  }
+  return fmt::format("See `cei3d{} -h`.", verb);
+}
+
+// Runs the command; turns an exception into a message and an exit code. Messages name what is wrong in plain
+// words, because the editor shows them, too; the options of these names are in the help.
 template <class F>
-int guarded(Console& console, F run) {
+int guarded(const CLI::App& app, Console& console, F run) {
   try {
     run();
     return 0;
   } catch (const Error& e) {
-    console.error(e.what(), e.hint(), int(e.code()));
+    const bool helpless = e.code() == ErrorCode::usage && e.hint().empty();
+    console.error(e.what(), helpless ? help_to_call(app) : e.hint(), int(e.code()));
     return int(e.code());
   } catch (const std::bad_alloc&) {
     console.error(
@@ -137,16 +151,29 @@ bool is_command(CLI::App& app, const std::string& name) {
   return !app.get_subcommands([&](CLI::App* command) { return command->get_name() == name; }).empty();
 }
 
-// Prints an error of the command line that CLI11 found, with the help to call.
-int usage_error(const CLI::App& app, const CLI::ParseError& e, Console& console) {
-  std::string verb;
-  const CLI::App* at = &app;
-  while (!at->get_subcommands().empty()) {
-    at = at->get_subcommands().front();
-    verb += " " + at->get_name();
+using Words = std::vector<std::string>;
+
+// Reads the command line. Returns the exit code where nothing is left to do.
+std::optional<int> read_line(CLI::App& app, const Words& words, Console& console, std::ostream& out,
+                             std::ostream& err) {
+  console.set_json(std::find(words.begin(), words.end(), "--json") != words.end());
+  if (!words.empty() && !words[0].starts_with('-') && !is_command(app, words[0])) {
+    console.error(fmt::format("There is no command '{}'", words[0]), "See `cei3d -h`.", 2);
+    return 2;
   }
-  console.error(e.what(), fmt::format("See `cei3d{} -h`.", verb), 2);
-  return 2;
+  try {
+    Words reversed(words.rbegin(), words.rend());  // CLI11 takes them in reverse
+    app.parse(reversed);
+  } catch (const CLI::Success& e) {  // help, version
+    return app.exit(e, out, err);
+  } catch (const CLI::ParseError& e) {
+    console.error(e.what(), help_to_call(app), 2);
+    return 2;
+  } catch (const Error& e) {
+    console.error(e.what(), e.hint(), int(e.code()));
+    return int(e.code());
+  }
+  return {};
 }
 
 }  // namespace
@@ -172,30 +199,14 @@ int run_cli(const std::vector<std::string>& args, std::ostream& out, std::ostrea
   wrap_help(app);
 
   Console console(out, err, err_is_terminal);
-  if (!args.empty() && !args[0].starts_with('-') && !is_command(app, args[0])) {
-    console.set_json(std::find(args.begin(), args.end(), "--json") != args.end());
-    console.error(fmt::format("There is no command '{}'", args[0]), "See `cei3d -h`.", 2);
-    return 2;
-  }
-  try {
-    std::vector<std::string> reversed(args.rbegin(), args.rend());  // CLI11 takes them in reverse
-    app.parse(reversed);
-  } catch (const CLI::Success& e) {  // help, version
-    return app.exit(e, out, err);
-  } catch (const CLI::ParseError& e) {
-    console.set_json(std::find(args.begin(), args.end(), "--json") != args.end());
-    return usage_error(app, e, console);
-  } catch (const Error& e) {
-    console.error(e.what(), e.hint(), int(e.code()));
-    return int(e.code());
-  }
+  if (const std::optional<int> code = read_line(app, args, console, out, err)) return *code;
   console.set_json(common.json);
   console.set_level(level_of(common));
   if (!commands.chosen()) {
     err << app.help();
     return 2;
   }
-  return guarded(console, [&] { commands.run(console); });
+  return guarded(app, console, [&] { commands.run(console); });
 }
 
 }  // namespace cei3d

@@ -86,6 +86,7 @@ TEST(Cli, MaterialsAreListedAndNearNamesAreTold) {
   EXPECT_EQ(near.code, 2);
   EXPECT_THAT(near.err, HasSubstr("gold"));
   EXPECT_THAT(near.err, Not(HasSubstr("rubber")));
+  EXPECT_THAT(near.err, HasSubstr("See `cei3d edit material -h`"));
   EXPECT_THAT(type({"edit", "p", "material", "--material", "unobtainium"}).err, HasSubstr("rubber"));
 }
 

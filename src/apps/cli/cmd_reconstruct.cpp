@@ -21,6 +21,17 @@ void list_settings(const Options& o, Console& console) {
   console.answer(r.json(), r.text());
 }
 
+// The session's result; what to type to go on is said where it was interrupted.
+ReconstructReport reconstructed(const ReconstructRequest& r, Session& session, Console& console) {
+  try {
+    return session.reconstruct(r, console);
+  } catch (const Error& e) {
+    if (e.code() != ErrorCode::interrupted || e.hint().empty()) throw;
+    throw Error(e.code(), e.what(),
+                fmt::format("`cei3d reconstruct -o {} --resume` goes on.", r.project.string()));
+  }
+}
+
 void run_reconstruct(const Options& o, Session& session, Console& console) {
   if (o.list_settings) return list_settings(o, console);
   ReconstructRequest request = o.request;
@@ -40,7 +51,7 @@ void run_reconstruct(const Options& o, Session& session, Console& console) {
   request.options.refine_poses = o.poses == "auto";
   request.options.fit_exposures = o.exposures == "auto";
   if (!o.time.empty()) request.options.seconds = parse_duration(o.time);
-  const ReconstructReport r = session.reconstruct(request, console);
+  const ReconstructReport r = reconstructed(request, session, console);
   console.done(r.json(),
                fmt::format("{}: object of {} vertices and {} handler points from {} views{} in {}; {}.{}{}",
                            o.project, r.vertices, r.handler_points, r.views,

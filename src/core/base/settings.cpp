@@ -31,7 +31,7 @@ const SettingInfo& setting_named(std::span<const SettingInfo> known, const std::
 }
 
 [[noreturn]] void wrong(const SettingInfo& s, const std::string& found) {
-  fail_usage("--set {} is '{}'; it must be {}.", s.key, found, range_text(s));
+  fail_usage("The setting {} is '{}'; it must be {}.", s.key, found, range_text(s));
 }
 
 bool fits(const SettingInfo& s, const Json& v) {
@@ -103,7 +103,7 @@ void add_setting(std::span<const SettingInfo> known, const std::string& written,
   if (written.starts_with('@')) return add_file(known, written.substr(1), values);
   const size_t equals = written.find('=');
   if (equals == std::string::npos || equals == 0)
-    fail_usage("--set '{}' should be key=value, or @FILE.json.", written);
+    fail_usage("The setting '{}' should be key=value, or @FILE.json.", written);
   const SettingInfo& s = setting_named(known, written.substr(0, equals));
   values[s.key] = setting_value(s, written.substr(equals + 1));
 }

@@ -91,7 +91,9 @@ Vec3d up_axis(const Capture& capture) {
 
 void hold_out(Capture& capture, const CaptureOptions& o) {
   const int every = o.test_every;
-  if (every < 0 || every == 1) fail_usage("--test-every should be 2 or more (or 0 for none), not {}.", every);
+  if (every < 0 || every == 1)
+    fail_usage("Every Nth view is held out for testing: N should be 2 or more (or 0 for none), not {}.",
+               every);
   const bool has_split = std::any_of(capture.views.begin(), capture.views.end(),
                                      [](const View& v) { return v.split != Split::train; });
   if (has_split) return;

@@ -261,7 +261,7 @@ void report_counts(const Capture& capture, CaptureReport& report) {
                                "Expect gaps in shape and light; 50 to 100 views are good."});
   if (views_of(capture, Split::test).empty() && views_of(capture, Split::val).empty())
     report.findings.push_back({Severity::note, "There is no test split, so quality cannot be measured.",
-                               "Hold views out with --test-every 8."});
+                               "Hold every 8th view out (test every)."});
 }
 
 }  // namespace

@@ -17,9 +17,10 @@ void keep_training_views(Capture& capture, int count) {
   std::vector<View*> train;
   for (View& v : capture.views)
     if (v.split == Split::train) train.push_back(&v);
-  if (count < 2) fail_usage("--views should be 2 or more (or 0 for all), not {}.", count);
+  if (count < 2)
+    fail_usage("The number of training views should be 2 or more (or 0 for all), not {}.", count);
   if (size_t(count) > train.size())
-    fail_usage("--views {}: the capture has {} training views.", count, train.size());
+    fail_usage("{} views are asked for: the capture has {} training views.", count, train.size());
   constexpr double kFar = std::numeric_limits<double>::max();
   std::vector<double> distance(train.size(), kFar);  // squared, to the nearest chosen one
   size_t chosen = 0;

@@ -49,14 +49,14 @@ void check_drags(const Scene& scene, const DeformRequest& r) {
     if (!is_finite(h.from) || !is_finite(h.to) || !is_finite(h.turn))
       fail_usage("The ends of the drag must be finite numbers.");
     if (length(h.to - h.from) < 1e-5f && length(h.turn) == 0)
-      fail_usage("The drag has no length: --from and --to are the same point.");
+      fail_usage("The drag has no length: it ends where it begins.");
     if (length(h.to) > 1)
       fail(
           "The drag ends at {}, outside the sphere of radius {:.4g} around {} that the object lives in; drag "
           "less far.",
           in_capture(scene, h.to), 1 / scene.normalization.scale, in_capture(scene, {0, 0, 0}));
   }
-  if (r.radius && !(*r.radius > 0)) fail_usage("--radius must be more than 0.");
+  if (r.radius && !(*r.radius > 0)) fail_usage("The radius must be more than 0.");
 }
 
 uint32_t nearest_vertex(const Mesh& mesh, Vec3f to) {
@@ -154,11 +154,11 @@ void check_reach(const Scene& scene, const DeformRequest& r, const Reach& reach)
   const auto& triangles = scene.surface->mesh().triangles;
   const auto moves_all = [&](const auto& t) { return moves[t[0]] && moves[t[1]] && moves[t[2]]; };
   if (std::all_of(triangles.begin(), triangles.end(), moves_all))
-    fail("The whole object would move; give a smaller --radius, or the --part that should.");
+    fail("The whole object would move; give a smaller radius, or the part that should.");
   if (std::none_of(triangles.begin(), triangles.end(), moves_all))
     fail("Not one triangle of the surface is within {:.3g} of {}; give a larger {}.",
          reach.radius / scene.normalization.scale, in_capture(scene, r.handles[0].from),
-         r.part.empty() ? "--radius" : "part");
+         r.part.empty() ? "radius" : "part");
 }
 
 Reshape reshape_to(const Scene& scene, const std::vector<Vec3f>& after) {
@@ -242,19 +242,19 @@ float misfit_of(const Device& device, const Field& sdf, const Reshape& surface,
 float refit(const Device& device, const Scene& scene, const DeformRequest& request, Reshape& change,
             std::shared_ptr<const Field>& sdf, const Progress& progress) {
   constexpr float kMaxMisfit = 0.01f;
-  if (!scene.sdf) fail("The object has no distance field to deform; use --geometry mesh.");
+  if (!scene.sdf) fail("The object has no distance field to deform; deform the mesh instead.");
   sdf = std::make_shared<const Field>(
       refit_field(device, present_field(scene), deformed_points(scene, change), request.refit, progress));
   const std::vector<Vec3f> fitted = on_zero_set(device, *sdf, change.positions);
   const float misfit = misfit_of(device, *sdf, change, fitted);
   if (std::isinf(misfit))
     fail("The field has lost its inside{}.", request.refit.distance == SurfaceDistance::l1
-                                                 ? ", as unsigned distances have none; use --distance signed"
-                                                 : "; use --geometry mesh");
+                                                 ? ", as unsigned distances have none; use signed ones"
+                                                 : "; deform the mesh instead");
   if (!(misfit < kMaxMisfit))
     fail(
-        "The field did not take the new shape: its surface is {:.3g} away on average. Drag less far, or use "
-        "--geometry mesh.",
+        "The field did not take the new shape: its surface is {:.3g} away on average. Drag less far, or "
+        "deform the mesh instead.",
         misfit / scene.normalization.scale);
   std::vector<Vec3f> after = scene.surface->mesh().positions;
   for (size_t i = 0; i < fitted.size(); ++i) after[change.moved[i]] = fitted[i];

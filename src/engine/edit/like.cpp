@@ -31,11 +31,12 @@ void check_not_everything(std::span<const float> scores, bool color) {
   if (double(like) < kEverything * double(scores.size())) return;
   if (color)
     fail(
-        "The object has one material and one color; change them by `edit material`, or select a part by "
-        "--positive.");
+        "The object has one material and one color; change those of the whole object, or select a part by "
+        "positive clicks.");
   fail(
-      "The object has one material; add --like-color to go by the color, too, or select a part by --positive "
-      "or --mask.");
+      "The object has one material; go by the color, too (like color), or select a part by positive clicks "
+      "or "
+      "a mask.");
 }
 
 }  // namespace

@@ -119,7 +119,7 @@ TEST_F(LikeTest, MaterialsThatEditsGaveAreFound) {
 }
 
 TEST_F(LikeTest, ErrorsSayWhatToDo) {
-  EXPECT_THAT(refusal(request({0, -1, 0})), HasSubstr("The object has one material; add --like-color"));
+  EXPECT_THAT(refusal(request({0, -1, 0})), HasSubstr("The object has one material; go by the color"));
   PartRequest r = request({0, -1, 0});
   r.like->pixel = {1, 1};
   EXPECT_THAT(refusal(r), HasSubstr("background"));

@@ -36,10 +36,10 @@ void check_stroke(const Stroke& s) {
 
 void check_material(const PaintRequest& r) {
   if (r.theta > 0 && r.routing != Routing::points)
-    fail_usage("--theta is a distance to handler points; use it with --routing points.");
+    fail_usage("Theta is a distance to handler points; it goes with routing by points.");
   check_change(r.material);
   if (r.routing == Routing::none && (r.color || !r.material.empty()))
-    fail_usage("Paint with a material needs to know where; use another --routing.");
+    fail_usage("Paint with a material needs to know where; use another routing.");
 }
 
 void check_opacity(const std::vector<Stroke>& strokes) {

@@ -75,11 +75,13 @@ size_t count_inside(std::span<const float> scores) {
 void check_size(size_t points, size_t all, const PartRequest& r) {
   if (points == 0)
     fail("Nothing is left in part '{}'; {}.", r.name,
-         r.combination ? "check --add, --subtract and --intersect" : "click on its middle");
+         r.combination ? "check what it is added to, subtracted from or intersected with"
+                       : "click on its middle");
   if (double(points) >= kEverything * double(all))
     fail(
-        "Part '{}' would be the whole object; add --negative clicks beside it, or change the whole object by "
-        "`edit material`.",
+        "Part '{}' would be the whole object; add negative clicks beside it, or change the material of the "
+        "whole "
+        "object.",
         r.name);
 }
 
@@ -95,8 +97,8 @@ void set_pattern(const Device& device, const Scene& scene, const PartRequest& r,
                  Progress& progress) {
   if (r.keep_texture || r.change.blend < 1)
     fail_usage(
-        "The scribble has several colors, a pattern, which replaces the texture; leave out --keep-texture "
-        "and --blend, or give one --color.");
+        "The scribble has several colors, a pattern, which replaces the texture: it cannot keep the "
+        "texture or be blended. Give one color instead.");
   const std::vector<Vec2f> drawn = drawn_on_object(device, scene, r, r.scribble->positive);
   const Vec2f middle = spread(drawn, 1).front();
   const Hit hit = clicked_hits(device, scene, r, std::span(&middle, 1)).front();

@@ -113,7 +113,7 @@ PartScribble part_scribble(const Image& rgba, const Image& negative_rgba,
   }
   if (drawn == 0) fail("Nothing in the scribble is opaque: there is no stroke.");
   if (positive == 0)
-    fail("All strokes of the scribble have the color of --negative-color; draw one on the part in another.");
+    fail("All strokes of the scribble have the negative color; draw one on the part in another.");
   put_tile(rgba, s);
   return s;
 }

@@ -138,7 +138,8 @@ std::vector<Hit> clicked_hits(const Device& device, const Scene& scene, const Pa
 std::vector<Seed> part_seeds(const Device& device, const Scene& scene, const PartRequest& r) {
   if (!r.mask.empty()) return mask_seeds(scene, r);
   if (r.scribble) return scribble_seeds(device, scene, r);
-  if (r.clicks.positive.empty()) fail_usage("Give a --positive click on the part, a --scribble or a --mask.");
+  if (r.clicks.positive.empty())
+    fail_usage("Say where the part is: a positive click on it, a scribble or a mask.");
   return click_seeds(*scene.handlers, clicked_points(device, scene, r, r.clicks.positive),
                      clicked_points(device, scene, r, r.clicks.negative));
 }

@@ -198,7 +198,7 @@ TEST_F(PartTest, WrongScribblesSaySo) {
   EXPECT_THAT(refusal(r, ErrorCode::usage), HasSubstr("cover"));
   EXPECT_THAT(error_of([&] { scribble(Image(kSize, kSize, 4)); }).what(), HasSubstr("no stroke"));
   EXPECT_THAT(error_of([&] { scribble(Image(kSize, kSize, 3)); }).what(), HasSubstr("alpha"));
-  EXPECT_THAT(error_of([&] { scribble(on, linear_from_srgb(blue)); }).what(), HasSubstr("--negative-color"));
+  EXPECT_THAT(error_of([&] { scribble(on, linear_from_srgb(blue)); }).what(), HasSubstr("negative color"));
 }
 
 TEST_F(PartTest, AMaskSelectsTheSame) {
@@ -270,7 +270,7 @@ TEST_F(PartTest, TakesTheScoresOfANetwork) {
 
 TEST_F(PartTest, WrongClicksSaySo) {
   PartRequest r = request();
-  EXPECT_THAT(refusal(r, ErrorCode::usage), HasSubstr("--positive"));
+  EXPECT_THAT(refusal(r, ErrorCode::usage), HasSubstr("positive click"));
   r.clicks.positive = {{1, 1}};
   EXPECT_THAT(refusal(r, ErrorCode::failed), HasSubstr("background"));
   r.clicks.positive = {{1, float(kSize + 1)}};

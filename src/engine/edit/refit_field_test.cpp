@@ -165,7 +165,7 @@ TEST_F(FieldDeform, UnsignedDistancesLeaveNoInside) {
     deformed(r);
     ADD_FAILURE() << "passed for a shape";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), testing::HasSubstr("use --distance signed"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("use signed ones"));
   }
 }
 

@@ -48,7 +48,7 @@ std::shared_ptr<const Field> relearn(const Device& device, const Scene& scene, c
   if (!scene.shape_versions.empty())
     fail(
         "The shape of the object was edited, and its single albedo field cannot follow that; use another "
-        "--routing.");
+        "routing.");
   auto field = std::make_shared<Field>(*scene.albedo);
   FieldTrainer trainer(*field, {.encoding_rate = 1e-2f, .network_rate = 2e-3f});
   for (int step = 0; step < kSteps; ++step) {

@@ -85,7 +85,7 @@ TEST(Routing, AFixedDistanceIsThePapersRule) {
   EXPECT_NE(std::string(error_of([&] {
                           painted(sphere_with_handlers(), rectangle(kRed), Routing::both, theta);
                         }).what())
-                .find("--routing points"),
+                .find("routing by points"),
             std::string::npos);
 }
 

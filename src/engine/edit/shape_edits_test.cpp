@@ -137,7 +137,7 @@ TEST_F(ShapeEdits, BadDragsSayWhatToDo) {
   EXPECT_THAT(error({"", {{kTop, {0, 0.9f, 0.43f}}}, 1.0f, ""}), HasSubstr("outside the sphere"));
   EXPECT_THAT(error({"", {{kTop, {0, 0, NAN}}}, 0.4f, ""}), HasSubstr("finite"));
   EXPECT_THAT(error({"", {{kTop, kUp}}, 9.0f, ""}), HasSubstr("whole object would move"));
-  EXPECT_THAT(error({"", {{kTop, kUp}}, 1e-3f, ""}), HasSubstr("give a larger --radius"));
+  EXPECT_THAT(error({"", {{kTop, kUp}}, 1e-3f, ""}), HasSubstr("give a larger radius"));
   EXPECT_THAT(error({"", {{kTop, kUp}}, -1.0f, ""}), HasSubstr("more than 0"));
   EXPECT_THAT(error({"", {{kTop, kUp}}, 0.4f, "ear"}), HasSubstr("no part 'ear'; there are 'all', 'cap'"));
   EXPECT_THAT(error({"", {{{0, 0, -kRadius}, kTop}}, 0.4f, "cap"}), HasSubstr("is not on part 'cap'"));

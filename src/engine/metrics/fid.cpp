@@ -56,7 +56,7 @@ FeatureNetwork::FeatureNetwork(std::shared_ptr<const OnnxRuntime> runtime, const
     : network_(std::move(runtime), file, threads), file_(file) {
   if (network_.inputs().size() != 1 || network_.outputs().empty())
     fail(
-        "{} is not a network for --fid-model: it has {} inputs, and one image goes in; see "
+        "{} is not a network for FID: it has {} inputs, and one image goes in; see "
         "docs/evaluation.md.",
         file.string(), network_.inputs().size());
 }
@@ -69,7 +69,7 @@ std::vector<float> FeatureNetwork::features(const Image& rgb) const {
   OnnxTensors out = network_.run({{network_.inputs().front(), input}}, {output});
   std::vector<float>& values = out.at(output).data;
   if (values.empty() || !std::all_of(values.begin(), values.end(), [](float v) { return std::isfinite(v); }))
-    fail("{} is not a network for --fid-model: its features are not finite numbers; see docs/evaluation.md.",
+    fail("{} is not a network for FID: its features are not finite numbers; see docs/evaluation.md.",
          file_.string());
   return std::move(values);
 }

@@ -21,7 +21,7 @@ Lpips::Lpips(std::shared_ptr<const OnnxRuntime> runtime, const std::filesystem::
     : network_(std::move(runtime), file, threads), file_(file) {
   if (network_.inputs().size() != 2 || network_.outputs().empty())
     fail(
-        "{} is not a network for --lpips-model: it has {} inputs, and two images go in; see "
+        "{} is not a network for LPIPS: it has {} inputs, and two images go in; see "
         "docs/evaluation.md.",
         file.string(), network_.inputs().size());
 }
@@ -37,7 +37,7 @@ double Lpips::distance(const Image& a, const Image& b) const {
   const std::vector<float>& value = out.at(output).data;
   if (value.size() != 1 || !std::isfinite(value[0]))
     fail(
-        "{} is not a network for --lpips-model: it answers with {} for a pair of images; see "
+        "{} is not a network for LPIPS: it answers with {} for a pair of images; see "
         "docs/evaluation.md.",
         file_.string(), value.size() == 1 ? "no finite number" : fmt::format("{} numbers", value.size()));
   return value[0];

@@ -33,8 +33,8 @@ std::unique_ptr<PhotoSegmenter> segmenter_of(const PhotosRequest& r) {
     return sam_segmenter(installed_sam(), r.threads);
   } catch (const Error& e) {
     throw Error(e.code(), e.what(),
-                "`./run sam` installs the network that finds the object. Without it: --background PLATE, a "
-                "photograph of the background alone, or --no-masks for poses only.");
+                "`./run sam` installs the network that finds the object. Without it: a photograph of the "
+                "background alone, or poses only (no masks).");
   }
 }
 
@@ -148,8 +148,8 @@ PhotosReport capture_photos(const PhotosRequest& r, Progress& progress) {
     throw Error(
         ErrorCode::failed,
         fmt::format("COLMAP found the poses of only {} of {} photographs.", report.posed, report.photos),
-        "More overlap between neighbors helps, and texture: docs/photographing.md. With a turntable: "
-        "--turntable.");
+        "More overlap between neighbors helps, and texture: docs/photographing.md. If the object turned on "
+        "a turntable, say so.");
   if (segmenter) {
     set_aside_other_masks(r);
     MaskRequest masks{capture.views, clicks_of(r, capture), r.out / "work/first_masks", r.out / "masks"};

@@ -167,7 +167,7 @@ void find_poses(const PosingRequest& r, double first, double last, Progress& pro
     throw Error(
         ErrorCode::failed, "COLMAP could not find out from where the photographs were taken.",
         "Photographs of the same places that overlap by half, sharp, of a surface with texture, help: "
-        "docs/photographing.md. With a turntable: --turntable.");
+        "docs/photographing.md. If the object turned on a turntable, say so.");
   fs::remove_all(r.sparse);
   move_path(models, r.sparse);
 }

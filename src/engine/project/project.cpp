@@ -115,9 +115,8 @@ bool Project::is_project(const fs::path& folder) {
 void Project::check_place(const fs::path& folder, bool replace) {
   if (is_project(folder)) {
     if (!replace)
-      fail_usage(
-          "{} is a project already; use --resume to continue it, --force to replace it, or another folder.",
-          folder.string());
+      fail_usage("{} is a project already; resume it, replace it by force, or choose another folder.",
+                 folder.string());
     check_version(parse_json_file(folder / "project.json"), folder / "project.json");
     return;
   }

@@ -245,7 +245,7 @@ TEST_F(ProjectTest, ReplacesAProjectOnlyWhenAsked) {
     add_paint(p, 1);
   }
   write_file_atomic(folder() / "exports/mine.glb", "keep");
-  EXPECT_THAT(message_of([&] { make(); }), HasSubstr("--force"));
+  EXPECT_THAT(message_of([&] { make(); }), HasSubstr("force"));
   const Project p = make(true);
   EXPECT_FALSE(p.has_base());
   EXPECT_TRUE(p.stack().entries().empty());

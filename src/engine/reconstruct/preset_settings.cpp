@@ -150,7 +150,7 @@ void add_meshing(const Group<MeshingOptions>& g) {
 
 void add_run(const Group<Preset>& g) {
   g.add("iterations", &Preset::iterations, {1, 1e8}, "steps",
-        "Of the geometry stage, without --time or --iterations", kPaper)
+        "Of the geometry stage, where neither a time nor a number of steps is asked for", kPaper)
       .add("polish_steps", &Preset::polish_steps, {0, 1e6}, "steps", "Of a round of polishing, at most")
       .add("exposures_from_steps", &Preset::exposures_from_steps, {0, 1e8}, "steps",
            "Steps after which the model is compared with the exposures of the photographs")

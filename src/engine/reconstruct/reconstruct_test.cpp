@@ -282,7 +282,7 @@ TEST(Reconstruct, RefusesACheckpointItCannotResume) {
     try {
       small.run(checkpoints, progress);
     } catch (const Error& e) {
-      EXPECT_NE(e.hint().find("--force"), std::string::npos) << e.what();
+      EXPECT_NE(e.hint().find("anew"), std::string::npos) << e.what();
       return std::string(e.what());
     }
     return std::string("it was resumed");

@@ -114,7 +114,7 @@ Checkpoints::State checkpoint_of(const RunPosition& position, const RunState& st
 }
 
 SavedRun read_checkpoint(const Checkpoints::State& saved, const MakeGeometry& make_geometry) {
-  constexpr const char* kHint = "start anew with --force";
+  constexpr const char* kHint = "start anew, in place of it";
   try {
     const int version = saved.head.value("version", 1);
     if (version > kVersion) fail("the checkpoint was written by a newer program; resume with that");

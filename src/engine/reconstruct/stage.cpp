@@ -19,14 +19,14 @@ size_t first_stage(const std::vector<Stage>& stages, const std::optional<RunPosi
     throw Error(
         ErrorCode::failed,
         fmt::format("the checkpoint ends in a stage '{}' that this program does not have", position->stage),
-        "start anew with --force");
+        "start anew, in place of it");
   return size_t(at - stages.begin()) + (position->finished ? 1 : 0);
 }
 
 Error interrupted(const std::string& stage, bool has_checkpoint) {
   if (has_checkpoint)
     return {ErrorCode::interrupted, fmt::format("interrupted in the stage '{}'; the state is saved", stage),
-            "go on with --resume"};
+            "resume it"};
   return {ErrorCode::interrupted,
           fmt::format("interrupted in the stage '{}', before there was a state to save", stage)};
 }

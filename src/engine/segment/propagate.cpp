@@ -186,8 +186,8 @@ void Propagation::first_view() {
       std::any_of(seen.begin(), seen.end(), [&](const SeenPoint& s) { return votes_.in(s.point); });
   if (!found)
     fail(
-        "The network finds no part at these clicks. Click nearer to the middle of the part, or use "
-        "--segmenter grow.");
+        "The network finds no part at these clicks. Click nearer to the middle of the part, or let "
+        "it grow there (segmenter grow).");
 }
 
 Prompts Propagation::prompts_for(int view, const std::vector<SeenPoint>& seen) const {

@@ -18,8 +18,10 @@ constexpr float kMean[3] = {123.675f, 116.28f, 103.53f}, kDeviation[3] = {58.395
 std::filesystem::path network(const std::filesystem::path& folder, const char* name) {
   const std::filesystem::path file = folder / name;
   if (!std::filesystem::exists(file))
-    fail("The segmentation network {} is missing. `./run sam` installs it; `--segmenter grow` needs none.",
-         file.string());
+    fail(
+        "The segmentation network {} is missing. `./run sam` installs it; the segmenter that grows parts "
+        "needs none.",
+        file.string());
   return file;
 }
 

@@ -90,7 +90,7 @@ void check_camera(const Camera& c, const std::string& what) {
 Camera read_camera(const fs::path& path) {
   const std::vector<NamedCamera> cameras = read_camera_file(path);
   if (cameras.size() != 1)
-    fail_usage("{} has {} cameras; --camera takes a file with one.", path.string(), cameras.size());
+    fail_usage("{} has {} cameras; a view of its own is a file with one.", path.string(), cameras.size());
   return cameras[0].camera;
 }
 

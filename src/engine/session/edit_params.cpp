@@ -25,11 +25,11 @@ void put_share(const std::optional<double>& value, const char* name, Json& param
 void check_effects(const MaterialEffects& e) {
   if (!e.preset.empty())
     if (const std::string problem = unknown_preset(e.preset); !problem.empty()) fail_usage("{}", problem);
-  if (e.blend && e.empty()) fail_usage("--blend needs something to blend: --material, --color or a value.");
-  if (e.roughness && e.roughness_scale) fail_usage("Give --roughness or --roughness-scale, not both.");
+  if (e.blend && e.empty()) fail_usage("A blend needs something to blend: a material, a color or a value.");
+  if (e.roughness && e.roughness_scale) fail_usage("Give a roughness or a roughness scale, not both.");
   if (e.roughness_scale && !(*e.roughness_scale >= 0 && std::isfinite(*e.roughness_scale)))
-    fail_usage("--roughness-scale {} is not a number of at least 0.", *e.roughness_scale);
-  if (e.replace && e.color.empty()) fail_usage("--replace goes with --color.");
+    fail_usage("The roughness scale {} is not a number of at least 0.", *e.roughness_scale);
+  if (e.replace && e.color.empty()) fail_usage("'replace' goes with 'color'.");
   if (!e.color.empty()) color_from_text(e.color);
 }
 

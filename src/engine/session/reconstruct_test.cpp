@@ -42,7 +42,7 @@ std::set<std::string> stages_until(const ReconstructRequest& request, const std:
     ADD_FAILURE() << "not stopped at " << stage;
   } catch (const Error& e) {
     EXPECT_EQ(e.code(), ErrorCode::interrupted) << stage << ": " << e.what();
-    EXPECT_NE(e.hint().find("--resume"), std::string::npos) << e.hint();
+    EXPECT_NE(e.hint().find("resume"), std::string::npos) << e.hint();
   }
   EXPECT_FALSE(Project::open(request.project, Project::Mode::read).has_base()) << stage;
   return stop.finished;

@@ -100,19 +100,19 @@ std::string version_note(const std::string& id, int version, const EditOp& op) {
 // Usage errors: options that exclude each other.
 void check_paint(const PaintCommand& c) {
   const MaterialEffects& m = c.material;
-  if (!(c.theta >= 0 && std::isfinite(c.theta))) fail_usage("--theta {} is not a distance.", c.theta);
-  if (c.theta > 0 && c.routing != Routing::points) fail_usage("--theta goes with --routing points.");
-  if (c.erase && c.target != PaintTarget::albedo) fail_usage("--erase paints no color; leave out --target.");
-  if (c.erase && c.routing == Routing::none) fail_usage("--erase needs a region; use another --routing.");
-  if (!m.color.empty()) fail_usage("Paint has the colors of its scribble; leave out --color.");
-  if (m.blend) fail_usage("Paint is blended by the scribble's alpha; leave out --blend.");
+  if (!(c.theta >= 0 && std::isfinite(c.theta))) fail_usage("Theta, {}, is not a distance.", c.theta);
+  if (c.theta > 0 && c.routing != Routing::points) fail_usage("Theta goes with routing by points.");
+  if (c.erase && c.target != PaintTarget::albedo) fail_usage("The eraser paints no color; it has no target.");
+  if (c.erase && c.routing == Routing::none) fail_usage("The eraser needs a region; use another routing.");
+  if (!m.color.empty()) fail_usage("Paint has the colors of its scribble; leave out the color.");
+  if (m.blend) fail_usage("Paint is blended by the scribble's alpha; leave out the blend.");
   if (m.empty()) return;
-  if (c.erase) fail_usage("--erase restores the material; leave out the material options.");
-  if (c.routing == Routing::none) fail_usage("A material needs a region; use another --routing.");
+  if (c.erase) fail_usage("The eraser restores the material; leave out the new one.");
+  if (c.routing == Routing::none) fail_usage("A material needs a region; use another routing.");
   if (c.target == PaintTarget::radiance)
-    fail_usage("With --target radiance, material has no effect; leave out the material options.");
+    fail_usage("Color that is shown under every light (target radiance) has no material; leave it out.");
   if (c.target != PaintTarget::albedo && !m.preset.empty())
-    fail_usage("--material {} paints its own color, which is an albedo; leave out --target.", m.preset);
+    fail_usage("Material {} paints its own color, which is an albedo; leave out the target.", m.preset);
 }
 
 bool toggle_edit(Project& project, const Tools& tools, const std::string& id) {
@@ -191,8 +191,9 @@ EditPlan Session::plan(const PaintCommand& command) const {
 EditPlan Session::plan(const MaterialCommand& command) const {
   if (command.effects.empty())
     fail_usage(
-        "Nothing to change: give --material, --roughness, --roughness-scale, --specular, --metalness or "
-        "--color.");
+        "Nothing to change: give a material, a roughness or roughness scale, a specular strength, a "
+        "metalness "
+        "or a color.");
   Json params = Json::object();
   if (!command.part.empty()) params["part"] = command.part;
   put_effects(command.effects, params);
@@ -200,7 +201,7 @@ EditPlan Session::plan(const MaterialCommand& command) const {
 }
 
 EditPlan Session::plan(const LightChoice& choice) const {
-  if (choice.is_own()) fail_usage("Nothing to change: give --env, --rotate, --scale or --sun.");
+  if (choice.is_own()) fail_usage("Nothing to change: give an environment, a rotation, a scale or a sun.");
   check_choice(choice);
   Json params = Json::object();
   EditInputs inputs;
@@ -280,7 +281,7 @@ ReplayReport Session::replay(const std::filesystem::path& on, Progress& progress
   return threads_->run([&]() -> ReplayReport {
     std::error_code error;
     if (std::filesystem::equivalent(project().folder(), on, error))
-      fail_usage("{} is the project itself; name another one with --on.", on.string());
+      fail_usage("{} is the project itself; name another one to make the edits on.", on.string());
     Project other = Project::open(on, Project::Mode::write);
     const Tools tools{*device_, *frames_, *sam_, progress};
     const Stack& stack = project().stack();

@@ -72,13 +72,13 @@ bool has(const std::string& kind, std::initializer_list<const char*> kinds) {
 void check_sizes(const ExportRequest& r) {
   constexpr int kMinTexture = 64, kMaxTexture = 8192, kMinFaces = 4, kMaxFaces = 20'000'000;
   if (r.texture && *r.texture != 0 && (*r.texture < kMinTexture || *r.texture > kMaxTexture))
-    fail_usage("--texture {}: the side of a texture is {} to {} texels, or 0 for none.", *r.texture,
+    fail_usage("Texture {}: the side of a texture is {} to {} texels, or 0 for none.", *r.texture,
                kMinTexture, kMaxTexture);
   if (r.faces && (*r.faces < kMinFaces || *r.faces > kMaxFaces))
-    fail_usage("--faces {}: a mesh has {} to {} faces.", *r.faces, kMinFaces, kMaxFaces);
+    fail_usage("Faces {}: a mesh has {} to {} faces.", *r.faces, kMinFaces, kMaxFaces);
   if (!(r.unit_scale > 0) || !std::isfinite(r.unit_scale))
-    fail_usage("--unit-scale {}: meters per unit of the capture, more than 0.", r.unit_scale);
-  if (!(r.size >= 0) || !std::isfinite(r.size)) fail_usage("--size {}: meters, more than 0.", r.size);
+    fail_usage("Unit scale {}: meters per unit of the capture, more than 0.", r.unit_scale);
+  if (!(r.size >= 0) || !std::isfinite(r.size)) fail_usage("Size {}: meters, more than 0.", r.size);
 }
 
 void check_request(const ExportRequest& r, const std::string& kind) {
@@ -87,13 +87,13 @@ void check_request(const ExportRequest& r, const std::string& kind) {
         "{}: the ending says what to write: .glb, .gltf, .obj, .usdz or .ply for the object, .html for a "
         "page that shows it, .hdr, .exr, .npy or .json for its light.",
         r.out.string());
-  if (r.points && kind != ".ply") fail_usage("--points are written as .ply, not {}.", kind);
+  if (r.points && kind != ".ply") fail_usage("Points are written as .ply, not {}.", kind);
   if (has(kind, {".ply", ".html"}) && r.texture.value_or(0) > 0)
     fail_usage("A {} has its colors at the vertices; for a texture write .glb, .gltf, .obj or .usdz.", kind);
   if (has(kind, {".gltf", ".obj", ".usdz"}) && r.texture == 0)
     fail_usage("A {} is written with a texture; without one write .glb or .ply.", kind);
   if (r.image == ExportImage::webp && !has(kind, {".glb", ".gltf"}))
-    fail_usage("--image webp: of the formats only .glb and .gltf have WebP pictures, not {}.", kind);
+    fail_usage("Only .glb and .gltf have WebP pictures, not {}.", kind);
   check_sizes(r);
 }
 

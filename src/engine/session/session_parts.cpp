@@ -54,16 +54,15 @@ void check_place(const PartCommand& c) {
   const bool prompts = !c.positive.empty() || !c.negative.empty() || !c.scribble.empty();
   if (prompts + !c.mask.empty() + c.like.has_value() != 1)
     fail_usage(
-        "Give the part by one of --scribble FILE.png or --positive X,Y (and --negative X,Y), --like X,Y and "
-        "--mask FILE.png.");
-  if (c.segmenter == "sam" && c.like)
-    fail_usage("The network needs prompts; leave out --segmenter with --like.");
-  if (c.like_color && !c.like) fail_usage("--like-color goes with --like.");
+        "Say where the part is in one way: a scribble, positive (and negative) clicks, a pixel of the same "
+        "material (like) or a mask.");
+  if (c.segmenter == "sam" && c.like) fail_usage("The network needs prompts; leave it out with 'like'.");
+  if (c.like_color && !c.like) fail_usage("'like color' goes with 'like'.");
   if (!c.scribble.empty()) return;
-  if (!c.negative_scribble.empty()) fail_usage("--negative-scribble goes with --scribble.");
-  if (!c.negative_color.empty()) fail_usage("--negative-color goes with --scribble.");
-  if (c.keep_color) fail_usage("--keep-color goes with --scribble.");
-  if (c.keep_texture) fail_usage("--keep-texture goes with --color or --scribble.");
+  if (!c.negative_scribble.empty()) fail_usage("'negative scribble' goes with 'scribble'.");
+  if (!c.negative_color.empty()) fail_usage("'negative color' goes with 'scribble'.");
+  if (c.keep_color) fail_usage("'keep color' goes with 'scribble'.");
+  if (c.keep_texture) fail_usage("'keep texture' goes with 'color' or 'scribble'.");
 }
 
 void put_scribble(const PartCommand& c, Json& params, EditInputs& inputs) {
@@ -85,7 +84,8 @@ void put_scribble(const PartCommand& c, Json& params, EditInputs& inputs) {
 // Only what differs from the defaults. Usage error: no view.
 void put_network(const NetworkViews& n, Json& params) {
   const ViewPlan plan = n.plan, usual;
-  if (plan.max_views < 1) fail_usage("The network needs at least one view; give --views a number or `all`.");
+  if (plan.max_views < 1)
+    fail_usage("The network needs at least one view; give a number of views, or `all`.");
   if (n.photographs) params["on"] = "photographs";
   if (plan.max_views == ViewPlan::kAll)
     params["views"] = "all";

@@ -86,7 +86,7 @@ int usable_downscale(int asked, const CaptureReport& report) {
   throw Error(ErrorCode::failed,
               fmt::format("{} views{} need about {:.1f} GiB of memory; this machine has {:.1f}.", views,
                           n > 1 ? fmt::format(" at 1/{} of their size", n) : "", needed, there),
-              fmt::format("Use them smaller (--downscale {}), or fewer of them (--views).", n + 1));
+              fmt::format("Use them smaller (downscale {}), or fewer of them (views).", n + 1));
 }
 
 // The same checks as in `check`, so that nothing is written for an unusable capture.
@@ -122,7 +122,7 @@ void require_same_capture(const Project& project, const fs::path& given) {
   if (capture_fingerprint(now) != project.fingerprint())
     fail(
         "The capture {} has changed since {} was begun: its views, cameras or images differ. Restore "
-        "it, or start anew with --force.",
+        "it, or start anew, in place of it.",
         now.root.string(), project.folder().string());
 }
 

@@ -21,8 +21,7 @@ const EditLayer& part_layer(const Scene& scene, const std::string& part) {
     if (!l->part.empty() && l->part == part) return *l;
   std::string names;
   for (const std::string& name : part_names(scene)) names += (names.empty() ? "'" : ", '") + name + "'";
-  if (names.empty())
-    fail_usage("There is no part '{}'; make one with `cei3d edit PROJECT part --name {}`.", part, part);
+  if (names.empty()) fail_usage("There is no part '{}'; select one and give it that name first.", part);
   fail_usage("There is no part '{}'; there are {}.", part, names);
 }
 

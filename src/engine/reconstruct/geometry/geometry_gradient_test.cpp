@@ -35,7 +35,7 @@ struct GeometryStageProbe {
     }
     return out;
   }
-  static GeometryStats accumulate(GeometryStage& stage, double u, const ValueGrads& more) {
+  static GeometryStats accumulate(GeometryStage& stage, double u, const ValueGradSpans& more) {
     return stage.accumulate(stage.step_at(0, u), more);
   }
   static ParamSet& sdf(GeometryStage& stage) { return stage.sdf_.params(); }

@@ -19,7 +19,7 @@ struct GeometryStats {
   double color = 0;          // Huber loss of the color, per ray
   double mask = 0;           // |coverage - alpha of the pixel|, per ray; no part of the loss
   double eikonal = 0;        // per sample
-  double loss = 0;           // weighted sum of all losses but that behind ValueGrads: what descent lowers
+  double loss = 0;           // weighted sum of all losses but that behind ValueGradSpans: what descent lowers
   double squared_error = 0;  // per ray, mean over channels; display-encoded
   int64_t kept = 0;          // samples
   int64_t candidates = 0;    // whose distance was computed

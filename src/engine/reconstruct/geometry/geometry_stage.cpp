@@ -92,7 +92,7 @@ GeometryStats GeometryStage::ray_gradients(const Step& step, int chunk, Work& w,
   return stats;
 }
 
-void GeometryStage::value_gradients(const Step& step, const ValueGrads& more, Work& w,
+void GeometryStage::value_gradients(const Step& step, const ValueGradSpans& more, Work& w,
                                     ChunkGradients& g) const {
   w.values.gradient(
       step.networks, more.points, [&](int i, float) { return more.d_values[i]; }, g);
@@ -111,7 +111,7 @@ GeometryStats GeometryStage::hold_gradients(const Step& step, Work& w, ChunkGrad
   return stats;
 }
 
-GeometryStats GeometryStage::accumulate(const Step& step, const ValueGrads& more) {
+GeometryStats GeometryStage::accumulate(const Step& step, const ValueGradSpans& more) {
   constexpr int kBlock = PointValues::kBlock;
   const int ray_chunks = options_.rays / kChunkRays;
   const int value_chunks = (int(more.points.size()) + kBlock - 1) / kBlock;
@@ -145,7 +145,8 @@ GeometryStats GeometryStage::accumulate(const Step& step, const ValueGrads& more
   return total;
 }
 
-GeometryStats GeometryStage::step(int64_t index, double u, const ValueGrads& more, const Progress& progress) {
+GeometryStats GeometryStage::step(int64_t index, double u, const ValueGradSpans& more,
+                                  const Progress& progress) {
   StepTimes::process(times_, StepPart::occupancy, [&] { refresh_grid(index, u, progress); });
   const GeometryStats stats = accumulate(step_at(index, u), more);
   StepTimes::process(times_, StepPart::adam, [&] { optimizer_.step(device_, rate_at(options_, u)); });

@@ -25,7 +25,7 @@
 namespace cei3d {
 
 // A loss of the field's distances at points of the caller's choice, by its derivatives.
-struct ValueGrads {
+struct ValueGradSpans {
   std::span<const Vec3f> points;
   std::span<const float> d_values;  // #points: derivative of the loss by the distance there
 };
@@ -50,7 +50,7 @@ class GeometryStage {
   // Fits the field to a shape: descent then starts from the right object. Error: it is empty.
   void prefit(const StartShape&, const Progress& progress = Progress());
   // One training step at schedule position u in [0, 1). Error: interrupted, before anything has changed.
-  GeometryStats step(int64_t step, double u, const ValueGrads& more = {},
+  GeometryStats step(int64_t step, double u, const ValueGradSpans& more = {},
                      const Progress& progress = Progress());
   // Loss statistics of random pixels of another store (held-out views), no training.
   GeometryStats evaluate(const PixelStore& held_out, int rays, double u);
@@ -84,10 +84,10 @@ class GeometryStage {
   Step step_at(int64_t index, double u) const;
   void refresh_grid(int64_t step, double u, const Progress&);
   // Adds the gradients of the loss to the optimizer's and records the errors of pixels.
-  GeometryStats accumulate(const Step&, const ValueGrads& more);
+  GeometryStats accumulate(const Step&, const ValueGradSpans& more);
   void sample_training_rays(const Step&, int chunk, Work&) const;
   GeometryStats ray_gradients(const Step&, int chunk, Work&, std::span<PixelError> errors);
-  void value_gradients(const Step&, const ValueGrads&, Work&, ChunkGradients&) const;
+  void value_gradients(const Step&, const ValueGradSpans&, Work&, ChunkGradients&) const;
   GeometryStats hold_gradients(const Step&, Work&, ChunkGradients&) const;
   void render(const Step&, RayBatch, Work&) const;
   // take(pixel, ray, work): of each ray of the view, `samples` per pixel and axis.

@@ -19,7 +19,8 @@ std::vector<RefinedPose> refined_poses(const Capture& capture, std::span<const C
 std::vector<Camera> posed_cameras(std::vector<Camera> cameras, std::span<const RefinedPose> poses,
                                   const Normalization& normalization) {
   if (poses.size() != cameras.size())
-    fail("there are {} poses for {} training views; start anew with --force", poses.size(), cameras.size());
+    fail("there are {} poses for {} training views; start anew, in place of it", poses.size(),
+         cameras.size());
   for (size_t i = 0; i < cameras.size(); ++i) {
     cameras[i].world_from_cam = poses[i].world_from_cam;
     cameras[i].center = normalization.unit_from_capture(poses[i].center);
