@@ -76,54 +76,64 @@ std::string text_of(const EditSummary& s) {
   return text;
 }
 
-}  // namespace
-
-void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
-  auto o = std::make_shared<Options>();
-  CLI::App* verb = commands.add("paint", "Paint on the surface seen in one view", edit);
-  verb->add_option("--view", o->views,
+// Where the paint comes from: scribbles on views, or a decal.
+void add_pictures(CLI::App* verb, Options& o) {
+  verb->add_option("--view", o.views,
                    "View that was painted on, for example train/r_055. --view and --scribble may be given "
                    "several times, in pairs; later scribbles cover earlier ones")
       ->expected(1)
       ->take_all();
-  verb->add_option("--camera", o->cameras, "Instead of --view: " + std::string(kCameraHelp))
+  verb->add_option("--camera", o.cameras, "Instead of --view: " + std::string(kCameraHelp))
       ->expected(1)
       ->take_all();
   verb->add_option(
-          "--scribble", o->scribbles,
+          "--scribble", o.scribbles,
           "RGBA PNG of the view's size. Where it is opaque, its sRGB color becomes the albedo; "
           "semi-transparent strokes are blended by their alpha. A material is painted where alpha is above "
           "one half; --material paints with its own color instead of the scribble's")
       ->expected(1)
       ->take_all();
   CLI::Option* decal = verb->add_option(
-      "--decal", o->decal,
+      "--decal", o.decal,
       "Instead of --scribble: a picture, PNG or JPEG, that is laid onto the surface at --at, upright in the "
       "view, seen along the surface's normal there");
-  verb->add_option("--at", o->at, "Pixel of the view where the decal's middle is, X,Y")->needs(decal);
-  verb->add_option("--width", o->place.width, "Width of the decal, capture units")->needs(decal);
-  verb->add_option("--turn", o->place.turn_degrees, "Turn the decal clockwise in the view, degrees")
+  verb->add_option("--at", o.at, "Pixel of the view where the decal's middle is, X,Y")->needs(decal);
+  verb->add_option("--width", o.place.width, "Width of the decal, capture units")->needs(decal);
+  verb->add_option("--turn", o.place.turn_degrees, "Turn the decal clockwise in the view, degrees")
       ->needs(decal);
+}
+
+// What the paint means, and which surface it covers.
+void add_meaning(CLI::App* verb, Options& o) {
   CLI::Option* target =
-      verb->add_option("--target", o->target,
+      verb->add_option("--target", o.target,
                        "Meaning of the painted color. albedo: color without light. appearance: color that "
                        "the view shows under the present light. radiance: color shown under every light")
           ->check(CLI::IsMember({"albedo", "appearance", "radiance"}))
           ->capture_default_str();
-  verb->add_flag("--erase", o->command.erase,
+  verb->add_flag("--erase", o.command.erase,
                  "Restore the reconstructed albedo and material where the scribble is opaque")
       ->excludes(target);
   verb->add_option(
-          "--routing", o->routing,
+          "--routing", o.routing,
           "How painted surface is found. both: near edited handler points and inside the scribble's outline. "
           "points: where the nearest handler point is edited. outline: without handler points. none: retrain "
           "the object's albedo field instead, which changes other places, too; for comparison")
       ->check(CLI::IsMember({"both", "points", "outline", "none"}))
       ->capture_default_str();
-  verb->add_option("--theta", o->command.theta,
+  verb->add_option("--theta", o.command.theta,
                    "With --routing points: paint all surface nearer than this to an edited handler point, in "
                    "units of the capture, as in the paper; 0: by the nearest handler point")
       ->capture_default_str();
+}
+
+}  // namespace
+
+void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
+  auto o = std::make_shared<Options>();
+  CLI::App* verb = commands.add("paint", "Paint on the surface seen in one view", edit);
+  add_pictures(verb, *o);
+  add_meaning(verb, *o);
   add_material_values(verb, o->command.material);
   verb->add_option("--set", o->command.set,
                    "key=value, repeatable: how the painted colors are learned. Keys: branch.steps, .batch, "

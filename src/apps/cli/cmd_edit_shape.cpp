@@ -73,26 +73,30 @@ std::string deform_text(const EditSummary& s) {
                      s.report.at("farthest").get<double>(), stages_text(s));
 }
 
-void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
-  auto o = std::make_shared<DeformOptions>();
-  CLI::App* verb = commands.add("deform", "Drag a point of the surface; its surroundings follow", edit);
+// Points to drag and pins, in space or in a view.
+void add_points(CLI::App* verb, DeformOptions& o) {
   const auto each = [&](const char* name, std::vector<std::string>& values, const char* help) {
     verb->add_option(name, values, help)->expected(1)->take_all();
   };
-  each("--from", o->from,
-       "Point on the surface to drag, X,Y,Z in the capture's frame; again for more points");
-  each("--to", o->to, "Where the point goes, X,Y,Z in the capture's frame; one for each --from");
-  each("--turn", o->turn,
+  each("--from", o.from, "Point on the surface to drag, X,Y,Z in the capture's frame; again for more points");
+  each("--to", o.to, "Where the point goes, X,Y,Z in the capture's frame; one for each --from");
+  each("--turn", o.turn,
        "Rotation of the surface around the point, X,Y,Z: axis in the capture's frame times angle in degrees; "
        "one for each --from, or none");
   each(
-      "--pin", o->pin,
+      "--pin", o.pin,
       "Point on the surface around which nothing moves, X,Y,Z in the capture's frame; again for more points");
-  verb->add_option("--view", o->view, "Instead of --from and --to: name of a view to drag in");
-  verb->add_option("--camera", o->camera, "Instead of --view: " + std::string(kCameraHelp));
-  verb->add_option("--pixel", o->pixel,
+  verb->add_option("--view", o.view, "Instead of --from and --to: name of a view to drag in");
+  verb->add_option("--camera", o.camera, "Instead of --view: " + std::string(kCameraHelp));
+  verb->add_option("--pixel", o.pixel,
                    "With --view: pixel of the point to drag, X,Y (column, row from the top left corner)");
-  verb->add_option("--drag", o->drag, "With --view: movement in pixels, DX,DY, at the depth of the point");
+  verb->add_option("--drag", o.drag, "With --view: movement in pixels, DX,DY, at the depth of the point");
+}
+
+void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
+  auto o = std::make_shared<DeformOptions>();
+  CLI::App* verb = commands.add("deform", "Drag a point of the surface; its surroundings follow", edit);
+  add_points(verb, *o);
   verb->add_option("--radius", o->radius,
                    "Distance along the surface up to which it moves, capture units (default: 0.3 of the "
                    "object's radius, or 1.5 times the drag if that is more)");

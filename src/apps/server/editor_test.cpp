@@ -30,6 +30,30 @@ std::vector<std::string> result_objects(const std::filesystem::path& project) {
   return objects;
 }
 
+// The edits of the editor in the test below, by the commands of the session. file: the scribble.
+void edit_by_commands(Session& session, const std::filesystem::path& file) {
+  Progress quiet;
+  session.paint({{{"train/r_0", file}}}, quiet);
+  PartCommand part;
+  part.view = "train/r_0";
+  part.positive = {{24, 24}};
+  part.name = "cap";
+  part.in_view = true;
+  session.select_part(part, quiet);
+  MaterialCommand material{"cap", {}};
+  material.effects.roughness = 0.4;
+  material.effects.metalness = 1;
+  session.change_material(material, quiet);
+  session.change_light({"", 40, EnvConvention::by_up_axis, 1.5}, quiet);
+  session.deform({PixelDrag{"train/r_0", {24, 24}, {4, 2}, {}}, 0.35, ""}, quiet);
+  session.paint({{{"train/r_0", file, {}, DecalPlace{{26, 22}, 0.3, 30}}}}, quiet);
+  session.change_light({"", 0, EnvConvention::by_up_axis, 1, Sun{{1, 0, 1}, 2}}, quiet);
+  DeformCommand bend{PointDrag{{0, 0, 0.7}, {0, 0, 0.8}, {0, 0, 20}}, 0.3, ""};
+  bend.more = {{{0.7, 0, 0}, {0.75, 0, 0}}};
+  bend.pins = {{0, 0.7, 0}};
+  session.deform(bend, quiet);
+}
+
 TEST_F(EditorTest, EveryToolGivesTheObjectsOfItsCommand) {
   const std::string png = encode_png(square_scribble({0.8f, 0.1f, 0.1f}, 6), 8);
   const auto done = [&](const std::string& op, const Json& params) {
@@ -58,27 +82,8 @@ TEST_F(EditorTest, EveryToolGivesTheObjectsOfItsCommand) {
   Project::create(other, {}, three_views(), false).save_base(sphere_with_handlers());
   write_file_atomic(file, png);
   Session session("cpu");
-  Progress quiet;
   session.open(other, Session::Access::write);
-  session.paint({{{"train/r_0", file}}}, quiet);
-  PartCommand part;
-  part.view = "train/r_0";
-  part.positive = {{24, 24}};
-  part.name = "cap";
-  part.in_view = true;
-  session.select_part(part, quiet);
-  MaterialCommand material{"cap", {}};
-  material.effects.roughness = 0.4;
-  material.effects.metalness = 1;
-  session.change_material(material, quiet);
-  session.change_light({"", 40, EnvConvention::by_up_axis, 1.5}, quiet);
-  session.deform({PixelDrag{"train/r_0", {24, 24}, {4, 2}, {}}, 0.35, ""}, quiet);
-  session.paint({{{"train/r_0", file, {}, DecalPlace{{26, 22}, 0.3, 30}}}}, quiet);
-  session.change_light({"", 0, EnvConvention::by_up_axis, 1, Sun{{1, 0, 1}, 2}}, quiet);
-  DeformCommand bend{PointDrag{{0, 0, 0.7}, {0, 0, 0.8}, {0, 0, 20}}, 0.3, ""};
-  bend.more = {{{0.7, 0, 0}, {0.75, 0, 0}}};
-  bend.pins = {{0, 0.7, 0}};
-  session.deform(bend, quiet);
+  edit_by_commands(session, file);
   EXPECT_EQ(result_objects(other), by_editor);
 }
 

@@ -208,58 +208,57 @@ struct BadFile {
   const char* says;
 };
 
+constexpr BadFile kBadFiles[] = {
+    {"transforms_train.json", "", "not valid JSON"},
+    {"transforms_train.json", "{\"frames\": [", "not valid JSON"},
+    {"transforms_train.json", "[]", "no list of frames"},
+    {"transforms_train.json", "{\"frames\": 3}", "no list of frames"},
+    {"transforms_train.json", "{\"frames\": []}", "no views"},
+    {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\"}]}", "lacks"},
+    {"transforms_train.json", "{\"frames\": [{\"file_path\": 7, \"transform_matrix\": []}]}", "lacks"},
+    {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [[1,2],[3]]}]}",
+     "matrix"},
+    {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": \"x\"}]}",
+     "matrix"},
+    {"transforms_train.json",
+     "{\"frames\": [{\"file_path\": \"..\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+     "names no image"},
+    {"transforms_train.json",
+     "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [\"1\",0,0,0,0,1,0,0,0,0,1,0]}]}", "number"},
+    {"transforms_train.json",
+     "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}", "image size"},
+    {"transforms_train.json",
+     "{\"w\":8,\"h\":8,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
+     "[1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+     "focal"},
+    {"transforms_train.json",
+     "{\"w\":8,\"h\":8,\"fl_x\":-4,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
+     "[1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+     "impossible"},
+    {"transforms_train.json",
+     "{\"w\":1e9,\"h\":8,\"fl_x\":4,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
+     "[1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+     "impossible"},
+    {"transforms_train.json",
+     "{\"w\":8,\"h\":8,\"camera_angle_x\":4,\"frames\": [{\"file_path\": \"a\", "
+     "\"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+     "field of view"},
+    {"transforms_train.json",
+     "{\"w\":8,\"h\":8,\"fl_x\":4,\"k1\":\"x\",\"frames\": [{\"file_path\": \"a\", "
+     "\"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+     "number"},
+    {"transforms_train.json",
+     "{\"w\":8,\"h\":8,\"fl_x\":4,\"k1\":-9,\"frames\": [{\"file_path\": \"a\", "
+     "\"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
+     "coefficients"},
+    {"cam_dict_norm.json", "[]", "not a list of cameras"},
+    {"cam_dict_norm.json", "{}", "no views"},
+    {"cam_dict_norm.json", "{\"a.png\": {\"K\": []}}", "lacks"},
+    {"cam_dict_norm.json", "{\"a.png\": {\"K\": [1], \"W2C\": [1]}}", "matrix"},
+};
+
 TEST(Capture, BadCameraFilesAreErrors) {
-  const BadFile cases[] = {
-      {"transforms_train.json", "", "not valid JSON"},
-      {"transforms_train.json", "{\"frames\": [", "not valid JSON"},
-      {"transforms_train.json", "[]", "no list of frames"},
-      {"transforms_train.json", "{\"frames\": 3}", "no list of frames"},
-      {"transforms_train.json", "{\"frames\": []}", "no views"},
-      {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\"}]}", "lacks"},
-      {"transforms_train.json", "{\"frames\": [{\"file_path\": 7, \"transform_matrix\": []}]}", "lacks"},
-      {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [[1,2],[3]]}]}",
-       "matrix"},
-      {"transforms_train.json", "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": \"x\"}]}",
-       "matrix"},
-      {"transforms_train.json",
-       "{\"frames\": [{\"file_path\": \"..\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "names no image"},
-      {"transforms_train.json",
-       "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [\"1\",0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "number"},
-      {"transforms_train.json",
-       "{\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "image size"},
-      {"transforms_train.json",
-       "{\"w\":8,\"h\":8,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
-       "[1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "focal"},
-      {"transforms_train.json",
-       "{\"w\":8,\"h\":8,\"fl_x\":-4,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
-       "[1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "impossible"},
-      {"transforms_train.json",
-       "{\"w\":1e9,\"h\":8,\"fl_x\":4,\"frames\": [{\"file_path\": \"a\", \"transform_matrix\": "
-       "[1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "impossible"},
-      {"transforms_train.json",
-       "{\"w\":8,\"h\":8,\"camera_angle_x\":4,\"frames\": [{\"file_path\": \"a\", "
-       "\"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "field of view"},
-      {"transforms_train.json",
-       "{\"w\":8,\"h\":8,\"fl_x\":4,\"k1\":\"x\",\"frames\": [{\"file_path\": \"a\", "
-       "\"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "number"},
-      {"transforms_train.json",
-       "{\"w\":8,\"h\":8,\"fl_x\":4,\"k1\":-9,\"frames\": [{\"file_path\": \"a\", "
-       "\"transform_matrix\": [1,0,0,0,0,1,0,0,0,0,1,0]}]}",
-       "coefficients"},
-      {"cam_dict_norm.json", "[]", "not a list of cameras"},
-      {"cam_dict_norm.json", "{}", "no views"},
-      {"cam_dict_norm.json", "{\"a.png\": {\"K\": []}}", "lacks"},
-      {"cam_dict_norm.json", "{\"a.png\": {\"K\": [1], \"W2C\": [1]}}", "matrix"},
-  };
-  for (const BadFile& bad : cases) {
+  for (const BadFile& bad : kBadFiles) {
     const TempFolder temp;
     write_file_atomic(temp.path() / bad.name, bad.text);
     EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr(bad.says)) << bad.text;

@@ -79,9 +79,7 @@ class TurntableCapture : public ImageSource {
   Capture capture_;
 };
 
-// The preset's networks, schedules and grids, each as small as it still works.
-inline Preset shrunken(Preset p) {
-  const bool has_finer_mesh = p.resolution_from_views;
+inline void shrink_networks(Preset& p) {
   const auto shrink = [](FieldConfig& f) {
     EncodingConfig& e = f.encoding;
     e.frequencies = std::min(e.frequencies, 3);
@@ -99,6 +97,12 @@ inline Preset shrunken(Preset p) {
     g->prefit_steps = 40;
   }
   shrink(p.appearance.albedo);
+}
+
+// The preset's networks, schedules and grids, each as small as it still works.
+inline Preset shrunken(Preset p) {
+  const bool has_finer_mesh = p.resolution_from_views;
+  shrink_networks(p);
   p.appearance.batch = p.polish.batch = 64;
   p.appearance.albedo_steps = 6;
   p.appearance.refine_steps = 28;  // two refreshes of the bounce

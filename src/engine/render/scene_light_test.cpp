@@ -160,13 +160,13 @@ EditLayer lifted(const Scene& scene, float by) {
 // One of ten edits; equal kinds are equal edits of an equal scene.
 EditLayer some_edit(const Scene& scene, uint32_t kind) {
   EditLayer layer;
+  layer.everywhere = kind == 2 || kind == 5 || kind == 6;
   switch (kind) {
     case 0:
     case 1:
       layer = gray_sphere(scene, "paint", kind == 0 ? 1 : -1);
       break;
     case 2:
-      layer.everywhere = true;
       layer.tint = Tint{{0.1f, 0.3f, 0.5f}, true, {0.5f, 0.5f, 0.5f}};
       break;
     case 3:
@@ -176,11 +176,9 @@ EditLayer some_edit(const Scene& scene, uint32_t kind) {
       layer.material.roughness = kind == 3 ? 0.5f : 0.9f;
       break;
     case 5:
-      layer.everywhere = true;
       layer.material.metalness = 0;
       break;
     case 6:
-      layer.everywhere = true;
       layer.light = scene.light;
       layer.light->lobes[0].mu = {2, 1, 0.5f};
       break;

@@ -155,9 +155,48 @@ Appearance appearance(const Device& device, const Scene& scene, std::span<const 
   return appearance_after(device, scene, hits, *memory.shown, memory.lit->look);
 }
 
-Vec3f radiance_of(const Shading& shading, const std::vector<Vec3f>& residual, size_t hit) {
-  const Vec3f sum = shading.diffuse[hit] + shading.specular[hit] + residual[hit];
-  return {std::max(sum.x, 0.0f), std::max(sum.y, 0.0f), std::max(sum.z, 0.0f)};
+// The hits of a view, shaded.
+struct ShadedHits {
+  const GBuffer& g;
+  const Appearance& look;
+  const Shading& shading;
+  std::vector<Vec3f> residual;
+
+  Vec3f radiance(size_t hit) const {
+    const Vec3f sum = shading.diffuse[hit] + shading.specular[hit] + residual[hit];
+    return {std::max(sum.x, 0.0f), std::max(sum.y, 0.0f), std::max(sum.z, 0.0f)};
+  }
+};
+
+// unit_scale: a length in the unit frame over that in the capture frame.
+void put_pixel(const ShadedHits& s, const PixelFilter& filter, int x, int y, float unit_scale, Frame& f) {
+  const size_t p = size_t(y) * s.g.width + x;
+  Vec3f albedo{0, 0, 0}, diffuse{0, 0, 0}, specular{0, 0, 0}, normal{0, 0, 0}, rgb{0, 0, 0};
+  float depth = 0, roughness = 0, metalness = 0, weight = 0;
+  const float total = filter.visit_hits(x, y, [&](uint32_t i, float w) {
+    albedo += w * s.look.albedo[i];
+    diffuse += w * s.shading.diffuse[i];
+    specular += w * s.shading.specular[i];
+    rgb += w * s.radiance(i);
+    normal += w * s.g.hits[i].normal;
+    depth += w * s.g.depths[i];
+    roughness += w * s.look.material[i].roughness;
+    metalness += w * s.look.material[i].metalness;
+    weight += w;
+    f.edited[p] |= s.look.layer[i] >= 0;
+  });
+  if (weight == 0) return;
+  const float coverage = std::min(1.0f, weight / total);
+  put_mean(f.albedo, p, albedo, weight, coverage);
+  put_mean(f.diffuse, p, diffuse, weight, coverage);
+  put_mean(f.specular, p, specular, weight, coverage);
+  put_mean(f.rgb, p, rgb, weight, coverage);
+  const Vec3f n = normalize(normal);
+  for (int c = 0; c < 3; ++c) f.normal.data[3 * p + c] = n[c];
+  f.depth.data[p] = depth / weight / unit_scale;
+  f.roughness.data[p] = roughness / weight;
+  f.metalness.data[p] = metalness / weight;
+  f.mask.data[p] = coverage;
 }
 
 }  // namespace
@@ -167,41 +206,13 @@ Frame shade_view(const Device& device, const Scene& scene, const SceneLight& lig
   memory.lit = light.light_hits(g.hits, appearance(device, scene, g.hits, memory),
                                 memory.lit ? &*memory.lit : nullptr);
   memory.shown.emplace(scene);
-  const Appearance& look = memory.lit->look;
   const Shading shading = memory.lit->shading();
-  const std::vector<Vec3f> residual = residuals(device, scene, light, shading, g.hits, memory);
+  const ShadedHits shaded{g, memory.lit->look, shading,
+                          residuals(device, scene, light, shading, g.hits, memory)};
   const PixelFilter filter(g);
   Frame f = empty_frame(g.width, g.height);
   parallel_for(g.height, [&](int y) {
-    for (int x = 0; x < g.width; ++x) {
-      const size_t p = size_t(y) * g.width + x;
-      Vec3f albedo{0, 0, 0}, diffuse{0, 0, 0}, specular{0, 0, 0}, normal{0, 0, 0}, rgb{0, 0, 0};
-      float depth = 0, roughness = 0, metalness = 0, weight = 0;
-      const float total = filter.visit_hits(x, y, [&](uint32_t i, float w) {
-        albedo += w * look.albedo[i];
-        diffuse += w * shading.diffuse[i];
-        specular += w * shading.specular[i];
-        rgb += w * radiance_of(shading, residual, i);
-        normal += w * g.hits[i].normal;
-        depth += w * g.depths[i];
-        roughness += w * look.material[i].roughness;
-        metalness += w * look.material[i].metalness;
-        weight += w;
-        f.edited[p] |= look.layer[i] >= 0;
-      });
-      if (weight == 0) continue;
-      const float coverage = std::min(1.0f, weight / total);
-      put_mean(f.albedo, p, albedo, weight, coverage);
-      put_mean(f.diffuse, p, diffuse, weight, coverage);
-      put_mean(f.specular, p, specular, weight, coverage);
-      put_mean(f.rgb, p, rgb, weight, coverage);
-      const Vec3f n = normalize(normal);
-      for (int c = 0; c < 3; ++c) f.normal.data[3 * p + c] = n[c];
-      f.depth.data[p] = depth / weight / float(scene.normalization.scale);
-      f.roughness.data[p] = roughness / weight;
-      f.metalness.data[p] = metalness / weight;
-      f.mask.data[p] = coverage;
-    }
+    for (int x = 0; x < g.width; ++x) put_pixel(shaded, filter, x, y, float(scene.normalization.scale), f);
   });
   return f;
 }

@@ -197,8 +197,6 @@ TEST_F(EditTest, PaintRefusesAMaterialThatMakesNoSense) {
 }
 
 TEST_F(EditTest, WrongMaterialsChangeNothing) {
-  add_part("cap", {0, -kSphereRadius, 0}, 0.4f);
-  add_part("nothing", {0, 0, 3}, 0.1f);
   const std::string before = files_of(folder("a"));
   const auto message = [&](MaterialCommand c) {
     return error_of([&] { session_.change_material(c, quiet_); });
@@ -229,16 +227,27 @@ TEST_F(EditTest, WrongMaterialsChangeNothing) {
   c.effects.preset = "sliver";
   EXPECT_THAT(message(c).what(), HasSubstr("near names are: silver"));
   c.effects.preset = "";
+  for (const char* color : {"red", "#12345", "#12345g", "123456#", "#1234567"}) {
+    c.effects.color = color;
+    EXPECT_THAT(message(c).what(), HasSubstr("is not a color"));
+  }
+  EXPECT_EQ(files_of(folder("a")), before);
+}
+
+TEST_F(EditTest, MaterialsOfWrongPartsChangeNothing) {
+  add_part("cap", {0, -kSphereRadius, 0}, 0.4f);
+  add_part("nothing", {0, 0, 3}, 0.1f);
+  const std::string before = files_of(folder("a"));
+  const auto message = [&](MaterialCommand c) {
+    return error_of([&] { session_.change_material(c, quiet_); });
+  };
+  MaterialCommand c;
+  c.effects.roughness = 0.5f;
   c.part = "ear";
   EXPECT_EQ(message(c).code(), ErrorCode::usage);
   EXPECT_THAT(message(c).what(), HasSubstr("'cap', 'nothing'"));
   c.part = "nothing";
   EXPECT_THAT(message(c).what(), HasSubstr("nowhere on the surface"));
-  c.part = "cap";
-  for (const char* color : {"red", "#12345", "#12345g", "123456#", "#1234567"}) {
-    c.effects.color = color;
-    EXPECT_THAT(message(c).what(), HasSubstr("is not a color"));
-  }
   EXPECT_EQ(files_of(folder("a")), before);
 }
 

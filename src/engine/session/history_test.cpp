@@ -34,12 +34,8 @@ class RandomEdits : public EditTest {
     switch (kind) {
       case 0:
         return session.paint(scribble(0, {0.8f, 0.1f, 0.1f}, 6), quiet).id;
-      case 8: {
-        PaintCommand c = scribble(1, {0.1f, 0.7f, 0.2f}, 6);
-        c.target = PaintTarget::radiance;
-        c.routing = Routing::points;
-        return session.paint(c, quiet).id;
-      }
+      case 8:
+        return session.paint(unlit_paint(), quiet).id;
       case 1:
         m.effects.color = "#4060c0";
         return session.change_material(m, quiet).id;
@@ -51,11 +47,8 @@ class RandomEdits : public EditTest {
         return session.change_light({"", 30, EnvConvention::by_up_axis, 1}, quiet).id;
       case 4:
         return session.change_light({"", 0, EnvConvention::by_up_axis, 1.5}, quiet).id;
-      case 11: {
-        PaintCommand c = scribble(0, {0.1f, 0.7f, 0.2f}, 5);
-        c.material.preset = "copper";
-        return session.paint(c, quiet).id;
-      }
+      case 11:
+        return session.paint(copper_paint(), quiet).id;
       case 9:
         m.effects.preset = "brass";
         m.effects.blend = 0.3;
@@ -71,6 +64,19 @@ class RandomEdits : public EditTest {
       default:
         return session.deform({PointDrag{{kSphereRadius, 0, 0}, {0.85, 0, 0.1}}, 0.35, ""}, quiet).id;
     }
+  }
+
+ private:
+  PaintCommand unlit_paint() {
+    PaintCommand c = scribble(1, {0.1f, 0.7f, 0.2f}, 6);
+    c.target = PaintTarget::radiance;
+    c.routing = Routing::points;
+    return c;
+  }
+  PaintCommand copper_paint() {
+    PaintCommand c = scribble(0, {0.1f, 0.7f, 0.2f}, 5);
+    c.material.preset = "copper";
+    return c;
   }
 };
 

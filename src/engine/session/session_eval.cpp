@@ -111,6 +111,23 @@ const EditLayer* layer_of(const Scene& scene, const std::string& edit) {
   fail_usage("There is no edit '{}' that is on; `cei3d log` lists them.", edit);
 }
 
+struct ScoredScenes {
+  Scene scene, without;           // without the edit that is scored; the same if none is
+  std::optional<Scene> physical;  // and without the correction network, if there is one
+};
+
+ScoredScenes scenes_to_score(const Project& project, const EvalRequest& request) {
+  Scene scene = project.scene(), base = project.base();
+  if (!request.residual) scene.residual = base.residual = nullptr;
+  const Scene without = layer_of(scene, request.edit) ? scene_without(base, scene, request.edit) : scene;
+  std::optional<Scene> physical;
+  if (without.residual) {
+    physical = without;
+    physical->residual = nullptr;
+  }
+  return {scene, without, physical};
+}
+
 Image side_by_side(const EditImages& p, bool edited) {
   std::vector<Image> pictures{p.photo, p.before};
   if (edited) pictures.push_back(p.after);
@@ -123,10 +140,8 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
   return threads_->run([&]() -> EvalReport {
     const Perceptual perceptual(request.networks);
     const std::vector<View> views = views_to_score(project(), request);
-    Scene scene = project().scene(), base = project().base();
-    if (!request.residual) scene.residual = base.residual = nullptr;
-    const EditLayer* edit = layer_of(scene, request.edit);
-    const Scene without = edit ? scene_without(base, scene, request.edit) : scene;
+    const ScoredScenes scenes = scenes_to_score(project(), request);
+    const EditLayer* edit = layer_of(scenes.scene, request.edit);
     const auto trace = [&](const Scene& s, const View& v) {
       return frames_->trace(s, s.normalization.unit_from_capture(v.camera), request.samples);
     };
@@ -135,6 +150,7 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
       return rounded_srgb(frames_->shade(lit, frames_->light(lit), *trace(lit, v)).rgb);
     };
     EvalReport report;
+    if (scenes.physical) report.alone.emplace();
     Sets sets;
     EditScorer scorer(request.truth, request.masks, perceptual);
     for (size_t i = 0; i < views.size(); ++i) {
@@ -142,21 +158,19 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
       progress.report({"eval", double(i) / double(views.size()), -1, views[i].name});
       const Image photo = load_linear_rgba(views[i]);
       EditImages p;
-      p.after = where_known(photo, picture(scene, views[i]));
-      p.before = edit ? where_known(photo, picture(without, views[i])) : p.after;
+      p.after = where_known(photo, picture(scenes.scene, views[i]));
+      p.before = edit ? where_known(photo, picture(scenes.without, views[i])) : p.after;
       p.photo = where_known(photo, rounded_srgb(photo));
-      if (without.residual) {
-        Scene physical = without;
-        physical.residual = nullptr;
-        report.alone = report.alone.value_or(EvalReport::Alone{});
-        add_mean(where_known(photo, picture(physical, views[i])), p.photo, views.size(), *report.alone);
-      }
+      if (scenes.physical)
+        add_mean(where_known(photo, picture(*scenes.physical, views[i])), p.photo, views.size(),
+                 *report.alone);
       report.views.push_back(score_view(views[i], p.before, p.photo, perceptual, sets));
-      if (edit) scorer.add(views[i], p, edited_area(scene, *edit, trace(scene, views[i])->buffer, p));
+      if (edit)
+        scorer.add(views[i], p, edited_area(scenes.scene, *edit, trace(scenes.scene, views[i])->buffer, p));
       if (!request.pictures.empty()) write_png(image_like(request.pictures, views[i]), side_by_side(p, edit));
     }
     summarize(report);
-    report.residual = bool(scene.residual);
+    report.residual = bool(scenes.scene.residual);
     report.fid = perceptual.frechet(sets.rendered, sets.photos);
     if (edit) report.edit = scorer.result();
     return report;

@@ -157,6 +157,36 @@ class FieldOnDevice : public testing::TestWithParam<std::tuple<std::string, int>
   }
 };
 
+// Compares the optimizer's gradients with differences of a loss in double precision: the sum of every output
+// and derivative of sample i, times c[i].
+void expect_gradient(Field& field, Optimizer& optimizer, Reference& reference, const std::vector<Vec3f>& x,
+                     const std::vector<std::vector<double>>& c) {
+  const auto loss = [&] {
+    double sum = 0;
+    for (int i = 0; i < int(x.size()); ++i) {
+      const std::vector<double> v = reference.eval_jet(to_double(x[i]));
+      for (size_t k = 0; k < v.size(); ++k) sum += c[i][k] * v[k];
+    }
+    return sum;
+  };
+  for (size_t p = 0; p < reference.params.size(); ++p) {
+    const Param& param = field.params().all()[p];
+    const auto gradient = optimizer.gradient(param);
+    double scale = 1e-3;
+    for (size_t i = 0; i < param.count(); ++i) scale = std::max(scale, double(std::abs(gradient[i])));
+    for (size_t i = 0; i < param.count(); i += 1 + param.count() / 12) {
+      double& v = reference.params[p][i];
+      const double keep = v, h = 1e-4;
+      v = keep + h;
+      const double up = loss();
+      v = keep - h;
+      const double down = loss();
+      v = keep;
+      EXPECT_NEAR(gradient[i], (up - down) / (2 * h), 2e-3 * scale) << param.name << " " << i;
+    }
+  }
+}
+
 TEST_P(FieldOnDevice, JetAndItsGradientEqualDoublePrecision) {
   const auto [name, kind] = GetParam();
   const Device device = make_device(name);
@@ -191,30 +221,7 @@ TEST_P(FieldOnDevice, JetAndItsGradientEqualDoublePrecision) {
   pass.backward(device, weights, g.padded, levels, g.network.data(), g.d_encoding.data());
   accumulate_gradients(device, field, {g}, levels, optimizer);
 
-  const auto loss = [&] {
-    double sum = 0;
-    for (int i = 0; i < n; ++i) {
-      const std::vector<double> v = reference.eval_jet(to_double(x[i]));
-      for (size_t k = 0; k < v.size(); ++k) sum += c[i][k] * v[k];
-    }
-    return sum;
-  };
-  for (size_t p = 0; p < reference.params.size(); ++p) {
-    const Param& param = field.params().all()[p];
-    const auto gradient = optimizer.gradient(param);
-    double scale = 1e-3;
-    for (size_t i = 0; i < param.count(); ++i) scale = std::max(scale, double(std::abs(gradient[i])));
-    for (size_t i = 0; i < param.count(); i += 1 + param.count() / 12) {
-      double& v = reference.params[p][i];
-      const double keep = v, h = 1e-4;
-      v = keep + h;
-      const double up = loss();
-      v = keep - h;
-      const double down = loss();
-      v = keep;
-      EXPECT_NEAR(gradient[i], (up - down) / (2 * h), 2e-3 * scale) << param.name << " " << i;
-    }
-  }
+  expect_gradient(field, optimizer, reference, x, c);
 }
 
 TEST_P(FieldOnDevice, AValueDoesNotDependOnItsNeighbors) {
