@@ -1,6 +1,6 @@
 #!/usr/bin/env node
 // SPDX-License-Identifier: Apache-2.0
-// check_page.cjs PAGE.html RENDERED... [--least DB]: an exported page in a headless browser. Its pictures by the cameras of
+// check_page.cjs PAGE.html RENDERED... [--min DB]: an exported page in a headless browser. Its pictures by the cameras of
 // RENDERED/render.json, under that light turned as there, must be those in RENDERED (PSNR on white, of rgb and albedo if it
 // is there); it must ask the network for nothing, write nothing to the console, and obey the keyboard. Exit code 1
 // if not; 77 where Chromium or the npm package playwright-core is not installed (./run web).
@@ -90,8 +90,8 @@ async function keyboardFaults(page) {
 
 async function main() {
   const args = process.argv.slice(2);
-  const at = args.indexOf('--least');
-  const least = at < 0 ? 34 : Number(args.splice(at, 2)[1]);
+  const at = args.indexOf('--min');
+  const min = at < 0 ? 34 : Number(args.splice(at, 2)[1]);
   const [file, ...folders] = args;
   const driver = optional('playwright-core'), executablePath = browserPath();
   if (!driver || !executablePath) {
@@ -113,7 +113,7 @@ async function main() {
     faults.push(...await keyboardFaults(page));
     for (const folder of folders)
       for (const [channel, mean] of Object.entries(await compare(page, judge, folder)))
-        if (!(mean >= least)) faults.push(`${folder}: ${channel} is ${mean.toFixed(2)} dB from our render, less than ${least}`);
+        if (!(mean >= min)) faults.push(`${folder}: ${channel} is ${mean.toFixed(2)} dB from our render, less than ${min}`);
   } finally {
     await browser.close();
   }

@@ -39,4 +39,4 @@ cei3d render "$project" -o "$out/lit" "${views[@]}" --channels rgb,albedo
 cei3d render "$project" -o "$out/turned" "${views[@]}" --env-rotate 45
 
 command -v node >/dev/null || { echo "SKIP: the page in a browser: no node"; exit 77; }
-node tools/check_page.cjs "$out/spot.html" "$out/lit" "$out/turned" --least 34
+node tools/check_page.cjs "$out/spot.html" "$out/lit" "$out/turned" --min 34

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/math/color.h"
 #include "engine/reconstruct/appearance/find_light_frame.h"
 #include "engine/reconstruct/appearance/test_drawn.h"
 #include "model/light/envmap.h"

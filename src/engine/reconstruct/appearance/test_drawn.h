@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/math/rng.h"
+#include "engine/reconstruct/appearance/find_light_frame.h"
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "engine/render/lighting.h"
 
