@@ -90,8 +90,7 @@ class LobeFit {
     device.launch<SgFitResidual>(args, cells_);
     device.launch<SgFitGather>(args, p_);
     pull_back();
-    const float correction =
-        std::sqrt(1 - std::pow(kBeta2, float(t + 1))) / (1 - std::pow(kBeta1, float(t + 1)));
+    const auto correction = float(bias_correction(kBeta1, kBeta2, t + 1));
     const AdamStep adam{kRate * rate * correction, kBeta1, kBeta2, 1e-8f, false};
     device.launch<Adam>({adam, raw_.data(), gradient_.data(), m_.data(), v_.data()}, kRows * p_);
     for (int k = 0; k < lobes_; ++k) {

@@ -7,6 +7,7 @@
 
 #include "core/base/cancel.h"
 #include "core/base/parallel.h"
+#include "core/math/adam.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/geometry/occupancy.h"
 
@@ -124,11 +125,9 @@ class Fog {
                            options_.color_rate};
     const float high[] = {3 / size_, 1, 1, 1};
     for (int k = 0; k < 4; ++k) {
-      const float d = slope_[i][k];
-      float &m = mean_[i][k], &v = square_[i][k];
-      m = 0.8f * m + 0.2f * d;
-      v = 0.95f * v + 0.05f * d * d;
-      cells_[i][k] = std::clamp(cells_[i][k] - decay * rates[k] * m / (std::sqrt(v) + 1e-7f), 0.0f, high[k]);
+      const AdamStep step{decay * rates[k], 0.8f, 0.95f, 1e-7f, false};
+      adam_update(step, slope_[i][k], cells_[i][k], mean_[i][k], square_[i][k]);
+      cells_[i][k] = std::clamp(cells_[i][k], 0.0f, high[k]);
     }
     slope_[i] = {};
   }
