@@ -153,17 +153,7 @@ void AppearanceDescent::joint_step(float rate, float albedo_rate) {
   const ShadingGrads slopes = lighting_->grad(batch, light, albedo, d_radiance);
   light_->step(device_, batch, slopes.d_sky_irradiance, slopes.d_sky_reflection, rate);
   result_.light = light_->light();
-  if (materials_) descend_materials(positions, slopes.d_material, rate);
-}
-
-void AppearanceDescent::descend_materials(const std::vector<Vec3f>& positions,
-                                          const std::vector<Material>& d_material, float rate) {
-  constexpr int kOutputs = MaterialField::kOutputs;
-  const auto loss = [&](int begin, int end, const float* out, float* d_out) {
-    for (int i = begin; i < end; ++i)
-      material_of_grad(out + kOutputs * (i - begin), d_material[size_t(i)], d_out + kOutputs * (i - begin));
-  };
-  material_trainer_->step(device_, positions, loss, rate);
+  if (materials_) material_trainer_->step(device_, positions, material_loss(slopes.d_material), rate);
 }
 
 DescentState AppearanceDescent::state() const {

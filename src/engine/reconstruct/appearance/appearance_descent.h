@@ -41,8 +41,6 @@ class AppearanceDescent {
   void light_up();
   void choose_batch();
   void joint_step(float rate, float albedo_rate);
-  void descend_materials(const std::vector<Vec3f>& positions, const std::vector<Material>& d_material,
-                         float rate);
   DescentState state() const;
   void load(const DescentState&, const DescentSchedule&);
 
