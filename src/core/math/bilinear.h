@@ -11,8 +11,8 @@ struct SquareCorners {
   T a, b, c, d;
 };
 
-template <class T>
-HD T bilinear(const SquareCorners<T>& v, T x, T y) {
+template <class T, class V = T>
+HD V bilinear(const SquareCorners<V>& v, T x, T y) {
   return (T(1) - y) * ((T(1) - x) * v.a + x * v.b) + y * ((T(1) - x) * v.c + x * v.d);
 }
 // Its derivatives by x and y.
