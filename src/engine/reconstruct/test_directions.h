@@ -10,7 +10,8 @@
 
 namespace cei3d {
 
-// A direction in the space of a tensor: random, but mostly along the gradient, which otherwise drowns.
+// A direction in the space of a tensor: random, but mostly along its gradient, which otherwise drowns.
+// gradient: without the padding of Param.
 struct TensorDirection {
   std::vector<float> of;
   double slope = 0;  // that the gradient promises along it

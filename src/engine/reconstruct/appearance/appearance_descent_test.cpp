@@ -88,10 +88,10 @@ TEST(AppearanceDescent, GradientOfTheAlbedoEqualsDifferencesOfTheLoss) {
   Field& albedo = Probe::albedo(descent);
   for (Param& p : albedo.params().all()) {
     constexpr float kStep = 5e-3f;
-    const TensorDirection direction(Probe::gradient(descent, p), 0);
+    const TensorDirection direction(Probe::gradient(descent, p).first(p.count()), 0);
     const std::vector<float> before = p.value;
     const auto loss_at = [&](float h) {
-      for (size_t i = 0; i < before.size(); ++i) p.value[i] = before[i] + h * direction.of[i];
+      for (size_t i = 0; i < direction.of.size(); ++i) p.value[i] = before[i] + h * direction.of[i];
       return loss(device, albedo, batch, terms);
     };
     const double want = (loss_at(kStep) - loss_at(-kStep)) / (2 * double(kStep));

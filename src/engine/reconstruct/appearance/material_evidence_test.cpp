@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "core/compute/kernels/shade.h"
 #include "core/math/fibonacci.h"
 #include "core/math/reflection.h"
 #include "core/math/reflection_axis.h"

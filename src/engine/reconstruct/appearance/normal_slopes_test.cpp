@@ -30,7 +30,7 @@ Field bumpy(float size) {
   std::vector<Param>& params = field.params().all();
   for (Param& p : params)
     if (p.name.starts_with("layer1"))
-      for (size_t i = 0; i < p.value.size(); ++i) p.value[i] = size * Rng(8, 0, i).normal();
+      for (size_t i = 0; i < p.count(); ++i) p.value[i] = size * Rng(8, 0, i).normal();
   return field;
 }
 

@@ -37,7 +37,7 @@ struct Turning {
   LightTurns turns;
   SplitUnknowns x;
   SplitMaterials materials;
-  std::vector<SplitRow> rows{kRows};
+  std::vector<SplitRow> rows = std::vector<SplitRow>(kRows);
 
   Turning() {
     std::vector<Mat3f> rotations;

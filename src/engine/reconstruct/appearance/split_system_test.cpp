@@ -86,7 +86,7 @@ SplitMaterials random_materials(size_t vertices) {
   for (size_t v = 0; v < vertices; ++v) {
     Rng rng(2, 0, v);
     m.of[v].roughness = 0.2f + 0.6f * rng.uniform();
-    m.of[v].metalness = v % 4 == 0;
+    m.of[v].metalness = v % 4 == 0 ? 1 : 0;
     m.color[v] = random_color(rng);
   }
   return m;
