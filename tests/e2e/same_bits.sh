@@ -29,7 +29,7 @@ cei3d reconstruct -o "$out/first" --resume
 
 "$program" edit "$out/first" paint --view r_055 --scribble "$sample/edits/paint/scribble.png" &
 pid=$!
-sleep 0.3
+while [[ -e /proc/$pid ]] && ! compgen -G "$out/first/edits/*" >/dev/null; do sleep 0.01; done  # it is being stored
 kill -9 "$pid" 2>/dev/null || true
 wait "$pid" 2>/dev/null || true
 cei3d log "$out/first"  # it opens, with the edit or without

@@ -5,6 +5,7 @@
 
 #include "apps/cli/batch_verbs.h"
 #include "apps/cli/parse.h"
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/parallel.h"
@@ -48,7 +49,7 @@ void status(const Options& o, Session& session, Console& console) {
     if (!o.watch || s.done + s.failed == s.objects) return;
     constexpr int kPause = 100;  // of 0.1 s
     for (int i = 0; i < kPause; ++i) {
-      if (console.cancelled()) throw Error(ErrorCode::interrupted, "No longer watched; the catalog goes on.");
+      check_cancelled(console, "No longer watched; the catalog goes on.");
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/base/error.h"
+#include "core/math/bilinear.h"
 
 namespace cei3d {
 namespace {
@@ -50,8 +51,8 @@ Image scaled_to(const Image& image, int width, int height) {
                 y1 = std::min(y0 + 1, image.height - 1);
       const auto s = float(u - x0), t = float(v - y0);
       for (int c = 0; c < image.channels; ++c)
-        out.at(x, y)[c] = (image.at(x0, y0)[c] * (1 - s) + image.at(x1, y0)[c] * s) * (1 - t) +
-                          (image.at(x0, y1)[c] * (1 - s) + image.at(x1, y1)[c] * s) * t;
+        out.at(x, y)[c] = bilinear(
+            {image.at(x0, y0)[c], image.at(x1, y0)[c], image.at(x0, y1)[c], image.at(x1, y1)[c]}, s, t);
     }
   return out;
 }

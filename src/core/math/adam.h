@@ -1,15 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
+// Adam [Kingma and Ba 2015].
 #pragma once
+
+#include <cmath>
+#include <cstdint>
 
 #include "core/math/scalar.h"
 
 namespace cei3d {
 
 struct AdamStep {
-  float rate;               // learning rate with bias correction: lr sqrt(1 - beta2^t) / (1 - beta1^t)
-  float beta1, beta2, eps;  // [Kingma and Ba 2015]
-  bool skip_zero;           // skip entries without gradient (hash tables: most are untouched in a step)
+  float rate;  // learning rate, times bias_correction()
+  float beta1, beta2, eps;
+  bool skip_zero;  // skip entries without gradient (hash tables: most are untouched in a step)
 };
+
+// Factor of the learning rate in step t = 1, 2, ..., because both means start at zero.
+inline double bias_correction(double beta1, double beta2, int64_t t) {
+  return std::sqrt(1 - std::pow(beta2, double(t))) / (1 - std::pow(beta1, double(t)));
+}
 
 // Updates one parameter.
 template <class T>

@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "core/math/brdf.h"
+#include "core/math/roughness.h"
 
 namespace cei3d {
 
@@ -30,7 +30,7 @@ PairTable make_pair_table(const F& value) {
     for (int k = 0; k < 2; ++k) out[k] = 2 * border[k] - inner[k];
   };
   for (int r = 0; r < kTableRoughnesses; ++r) {
-    const double roughness = kMinRoughness + (1 - kMinRoughness) * double(r) / (kTableRoughnesses - 1);
+    const double roughness = roughness_of_share(double(r) / (kTableRoughnesses - 1));
     for (int c = 0; c < kTableCosines; ++c) {
       const TablePair<double> p = value(max(double(c) / (kTableCosines - 1), kMinCosine), roughness);
       node(r + 1, c + 1)[0] = float(p.first);
@@ -71,7 +71,7 @@ struct TablePairGrad {
 template <class T>
 HD TablePairGrad<T> table_pair_grad(const float* table, T nv, T roughness) {
   using I = Index<T>;
-  const float columns = kTableCosines - 1, rows = (kTableRoughnesses - 1) / (1 - kMinRoughness);
+  const float columns = kTableCosines - 1, rows = (kTableRoughnesses - 1) / kRoughnessRange;
   const T zero(0.0f), one(1.0f);
   const T x = clamp(nv, zero, one) * T(columns),
           y = (clamp(roughness, T(kMinRoughness), one) - T(kMinRoughness)) * T(rows);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "core/math/vec.h"
+#include "core/math/tangents.h"
 
 namespace cei3d {
 
@@ -26,8 +26,7 @@ inline Mat3f turning(Vec3f from, Vec3f to) {
   const Vec3f axis = cross(from, to);
   const float sine = length(axis), cosine = dot(from, to);
   if (sine < 1e-6f) {
-    const Vec3f any = std::abs(from.x) < 0.9f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0};
-    return cosine > 0 ? Mat3f::identity() : about_axis(normalize(cross(from, any)), kPi);
+    return cosine > 0 ? Mat3f::identity() : about_axis(-tangents_of(from).x, kPi);
   }
   return about_axis(axis / sine, std::atan2(sine, cosine));
 }

@@ -2,7 +2,8 @@
 // The shading model: the radiance that a surface point sends to the viewer, and its adjoint. The
 // metallic-roughness model of glTF: the diffuse term is (1 - metalness) albedo / pi, F0 is metalness * albedo
 // + (1 - metalness) * kDielectricF0 * specular; the specular term is the split sum. This is the only place
-// where these formulas are written out. [paper eq. 2-5, 13-15]
+// of the program where these formulas are written out; `lit` in src/web/shaders.js repeats for WebGL what
+// tables cannot hold, and tests/e2e/page.sh compares its pictures with the program's. [paper eq. 2-5, 13-15]
 #pragma once
 
 #include "core/math/mirror.h"

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/tangents.h"
 #include "engine/capture/check.h"
 #include "engine/capture/normalize.h"
 
@@ -58,8 +59,7 @@ Vec3f color_of(Split split) {
 
 Image draw_cameras(const Capture& capture, const Normalization& normalization, int size) {
   const Vec3d up = normalize(capture.up);
-  const Vec3d right = normalize(cross(std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0}, up)),
-              away = cross(up, right);
+  const auto [right, away] = tangents_of(up);
   double reach = 1;
   for (const View& v : capture.views)
     if (const double d = length(normalization.unit_from_capture(v.camera.center)); std::isfinite(d))

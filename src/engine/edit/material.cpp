@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "model/geometry/mesh/areas.h"
 #include "model/scene/appearance.h"
 #include "model/scene/parts.h"
 
@@ -22,28 +23,17 @@ void check_request(const MaterialRequest& r) {
   for (int c = 0; r.color && c < 3; ++c) check_share((*r.color)[c], "A channel of the color,");
 }
 
-// Vertex areas: a third of the area of the triangles around each vertex.
-std::vector<float> vertex_areas(const Mesh& mesh) {
-  std::vector<float> area(mesh.positions.size(), 0);
-  for (const auto& t : mesh.triangles) {
-    const Vec3f a = mesh.positions[t[0]];
-    const float third = length(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a)) / 6;
-    for (const uint32_t v : t) area[v] += third;
-  }
-  return area;
-}
-
 // Vertices of the present surface in the layer's region, with their areas.
 struct Inside {
   std::vector<Hit> hits;
-  std::vector<float> areas;
+  std::vector<double> areas;
   double area = 0;
 
   Inside(const Scene& scene, const EditLayer& layer) {
     const Mesh& mesh = scene.surface->mesh();
     const std::vector<Hit> all = vertex_hits(mesh);
     const std::vector<uint8_t> inside = inside_layer(scene, layer, all);
-    const std::vector<float> weight = vertex_areas(mesh);
+    const std::vector<double> weight = vertex_areas(mesh);
     for (size_t v = 0; v < all.size(); ++v) {
       if (!inside[v] || weight[v] <= 0) continue;
       hits.push_back(all[v]);
@@ -56,7 +46,7 @@ struct Inside {
 Vec3f mean_color(const Device& device, const Scene& scene, const Inside& inside) {
   const std::vector<Vec3f> color = appearance_at(device, scene, inside.hits).albedo;
   Vec3d sum{0, 0, 0};
-  for (size_t i = 0; i < color.size(); ++i) sum += to_double(color[i]) * double(inside.areas[i]);
+  for (size_t i = 0; i < color.size(); ++i) sum += to_double(color[i]) * inside.areas[i];
   return to_float(sum / inside.area);
 }
 

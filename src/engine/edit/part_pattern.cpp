@@ -46,12 +46,8 @@ std::vector<uint32_t> triangles_inside(const Scene& scene, const EditLayer& part
 
 SurfacePoints spread_over(const Mesh& mesh, std::span<const uint32_t> triangles, float pixel) {
   std::vector<double> area_up_to{0};
-  for (const uint32_t t : triangles) {
-    const auto& c = mesh.triangles[t];
-    const Vec3f a = mesh.positions[c[1]] - mesh.positions[c[0]],
-                b = mesh.positions[c[2]] - mesh.positions[c[0]];
-    area_up_to.push_back(area_up_to.back() + 0.5 * length(cross(a, b)));
-  }
+  for (const uint32_t t : triangles)
+    area_up_to.push_back(area_up_to.back() + triangle_area(mesh, mesh.triangles[t]));
   const double wanted = kSamplesPerPixel * area_up_to.back() / square(double(pixel));
   const size_t n = std::clamp(size_t(wanted), kMinSamples, kMaxSamples);
   SurfacePoints points;

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
@@ -100,7 +101,7 @@ class Job {
   // The stored row, or a new one.
   EvaluationRow row(const std::string& name, const std::string& what, const Json& settings,
                     const std::function<void(EvaluationRow&, Progress&)>& work) {
-    if (progress_.cancelled()) throw Error(ErrorCode::interrupted, kInterrupted);
+    check_cancelled(progress_, kInterrupted);
     if (const Json kept = rows_.find(name, settings); !kept.is_null())
       return evaluation_row_from_json(kept, (r_.out / "rows" / (name + ".json")).string());
     EvaluationRow row;

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/math/color.h"
+#include "core/math/shading.h"
 #include "engine/io/jpeg_file.h"
 #include "engine/io/png_file.h"
 #include "engine/io/webp_file.h"
@@ -68,7 +69,7 @@ AssetPictures encode(const Textures& t, PictureKind kind) {
 }
 
 double index_of_refraction(const AssetPictures& pictures) {
-  const double root = std::sqrt(0.08 * pictures.middle_specular);
+  const double root = std::sqrt(double(dielectric_f0(pictures.middle_specular, 0.0f)));
   return (1 + root) / (1 - root);
 }
 

@@ -91,7 +91,7 @@ class Baker {
       const Hit& h = below.hits[i];
       const auto& t = scene_.surface->mesh().triangles[h.triangle];
       const Material& m = look.material[i];
-      const float sky = sky_[t[0]] * (1 - h.b1 - h.b2) + sky_[t[1]] * h.b1 + sky_[t[2]] * h.b2;
+      const float sky = at_corners(sky_, t, h.b1, h.b2);
       use(samples[below.of_point[i]],
           Texel{look.albedo[i], h.normal, sky, m.roughness, m.metalness, m.specular});
     }
@@ -119,13 +119,11 @@ class Baker {
   void add_quarters(const Sample& s, std::vector<Sample>& out) const {
     const auto [a, b, c] = mesh_.triangles[s.triangle];
     const Vec2f p = corner(a), e = corner(b) - p, g = corner(c) - p;
-    const float area = signed_area(e, g);
     const Vec2f center{float(s.texel % options_.size) + 0.5f - p.x,
                        float(s.texel / options_.size) + 0.5f - p.y};
     for (const float dy : {-0.25f, 0.25f})
       for (const float dx : {-0.25f, 0.25f}) {
-        const Vec2f q = center + Vec2f{dx, dy};
-        const float b1 = signed_area(q, g) / area, b2 = signed_area(e, q) / area;
+        const auto [b1, b2] = barycentrics_in(e, g, center + Vec2f{dx, dy});
         if (std::min({b1, b2, 1 - b1 - b2}) >= 0) out.push_back({s.texel, s.triangle, b1, b2});
       }
   }

@@ -14,11 +14,7 @@ namespace {
 
 Json material_json(const Material& m) {
   Json j{{"pbrMetallicRoughness", {{"metallicFactor", m.metalness}, {"roughnessFactor", m.roughness}}}};
-  // The extension's F0 is 0.04 specularColorFactor; its specularFactor would dim grazing reflections too.
-  if (m.specular != 0.5f) {
-    const float s = 2 * m.specular;
-    j["extensions"]["KHR_materials_specular"] = {{"specularColorFactor", {s, s, s}}};
-  }
+  if (m.specular != 0.5f) j["extensions"]["KHR_materials_specular"] = specular_extension(m.specular);
   return j;
 }
 

@@ -86,12 +86,10 @@ class Description {
     m["pbrMetallicRoughness"] = {{"baseColorTexture", base}, {"metallicRoughnessTexture", orm}};
     m["normalTexture"] = texture(p.normal);
     m["occlusionTexture"] = orm;
-    // The extension's F0 is 0.04 specularColorFactor; its specularFactor would dim grazing reflections too.
     if (!p.specular && p.middle_specular == 0.5f) return m;
     json_["extensionsUsed"].push_back("KHR_materials_specular");
-    const float s = p.specular ? 2 : 2 * p.middle_specular;
     Json& extension = m["extensions"]["KHR_materials_specular"];
-    extension["specularColorFactor"] = {s, s, s};
+    extension = specular_extension(p.specular ? 1 : p.middle_specular);
     if (p.specular) extension["specularColorTexture"] = texture(*p.specular);
     return m;
   }

@@ -6,6 +6,7 @@
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/math/brdf.h"
 
 namespace cei3d {
 namespace {
@@ -77,6 +78,12 @@ Json gltf_head(const std::string& name, const Placement& p) {
   j["scenes"] = Json::array({{{"nodes", {0}}}});
   j["nodes"].push_back(node);
   return j;
+}
+
+Json specular_extension(float specular) {
+  constexpr float kCoreF0 = 0.04f;  // of glTF without extensions
+  const float s = kDielectricF0 / kCoreF0 * specular;
+  return {{"specularColorFactor", {s, s, s}}};
 }
 
 std::string glb_of(Json gltf, GltfBuffer buffer) {

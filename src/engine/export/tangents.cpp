@@ -3,14 +3,12 @@
 
 #include <cmath>
 
+#include "core/math/tangents.h"
+
 namespace cei3d {
 namespace {
 
 Vec3f flattened(Vec3f v, Vec3f normal) { return v - normal * dot(v, normal); }
-
-Vec3f any_perpendicular(Vec3f n) {
-  return normalize(cross(n, std::abs(n.x) < 0.7f ? Vec3f{1, 0, 0} : Vec3f{0, 1, 0}));
-}
 
 }  // namespace
 
@@ -32,7 +30,7 @@ std::vector<Vec3f> tangents_of(std::span<const Vec3f> p, std::span<const Vec3f> 
     }
   }
   for (size_t v = 0; v < sum.size(); ++v)
-    sum[v] = length(sum[v]) > 1e-6f ? normalize(sum[v]) : any_perpendicular(normals[v]);
+    sum[v] = length(sum[v]) > 1e-6f ? normalize(sum[v]) : tangents_of(normals[v]).x;
   return sum;
 }
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/metrics/psnr.h"
 
-#include <cmath>
-#include <limits>
 #include <vector>
 
 #include "core/base/error.h"
+#include "core/math/psnr.h"
 
 namespace cei3d {
 namespace {
@@ -16,10 +15,6 @@ void require_pair(const Image& a, const Image& b) {
         "Cannot compare an image of {} x {} x {} with one of {} x {} x {}: render at the size of the "
         "photographs.",
         a.width, a.height, a.channels, b.width, b.height, b.channels);
-}
-
-double from_mse(double mse) {
-  return mse == 0 ? std::numeric_limits<double>::infinity() : -10 * std::log10(mse);
 }
 
 }  // namespace
@@ -55,7 +50,7 @@ std::optional<double> psnr_in_mask(const Image& a, const Image& b, std::span<con
     }
   }
   if (n == 0) return std::nullopt;
-  return from_mse(sum / (3.0 * double(n)));
+  return psnr_of_mse(sum / (3.0 * double(n)));
 }
 
 }  // namespace cei3d

@@ -15,6 +15,28 @@ namespace {
 
 using ::testing::HasSubstr;
 
+// Names and sizes of all files.
+std::string listing(const fs::path& folder) {
+  std::string out;
+  std::error_code gone;  // a file that is removed meanwhile
+  for (auto it = fs::recursive_directory_iterator(folder, gone); it != fs::recursive_directory_iterator();
+       it.increment(gone))
+    out += fmt::format("{} {}\n", it->path().string(), it->is_regular_file(gone) ? it->file_size(gone) : 0);
+  return out;
+}
+
+// kill -9 as soon as so many changes of the folder were seen.
+void kill_after_changes(pid_t child, const fs::path& folder, int changes) {
+  std::string now = listing(folder);
+  while (changes > 0 && ::waitpid(child, nullptr, WNOHANG) == 0) {
+    std::string next = listing(folder);
+    changes -= next != now;
+    now = std::move(next);
+  }
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+}
+
 TEST_F(ProjectTest, KeepsTheLastTwoCheckpoints) {
   Project p = make();
   EXPECT_FALSE(p.latest_checkpoint());
@@ -46,9 +68,7 @@ TEST_F(ProjectTest, SurvivesKillAtAnyMoment) {
       for (int step = last ? last->head["step"].get<int>() + 1 : 1;; ++step)
         p.save_checkpoint({{{"step", step}}, {{"x", {{5000}, std::vector<float>(5000, float(step)), {}}}}});
     }
-    ::usleep(3000 + 1700 * round);
-    ::kill(child, SIGKILL);
-    ::waitpid(child, nullptr, 0);
+    kill_after_changes(child, folder(), 1 + 2 * round);
     const Project p = Project::open(folder(), Project::Mode::write);
     const auto state = p.latest_checkpoint();
     ASSERT_TRUE(state);
@@ -73,9 +93,7 @@ TEST_F(ProjectTest, EditsSurviveKillAtAnyMoment) {
       }
     }
     while (read_file(folder() / "stack.json") == before) ::usleep(200);  // one edit stands
-    ::usleep(700 * round);
-    ::kill(child, SIGKILL);
-    ::waitpid(child, nullptr, 0);
+    kill_after_changes(child, folder(), round);
     Project p = Project::open(folder(), Project::Mode::write);
     const size_t edits = p.stack().active().size();
     EXPECT_EQ(p.scene().layers.size(), edits);

@@ -9,6 +9,7 @@
 #include "core/base/cancel.h"
 #include "core/base/json.h"
 #include "core/math/color.h"
+#include "core/math/psnr.h"
 #include "engine/reconstruct/poses/align_views.h"
 #include "engine/reconstruct/poses/refined_poses.h"
 
@@ -229,7 +230,7 @@ void log_radiance_psnr(const RunContext& run, GeometryStage& stage) {
     if (photograph.width != whole.width) return;  // downscaled
     const std::optional<double> error = view_error(stage, whole, photograph, is_over);
     if (!error) break;
-    sum += -10 * std::log10(*error / (3.0 * whole.width * whole.height));
+    sum += psnr_of_mse(*error / (3.0 * whole.width * whole.height));
     ++views;
   }
   if (views)

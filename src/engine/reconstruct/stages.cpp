@@ -23,8 +23,8 @@ constexpr double kJointDescentShare = 0.7;
 constexpr double kMinJointGain = 0.02;   // dB on pixels that the joint descent does not see
 constexpr float kHandlerSpacing = 1.5f;  // of handler points, in pixels
 constexpr float kMaxLevel = 0.002f;  // maximum shift of the zero level: the thickness of the sharpest density
-// A shorter descent is not worth another estimate of light and material.
-constexpr double kMinPolishSeconds = 10;
+// Of the planned time of a descent. A shorter one is not worth another estimate of light and material.
+constexpr double kMinPolishShare = 1.0 / 3;
 constexpr double kLightShare = 0.6;  // of the planned time of light and appearance
 
 // Lengths of the stages of a run by steps, in steps of the geometry stage.
@@ -118,7 +118,9 @@ void polish(const RunContext& run, RunState& state, int round) {
     state.polish_deadline = begin + plan.polish_rounds * (plan.polish + plan.look);
     state.look_seconds = plan.look;
   }
-  if (timed && round > 0 && state.polish_deadline - begin < state.look_seconds + kMinPolishSeconds) return;
+  if (timed && round > 0 &&
+      state.polish_deadline - begin < state.look_seconds + kMinPolishShare * plan.polish)
+    return;
   GeometryStage& geometry = *state.geometry;
   const PixelStore& pixels = run.views.train;
   const SurfaceAndHits all = extract_surface_and_hits(run.device, geometry.sdf(), run.preset.meshing, pixels,

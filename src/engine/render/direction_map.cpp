@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/math/bilinear.h"
 #include "core/math/octahedron.h"
 
 namespace cei3d {
@@ -24,7 +25,7 @@ Vec3f DirectionMap::at(Vec3f direction) const {
   const float u = x - float(i), v = y - float(j);
   const size_t row = size_t(cells_) + 1;
   const Vec3f* n = &nodes_[size_t(j) * row + size_t(i)];
-  return (n[0] * (1 - u) + n[1] * u) * (1 - v) + (n[row] * (1 - u) + n[row + 1] * u) * v;
+  return bilinear(SquareCorners<Vec3f>{n[0], n[1], n[row], n[row + 1]}, u, v);
 }
 
 }  // namespace cei3d

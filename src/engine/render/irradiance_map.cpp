@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/compute/kernels/shade.h"
+#include "core/math/tangents.h"
 
 namespace cei3d {
 namespace {
@@ -24,8 +25,7 @@ IrradianceMap::IrradianceMap(const Device& device, const LobePlanes& lobes) {
 
 Vec3f IrradianceMap::grad(Vec3f normal, Vec3f d_irradiance) const {
   constexpr float kStep = 1.5f / kCells;
-  const Vec3f t = normalize(cross(std::abs(normal.z) < 0.9f ? Vec3f{0, 0, 1} : Vec3f{1, 0, 0}, normal)),
-              b = cross(normal, t);
+  const auto [t, b] = tangents_of(normal, 2);
   const auto slope = [&](Vec3f along) {
     const Vec3f more = at(normal + along * kStep), less = at(normal - along * kStep);
     return dot(d_irradiance, more - less) / (2 * kStep);

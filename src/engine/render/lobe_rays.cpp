@@ -7,6 +7,7 @@
 #include "core/math/fibonacci.h"
 #include "core/math/reflection.h"
 #include "core/math/shading.h"
+#include "core/math/tangents.h"
 #include "engine/render/hit_reflection.h"
 
 namespace cei3d {
@@ -25,7 +26,7 @@ float turn_of(Vec3f position) { return dot(position, Vec3f{11003, 13007, 17011})
 // Normal to the plane of incidence; where the viewer is above and there is none, any normal to the axis.
 Vec3f across(const LobeFrame<float>& lobe) {
   if (dot(lobe.across, lobe.across) > 0.25f) return lobe.across;
-  return cross(lobe.axis, std::abs(lobe.axis.z) < 0.9f ? Vec3f{0, 0, 1} : Vec3f{1, 0, 0});
+  return -tangents_of(lobe.axis, 2).x;
 }
 
 }  // namespace

@@ -43,8 +43,7 @@ std::vector<Hit> mesh_hits(const Surface& surface, std::span<const Ray> rays,
   for (size_t i = 0; i < rays.size(); ++i) {
     if (found[i].t < 0) continue;
     const auto& t = mesh.triangles[found[i].triangle];
-    const Vec3f n = mesh.normals[t[0]] * (1 - found[i].b1 - found[i].b2) + mesh.normals[t[1]] * found[i].b1 +
-                    mesh.normals[t[2]] * found[i].b2;
+    const Vec3f n = at_corners(mesh.normals, t, found[i].b1, found[i].b2);
     hits.push_back({rays[i].origin + rays[i].direction * found[i].t, normalize(n), -rays[i].direction,
                     found[i].triangle, found[i].b1, found[i].b2});
     ray_of_hit.push_back(uint32_t(i));

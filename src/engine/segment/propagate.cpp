@@ -6,6 +6,7 @@
 
 #include "core/base/cancel.h"
 #include "core/base/error.h"
+#include "core/math/activation.h"
 #include "engine/segment/seen_points.h"
 #include "model/geometry/shape/point_index.h"
 
@@ -154,16 +155,14 @@ void Propagation::find_clicks(const std::vector<Vec2f>& pixels, Places& places) 
   for (size_t i = 0; i < hits.size(); ++i) {
     if (hits[i].t < 0) continue;
     const auto& corners = surface_.mesh().triangles[hits[i].triangle];
-    const auto& n = surface_.mesh().normals;
     places.positions.push_back(origins[i] + directions[i] * hits[i].t);
-    places.normals.push_back(normalize(n[corners[0]] * (1 - hits[i].b1 - hits[i].b2) +
-                                       n[corners[1]] * hits[i].b1 + n[corners[2]] * hits[i].b2));
+    places.normals.push_back(normalize(at_corners(surface_.mesh().normals, corners, hits[i].b1, hits[i].b2)));
   }
 }
 
 void Propagation::vote(const std::vector<SeenPoint>& seen, const Image& mask, float weight) {
   for (const SeenPoint& s : seen)
-    votes_.add(s.point, 1 / (1 + std::exp(-sample(mask, s.pixel))), weight * s.facing);
+    votes_.add(s.point, Sigmoid::eval(sample(mask, s.pixel), 1).value, weight * s.facing);
 }
 
 // Log-odds: the user's own mask, else that of the clicks.

@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/base/system.h"
+#include "core/math/bilinear.h"
 
 namespace cei3d {
 namespace {
@@ -110,7 +111,7 @@ Image to_picture(const std::vector<float>& plane, const SamImage& p) {
       const float fu = cu - float(i), fv = cv - float(j);
       const float* a = &plane[size_t(j) * kLowRes + i];
       const float* b = a + kLowRes;
-      *out.at(x, y) = (1 - fv) * ((1 - fu) * a[0] + fu * a[1]) + fv * ((1 - fu) * b[0] + fu * b[1]);
+      *out.at(x, y) = bilinear({a[0], a[1], b[0], b[1]}, fu, fv);
     }
   }
   return out;

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/math/bilinear.h"
+
 namespace cei3d {
 namespace {
 
@@ -46,8 +48,7 @@ float sample(const Image& image, Vec2f pixel) {
             y = std::min(int(v), std::max(image.height - 2, 0));
   const int x1 = std::min(x + 1, image.width - 1), y1 = std::min(y + 1, image.height - 1);
   const float fu = u - float(x), fv = v - float(y);
-  return (1 - fv) * ((1 - fu) * *image.at(x, y) + fu * *image.at(x1, y)) +
-         fv * ((1 - fu) * *image.at(x, y1) + fu * *image.at(x1, y1));
+  return bilinear({*image.at(x, y), *image.at(x1, y), *image.at(x, y1), *image.at(x1, y1)}, fu, fv);
 }
 
 }  // namespace cei3d

@@ -10,18 +10,13 @@
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "core/math/quantile.h"
+#include "core/math/tangents.h"
 #include "engine/project/dataset.h"
 #include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
-
-// Some unit vector perpendicular to `up`.
-Vec3d across(Vec3d up) {
-  const Vec3d other = std::abs(up.x) < 0.9 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-  return normalize(cross(up, other));
-}
 
 // `camera` moved to `center` and turned towards `target`.
 Camera look_at(Camera camera, Vec3d center, Vec3d target, Vec3d up) {
@@ -146,11 +141,11 @@ std::vector<NamedCamera> turntable(const Capture& capture, const Normalization& 
   }
   const double distance = median(distances);
   const double height = clamp(median(heights), -0.9, 0.9), radius = std::sqrt(1 - height * height);
-  const Vec3d x = across(up), y = cross(up, x);
+  const Tangents<double> level = tangents_of(up);
   std::vector<NamedCamera> cameras;
   for (int i = 0; i < frames; ++i) {
     const double a = 2 * M_PI * i / frames;
-    const Vec3d direction = (x * std::cos(a) + y * std::sin(a)) * radius + up * height;
+    const Vec3d direction = -(level.x * std::cos(a) + level.y * std::sin(a)) * radius + up * height;
     Camera c = look_at(capture.views.front().camera, n.center + direction * distance, n.center, up);
     c.cx = c.width / 2.0;
     c.cy = c.height / 2.0;

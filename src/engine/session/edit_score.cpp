@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/error.h"
+#include "core/math/psnr.h"
 #include "engine/io/image_file.h"
 #include "engine/metrics/flip.h"
 #include "engine/metrics/psnr.h"
@@ -106,7 +107,7 @@ EditScore EditScorer::result() const {
     score.truth = fidelity_;
     score.truth->iou = double(in_both_) / double(std::max<size_t>(in_either_, 1));
     score.truth->psnr_inside =
-        -10 * std::log10(squared_error_ / double(3 * std::max<size_t>(fidelity_.pixels_inside, 1)));
+        psnr_of_mse(squared_error_ / double(3 * std::max<size_t>(fidelity_.pixels_inside, 1)));
   }
   if (rest_.views > 0) {
     const double n = double(rest_.views);

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
@@ -154,7 +155,7 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
     Sets sets;
     EditScorer scorer(request.truth, request.masks, perceptual);
     for (size_t i = 0; i < views.size(); ++i) {
-      if (progress.cancelled()) throw Error(ErrorCode::interrupted, "Evaluation was interrupted.");
+      check_cancelled(progress, "Evaluation was interrupted.");
       progress.report({"eval", double(i) / double(views.size()), -1, views[i].name});
       const Image photo = load_linear_rgba(views[i]);
       EditImages p;

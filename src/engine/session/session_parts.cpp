@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
@@ -149,9 +150,7 @@ PartMasksReport Session::part_masks(const PartMasksRequest& request, Progress& p
     const std::vector<NamedCamera> cameras = choose_cameras(project(), request.cameras, 0, 0);
     PartMasksReport report;
     for (const NamedCamera& c : cameras) {
-      if (progress.cancelled())
-        throw Error(ErrorCode::interrupted,
-                    "Writing masks was interrupted; those written so far are complete.");
+      check_cancelled(progress, "Writing masks was interrupted; those written so far are complete.");
       progress.report({"masks", double(report.views) / double(cameras.size()), -1, c.name});
       const GBuffer g =
           trace_view(*device_, scene, scene.normalization.unit_from_capture(c.camera), request.samples);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
@@ -66,11 +67,6 @@ Json run_json(const Project& project, const RenderRequest& request, const std::v
           {"cameras", std::move(list)}};
 }
 
-void require_running(const Progress& progress) {
-  if (progress.cancelled())
-    throw Error(ErrorCode::interrupted, "Rendering was interrupted; the images written so far are complete.");
-}
-
 }  // namespace
 
 RenderReport Session::render(const RenderRequest& request, Progress& progress) {
@@ -87,7 +83,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
     const bool turns = request.light.env.empty() && shows_photographs(request.cameras);
     RenderReport report;
     for (size_t i = 0; i < cameras.size(); ++i) {
-      require_running(progress);
+      check_cancelled(progress, "Rendering was interrupted; the images written so far are complete.");
       progress.report({"render", double(i) / double(cameras.size()), -1, cameras[i].name});
       watch.lap();
       const auto view =

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/math/color.h"
 #include "core/math/sg.h"
+#include "core/math/tangents.h"
 #include "engine/synthetic/names.h"
 
 namespace cei3d {
@@ -86,13 +87,8 @@ Vec3f LightSampler::sample(float pick, Vec2<float> u) const {
   const float fall =
       sg.lambda < 1e-3f ? 2 * u.x : -std::log1p(-u.x * (1 - std::exp(-2 * sg.lambda))) / sg.lambda;
   const float sine = std::sqrt(max(fall * (2 - fall), 0.0f)), turn = 2 * kPi * u.y;
-  const Tangents t = tangents_of(sg.axis);
+  const Tangents<float> t = tangents_of(sg.axis);
   return normalize(t.x * (sine * std::cos(turn)) + t.y * (sine * std::sin(turn)) + sg.axis * (1 - fall));
-}
-
-Tangents tangents_of(Vec3f z) {
-  const Vec3f x = normalize(cross(std::abs(z.x) > 0.9f ? Vec3f{0, 1, 0} : Vec3f{1, 0, 0}, z));
-  return {x, cross(z, x)};
 }
 
 }  // namespace cei3d

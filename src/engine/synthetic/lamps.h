@@ -37,10 +37,4 @@ class LightSampler {
   std::vector<Lobe> lobes_;
 };
 
-// x and y axes of a right-handed frame with this z axis (unit).
-struct Tangents {
-  Vec3f x, y;
-};
-Tangents tangents_of(Vec3f z);
-
 }  // namespace cei3d

@@ -3,8 +3,9 @@
 
 #include <cmath>
 
-#include "core/math/brdf.h"
 #include "core/math/color.h"
+#include "core/math/facets.h"
+#include "core/math/shading.h"
 
 namespace cei3d {
 
@@ -15,9 +16,8 @@ Scattering::Scattering(Vec3f normal, Vec3f to_viewer, const Material& m, Vec3f a
       nv_(max(dot(normal, to_viewer), 1e-4f)),
       roughness_(m.roughness),
       alpha_(m.roughness * m.roughness),
+      f0_(f0_of(albedo, m.specular, m.metalness)),
       model_(model) {
-  const float dielectric = (1 - m.metalness) * kDielectricF0 * m.specular;
-  f0_ = albedo * m.metalness + Vec3f{dielectric, dielectric, dielectric};
   diffuse_ = albedo * (1 - m.metalness);
   const float mirror = schlick(luminance(f0_), nv_), base = luminance(diffuse_);
   mirror_share_ = base > 0 ? clamp(mirror / (mirror + base), 0.2f, 0.8f) : 1.0f;
@@ -47,11 +47,11 @@ float Scattering::density(Vec3f l) const {
 Vec3f Scattering::sample(float pick, Vec2<float> u) const {
   const bool mirror = pick < mirror_share_;
   // Squared cosine to the normal: of a facet in proportion to its projected area, or of a diffuse direction.
-  const float c2 = mirror ? (1 - u.x) / (1 + (alpha_ * alpha_ - 1) * u.x) : 1 - u.x;
+  const float c2 = mirror ? ggx_facet_cosine2(u.x, alpha_) : 1 - u.x;
   const float c = std::sqrt(c2), s = std::sqrt(max(1 - c2, 0.0f)), turn = 2 * kPi * u.y;
   const Vec3f d =
       normalize(tangents_.x * (s * std::cos(turn)) + tangents_.y * (s * std::sin(turn)) + normal_ * c);
-  return mirror ? normalize(d * (2 * dot(view_, d)) - view_) : d;
+  return mirror ? mirrored_direction(d, view_) : d;
 }
 
 }  // namespace cei3d

@@ -3,8 +3,7 @@
 // base. It is what the program's shading approximates by tables and lobes.
 #pragma once
 
-#include "core/math/vec.h"
-#include "engine/synthetic/lamps.h"
+#include "core/math/tangents.h"
 #include "model/material/material.h"
 
 namespace cei3d {
@@ -27,7 +26,7 @@ class Scattering {
 
  private:
   Vec3f normal_, view_;
-  Tangents tangents_;
+  Tangents<float> tangents_;
   float nv_, roughness_, alpha_;
   Vec3f f0_, diffuse_;  // diffuse_: times pi
   float mirror_share_;  // probability that sample() takes a facet instead of the diffuse base

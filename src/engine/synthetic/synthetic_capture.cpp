@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
@@ -74,8 +75,7 @@ class CaptureWriter {
   }
 
   TrueView view(const Camera& camera, const SgMixture& light, uint64_t number) {
-    if (progress_.cancelled())
-      throw Error(ErrorCode::interrupted, "Interrupted; the images written so far are complete.");
+    check_cancelled(progress_, "Interrupted; the images written so far are complete.");
     const double done = double(drawn_) / double(views_);
     progress_.report({"drawing", done, drawn_ == 0 ? -1 : seconds() * (1 - done) / done,
                       fmt::format("view {} of {}", drawn_ + 1, views_)});

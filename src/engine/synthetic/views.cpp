@@ -7,14 +7,14 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "core/math/fibonacci.h"
 
 namespace cei3d {
 namespace {
 
 constexpr double kFieldOfView = 0.6;  // radians, of the shorter side
 constexpr double kDistance = 3.5, kNearDistance = 3.4;
-constexpr double kLowest = -0.5, kHighest = 0.98;     // z of the cameras' directions
-constexpr double kGoldenAngle = 2.39996322972865332;  // radians
+constexpr double kLowest = -0.5, kHighest = 0.98;  // z of the cameras' directions
 
 Vec3d direction_at(double height, double azimuth) {
   const double r = std::sqrt(1 - height * height);

@@ -6,8 +6,10 @@
 
 #include "core/base/parallel.h"
 #include "core/compute/kernels/shade.h"
+#include "core/math/ladder.h"
 #include "core/math/lobe_triple.h"
 #include "core/math/reflection_axis.h"
+#include "core/math/roughness.h"
 #include "engine/render/irradiance_map.h"
 #include "engine/render/lobe_frames.h"
 #include "engine/render/lobe_planes.h"
@@ -18,7 +20,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kIrradianceSide = 65, kReflectionSide = 128;
-constexpr float kSmoothest = kMinRoughness, kRoughest = 1.2f;  // of the reflection maps
+constexpr GeometricLadder kReflectionRoughnesses{kMinRoughness, 1.2f};
 
 std::vector<uint32_t> irradiance_nodes(const Device& device, const LobePlanes& lobes) {
   const IrradianceMap map(device, lobes);
@@ -81,7 +83,7 @@ Tables make_tables() {
   const ReflectionTables tables = reflection_tables();
   Tables out;
   for (int row = 0; row < kRows; ++row) {
-    const float roughness = kMinRoughness + (1 - kMinRoughness) * float(row) / (kRows - 1);
+    const float roughness = roughness_of_share(float(row) / (kRows - 1));
     out.lobe.insert(out.lobe.end(), {lobe_band(roughness, 1), lobe_band(roughness, 2), 0, 0});
     for (int column = 0; column < kColumns; ++column) {
       const float root = float(column) / (kColumns - 1), nv = root * root;
@@ -97,12 +99,10 @@ Tables make_tables() {
 }  // namespace
 
 float reflection_level_roughness(int level) {
-  return kSmoothest * std::pow(kRoughest / kSmoothest, float(level) / (kReflectionLevels - 1));
+  return kReflectionRoughnesses.at(float(level) / (kReflectionLevels - 1));
 }
 
-float reflection_level(float roughness) {
-  return clamp(std::log(roughness / kSmoothest) / std::log(kRoughest / kSmoothest), 0.0f, 1.0f);
-}
+float reflection_level(float roughness) { return kReflectionRoughnesses.place(roughness); }
 
 std::string view_light(const Device& device, const SgMixture& light) {
   const std::vector<float> planes = lobe_planes(light);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/field/optimizer.h"
 
-#include <cmath>
-
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/compute/kernels/adam.h"
@@ -28,8 +26,7 @@ void Optimizer::step(const Device& device, float rate_scale) {
   constexpr int kGrain = 1 << 16;
   for (Slot& s : slots_) {
     const Group& g = s.group;
-    const double correction = std::sqrt(1 - std::pow(double(g.beta2), double(steps_))) /
-                              (1 - std::pow(double(g.beta1), double(steps_)));
+    const double correction = bias_correction(g.beta1, g.beta2, steps_);
     const AdamStep step{float(g.rate * rate_scale * correction), g.beta1, g.beta2, g.eps, g.skip_zero};
     parallel_ranges(int(s.gradient.size()), kGrain, [&](int begin, int end) {
       device.launch<Adam>({step, s.param->value.data() + begin, s.gradient.data() + begin, s.m.data() + begin,

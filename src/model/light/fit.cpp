@@ -9,6 +9,7 @@
 #include "core/compute/kernels/adam.h"
 #include "core/compute/kernels/light.h"
 #include "core/math/fibonacci.h"
+#include "core/math/raw_lobe.h"
 #include "core/math/sg.h"
 #include "model/light/refine_colors.h"
 
@@ -48,8 +49,7 @@ SgLobe unblurred(SgLobe seen, float sharpness) {
   return {seen.axis, lambda, seen.mu * (sg_integral(seen.lambda) / sg_integral(lambda))};
 }
 
-// Unknowns: raw axis (normalized on use), logarithm of the sharpness, square root of the color, as planes
-// [7][padded].
+// Unknowns: raw numbers of the lobes, as planes [7][padded].
 class LobeFit {
  public:
   LobeFit(const Image& map, int lobes, float sharpest, EnvUp up)
@@ -73,12 +73,9 @@ class LobeFit {
     }
     for (int k = 0; k < lobes; ++k) {
       const Vec3f axis = fibonacci_direction(k, lobes);
-      const Vec3f c = env_radiance(map, axis, up);
-      for (int j = 0; j < 3; ++j) {
-        row(raw_, j)[k] = axis[j];
-        row(raw_, 4 + j)[k] = std::sqrt(max(0.6f * c[j], 1e-3f));  // neighbors overlap
-      }
-      row(raw_, 3)[k] = std::log(min(0.5f * float(lobes), 0.5f * sharpest));
+      Vec3f root = env_radiance(map, axis, up);
+      for (int j = 0; j < 3; ++j) root[j] = std::sqrt(max(0.6f * root[j], 1e-3f));  // neighbors overlap
+      put(raw_, k, {axis, std::log(min(0.5f * float(lobes), 0.5f * sharpest)), root});
     }
   }
 
@@ -90,8 +87,7 @@ class LobeFit {
     device.launch<SgFitResidual>(args, cells_);
     device.launch<SgFitGather>(args, p_);
     pull_back();
-    const float correction =
-        std::sqrt(1 - std::pow(kBeta2, float(t + 1))) / (1 - std::pow(kBeta1, float(t + 1)));
+    const auto correction = float(bias_correction(kBeta1, kBeta2, t + 1));
     const AdamStep adam{kRate * rate * correction, kBeta1, kBeta2, 1e-8f, false};
     device.launch<Adam>({adam, raw_.data(), gradient_.data(), m_.data(), v_.data()}, kRows * p_);
     for (int k = 0; k < lobes_; ++k) {
@@ -104,37 +100,29 @@ class LobeFit {
     expand();
     SgMixture light;
     for (int k = 0; k < lobes_; ++k) {
-      const auto at = [&](int r) { return row(planes_, r)[k]; };
-      light.lobes.push_back({{at(0), at(1), at(2)}, at(3), {at(4), at(5), at(6)}});
+      const LobeNumbers<float> l = get(planes_, k);
+      light.lobes.push_back({l.axis, l.sharpness, l.color});
     }
     return light;
   }
 
  private:
   float* row(std::vector<float>& planes, int r) { return planes.data() + size_t(r) * p_; }
-  Vec3f raw_axis(int k) { return {row(raw_, 0)[k], row(raw_, 1)[k], row(raw_, 2)[k]}; }
+  LobeNumbers<float> get(std::vector<float>& planes, int k) {
+    return {load_planes<float>(row(planes, 0), p_, k), row(planes, 3)[k],
+            load_planes<float>(row(planes, 4), p_, k)};
+  }
+  void put(std::vector<float>& planes, int k, const LobeNumbers<float>& l) {
+    store_planes(row(planes, 0), p_, k, l.axis);
+    row(planes, 3)[k] = l.sharpness;
+    store_planes(row(planes, 4), p_, k, l.color);
+  }
 
   void expand() {
-    for (int k = 0; k < lobes_; ++k) {
-      const Vec3f axis = normalize(raw_axis(k));
-      for (int j = 0; j < 3; ++j) {
-        row(planes_, j)[k] = axis[j];
-        row(planes_, 4 + j)[k] = square(row(raw_, 4 + j)[k]);
-      }
-      row(planes_, 3)[k] = std::exp(row(raw_, 3)[k]);
-    }
+    for (int k = 0; k < lobes_; ++k) put(planes_, k, lobe_of_raw(get(raw_, k)));
   }
   void pull_back() {
-    for (int k = 0; k < lobes_; ++k) {
-      const Vec3f axis = normalize(raw_axis(k)),
-                  d{row(d_planes_, 0)[k], row(d_planes_, 1)[k], row(d_planes_, 2)[k]};
-      const Vec3f along = (d - axis * dot(d, axis)) / length(raw_axis(k));
-      for (int j = 0; j < 3; ++j) {
-        row(gradient_, j)[k] = along[j];
-        row(gradient_, 4 + j)[k] = 2 * row(raw_, 4 + j)[k] * row(d_planes_, 4 + j)[k];
-      }
-      row(gradient_, 3)[k] = row(planes_, 3)[k] * row(d_planes_, 3)[k];
-    }
+    for (int k = 0; k < lobes_; ++k) put(gradient_, k, lobe_of_raw_grad(get(raw_, k), get(d_planes_, k)));
   }
 
   int lobes_;

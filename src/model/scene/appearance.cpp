@@ -116,8 +116,7 @@ class Walk {
   Vec3f own_color() const {
     const ShapeVersion& now = *scene_.shape_versions.back();
     const auto& t = now.surface->mesh().triangles[hit_.triangle];
-    return now.colors[t[0]] * (1 - hit_.b1 - hit_.b2) + now.colors[t[1]] * hit_.b1 +
-           now.colors[t[2]] * hit_.b2;
+    return at_corners(now.colors, t, hit_.b1, hit_.b2);
   }
 
   void add(Op::Kind kind, int l, float weight, Vec3f position, Vec3f color) {

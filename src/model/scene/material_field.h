@@ -43,6 +43,9 @@ class MaterialField {
 Material material_of(const float* outputs, float specular);
 // dL/d(outputs) from dL/d(material); 0 where the metalness is clamped.
 void material_of_grad(const float* outputs, const Material& d_material, float* d_outputs);
+// For the training of a network of kOutputs outputs. d_material: dL/d(material) at the points; must outlive
+// it.
+FieldTrainer::Loss material_loss(std::span<const Material> d_material);
 // Network outputs [kOutputs] that stand for a material; inverse of material_of().
 void outputs_for(const Material&, float* outputs);
 

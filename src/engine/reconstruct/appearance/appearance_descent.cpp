@@ -67,12 +67,10 @@ void AppearanceDescent::fit_albedo(const DescentSchedule& schedule, const Descen
     const double u = double(step_) / schedule.albedo;
     between_steps(store, "albedo", 0.5 * u);
     choose_batch();
-    const auto loss = [&](int begin, int end, const float* out, float* d_out) {
-      for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
-        d_a = sample_grad(samples, batch_[i], terms[batch_[i]], a, 1 / float(options_.batch)).d_albedo;
-      });
-    };
-    albedo_trainer_.step(device_, points_, loss, schedule.albedo_rate * std::pow(0.1f, float(u)));
+    std::vector<ShadingTerms<float>> of_batch;
+    for (const uint32_t i : batch_) of_batch.push_back(terms[i]);
+    albedo_trainer_.step(device_, points_, pixel_loss(of_batch),
+                         schedule.albedo_rate * std::pow(0.1f, float(u)));
   }
 }
 
@@ -130,6 +128,19 @@ void AppearanceDescent::choose_batch() {
   }
 }
 
+FieldTrainer::Loss AppearanceDescent::pixel_loss(const std::vector<ShadingTerms<float>>& terms) {
+  pixel_albedo_.resize(batch_.size());
+  d_radiance_.resize(batch_.size());
+  return [this, &terms](int begin, int end, const float* out, float* d_out) {
+    for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
+      const SampleGrad g = sample_grad(input_.samples, batch_[i], terms[i], a, 1 / float(batch_.size()));
+      pixel_albedo_[i] = a;
+      d_radiance_[i] = g.d_radiance;
+      d_a = g.d_albedo;
+    });
+  };
+}
+
 void AppearanceDescent::refine_step(float rate, float albedo_rate) {
   choose_batch();
   std::vector<Hit> hits(options_.batch);
@@ -140,30 +151,11 @@ void AppearanceDescent::refine_step(float rate, float albedo_rate) {
   const HitBatch batch{hits, materials, {input_.samples.turned.turns, views}};
   const std::vector<IncidentLight<float>> light = lighting_->incident_light(batch);
   const std::vector<ShadingTerms<float>> terms = lighting_->terms(batch, light);
-  std::vector<Vec3f> albedo(hits.size()), d_radiance(hits.size());
-  const auto loss = [&](int begin, int end, const float* out, float* d_out) {
-    for_each_pixel(begin, end, out, d_out, [&](int i, Vec3f a, Vec3f& d_a) {
-      const SampleGrad g = sample_grad(input_.samples, batch_[i], terms[i], a, 1 / float(options_.batch));
-      albedo[i] = a;
-      d_radiance[i] = g.d_radiance;
-      d_a = g.d_albedo;
-    });
-  };
-  albedo_trainer_.step(device_, points_, loss, albedo_rate * rate);
-  const ShadingGrads grads = lighting_->grad(batch, light, albedo, d_radiance);
+  albedo_trainer_.step(device_, points_, pixel_loss(terms), albedo_rate * rate);
+  const ShadingGrads grads = lighting_->grad(batch, light, pixel_albedo_, d_radiance_);
   light_->step(device_, batch, grads.d_sky_irradiance, grads.d_sky_reflection, rate);
   result_.light = light_->light();
-  if (materials_) descend_materials(positions, grads.d_material, rate);
-}
-
-void AppearanceDescent::descend_materials(const std::vector<Vec3f>& positions,
-                                          const std::vector<Material>& d_material, float rate) {
-  constexpr int kOutputs = MaterialField::kOutputs;
-  const auto loss = [&](int begin, int end, const float* out, float* d_out) {
-    for (int i = begin; i < end; ++i)
-      material_of_grad(out + kOutputs * (i - begin), d_material[size_t(i)], d_out + kOutputs * (i - begin));
-  };
-  material_trainer_->step(device_, positions, loss, rate);
+  if (materials_) material_trainer_->step(device_, positions, material_loss(grads.d_material), rate);
 }
 
 DescentState AppearanceDescent::state() const {

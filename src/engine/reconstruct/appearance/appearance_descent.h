@@ -33,6 +33,7 @@ class AppearanceDescent {
   Field take_albedo() { return std::move(albedo_); }
 
  private:
+  friend struct AppearanceDescentProbe;  // the gradient test sees a batch and its gradient
   void fit_albedo(const DescentSchedule&, const DescentStore&);
   void refine(const DescentSchedule&, const DescentStore&);
   void between_steps(const DescentStore&, const char* what, double done) const;
@@ -40,9 +41,10 @@ class AppearanceDescent {
   void relight(std::vector<Vec3f> albedo);
   void light_up();
   void choose_batch();
+  // The loss of the batch, for the training of the albedo; sets pixel_albedo_ and d_radiance_. terms: of the
+  // batch, must outlive the loss.
+  FieldTrainer::Loss pixel_loss(const std::vector<ShadingTerms<float>>& terms);
   void refine_step(float rate, float albedo_rate);
-  void descend_materials(const std::vector<Vec3f>& positions, const std::vector<Material>& d_material,
-                         float rate);
   DescentState state() const;
   void load(const DescentState&, const DescentSchedule&);
 
@@ -68,7 +70,8 @@ class AppearanceDescent {
 
   int64_t step_ = 0;  // steps that are done, of both descents
   std::vector<uint32_t> batch_;
-  std::vector<Vec3f> points_;  // kPixelPoints of each pixel
+  std::vector<Vec3f> points_;                     // kPixelPoints of each pixel
+  std::vector<Vec3f> pixel_albedo_, d_radiance_;  // of the batch
 };
 
 }  // namespace cei3d

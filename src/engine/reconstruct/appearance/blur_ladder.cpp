@@ -4,23 +4,21 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/ladder.h"
 #include "core/math/lobe_triple.h"
 
 namespace cei3d {
 namespace {
 
-constexpr float kSmoothest = 0.1f, kRoughest = 0.95f;  // of the ladder
-constexpr float kRound = 1.15f;                        // maximum stretch of a lobe that is taken to be round
+constexpr GeometricLadder kRoughnesses{0.1f, 0.95f};
+constexpr float kRound = 1.15f;  // maximum stretch of a lobe that is taken to be round
 
 }  // namespace
 
-float BlurLadder::roughness(int level) {
-  return kSmoothest * std::pow(kRoughest / kSmoothest, float(level) / (kLevels - 1));
-}
+float BlurLadder::roughness(int level) { return kRoughnesses.at(float(level) / (kLevels - 1)); }
 
 BlurLadder::Place BlurLadder::place(float roughness) {
-  const float at =
-      clamp(std::log(roughness / kSmoothest) / std::log(kRoughest / kSmoothest), 0.0f, 1.0f) * (kLevels - 1);
+  const float at = kRoughnesses.place(roughness) * (kLevels - 1);
   const int level = std::min(int(at), kLevels - 2);
   return {level, at - float(level)};
 }

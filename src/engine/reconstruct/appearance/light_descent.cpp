@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
-#include "core/compute/kernels/adam.h"
 #include "core/compute/kernels/shade.h"
 #include "engine/render/hit_reflection.h"
 #include "engine/render/lobe_frames.h"

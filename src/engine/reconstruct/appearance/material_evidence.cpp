@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/math/color.h"
+#include "core/math/ladder.h"
 
 namespace cei3d {
 namespace {
@@ -49,8 +50,8 @@ void minimum(const float* e, float& roughness, float& error) {
     if (bend > 0) at += clamp(0.5f * (a - c) / bend, -0.5f, 0.5f);
   }
   const int level = std::min(int(at), kLevels - 2);
-  const float low = BlurLadder::roughness(level), high = BlurLadder::roughness(level + 1);
-  roughness = low * std::pow(high / low, at - float(level));
+  const GeometricLadder step{BlurLadder::roughness(level), BlurLadder::roughness(level + 1)};
+  roughness = step.at(at - float(level));
 }
 
 }  // namespace

@@ -4,14 +4,15 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/tangents.h"
+
 namespace cei3d {
 
 std::array<Vec3f, kPixelPoints> pixel_points(const Hit& hit, float footprint) {
   const float spread = std::sqrt(1 / 6.0f) * footprint;  // standard deviation of the tent along an axis
   constexpr float kMinCosine = 0.25f;  // below it, the tangent plane is a poor approximation of the surface
   const Vec3f view = hit.to_camera;
-  const Vec3f right = normalize(cross(std::abs(view.z) < 0.9f ? Vec3f{0, 0, 1} : Vec3f{1, 0, 0}, view));
-  const Vec3f up = cross(view, right);
+  const auto [right, up] = tangents_of(view, 2);
   const float cosine = std::max(kMinCosine, dot(hit.normal, view));
   std::array<Vec3f, kPixelPoints> points;
   for (int k = 0; k < kPixelPoints; ++k) {

@@ -8,6 +8,7 @@
 #include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/base/pool.h"
+#include "core/math/psnr.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
@@ -65,11 +66,11 @@ class Trainer {
       for (const uint32_t s : some) hits.push_back(hit(s));
       const std::vector<Vec3f> values = residual_at(device_, residual_, hits);
       for (size_t i = 0; i < some.size(); ++i) {
-        with += squared_error(some[i], radiance_[some[i]] + values[i]);
-        without += squared_error(some[i], radiance_[some[i]]);
+        with += display_error(radiance_[some[i]] + values[i], samples_.colors[some[i]]);
+        without += display_error(radiance_[some[i]], samples_.colors[some[i]]);
       }
     }
-    const auto psnr = [&](double sum) { return -10 * std::log10(sum / (3 * double(judged.size()))); };
+    const auto psnr = [&](double sum) { return psnr_of_mse(sum / (3 * double(judged.size()))); };
     return {psnr(without), psnr(with)};
   }
 
@@ -124,14 +125,6 @@ class Trainer {
     const TurnedHits& turned = samples_.turned;
     return turned.turns ? with_rotated_directions(h, turned.turns->room_from_object[turned.views[sample]])
                         : h;
-  }
-
-  double squared_error(uint32_t sample, Vec3f radiance) const {
-    double sum = 0;
-    for (int c = 0; c < 3; ++c)
-      sum += square(srgb_from_linear(clamp(radiance[c], 0.0f, 1.0f)) -
-                    srgb_from_linear(min(samples_.colors[sample][c], 1.0f)));
-    return sum;
   }
 
   // dL/d(output of the network).

@@ -47,7 +47,7 @@ std::vector<Vec3f> radiance_of(const Device& device, const Scene& scene, const S
 double display_error(Vec3f radiance, Vec3f photo) {
   double sum = 0;
   for (int c = 0; c < 3; ++c)
-    sum += square(srgb_from_linear(clamp(radiance[c], 0.0f, 1.0f)) - srgb_from_linear(photo[c]));
+    sum += square(srgb_from_linear(clamp(radiance[c], 0.0f, 1.0f)) - srgb_from_linear(min(photo[c], 1.0f)));
   return sum;
 }
 

@@ -19,7 +19,8 @@ std::vector<Vec3f> pixel_colors(const Device&, const Field& albedo, std::span<co
 // Linear radiance by light and material, without the correction network: #samples. Error: interrupted.
 std::vector<Vec3f> radiance_of(const Device&, const Scene&, const SurfaceSamples&, const Progress&);
 
-// Squared error of a pixel, summed over its channels; display-encoded. Both linear.
+// Squared error of a displayed pixel, summed over its channels. radiance, photo: linear; a display shows no
+// more than 1.
 double display_error(Vec3f radiance, Vec3f photo);
 
 }  // namespace cei3d

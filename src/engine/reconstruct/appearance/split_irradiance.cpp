@@ -129,15 +129,15 @@ DiffuseLightGrad TurningIrradiance::turn(const SplitUnknowns& x, const SplitMate
       // From the bin's rotation to the view's by harmonics.
       const Harmonics here = at(row), in_view = views_[row.view] * here,
                       in_bin = bins_[turns_.bin[row.view]] * here, mean = mean_ * here;
-      const Vec3f mean_light = between(light.mean, row.vertices, row.barycentric),
+      const Vec3f mean_light = at_corners(light.mean, row.vertices, row.barycentric),
                   more = (dot(in_view, grad.light) - dot(in_bin, grad.light)) / mean_light;
-      row.diffuse_light = between(bin, row.vertices, row.barycentric) + more;
+      row.diffuse_light = at_corners(bin, row.vertices, row.barycentric) + more;
       for (int c = 0; c < 3; ++c) row.diffuse_light[c] = max(row.diffuse_light[c], 0.0f);
-      if (row.blocked) row.far_diffuse_light = between(bin, row.far_vertices, row.far_barycentric);
+      if (row.blocked) row.far_diffuse_light = at_corners(bin, row.far_vertices, row.far_barycentric);
       DiffuseLightGrad::OfRow& of_row = grad.rows[size_t(i)];
       const float share = luminance(row.diffuse_light);
       for (size_t j = 0; j < kHarmonics; ++j) of_row.d_light[j] = in_view[j] - share * mean[j];
-      of_row.gain = between(x.diffuse, row.vertices, row.barycentric) / mean_light;
+      of_row.gain = at_corners(x.diffuse, row.vertices, row.barycentric) / mean_light;
     }
   });
   return grad;

@@ -9,14 +9,13 @@
 namespace cei3d {
 namespace {
 
-constexpr float kGrazing = 0.1f;    // minimum cosine of samples, which excludes silhouettes and bad normals
-constexpr float kDarkest = 0.003f;  // radiance below which the slope of the display curve is bounded
+constexpr float kGrazing = 0.1f;  // minimum cosine of samples, which excludes silhouettes and bad normals
 
 void set_far_hit(const Mesh& mesh, const Surface::RayHit& h, SplitRow& row) {
   const auto& t = mesh.triangles[h.triangle];
   row.blocked = true;
   row.far_vertices = {t[0], t[1], t[2]};
-  row.far_barycentric = {1 - h.b1 - h.b2, h.b1, h.b2};
+  row.far_barycentric = barycentrics(h.b1, h.b2);
 }
 
 std::vector<uint32_t> choose_samples(const SurfaceSamples& s, const LinearSplitOptions& o) {
@@ -43,14 +42,14 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     const auto& t = mesh.triangles[h.triangle];
     row = {};
     row.vertices = {t[0], t[1], t[2]};
-    row.barycentric = {1 - h.b1 - h.b2, h.b1, h.b2};
+    row.barycentric = barycentrics(h.b1, h.b2);
     row.normal = samples.turned.in_room(kept[k], h.normal);
     row.to_camera = samples.turned.in_room(kept[k], h.to_camera);
     row.view = samples.turned.turns ? samples.turned.views[kept[k]] : 0;
     row.held_out = options.hold_out > 0 && samples.turned.views[kept[k]] % options.hold_out == 0;
     row.nv = dot(h.normal, h.to_camera);
     row.color = samples.colors[kept[k]];
-    for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_slope(max(row.color[c], kDarkest)));
+    for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_slope(row.color[c]));
     row.clipped = samples.clipped.empty() ? 0 : samples.clipped[kept[k]];
     origins[k] = ray_origin(h);
     directions[k] = mirror_direction(h);

@@ -31,10 +31,4 @@ struct SplitRow {
 // A row for each sample of the random subset of options.max_hits samples.
 std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&);
 
-// Values of vertices at a point of a triangle. v, b: its vertices and the barycentric coordinates.
-inline Vec3f between(const std::vector<Vec3f>& values, const std::array<uint32_t, 3>& v,
-                     const std::array<float, 3>& b) {
-  return values[v[0]] * b[0] + values[v[1]] * b[1] + values[v[2]] * b[2];
-}
-
 }  // namespace cei3d

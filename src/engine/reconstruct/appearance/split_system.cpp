@@ -86,13 +86,13 @@ SplitSystem::Sky SplitSystem::sky_change(const std::vector<Vec3f>& light) const 
 Vec3f SplitSystem::predict(size_t i, const SplitUnknowns& x, const Sky& sky) const {
   const SplitRow& row = rows_[i];
   const Optics& o = optics_[i];
-  Vec3f diffuse = between(x.diffuse, row.vertices, row.barycentric) * row.diffuse_light;
+  Vec3f diffuse = at_corners(x.diffuse, row.vertices, row.barycentric) * row.diffuse_light;
   if (!diffuse_light_grad_.rows.empty())
     diffuse += diffuse_light_grad_.rows[i].gain * dot(diffuse_light_grad_.rows[i].d_light, sky.harmonics);
   diffuse = diffuse * o.diffuse_view;
   if (row.blocked)
     return diffuse +
-           o.gain() * row.far_diffuse_light * between(x.diffuse, row.far_vertices, row.far_barycentric);
+           o.gain() * row.far_diffuse_light * at_corners(x.diffuse, row.far_vertices, row.far_barycentric);
   return diffuse + o.base_gain * radiance_at(sky.blurred, o.base) +
          radiance_at(sky.blurred, o.fresnel) * o.split_sum.bias;
 }

@@ -67,6 +67,7 @@ class SplitSystem {
   const std::vector<SplitRow>& rows() const { return rows_; }
 
  private:
+  friend struct SplitSystemProbe;  // the test compares the operator with its adjoint
   // Optical coefficients of a row for the present materials.
   struct Optics {
     bool used = true;

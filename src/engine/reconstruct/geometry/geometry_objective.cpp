@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/psnr.h"
 #include "core/math/rng.h"
 
 namespace cei3d {
@@ -17,7 +18,7 @@ constexpr float kHeldSamplesPerRay = 2;  // samples of every ray that the held p
 }  // namespace
 
 double GeometryStats::psnr() const {
-  return -10 * std::log10(std::max(squared_error / double(std::max<int64_t>(rays, 1)), 1e-12));
+  return psnr_of_mse(std::max(squared_error / double(std::max<int64_t>(rays, 1)), 1e-12));
 }
 
 GeometryStats& operator+=(GeometryStats& a, const GeometryStats& b) {

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <functional>
 
-#include "core/math/rng.h"
 #include "engine/reconstruct/joint/test_ball.h"
+#include "engine/reconstruct/test_directions.h"
 #include "model/geometry/mesh/surface_nets.h"
 
 namespace cei3d {
@@ -124,23 +124,12 @@ class JointGradient : public testing::Test {
     }
     for (size_t t = 0; t < params.all().size(); ++t) {
       Param& p = params.all()[t];
-      const std::vector<float>&gradient = gradients[t], before = p.value;
-      std::vector<float> direction(p.count());
-      double slope = 0, length = 0;
-      for (size_t i = 0; i < direction.size(); ++i) {  // mostly along the gradient, which otherwise drowns
-        direction[i] = gradient[i];
-        length += square(double(direction[i]));
-      }
-      const double scale = std::sqrt(length / double(direction.size()));
-      for (size_t i = 0; i < direction.size(); ++i) {
-        direction[i] += float(0.5 * scale) * Rng(9, t, i).normal();
-        direction[i] /= float(std::sqrt(length));
-        slope += double(direction[i]) * gradient[i];
-      }
+      const std::vector<float> before = p.value;
+      const TensorDirection direction(std::span(gradients[t]).first(p.count()), t);
       const auto change = [&](float h) {
-        for (size_t i = 0; i < direction.size(); ++i) p.value[i] = before[i] + h * direction[i];
+        for (size_t i = 0; i < direction.of.size(); ++i) p.value[i] = before[i] + h * direction.of[i];
       };
-      expect_slope(slope, change, step, what + " " + p.name);
+      expect_slope(direction.slope, change, step, what + " " + p.name);
     }
   }
 

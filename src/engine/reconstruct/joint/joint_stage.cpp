@@ -6,6 +6,7 @@
 
 #include "core/base/cancel.h"
 #include "core/base/json.h"
+#include "core/math/psnr.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
 #include "engine/render/render.h"
 
@@ -72,7 +73,7 @@ double held_out_psnr(const Device& device, const Scene& scene, const SurfaceSamp
   for (size_t k = 0; k < radiance.size(); ++k) of_judged[ray_of_hit[k]] = radiance[k];
   double sum = 1e-12;
   for (size_t k = 0; k < judged.size(); ++k) sum += display_error(of_judged[k], samples.colors[judged[k]]);
-  return -10 * std::log10(sum / (3 * double(std::max<size_t>(judged.size(), 1))));
+  return psnr_of_mse(sum / (3 * double(std::max<size_t>(judged.size(), 1))));
 }
 
 }  // namespace cei3d

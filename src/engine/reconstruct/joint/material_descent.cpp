@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "core/math/activation.h"
-#include "core/math/split_sum.h"
+#include "core/math/roughness.h"
 
 namespace cei3d {
 namespace {
@@ -17,8 +17,6 @@ float logit(float x) {
   return std::log(y / (1 - y));
 }
 float share(float logit) { return Sigmoid::eval(logit, 1).value; }
-// Roughnesses below kMinRoughness are shaded like it.
-float roughness_from(float share) { return kMinRoughness + (1 - kMinRoughness) * share; }
 
 }  // namespace
 
@@ -32,7 +30,7 @@ MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool le
   }
   const Material& m = start.mean();
   logits_ = &params_.add("logits", {3});
-  logits_->value[0] = logit((m.roughness - kMinRoughness) / (1 - kMinRoughness));
+  logits_->value[0] = logit(share_of_roughness(m.roughness));
   logits_->value[1] = logit(m.specular);
   logits_->value[2] = logit(m.metalness);
   learned_[0] = true;
@@ -44,19 +42,14 @@ MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool le
 Material MaterialDescent::from_logits() const {
   const Material& m = field_.mean();
   const float* v = logits_->value.data();
-  return {learned_[0] ? roughness_from(share(v[0])) : m.roughness, learned_[1] ? share(v[1]) : m.specular,
+  return {learned_[0] ? roughness_of_share(share(v[0])) : m.roughness, learned_[1] ? share(v[1]) : m.specular,
           learned_[2] ? share(v[2]) : m.metalness};
 }
 
 void MaterialDescent::accumulate(const Device& device, std::span<const Vec3f> positions,
                                  std::span<const Material> d_material) {
   if (varying_) {
-    constexpr int kOutputs = MaterialField::kOutputs;
-    const auto loss = [&](int begin, int end, const float* out, float* d_out) {
-      for (int i = begin; i < end; ++i)
-        material_of_grad(out + kOutputs * (i - begin), d_material[size_t(i)], d_out + kOutputs * (i - begin));
-    };
-    trainer_->accumulate(device, positions, loss);
+    trainer_->accumulate(device, positions, material_loss(d_material));
     return;
   }
   double sum[3] = {};
@@ -64,7 +57,7 @@ void MaterialDescent::accumulate(const Device& device, std::span<const Vec3f> po
   const std::span<float> gradient = optimizer_.gradient(*logits_);
   for (int k = 0; k < 3; ++k) {
     const float slope = Sigmoid::eval(logits_->value[size_t(k)], 1).first;
-    if (learned_[k]) gradient[size_t(k)] += float(sum[k]) * slope * (k == 0 ? 1 - kMinRoughness : 1);
+    if (learned_[k]) gradient[size_t(k)] += float(sum[k]) * slope * (k == 0 ? kRoughnessRange : 1);
   }
 }
 

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "core/math/bilinear.h"
+
 namespace cei3d {
 
 namespace {
@@ -84,15 +86,13 @@ Sampled sample(const Image& image, double u, double v) {
   const float *a = image.at(i, j), *b = image.at(i + 1, j), *c = image.at(i, j + 1),
               *d = image.at(i + 1, j + 1);
   Sampled s;
-  const auto mix = [&](int k) {
-    return (1 - fy) * ((1 - fx) * a[k] + fx * b[k]) + fy * ((1 - fx) * c[k] + fx * d[k]);
-  };
+  const auto channel = [&](int k) { return SquareCorners<double>{a[k], b[k], c[k], d[k]}; };
   for (int k = 0; k < 3; ++k) {
-    s.color[k] = mix(k);
-    s.d_x[k] = (1 - fy) * (b[k] - a[k]) + fy * (d[k] - c[k]);
-    s.d_y[k] = (1 - fx) * (c[k] - a[k]) + fx * (d[k] - b[k]);
+    s.color[k] = bilinear(channel(k), fx, fy);
+    s.d_x[k] = bilinear_d_x(channel(k), fy);
+    s.d_y[k] = bilinear_d_y(channel(k), fx);
   }
-  s.known = image.channels > 3 ? mix(3) : 1;
+  s.known = image.channels > 3 ? bilinear(channel(3), fx, fy) : 1;
   return s;
 }
 

@@ -7,6 +7,8 @@
 
 #include "core/base/cancel.h"
 #include "core/base/parallel.h"
+#include "core/math/adam.h"
+#include "core/math/fog.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/geometry/occupancy.h"
 
@@ -22,9 +24,11 @@ using Cell = std::array<float, 4>;  // density, display-encoded color
 
 struct CellGrad {
   uint32_t cell;
-  float light;  // transmittance at which the ray reached the cell
-  Cell d;       // derivative of the loss by the cell's values
+  SampleWeight<float> seen;
+  Cell d;  // of the loss
 };
+
+Vec3f color_of(const Cell& c) { return {c[1], c[2], c[3]}; }
 
 class Fog {
  public:
@@ -58,7 +62,7 @@ class Fog {
         Cell& sum = grad_[s.cell];
         if (sum == Cell{}) touched.push_back(s.cell);
         for (int k = 0; k < 4; ++k) sum[k] += s.d[k];
-        if (settled) lit_[s.cell] = std::max(lit_[s.cell], s.light);
+        if (settled) lit_[s.cell] = std::max(lit_[s.cell], s.seen.transmittance);
       }
     const float decay = std::pow(0.2f, float(step) / float(options_.steps));
     for (const uint32_t i : touched) update(i, decay);
@@ -73,7 +77,7 @@ class Fog {
   }
 
  private:
-  float opacity(const Cell& c) const { return 1 - std::exp(-c[0] * size_); }
+  float opacity(const Cell& c) const { return fog_opacity(c[0], size_); }
 
   uint32_t id_at(Vec3f p) const {
     const Vec3f q = (p - hull_.lo) / size_;
@@ -82,7 +86,7 @@ class Fog {
     return id_[(size_t(z) * n + y) * n + x];
   }
 
-  // One pixel's ray: its loss is |color - image|^2 / 2 over white, and the same of the opacity.
+  // The gradient of one pixel's loss.
   void trace(Rng rng, std::vector<CellGrad>& out) const {
     const Pixel& p = pixels_.pixels()[rng.below(uint32_t(pixels_.pixels().size()))];
     const float u = rng.uniform(), v = rng.uniform();
@@ -90,31 +94,19 @@ class Fog {
     float near, far;
     if (!unit_sphere_span(ray, near, far)) return;
     const size_t first = out.size();
-    float light = 1;
-    Vec3f color{0, 0, 0};
-    for (float t = near + size_ * rng.uniform(); t < far && light > kDark; t += size_) {
+    Composite<float> seen = fog_ray<float>();
+    for (float t = near + size_ * rng.uniform(); t < far && seen.coverage < 1 - kDark; t += size_) {
       const uint32_t i = id_at(ray.origin + ray.direction * t);
       if (i == kNone) continue;
-      const Cell& c = cells_[i];
-      const float weight = light * opacity(c);
-      out.push_back({i, light, {0, weight, weight, weight}});
-      color += Vec3f{c[1], c[2], c[3]} * weight;
-      light -= weight;
+      out.push_back({i, seen.add(opacity(cells_[i]), color_of(cells_[i])), {}});
     }
     const Target target = pixels_.target(p);
-    const Vec3f error = color + Vec3f{light, light, light} - target.srgb;
-    const float error_opacity = options_.opacity_weight * (1 - light - target.alpha);
-    Vec3f behind{light, light, light};  // color from the rest of the ray
+    FogGrad<float> grad(seen, {target.srgb, target.alpha, options_.opacity_weight}, size_);
     for (size_t k = out.size(); k-- > first;) {
       CellGrad& s = out[k];
       const Cell& c = cells_[s.cell];
-      const float weight = s.d[1], through = s.light - weight;
-      s.d[0] = error_opacity * size_ * light;
-      for (int j = 0; j < 3; ++j) {
-        s.d[0] += error[j] * size_ * (through * c[1 + j] - behind[j]);
-        s.d[1 + j] = error[j] * weight;
-        behind[j] += weight * c[1 + j];
-      }
+      const FogCellGrad<float> g = grad.add(opacity(c), s.seen, color_of(c));
+      s.d = {g.d_density, g.d_color.x, g.d_color.y, g.d_color.z};
     }
   }
 
@@ -124,11 +116,9 @@ class Fog {
                            options_.color_rate};
     const float high[] = {3 / size_, 1, 1, 1};
     for (int k = 0; k < 4; ++k) {
-      const float d = grad_[i][k];
-      float &m = mean_[i][k], &v = square_[i][k];
-      m = 0.8f * m + 0.2f * d;
-      v = 0.95f * v + 0.05f * d * d;
-      cells_[i][k] = std::clamp(cells_[i][k] - decay * rates[k] * m / (std::sqrt(v) + 1e-7f), 0.0f, high[k]);
+      const AdamStep step{decay * rates[k], 0.8f, 0.95f, 1e-7f, false};
+      adam_update(step, grad_[i][k], cells_[i][k], mean_[i][k], square_[i][k]);
+      cells_[i][k] = std::clamp(cells_[i][k], 0.0f, high[k]);
     }
     grad_[i] = {};
   }

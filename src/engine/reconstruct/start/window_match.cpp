@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/bilinear.h"
+
 namespace cei3d {
 
 namespace {
@@ -73,8 +75,7 @@ void WindowMatcher::sample(const Gray& b, const Warp& w, double depth, int y, st
         const float s = u - float(i), t = v - float(j);
         const size_t k = size_t(j) * stride + size_t(i);
         known = b.inside[k] * b.inside[k + 1] * b.inside[k + stride] * b.inside[k + stride + 1];
-        g = (1 - t) * ((1 - s) * b.value[k] + s * b.value[k + 1]) +
-            t * ((1 - s) * b.value[k + stride] + s * b.value[k + stride + 1]);
+        g = bilinear({b.value[k], b.value[k + 1], b.value[k + stride], b.value[k + stride + 1]}, s, t);
       }
     }
     warped_[x] = g * known;

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "model/geometry/mesh/adjacency.h"
+#include "model/geometry/mesh/areas.h"
 
 namespace cei3d {
 namespace {
@@ -28,16 +29,6 @@ std::vector<uint8_t> smooth(const VertexLists& neighbors, std::span<const uint8_
   std::vector<uint8_t> out(now.size());
   for (size_t v = 0; v < now.size(); ++v) out[v] = now[v] >= 0.5f;
   return out;
-}
-
-std::vector<double> vertex_areas(const Mesh& mesh) {
-  std::vector<double> area(mesh.positions.size(), 0.0);
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3f a = mesh.positions[t[0]];
-    const float twice = length(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a));
-    for (const uint32_t v : t) area[v] += double(twice) / 6;
-  }
-  return area;
 }
 
 // Flips connected components of that label whose area is below `least` and that border on the other label.

@@ -17,14 +17,27 @@ struct Mesh {
   std::vector<std::array<uint32_t, 3>> triangles;  // #F, counter-clockwise seen from outside
 };
 
-// Values of vertices (#V) at a point of a triangle, by its barycentrics b1 and b2.
-inline Vec3f at_corners(std::span<const Vec3f> v, const std::array<uint32_t, 3>& t, float b1, float b2) {
-  return v[t[0]] * (1 - b1 - b2) + v[t[1]] * b1 + v[t[2]] * b2;
+// The barycentrics of all three corners.
+inline std::array<float, 3> barycentrics(float b1, float b2) { return {1 - b1 - b2, b1, b2}; }
+
+// Values of vertices (#V, of any linear type) at a point of a triangle, by its barycentrics.
+template <class Values>
+auto at_corners(const Values& v, const std::array<uint32_t, 3>& t, const std::array<float, 3>& b) {
+  return v[t[0]] * b[0] + v[t[1]] * b[1] + v[t[2]] * b[2];
+}
+template <class Values>
+auto at_corners(const Values& v, const std::array<uint32_t, 3>& t, float b1, float b2) {
+  return at_corners(v, t, barycentrics(b1, b2));
+}
+
+inline float triangle_area(const Mesh& mesh, const std::array<uint32_t, 3>& t) {
+  const Vec3f a = mesh.positions[t[0]];
+  return 0.5f * length(cross(mesh.positions[t[1]] - a, mesh.positions[t[2]] - a));
 }
 
 // The vertex of a triangle with the largest barycentric coordinate at a point of it; the first of equals.
 inline uint32_t nearest_corner(const std::array<uint32_t, 3>& t, float b1, float b2) {
-  const float b0 = 1 - b1 - b2;
+  const float b0 = barycentrics(b1, b2)[0];
   return b0 >= b1 && b0 >= b2 ? t[0] : b1 >= b2 ? t[1] : t[2];
 }
 

@@ -51,11 +51,6 @@ void follow_triangles(const ShapeVersion& before, int index, const Reshape& chan
   version.before.resize(triangles.size(), 0);
 }
 
-template <class T>
-T blend(const std::vector<T>& v, const Corners& c, const Hit& hit) {
-  return v[c[0]] * (1 - hit.b1 - hit.b2) + v[c[1]] * hit.b1 + v[c[2]] * hit.b2;
-}
-
 }  // namespace
 
 ShapeVersions with_version(ShapeVersions versions, std::shared_ptr<const Surface> surface,
@@ -80,7 +75,7 @@ ShapeVersions with_version(ShapeVersions versions, std::shared_ptr<const Surface
 Mat3f gradient_at(const ShapeVersion& version, const Corners& corners, const Hit& hit) {
   if (version.gradients.empty()) return Mat3f::identity();
   Mat3f m{};
-  const float weight[3] = {1 - hit.b1 - hit.b2, hit.b1, hit.b2};
+  const std::array<float, 3> weight = barycentrics(hit.b1, hit.b2);
   for (int c = 0; c < 3; ++c)
     for (int i = 0; i < 3; ++i) m.row[i] += version.gradients[corners[c]].row[i] * weight[c];
   // Determinant below which the surface is folded or crushed; offsets from the mesh are then kept as they
@@ -90,7 +85,7 @@ Mat3f gradient_at(const ShapeVersion& version, const Corners& corners, const Hit
 }
 
 Vec3f mesh_point(const ShapeVersion& version, const Corners& corners, const Hit& hit) {
-  return blend(version.surface->mesh().positions, corners, hit);
+  return at_corners(version.surface->mesh().positions, corners, hit.b1, hit.b2);
 }
 
 // Offsets from the mesh are carried by the gradients, x_k = m_k + F_k F^-1 (x - m), normals by the inverse

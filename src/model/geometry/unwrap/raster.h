@@ -13,16 +13,14 @@ namespace cei3d {
 template <class Use>
 void for_each_texel(Vec2f a, Vec2f b, Vec2f c, int width, int height, const Use& use) {
   const Vec2d e{double(b.x) - a.x, double(b.y) - a.y}, g{double(c.x) - a.x, double(c.y) - a.y};
-  const double area = signed_area(e, g);
-  if (area == 0) return;
+  if (signed_area(e, g) == 0) return;
   const auto first = [](float low) { return std::max(0, int(std::ceil(low - 0.5f))); };
   const auto end = [](float high, int size) { return std::min(size, int(std::floor(high - 0.5f)) + 1); };
   const int x0 = first(std::min({a.x, b.x, c.x})), x1 = end(std::max({a.x, b.x, c.x}), width);
   const int y0 = first(std::min({a.y, b.y, c.y})), y1 = end(std::max({a.y, b.y, c.y}), height);
   for (int y = y0; y < y1; ++y)
     for (int x = x0; x < x1; ++x) {
-      const Vec2d p{x + 0.5 - a.x, y + 0.5 - a.y};
-      const double b1 = signed_area(p, g) / area, b2 = signed_area(e, p) / area;
+      const auto [b1, b2] = barycentrics_in(e, g, Vec2d{x + 0.5 - a.x, y + 0.5 - a.y});
       if (b1 >= 0 && b2 >= 0 && b1 + b2 <= 1) use(x, y, float(b1), float(b2));
     }
 }

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/appearance/material_evidence.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/compute/kernels/shade.h"
+#include "core/math/fibonacci.h"
+#include "core/math/reflection.h"
+#include "core/math/reflection_axis.h"
+#include "core/math/shading.h"
+#include "model/light/sg_mixture.h"
+
+namespace cei3d {
+namespace {
+
+constexpr int kHeight = 32, kViews = 400;
+
+SgMixture studio() {
+  return {{{normalize(Vec3f{1, 0.4f, 1}), 30, {6, 5.5f, 5}},
+           {normalize(Vec3f{-1, 1, 0.3f}), 25, {2, 2.5f, 3}},
+           {{0, 0, 1}, 1.5f, {0.4f, 0.45f, 0.5f}}}};
+}
+
+std::vector<Vec3f> image_of(const SgMixture& light) {
+  std::vector<Vec3f> out;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < 2 * kHeight; ++x)
+      out.push_back(radiance(light, env_direction(float(x) + 0.5f, float(y) + 0.5f, 2 * kHeight, kHeight)));
+  return out;
+}
+
+// Mean radiance over a reflection lobe, in closed form.
+Vec3f reflected(const SgMixture& light, ReflectionPart part, const SplitRow& row, float roughness) {
+  const PartTables tables{reflection_axis_table(part), reflection_stretch_table(part)};
+  const LobeFrame<float> lobe = lobe_frame(tables, row.normal, row.to_camera, roughness);
+  Vec3f sum{0, 0, 0};
+  for (const SgLobe& l : light.lobes) {
+    const LobeGap<float> gap = lobe_gap(lobe.axis, lobe.across, l.axis);
+    sum += l.mu * sg_reflected(l.lambda, stretched_lobe(lobe.roughness, lobe.stretch), gap.q(), gap.h());
+  }
+  return sum;
+}
+
+// One vertex, seen from all sides of its hemisphere; its normal differs from sample to sample, as at a bump.
+std::vector<SplitRow> samples_of(const Material& m, Vec3f diffuse, Vec3f metal) {
+  std::vector<SplitRow> rows;
+  for (int i = 0; i < kViews; ++i) {
+    SplitRow row{};
+    row.vertices = {0, 0, 0};
+    row.barycentric = {1, 0, 0};
+    row.normal = normalize(Vec3f{0.3f, 0.2f, 1} + fibonacci_direction(7 * i % kViews, kViews) * 0.4f);
+    row.to_camera = fibonacci_direction(i, kViews);
+    row.nv = dot(row.normal, row.to_camera);
+    if (row.nv < 0.2f) continue;
+    const SplitSum<float> s = split_sum(split_sum_table(), row.nv, m.roughness);
+    row.color = f0_of(metal, m.specular, m.metalness) * s.scale *
+                    reflected(studio(), ReflectionPart::base, row, m.roughness) +
+                reflected(studio(), ReflectionPart::fresnel, row, m.roughness) * s.bias;
+    if (m.metalness == 0) row.color += diffuse * diffuse_view(row.nv, m.roughness);
+    row.weight = {1, 1, 1};
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+BestMaterials best_of(const std::vector<SplitRow>& rows) {
+  std::vector<Vec3f> colors;
+  for (const SplitRow& r : rows) colors.push_back(r.color);
+  BlurLadder blurs(kHeight);
+  const LitSamples lit(1, rows, colors, blurs, image_of(studio()));
+  return best_materials(lit.evidence({Vec3f{1, 1, 1}}).of(0));
+}
+
+TEST(MaterialEvidence, FindsTheRoughnessAndTheKindOfAMaterial) {
+  for (const float roughness : {0.22f, 0.4f, 0.65f}) {
+    const BestMaterials dielectric = best_of(samples_of({roughness, 0.5f, 0}, {0.15f, 0.1f, 0.05f}, {})),
+                        metal = best_of(samples_of({roughness, 0.5f, 1}, {}, {0.9f, 0.6f, 0.3f}));
+    EXPECT_NEAR(dielectric.dielectric_roughness / roughness, 1, 0.12);
+    EXPECT_NEAR(metal.metal_roughness / roughness, 1, 0.12);
+    EXPECT_LT(dielectric.dielectric_error, 0.05f * dielectric.metal_error);
+    EXPECT_LT(metal.metal_error, 0.05f * metal.dielectric_error);
+  }
+}
+
+// A strip of vertices of two colors. Evidence spreads within a color and does not cross the border.
+TEST(MaterialEvidence, SpreadsWithinAColor) {
+  constexpr uint32_t kColumns = 12;
+  constexpr int kH = MaterialEvidence::kHypotheses;
+  Mesh mesh;
+  std::vector<Vec3f> colors;
+  for (uint32_t i = 0; i < 2 * kColumns; ++i) {
+    mesh.positions.push_back({float(i / 2), float(i % 2), 0});
+    colors.push_back(i < kColumns ? Vec3f{0.8f, 0.2f, 0.1f} : Vec3f{0.1f, 0.3f, 0.9f});
+  }
+  for (uint32_t i = 0; i + 2 < 2 * kColumns; i += 2) {
+    mesh.triangles.push_back({i, i + 2, i + 1});
+    mesh.triangles.push_back({i + 1, i + 2, i + 3});
+  }
+  MaterialEvidence e;
+  e.error.assign(2 * kColumns * kH, 0);
+  e.samples.assign(2 * kColumns, 0);
+  e.samples[2] = 1;
+  for (int h = 0; h < kH; ++h) e.error[2 * kH + size_t(h)] = float(h);
+  diffuse_evidence(mesh, colors, 60, e);
+  for (uint32_t i = 0; i < 2 * kColumns; ++i) {
+    const bool near = i < kColumns;
+    EXPECT_EQ(e.samples[i] > 1e-3f, near) << i;
+    for (int h = 0; h < kH; ++h)
+      EXPECT_NEAR(e.of(i)[h], e.samples[i] * float(h), 1e-5f);  // one scale for all
+  }
+}
+
+}  // namespace
+}  // namespace cei3d
