@@ -138,12 +138,59 @@ async function compares(page) {
   await settled(page);
 }
 
+/** What a button of the dialog downloads. */
+async function exported(page, title) {
+  const [download] = await Promise.all([page.waitForEvent('download', { timeout: 60000 }), page.click(`[data-export="${title}"]`)]);
+  const bytes = fs.readFileSync(await download.path());
+  await page.waitForFunction(() => /downloads/.test(document.getElementById('export-note').textContent));
+  return { name: download.suggestedFilename(), bytes };
+}
+
+/** No format overwrites the files of another, and none those of the same one for another use. */
+async function distinctNames(page) {
+  const asked = [];
+  await page.route('**/api/export', (route) => { asked.push(route.request().postDataJSON().file); return route.fulfill({ status: 400, json: { error: 'asked' } }); });
+  const titles = ['GLB', 'glTF and files', 'USDZ', 'OBJ', 'PLY', 'Page', 'Light, HDR', 'Light, EXR'];
+  for (const purpose of ['', 'web', 'ar', 'dcc']) {
+    await page.selectOption('#export-for', purpose);
+    for (const title of purpose ? titles.slice(0, 4) : titles) {
+      const n = asked.length;
+      await page.click(`[data-export="${title}"]`);
+      await page.waitForFunction(() => /asked/.test(document.getElementById('export-note').textContent));
+      check(`${title} is asked for`, asked.length === n + 1);
+    }
+  }
+  await page.unroute('**/api/export');
+  // Files beside a .gltf and an .obj have their names without the ending.
+  const stems = asked.map((file) => (/\.(gltf|obj)$/.test(file) ? file.replace(/\.\w+$/, '') : file));
+  check(`names of exports differ: ${asked.join(' ')}`, new Set(stems).size === asked.length);
+}
+
 async function exports(page) {
   await page.click('#export');
   await accessible(page, 'export');
   await picture(page, '9-export');
-  const [download] = await Promise.all([page.waitForEvent('download'), page.click('[data-export="PLY"]')]);
-  check('an export arrives', fs.readFileSync(await download.path()).subarray(0, 3).toString() === 'ply');
+  check('an export arrives', (await exported(page, 'PLY')).bytes.subarray(0, 3).toString() === 'ply');
+  await distinctNames(page);
+  await page.locator('#dialog details').evaluate((node) => { node.open = true; });
+  await page.selectOption('#export-for', 'web');
+  await page.fill('#export-faces', '400');
+  await page.selectOption('#export-texture', '512');
+  await page.fill('#export-size', '0.25');
+  await page.fill('#export-turntable', '2');
+  await accessible(page, 'export with options');
+  const glb = await exported(page, 'GLB'), json = JSON.parse(glb.bytes.subarray(20, 20 + glb.bytes.readUInt32LE(12)));
+  const { min, max } = json.accessors.find((a) => a.min), node = json.nodes.find((n) => n.scale);
+  const side = Math.max(...max.map((v, k) => (v - min[k]) * (node?.scale[k] ?? 1)));
+  check(`GLB for the web, ${side.toFixed(3)} m: ${glb.name}`, glb.name === 'spot-web.glb' && json.images[0].mimeType === 'image/jpeg' && Math.abs(side - 0.25) < 0.01);
+  check('a page in one file', (await exported(page, 'Page')).bytes.subarray(0, 9).toString().toLowerCase() === '<!doctype');
+  check('the light as OpenEXR', (await exported(page, 'Light, EXR')).bytes.readUInt32LE(0) === 20000630);
+  const turntable = await exported(page, 'Turntable');
+  check('a turntable', turntable.name === 'spot-turntable.zip' && [0, 1].every((i) => turntable.bytes.includes(`turn_00${i}.png`)) && !turntable.bytes.includes('turn_002.png'));
+  await page.fill('#export-faces', '1');
+  await page.click('[data-export="PLY"]');
+  await page.waitForFunction(() => /has 4 to/.test(document.getElementById('export-note').textContent));
+  check('what cannot be exported is said in the dialog', true);
   await page.keyboard.press('Escape');
   await page.keyboard.press('?');
   await picture(page, '10-help');
