@@ -258,6 +258,27 @@ export class Stage extends EventTarget {
     this.drawTool(context);
   }
 
-  /** The picture on white, as a PNG. @returns {Promise<Blob | null>} */
-  snapshot() { return new Promise((resolve) => this.picture.toBlob(resolve, 'image/png')); }
+  /** What is seen of the object and the photograph, on white, as a PNG. @returns {Promise<Blob | null>} */
+  snapshot() {
+    const { width, height } = this.picture, copy = document.createElement('canvas');
+    Object.assign(copy, { width, height });
+    const c = /** @type {CanvasRenderingContext2D} */ (copy.getContext('2d'));
+    c.fillStyle = '#fff';
+    c.fillRect(0, 0, width, height);
+    const own = this.picture.style.opacity === '0';
+    if (own) this.live.draw(this.json(), this.channel, this.light);  // a canvas of WebGL can be read only right after that
+    c.drawImage(own ? this.live.canvas : this.picture, 0, 0, width, height);
+    this.drawPhoto(c);
+    return new Promise((resolve) => copy.toBlob(resolve, 'image/png'));
+  }
+
+  /** The photograph as far as it is seen. @param {CanvasRenderingContext2D} c */
+  drawPhoto(c) {
+    const photo = byId('photo'), wipe = byId('wipe'), r = this.camera.rectangle(c.canvas.width, c.canvas.height);
+    if (photo.hidden) return;
+    c.beginPath();
+    c.rect(r.x, r.y, r.width * (wipe.hidden ? 1 : wipe.value / 100), r.height);
+    c.clip();
+    c.drawImage(photo, r.x, r.y, r.width, r.height);
+  }
 }
