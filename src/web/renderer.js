@@ -13,6 +13,7 @@ import { filterShader, litShader, partShader, plainShader, screenShader, vertexS
  * @property {Camera} camera capture frame; its size is that of the picture
  * @property {string} channel one of `channels`
  * @property {number[][]} room_from_object rotation of directions of the object to those of the light, rows
+ * @property {number} [strength] of the light, as a factor
  * @property {number} samples per pixel and axis, 1 or 2
  * @property {number} highlight index of a part, 0 for none
  * @property {number[]} [hidden] indices of parts that are not drawn
@@ -248,6 +249,7 @@ export class Renderer {
       gl.bindTexture(name === 'uReflection' ? gl.TEXTURE_3D : gl.TEXTURE_2D, this.textures.get(name) ?? null);
       gl.uniform1i(u[name], unit);
     });
+    gl.uniform1f(u.uStrength, view.strength ?? 1);
     const [a, b, c] = view.room_from_object;
     gl.uniformMatrix3fv(u.uRoom, true, [...a, ...b, ...c]);
     gl.uniform1f(u.uVisibilityScale, this.heads.get('shape').visibility_scale);

@@ -2,7 +2,7 @@
 // editor.cjs PROGRAM PROJECT PICTURES CHROMIUM: a first session in the live editor, in a browser, with what can go wrong.
 const fs = require('node:fs');
 const { settled } = require('./serve.cjs');
-const { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, likeness, withPage } = require('./page.cjs');
+const { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, put, likeness, withPage } = require('./page.cjs');
 
 const [program, project, pictures, executablePath] = process.argv.slice(2);
 fs.mkdirSync(pictures, { recursive: true });
@@ -111,8 +111,18 @@ async function polishes(page) {
 
 async function lights(page) {
   await page.keyboard.press('l');
-  const slider = page.locator('#light-rotate');
-  await slider.evaluate((node) => { node.value = '70'; node.dispatchEvent(new Event('input')); });
+  const strong = await page.evaluate(() => {
+    const { stage } = globalThis.cei3d, slider = document.getElementById('light-scale');
+    slider.value = '1';
+    slider.dispatchEvent(new Event('input'));
+    return [stage.light.scale, stage.isLive(), stage.asked];
+  });
+  check(`twice the light is shown by the page itself: ${strong}`, strong[0] === 2 && strong[1] && strong[2] === null);
+  await settled(page);
+  const psnr = await likeness(page);
+  check(`as the program does: ${psnr.toFixed(1)} dB`, psnr > 34);
+  await put(page, '#light-scale', 0);
+  await put(page, '#light-rotate', 70);
   await settled(page);
   const done = (await state(page)).done;
   await picture(page, '7-light');

@@ -117,13 +117,13 @@ export class Live {
   /** @param {string} channel @param {import('./light.js').Light} light @param {string | null} preview @param {string | null} photo */
   shows(channel, light, preview, photo) {
     const still = photo === null || this.store.object?.material?.light?.motion === 'world';
-    return channel in kChannels && light.scale === 1 && !light.env && !light.sun && preview === this.previewed && still && this.current();
+    return channel in kChannels && !light.env && !light.sun && preview === this.previewed && still && this.current();
   }
 
-  /** @param {any} camera @param {string} channel @param {{rotate: number}} light */
+  /** @param {any} camera @param {string} channel @param {{rotate: number, scale: number}} light */
   draw(camera, channel, light) {
     const turn = this.modules[2].rotation(this.store.object.up, -light.rotate * Math.PI / 180);
-    this.renderer.draw({ camera, channel: this.renderer.complete ? kChannels[channel] : 'albedo', room_from_object: turn, samples: 1, highlight: 0, hidden: this.hiddenIndices() });
+    this.renderer.draw({ camera, channel: this.renderer.complete ? kChannels[channel] : 'albedo', room_from_object: turn, strength: light.scale, samples: 1, highlight: 0, hidden: this.hiddenIndices() });
   }
 
   /** @returns {number[]} */
