@@ -250,20 +250,67 @@ async function dies(page, server) {
   check('every acknowledged edit is there', log.edits.length === before.history.length);
 }
 
+/** Tab, until something has the focus. */
+async function tabTo(page, selector) {
+  for (let i = 0; i < 80; ++i) {
+    if (await page.evaluate((s) => document.activeElement?.matches(s), selector)) return;
+    await page.keyboard.press('Tab');
+  }
+  throw new Error(`FAILED: Tab does not get to ${selector}`);
+}
+
+const steps = (page, n) => page.waitForFunction((m) => globalThis.cei3d.store.state.done === m, n, { timeout: 30000 });
+
+/** From the start view to an exported object: no mouse. */
 async function keyboardOnly(page) {
-  await page.focus('#view');
-  const before = (await state(page)).done;
-  await page.keyboard.press('ArrowLeft');
+  const { keyboard } = page, { done } = await state(page);
+  await page.evaluate(() => { document.activeElement?.blur(); globalThis.cei3d.store.select(null); });
+  await keyboard.press('ArrowLeft');
   await settled(page);
-  await page.keyboard.press('b');
-  await page.keyboard.press('.');
-  await page.keyboard.press('ArrowUp');
-  await page.keyboard.press(' ');
+  await keyboard.press('b');
+  await keyboard.press('.');
+  await keyboard.press('ArrowUp');
+  await keyboard.press(' ');
   await settled(page);
-  check('painting by keys alone', (await state(page)).done === before + 1);
-  await page.keyboard.press('.');
-  await page.keyboard.press('Control+z');
+  check('painting by keys alone', (await state(page)).done === done + 1);
+  await keyboard.press('Control+z');
   await settled(page);
+  await keyboard.press('p');
+  const walk = async (keys) => { for (const [key, times] of Object.entries(keys)) for (let i = 0; i < times; ++i) await keyboard.press(key); };
+  await walk({ ArrowLeft: 9, ArrowDown: 4 });
+  await keyboard.press('Alt+ ');
+  await walk({ ArrowRight: 9, ArrowUp: 3 });
+  await keyboard.press(' ');
+  await page.waitForFunction(() => globalThis.cei3d.stage.preview !== null || document.querySelector('#part-keep:enabled') !== null);
+  await tabTo(page, '#part-name');
+  await keyboard.type('front');
+  await tabTo(page, '#part-keep');
+  await keyboard.press('Enter');
+  await page.waitForFunction(() => globalThis.cei3d.store.part === 'front', null, { timeout: 30000 });
+  await settled(page);
+  await keyboard.press('m');
+  await tabTo(page, '[data-key="metalness"]');
+  for (let i = 0; i < 3; ++i) await keyboard.press('ArrowRight');
+  await settled(page);
+  check('a part and its material by keys alone', (await state(page)).parts.some((p) => p.name === 'front') && (await state(page)).history[done + 1].params.part === 'front');
+  await keyboard.press('l');
+  await tabTo(page, '#light-rotate');
+  for (let i = 0; i < 5; ++i) await keyboard.press('ArrowRight');
+  await tabTo(page, '#light-keep');
+  await keyboard.press('Enter');
+  await steps(page, done + 3);
+  check('light by keys alone', (await state(page)).history[done + 2].params.rotate_degrees === 5);
+  await settled(page);
+  await keyboard.press('Control+s');
+  await tabTo(page, '[data-export="PLY"]');
+  const [download] = await Promise.all([page.waitForEvent('download'), keyboard.press('Enter')]);
+  check('export by keys alone', download.suggestedFilename() === 'spot.ply');
+  await keyboard.press('Escape');
+  await tabTo(page, '#view');
+  await keyboard.press('.');
+  await keyboard.press('u');
+  check('the panels can be hidden', await page.isHidden('#panels'));
+  await keyboard.press('u');
 }
 
 withPage({ program, project, executablePath, picture }, async (at) => {

@@ -47,7 +47,7 @@ export const keyTable = [
     { keys: ['C'], action: 'compare', text: 'Compare with the photograph' },
     { keys: ['T'], action: 'channel', text: 'Next channel: lit, albedo, diffuse, shine, normals, roughness' },
     { keys: ['.'], action: 'reticle', text: 'Pointer by keys: arrows move it, Space clicks' },
-    { keys: ['Tab'], action: 'bare', text: 'Hide the panels (from the canvas)' },
+    { keys: ['U'], action: 'bare', text: 'Hide or show the panels' },
     { keys: ['Mod+S'], action: 'export', text: 'Export' },
     { keys: ['?'], action: 'help', text: 'This help' },
   ] },

@@ -198,7 +198,7 @@ window.addEventListener('keydown', (e) => {
   const action = actionOf(e);
   if (!action) return;
   const typing = target.matches('input[type="text"], input[type="number"], select');
-  if (typing || (!onView && ['arrows', 'bare', 'keep', 'home', 'zoom'].includes(action)) || (action === 'bare' && target !== stage.view)) return;
+  if (typing || (!onView && ['arrows', 'keep', 'home', 'zoom'].includes(action))) return;
   if (store.state.mode !== 'project' && action !== 'help') return;
   e.preventDefault();
   if (action.startsWith('tool:')) choose(action.slice(5));
