@@ -268,6 +268,10 @@ async function keyboardOnly(page) {
   await keyboard.press('ArrowLeft');
   await settled(page);
   await keyboard.press('b');
+  for (const [key, share] of [['4', '0.4'], ['0', '1']]) {
+    await keyboard.press(key);
+    check(`${key} is an opacity of ${share}`, (await page.inputValue('#brush-opacity')) === share);
+  }
   await keyboard.press('.');
   await keyboard.press('ArrowUp');
   await keyboard.press(' ');

@@ -153,6 +153,7 @@ test('no two tools have the same key', () => {
   assert.equal(key('d'), 'tool:decal');
   assert.equal(key('H', {shiftKey: true}), 'show-all');
   assert.equal(key('h'), 'hide');
+  assert.equal(key('7'), 'opacity');
   assert.ok(gestures.length > 5);
 });
 

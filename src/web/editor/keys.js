@@ -26,6 +26,7 @@ export const keyTable = [
     { keys: [']'], action: 'larger', text: 'Larger brush, decal or reach' },
     { keys: ['Shift+['], action: 'softer', text: 'Softer brush' },
     { keys: ['Shift+]'], action: 'harder', text: 'Harder brush' },
+    { keys: ['1', '2', '3', '4', '5', '6', '7', '8', '9', '0'], action: 'opacity', text: 'Opacity of the brush: 10 % to 90 %, 100 %' },
     { keys: ['Enter'], action: 'keep', text: 'Keep what is previewed' },
     { keys: ['Escape'], action: 'drop', text: 'Discard what is previewed' },
   ] },
