@@ -246,6 +246,7 @@ async function dies(page, server) {
   await page.waitForFunction(() => !document.getElementById('banner').hidden, null, { timeout: 10000 });
   check('the page says that the program is gone', true);
   await picture(page, '11-lost');
+  await accessible(page, 'lost connection');
   const log = JSON.parse(require('node:child_process').execFileSync(program, ['log', project, '--json']));
   check('every acknowledged edit is there', log.edits.length === before.history.length);
 }
@@ -339,6 +340,10 @@ withPage({ program, project, executablePath, picture }, async (at) => {
   await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n + 1, done, { timeout: 20000 });
   await settled(page);
   check('what was drawn meanwhile is saved when the program is back', true);
+  const aside = page.locator('#history details');
+  check('what was undone and then displaced is set aside', (await aside.locator('summary').textContent()).startsWith('1 set aside'));
+  await aside.locator('summary').click();
+  await accessible(page, 'edits that are set aside');
   await page.setViewportSize({ width: 820, height: 1180 });
   await settled(page);
   await tidy(page, 'tablet');
