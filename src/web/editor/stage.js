@@ -109,15 +109,16 @@ export class Stage extends EventTarget {
   }
 
   /** The page can draw the object anew: below the exact frame, if there is one. */
-  liveReady() {
+  async liveReady() {
     this.emit('looks');
     const first = !byId('cover').classList.contains('done');
     if (!this.isLive() && !(first && this.live.unlit())) return;
     // A driver's first picture takes long where it draws in software; that of the program is on its way.
     if (this.fresh && this.isLive()) return;
-    this.live.draw(this.json(), this.channel, this.light);
+    if (this.exact) return;  // it is under that
+    await this.live.drawSoon(this.json(), this.channel, this.light);
     byId('cover').classList.add('done');
-    if (!this.exact) this.picture.style.opacity = '0';  // it is of the object before
+    if (!this.exact && (first || this.isLive())) this.picture.style.opacity = '0';  // it is of the object before
     if (this.isLive() && (this.asked?.kind === 'quick' || (!this.asked && !this.exact))) this.moved();
   }
 
@@ -142,7 +143,7 @@ export class Stage extends EventTarget {
       cancelAnimationFrame(this.waiting);
       this.fresh = false;
       this.waiting = requestAnimationFrame(() => {
-        this.live.draw(this.json(), this.channel, this.light);
+        this.live.drawSoon(this.json(), this.channel, this.light);
         byId('cover').classList.add('done');
         this.redraw();
       });
@@ -168,15 +169,21 @@ export class Stage extends EventTarget {
   }
 
   rest() {
-    if (this.live.hidden.size && this.live.renderer && (this.isLive() || !this.live.current())) {
-      if (this.isLive()) byId('badge').textContent = 'some parts hidden';
-      return;
-    }
+    const own = this.live.hidden.size > 0 && this.live.renderer;
+    if (this.isLive() && (own || !this.store.line.ready)) this.restLive(own ? 'some parts hidden' : '');
+    if (own && (this.isLive() || !this.live.current())) return;
     if (this.asked?.kind === 'quick') {
       this.timer = window.setTimeout(() => this.rest(), kRest);  // that one first
       return;
     }
     this.ask('rest', 1);
+  }
+
+  /** The page's own picture, where no other comes. @param {string} badge */
+  async restLive(badge) {
+    const { timer } = this;
+    await this.live.drawSoon(this.json(), this.channel, this.light, true);
+    if (timer === this.timer) byId('badge').textContent = badge;
   }
 
   /** @param {'quick' | 'rest'} kind @param {number} samples */
@@ -231,7 +238,7 @@ export class Stage extends EventTarget {
   }
 
   settle() {
-    if (this.fresh && this.isLive()) this.live.draw(this.json(), this.channel, this.light);  // so that it moves at once
+    if (this.fresh && this.isLive()) this.live.drawSoon(this.json(), this.channel, this.light);  // so that it moves at once
     this.fresh = false;
     this.emit('settled');
   }
