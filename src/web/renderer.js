@@ -13,7 +13,9 @@ import { filterShader, litShader, partShader, plainShader, screenShader, vertexS
  * @property {Camera} camera capture frame; its size is that of the picture
  * @property {string} channel one of `channels`
  * @property {number[][]} room_from_object rotation of directions of the object to those of the light, rows
+ * @property {number} [strength] of the light, as a factor
  * @property {number} samples per pixel and axis, 1 or 2
+ * @property {boolean} [rough] edges of triangles are not smoothed, which takes less time
  * @property {number} highlight index of a part, 0 for none
  * @property {number[]} [hidden] indices of parts that are not drawn
  */
@@ -75,6 +77,9 @@ export class Renderer {
     // Light is averaged before it is cut off, as far as the hardware can.
     const float = gl.getExtension('EXT_color_buffer_half_float') || gl.getExtension('EXT_color_buffer_float');
     this.sampleFormat = float ? gl.RGBA16F : gl.SRGB8_ALPHA8;
+    const names = gl.getExtension('WEBGL_debug_renderer_info');
+    /** Whether a processor draws that is made for other things. */
+    this.software = /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
     this.lit = makeProgram(gl, vertexShader, litShader);
     this.plain = makeProgram(gl, vertexShader, plainShader);
     this.part = makeProgram(gl, vertexShader, partShader);
@@ -89,7 +94,7 @@ export class Renderer {
     /** @type {Map<string, any>} heads of the packs by kind */
     this.heads = new Map();
     this.indices = 0;
-    /** @type {{samples: Target, mean: Target} | null} */
+    /** @type {{samples: Target | null, mean: Target} | null} samples: none of a rough picture */
     this.targets = null;
     /** @type {Target | null} */
     this.pixel = null;
@@ -207,11 +212,13 @@ export class Renderer {
       this.canvas.width = width;
       this.canvas.height = height;
     }
-    const {samples, mean} = this.targetsOf(width * view.samples, height * view.samples);
-    this.drawSurface(view, samples.frame, samples.width, samples.height);
-    gl.bindFramebuffer(gl.READ_FRAMEBUFFER, samples.frame);
-    gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, mean.frame);
-    gl.blitFramebuffer(0, 0, mean.width, mean.height, 0, 0, mean.width, mean.height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    const {samples, mean} = this.targetsOf(width * view.samples, height * view.samples, Boolean(view.rough));
+    this.drawSurface(view, (samples ?? mean).frame, mean.width, mean.height);
+    if (samples) {
+      gl.bindFramebuffer(gl.READ_FRAMEBUFFER, samples.frame);
+      gl.bindFramebuffer(gl.DRAW_FRAMEBUFFER, mean.frame);
+      gl.blitFramebuffer(0, 0, mean.width, mean.height, 0, 0, mean.width, mean.height, gl.COLOR_BUFFER_BIT, gl.NEAREST);
+    }
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
     gl.viewport(0, 0, width, height);
     gl.disable(gl.DEPTH_TEST);
@@ -248,6 +255,7 @@ export class Renderer {
       gl.bindTexture(name === 'uReflection' ? gl.TEXTURE_3D : gl.TEXTURE_2D, this.textures.get(name) ?? null);
       gl.uniform1i(u[name], unit);
     });
+    gl.uniform1f(u.uStrength, view.strength ?? 1);
     const [a, b, c] = view.room_from_object;
     gl.uniformMatrix3fv(u.uRoom, true, [...a, ...b, ...c]);
     gl.uniform1f(u.uVisibilityScale, this.heads.get('shape').visibility_scale);
@@ -288,6 +296,21 @@ export class Renderer {
     gl.bindVertexArray(null);
   }
 
+  /** Waits until the pictures that were asked for are drawn. @returns {Promise<void>} */
+  finished() {
+    const {gl} = this, sync = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    if (!sync) return Promise.resolve();  // the context is lost
+    gl.flush();
+    return new Promise((resolve) => {
+      const look = () => {
+        if (!gl.isContextLost() && gl.getSyncParameter(sync, gl.SYNC_STATUS) !== gl.SIGNALED) return void setTimeout(look, 4);
+        gl.deleteSync(sync);
+        resolve();
+      };
+      setTimeout(look, 0);
+    });
+  }
+
   /**
    * The part that a pixel shows: its index, 0 for none; -1 where the object is not.
    * @param {Camera} camera
@@ -306,14 +329,14 @@ export class Renderer {
     return out[3] > 0 ? out[0] : -1;
   }
 
-  /** @param {number} width @param {number} height */
-  targetsOf(width, height) {
-    if (this.targets && (this.targets.mean.width !== width || this.targets.mean.height !== height)) {
-      this.dropTarget(this.targets.samples);
-      this.dropTarget(this.targets.mean);
+  /** @param {number} width @param {number} height @param {boolean} rough */
+  targetsOf(width, height, rough) {
+    const now = this.targets;
+    if (now && (now.mean.width !== width || now.mean.height !== height || (now.samples === null) !== rough)) {
+      for (const target of [now.samples, now.mean]) if (target) this.dropTarget(target);
       this.targets = null;
     }
-    this.targets ??= {samples: this.makeTarget(width, height, this.sampleFormat, kMultisamples),
+    this.targets ??= {samples: rough ? null : this.makeTarget(width, height, this.sampleFormat, kMultisamples),
       mean: this.makeTarget(width, height, this.sampleFormat, 0)};
     return this.targets;
   }

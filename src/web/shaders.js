@@ -85,7 +85,7 @@ uniform sampler2D uIrradiance, uSurface, uBase, uFresnel, uLobe;
 uniform sampler3D uReflection;
 uniform float uIrradianceSide, uReflectionSide, uReflectionLevels;
 uniform vec2 uTableSize;
-uniform float uMinRoughness, uMiddleShare, uDielectricF0, uMetalF0;
+uniform float uMinRoughness, uMiddleShare, uDielectricF0, uMetalF0, uStrength;
 const float kPi = 3.14159265;
 
 vec2 octahedral(vec3 d, float side) {
@@ -138,7 +138,7 @@ vec3 lit(vec3 n, vec3 v, float roughness, float specular, float metalness) {
   vec3 irradiance = texture(uIrradiance, octahedral(uRoom * n, uIrradianceSide)).rgb * vVisibility + vBounce;
   vec3 color = albedo * irradiance * ((1.0 - metalness) / kPi * surface.z) +
                ((albedo * metalness + dielectric) * surface.x + surface.y) * reflected;
-  return mix(max(color, 0.0), albedo, vAlbedo.a);
+  return mix(max(color, 0.0) * uStrength, albedo, vAlbedo.a);
 }`, 'color = lit(n, v, vMaterial.x, vMaterial.y, vMaterial.z);');
 
 export const partShader = `#version 300 es

@@ -2,7 +2,7 @@
 // editor.cjs PROGRAM PROJECT PICTURES CHROMIUM: a first session in the live editor, in a browser, with what can go wrong.
 const fs = require('node:fs');
 const { settled } = require('./serve.cjs');
-const { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, likeness, withPage } = require('./page.cjs');
+const { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, put, likeness, withPage } = require('./page.cjs');
 
 const [program, project, pictures, executablePath] = process.argv.slice(2);
 fs.mkdirSync(pictures, { recursive: true });
@@ -111,8 +111,18 @@ async function polishes(page) {
 
 async function lights(page) {
   await page.keyboard.press('l');
-  const slider = page.locator('#light-rotate');
-  await slider.evaluate((node) => { node.value = '70'; node.dispatchEvent(new Event('input')); });
+  const strong = await page.evaluate(() => {
+    const { stage } = globalThis.cei3d, slider = document.getElementById('light-scale');
+    slider.value = '1';
+    slider.dispatchEvent(new Event('input'));
+    return [stage.light.scale, stage.isLive(), stage.asked];
+  });
+  check(`twice the light is shown by the page itself: ${strong}`, strong[0] === 2 && strong[1] && strong[2] === null);
+  await settled(page);
+  const psnr = await likeness(page);
+  check(`as the program does: ${psnr.toFixed(1)} dB`, psnr > 34);
+  await put(page, '#light-scale', 0);
+  await put(page, '#light-rotate', 70);
   await settled(page);
   const done = (await state(page)).done;
   await picture(page, '7-light');
@@ -138,12 +148,59 @@ async function compares(page) {
   await settled(page);
 }
 
+/** What a button of the dialog downloads. */
+async function exported(page, title) {
+  const [download] = await Promise.all([page.waitForEvent('download', { timeout: 60000 }), page.click(`[data-export="${title}"]`)]);
+  const bytes = fs.readFileSync(await download.path());
+  await page.waitForFunction(() => /downloads/.test(document.getElementById('export-note').textContent));
+  return { name: download.suggestedFilename(), bytes };
+}
+
+/** No format overwrites the files of another, and none those of the same one for another use. */
+async function distinctNames(page) {
+  const asked = [];
+  await page.route('**/api/export', (route) => { asked.push(route.request().postDataJSON().file); return route.fulfill({ status: 400, json: { error: 'asked' } }); });
+  const titles = ['GLB', 'glTF and files', 'USDZ', 'OBJ', 'PLY', 'Page', 'Light, HDR', 'Light, EXR'];
+  for (const purpose of ['', 'web', 'ar', 'dcc']) {
+    await page.selectOption('#export-for', purpose);
+    for (const title of purpose ? titles.slice(0, 4) : titles) {
+      const n = asked.length;
+      await page.click(`[data-export="${title}"]`);
+      await page.waitForFunction(() => /asked/.test(document.getElementById('export-note').textContent));
+      check(`${title} is asked for`, asked.length === n + 1);
+    }
+  }
+  await page.unroute('**/api/export');
+  // Files beside a .gltf and an .obj have their names without the ending.
+  const stems = asked.map((file) => (/\.(gltf|obj)$/.test(file) ? file.replace(/\.\w+$/, '') : file));
+  check(`names of exports differ: ${asked.join(' ')}`, new Set(stems).size === asked.length);
+}
+
 async function exports(page) {
   await page.click('#export');
   await accessible(page, 'export');
   await picture(page, '9-export');
-  const [download] = await Promise.all([page.waitForEvent('download'), page.click('[data-export="PLY"]')]);
-  check('an export arrives', fs.readFileSync(await download.path()).subarray(0, 3).toString() === 'ply');
+  check('an export arrives', (await exported(page, 'PLY')).bytes.subarray(0, 3).toString() === 'ply');
+  await distinctNames(page);
+  await page.locator('#dialog details').evaluate((node) => { node.open = true; });
+  await page.selectOption('#export-for', 'web');
+  await page.fill('#export-faces', '400');
+  await page.selectOption('#export-texture', '512');
+  await page.fill('#export-size', '0.25');
+  await page.fill('#export-turntable', '2');
+  await accessible(page, 'export with options');
+  const glb = await exported(page, 'GLB'), json = JSON.parse(glb.bytes.subarray(20, 20 + glb.bytes.readUInt32LE(12)));
+  const { min, max } = json.accessors.find((a) => a.min), node = json.nodes.find((n) => n.scale);
+  const side = Math.max(...max.map((v, k) => (v - min[k]) * (node?.scale[k] ?? 1)));
+  check(`GLB for the web, ${side.toFixed(3)} m: ${glb.name}`, glb.name === 'spot-web.glb' && json.images[0].mimeType === 'image/jpeg' && Math.abs(side - 0.25) < 0.01);
+  check('a page in one file', (await exported(page, 'Page')).bytes.subarray(0, 9).toString().toLowerCase() === '<!doctype');
+  check('the light as OpenEXR', (await exported(page, 'Light, EXR')).bytes.readUInt32LE(0) === 20000630);
+  const turntable = await exported(page, 'Turntable');
+  check('a turntable', turntable.name === 'spot-turntable.zip' && [0, 1].every((i) => turntable.bytes.includes(`turn_00${i}.png`)) && !turntable.bytes.includes('turn_002.png'));
+  await page.fill('#export-faces', '1');
+  await page.click('[data-export="PLY"]');
+  await page.waitForFunction(() => /has 4 to/.test(document.getElementById('export-note').textContent));
+  check('what cannot be exported is said in the dialog', true);
   await page.keyboard.press('Escape');
   await page.keyboard.press('?');
   await picture(page, '10-help');
@@ -189,24 +246,76 @@ async function dies(page, server) {
   await page.waitForFunction(() => !document.getElementById('banner').hidden, null, { timeout: 10000 });
   check('the page says that the program is gone', true);
   await picture(page, '11-lost');
+  await accessible(page, 'lost connection');
   const log = JSON.parse(require('node:child_process').execFileSync(program, ['log', project, '--json']));
   check('every acknowledged edit is there', log.edits.length === before.history.length);
 }
 
+/** Tab, until something has the focus. */
+async function tabTo(page, selector) {
+  for (let i = 0; i < 80; ++i) {
+    if (await page.evaluate((s) => document.activeElement?.matches(s), selector)) return;
+    await page.keyboard.press('Tab');
+  }
+  throw new Error(`FAILED: Tab does not get to ${selector}`);
+}
+
+const steps = (page, n) => page.waitForFunction((m) => globalThis.cei3d.store.state.done === m, n, { timeout: 30000 });
+
+/** From the start view to an exported object: no mouse. */
 async function keyboardOnly(page) {
-  await page.focus('#view');
-  const before = (await state(page)).done;
-  await page.keyboard.press('ArrowLeft');
+  const { keyboard } = page, { done } = await state(page);
+  await page.evaluate(() => { document.activeElement?.blur(); globalThis.cei3d.store.select(null); });
+  await keyboard.press('ArrowLeft');
   await settled(page);
-  await page.keyboard.press('b');
-  await page.keyboard.press('.');
-  await page.keyboard.press('ArrowUp');
-  await page.keyboard.press(' ');
+  await keyboard.press('b');
+  for (const [key, share] of [['4', '0.4'], ['0', '1']]) {
+    await keyboard.press(key);
+    check(`${key} is an opacity of ${share}`, (await page.inputValue('#brush-opacity')) === share);
+  }
+  await keyboard.press('.');
+  await keyboard.press('ArrowUp');
+  await keyboard.press(' ');
   await settled(page);
-  check('painting by keys alone', (await state(page)).done === before + 1);
-  await page.keyboard.press('.');
-  await page.keyboard.press('Control+z');
+  check('painting by keys alone', (await state(page)).done === done + 1);
+  await keyboard.press('Control+z');
   await settled(page);
+  await keyboard.press('p');
+  const walk = async (keys) => { for (const [key, times] of Object.entries(keys)) for (let i = 0; i < times; ++i) await keyboard.press(key); };
+  await walk({ ArrowLeft: 9, ArrowDown: 4 });
+  await keyboard.press('Alt+ ');
+  await walk({ ArrowRight: 9, ArrowUp: 3 });
+  await keyboard.press(' ');
+  await page.waitForFunction(() => globalThis.cei3d.stage.preview !== null || document.querySelector('#part-keep:enabled') !== null);
+  await tabTo(page, '#part-name');
+  await keyboard.type('front');
+  await tabTo(page, '#part-keep');
+  await keyboard.press('Enter');
+  await page.waitForFunction(() => globalThis.cei3d.store.part === 'front', null, { timeout: 30000 });
+  await settled(page);
+  await keyboard.press('m');
+  await tabTo(page, '[data-key="metalness"]');
+  for (let i = 0; i < 3; ++i) await keyboard.press('ArrowRight');
+  await settled(page);
+  check('a part and its material by keys alone', (await state(page)).parts.some((p) => p.name === 'front') && (await state(page)).history[done + 1].params.part === 'front');
+  await keyboard.press('l');
+  await tabTo(page, '#light-rotate');
+  for (let i = 0; i < 5; ++i) await keyboard.press('ArrowRight');
+  await tabTo(page, '#light-keep');
+  await keyboard.press('Enter');
+  await steps(page, done + 3);
+  check('light by keys alone', (await state(page)).history[done + 2].params.rotate_degrees === 5);
+  await settled(page);
+  await keyboard.press('Control+s');
+  await tabTo(page, '[data-export="PLY"]');
+  const [download] = await Promise.all([page.waitForEvent('download'), keyboard.press('Enter')]);
+  check('export by keys alone', download.suggestedFilename() === 'spot.ply');
+  await keyboard.press('Escape');
+  await tabTo(page, '#view');
+  await keyboard.press('.');
+  await keyboard.press('u');
+  check('the panels can be hidden', await page.isHidden('#panels'));
+  await keyboard.press('u');
 }
 
 withPage({ program, project, executablePath, picture }, async (at) => {
@@ -231,6 +340,10 @@ withPage({ program, project, executablePath, picture }, async (at) => {
   await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n + 1, done, { timeout: 20000 });
   await settled(page);
   check('what was drawn meanwhile is saved when the program is back', true);
+  const aside = page.locator('#history details');
+  check('what was undone and then displaced is set aside', (await aside.locator('summary').textContent()).startsWith('1 set aside'));
+  await aside.locator('summary').click();
+  await accessible(page, 'edits that are set aside');
   await page.setViewportSize({ width: 820, height: 1180 });
   await settled(page);
   await tidy(page, 'tablet');

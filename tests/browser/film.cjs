@@ -69,14 +69,22 @@ const photographs = (page) => page.waitForFunction(() => {
   return inSight.length > 0 && inSight.every((b) => b.querySelector('img')?.complete);
 }, null, { timeout: 60000 });
 
+/** Waits for the page's own picture. */
+const drawn = (page) => page.evaluate(async () => {
+  for (let i = 0; i < 2; ++i) await new Promise((resolve) => requestAnimationFrame(resolve));
+  await globalThis.cei3d.stage.live.drawing;
+});
+
 async function play(page, camera) {
   const still = async (milliseconds) => { await settled(page); await camera.shoot(milliseconds); };
   await settled(page);
+  // As fine as where there is a graphics processor.
+  await page.evaluate(() => { const { pace } = globalThis.cei3d.stage.live; Object.assign(pace, { at: 0, took: () => {} }); });
   await photographs(page);
   await still(900);
   for (let i = 0; i < 12; ++i) {
     await page.evaluate(() => { const { stage } = globalThis.cei3d; stage.camera.orbit(0.06, 0.01); stage.moved(); });
-    await page.waitForTimeout(60);
+    await drawn(page);
     await camera.shoot(90);
   }
   await still(600);
@@ -99,7 +107,7 @@ async function play(page, camera) {
   await page.keyboard.press('l');
   for (let i = 1; i <= 10; ++i) {
     await put(page, '#light-rotate', 16 * i);
-    await page.waitForTimeout(60);
+    await drawn(page);
     await camera.shoot(90);
   }
   await still(1500);

@@ -17,11 +17,17 @@ const state = (page) => page.evaluate(() => globalThis.cei3d.store.state);
 /** @param {string} folder @returns {(page: any, name: string) => Promise<Buffer>} saves what the page shows */
 const picturesIn = (folder) => async (page, name) => page.screenshot({ path: path.join(folder, `${name}.png`) });
 
+/** In dark and in light. */
 async function accessible(page, name) {
   await page.evaluate(axe);
-  const { violations } = await page.evaluate(() => window.axe.run(document, { runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa'] }));
-  for (const v of violations) console.log(v.id, v.help, v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160)));
-  check(`no violation of WCAG 2.2 AA: ${name}`, violations.length === 0);
+  for (const colorScheme of ['light', 'dark']) {
+    await page.emulateMedia({ colorScheme });
+    // Other rules than those of colors need not be run twice.
+    const runOnly = colorScheme === 'dark' ? ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa'] : { type: 'rule', values: ['color-contrast'] };
+    const { violations } = await page.evaluate((only) => window.axe.run(document, { runOnly: only }), runOnly);
+    for (const v of violations) console.log(v.id, v.help, v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160)));
+    check(`no violation of WCAG 2.2 AA, ${colorScheme}: ${name}`, violations.length === 0);
+  }
 }
 
 /** No two of the page's areas overlap, and nothing is cut off. */
@@ -91,11 +97,11 @@ const likeness = (page) => page.evaluate(() => {
 
 /**
  * Opens the project in a browser and runs a test in it; a page that complains is a failure.
- * @param {{program: string, project: string, executablePath: string, picture: (page: any, name: string) => Promise<Buffer>}} what
+ * @param {{program: string, project: string, executablePath: string, picture: (page: any, name: string) => Promise<Buffer>, flags?: string[]}} what
  * @param {(at: {page: any, context: any, server: import('./serve.cjs').Server, restart: () => Promise<void>, errors: string[]}) => Promise<void>} test
  */
-async function withPage({ program, project, executablePath, picture }, test) {
-  await withEditor({ program, project, executablePath }, async (editor) => {
+async function withPage({ program, project, executablePath, picture, flags }, test) {
+  await withEditor({ program, project, executablePath, flags }, async (editor) => {
     const at = /** @type {any} */ (Object.assign(editor, { errors: [] }));
     at.context = await at.browser.newContext({ viewport: { width: 1280, height: 720 }, acceptDownloads: true, colorScheme: 'dark', reducedMotion: 'reduce' });
     at.page = await at.context.newPage();

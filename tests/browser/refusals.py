@@ -67,8 +67,9 @@ def check(what, got, *wanted):
 
 
 POSTS = ['edit', 'preview', 'commit', 'pick', 'mask', 'undo', 'redo', 'toggle', 'goto', 'rename', 'restore', 'forget',
-         'export', 'open', 'close', 'reconstruct', 'cancel', 'upload?name=x']
-GETS = ['state', 'object', 'photo/train/r_000', 'download/x', 'pack/shape']
+         'export', 'turntable', 'open', 'close', 'reconstruct', 'cancel', 'decal', 'upload?name=x']
+GETS = ['state', 'object', 'making', 'photo/train/r_000', 'download/x', 'pack/shape']
+FORMS = ['application/x-www-form-urlencoded', 'multipart/form-data; boundary=x', 'text/plain', None]  # what a page of another site can send
 
 
 def refused_everywhere(client):
@@ -81,16 +82,22 @@ def refused_everywhere(client):
             for headers, status in cases:
                 check(f'{method} {path} with {headers}', client.ask(method, '/api/' + path, b'{}', **headers)[0], status)
     for path in POSTS:
-        check(f'form to {path}', client.ask('POST', '/api/' + path, b'a=1', Content_Type='text/plain')[0], 415)
+        for kind in FORMS:
+            check(f'{kind} to {path}', client.ask('POST', '/api/' + path, b'a=1', Content_Type=kind)[0], 415)
     for method in ('PUT', 'DELETE', 'OPTIONS', 'PATCH'):
         check(method, client.ask(method, '/api/state')[0], 405)
 
 
 def odd_paths(client):
-    for path in ('/app/..%2f..%2fCMakeLists.txt', '/app/../../etc/passwd', '/app/editor/../../../x', '//etc/passwd',
-                 '/api/download/..%2f..%2fproject.json', '/api/download/project.json', '/api/photo/..%2f..%2fx',
-                 '/api/photo/%ff%fe', '/api/' + 'a' * 4000, '/api/nothing'):
+    for path in ('/app/../../etc/passwd', '//etc/passwd', '/api/download/project.json', '/api/photo/%ff%fe',
+                 '/api/' + 'a' * 4000, '/api/nothing'):
         check(path[:60], client.ask('GET', path)[0], 400, 404, 422)
+    # One folder up from any place below which files are, or could be.
+    for prefix in ['/', '/app/', '/app/editor/', '/api/'] + [f'/api/{g.split("/")[0]}/' for g in GETS]:
+        for up in ('..%2f', '..%2f..%2f', '../', '%2e%2e/', '..%5c', '%2e%2e%2f..%2f'):
+            status, body, _ = client.ask('GET', f'{prefix}{up}project.json')
+            check(f'{prefix}{up}', status, 400, 404, 422)
+            assert b'"normalization"' not in body, 'a file of the project was sent'
 
 
 def state_when_it_answers(client):
@@ -107,6 +114,9 @@ def state_when_it_answers(client):
 
 def too_much(client):
     check('long headers', client.ask('GET', '/', None, X_Long='a' * 100000)[0], 431)
+    for path in POSTS:  # is refused before it is sent
+        size = 257 << 20 if path.startswith('upload') else (4 << 20) + 1
+        check(f'long body to {path}', client.ask('POST', '/api/' + path, None, Content_Length=str(size))[0], 413)
     check('long body', client.ask('POST', '/api/edit', b'{' + b' ' * (5 << 20) + b'}')[0], 413)
     check('broken JSON', client.ask('POST', '/api/edit', b'{"op"')[0], 400)
     many = [socket.create_connection(('127.0.0.1', client.port)) for _ in range(100)]  # says nothing

@@ -8,9 +8,9 @@ const { chromium } = require('playwright-core');
 
 /** @typedef {{process: import('node:child_process').ChildProcess, url: string, port: number, kill: () => Promise<void>}} Server */
 
-/** `cei3d open`. port 0: any free one. wrap: a command in front. @returns {Promise<Server>} */
-function serve(program, folder, port = 0, wrap = []) {
-  const [command, ...args] = [...wrap, program, 'open', folder, '--no-browser', '--port', String(port), '--json'];
+/** `cei3d open`. port 0: any free one. flags: of the command. @returns {Promise<Server>} */
+function serve(program, folder, port = 0, flags = []) {
+  const [command, ...args] = [program, 'open', folder, '--no-browser', '--port', String(port), '--json', ...flags];
   const child = spawn(command, args, { stdio: ['ignore', 'pipe', 'inherit'] });
   let ended = false;
   const gone = new Promise((resolve) => child.on('exit', resolve));
@@ -34,18 +34,18 @@ function serve(program, folder, port = 0, wrap = []) {
 
 /**
  * Runs some work with a program that serves the project, and a browser. copy: the work is on a copy, which goes away with it.
- * @param {{program: string, project: string, executablePath: string, copy?: boolean, args?: string[]}} what args: of the browser
+ * @param {{program: string, project: string, executablePath: string, copy?: boolean, args?: string[], flags?: string[]}} what args: of the browser; flags: of `cei3d open`
  * @param {(at: {project: string, server: Server, browser: any, restart: () => Promise<void>, seconds: number}) => Promise<void>} work
  *   restart(): after server.kill(), at the same port; seconds: until the program answered
  */
-async function withEditor({ program, project, executablePath, copy = false, args = [] }, work) {
+async function withEditor({ program, project, executablePath, copy = false, args = [], flags = [] }, work) {
   const folder = copy ? fs.mkdtempSync(path.join(os.tmpdir(), 'cei3d-')) : '';
   const at = /** @type {any} */ ({ project: copy ? path.join(folder, path.basename(path.resolve(project))) : project });
-  at.restart = async () => { at.server = await serve(program, at.project, at.server.port); };
+  at.restart = async () => { at.server = await serve(program, at.project, at.server.port, flags); };
   try {
     if (copy) fs.cpSync(project, at.project, { recursive: true });
     const begin = Date.now();
-    at.server = await serve(program, at.project);
+    at.server = await serve(program, at.project, 0, flags);
     at.seconds = (Date.now() - begin) / 1000;
     at.browser = await chromium.launch({ executablePath, args: ['--no-sandbox', ...args] });
     await work(at);

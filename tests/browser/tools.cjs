@@ -68,6 +68,32 @@ async function names(page) {
   check(`its color and material are beside it: ${ball[1]}`, ball[0].includes('radial-gradient') && /roughness 0\.\d\d/.test(ball[1]));
 }
 
+/** The picture of the export dialog against a screenshot, where the object is; elsewhere it is white. */
+async function savesWhatIsSeen(page) {
+  const shot = await page.screenshot({ clip: await page.locator('#picture').boundingBox() });
+  const { inside, worst, ground } = await page.evaluate(async (base64) => {
+    const { stage } = globalThis.cei3d, { width, height } = stage.picture;
+    const bytes = (source) => {
+      const copy = Object.assign(document.createElement('canvas'), { width, height }), c = copy.getContext('2d');
+      c.drawImage(source, 0, 0, width, height);
+      return c.getImageData(0, 0, width, height).data;
+    };
+    const decoded = async (blob) => bytes(await createImageBitmap(blob));
+    const screen = await decoded(new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))])), saved = await decoded(await stage.snapshot());
+    stage.live.draw(stage.json(), stage.channel, stage.light);
+    const own = bytes(stage.live.canvas);
+    let inside = 0, worst = 0;
+    for (let y = 0.3 * height | 0; y < 0.7 * height; y += 3) for (let x = 0.35 * width | 0; x < 0.65 * width; x += 3) {
+      const i = 4 * (y * width + x);
+      if (own[i + 3] < 255) continue;
+      ++inside;
+      for (let k = 0; k < 3; ++k) worst = Math.max(worst, Math.abs(saved[i + k] - screen[i + k]));
+    }
+    return { inside, worst, ground: [...saved.subarray(0, 4)] };
+  }, shot.toString('base64'));
+  check(`a saved picture is what is seen, on white: ${inside} pixels, ${worst} levels, ${ground}`, inside > 200 && worst <= 2 && ground.every((v) => v === 255));
+}
+
 async function hides(page) {
   const at = await middle(page);
   await page.keyboard.press('v');
@@ -83,6 +109,7 @@ async function hides(page) {
   const [shown, whole] = await there(page);
   check(`what is seen there is not the part: ${shown}, ${whole}`, whole === 1 && shown !== 1);
   await picture(page, '2-hidden');
+  await savesWhatIsSeen(page);
   await accessible(page, 'a part is hidden');
   await page.focus('#view');
   await page.keyboard.press('Shift+H');

@@ -9,6 +9,7 @@ import { readPack } from '../../src/web/pack.js';
 import { mirrored, placeOnBall, radianceOf } from '../../src/web/editor/ball.js';
 import { pointAt, seen } from '../../src/web/editor/camera.js';
 import { actionOf, gestures, keyTable } from '../../src/web/editor/keys.js';
+import { Pace, steps } from '../../src/web/editor/pace.js';
 import { lookText, partLooks, swatch } from '../../src/web/editor/looks.js';
 
 const near = (a, b, most = 1e-5) => assert.ok(Math.abs(a - b) < most, `${a} is not ${b}`);
@@ -153,6 +154,7 @@ test('no two tools have the same key', () => {
   assert.equal(key('d'), 'tool:decal');
   assert.equal(key('H', {shiftKey: true}), 'show-all');
   assert.equal(key('h'), 'hide');
+  assert.equal(key('7'), 'opacity');
   assert.ok(gestures.length > 5);
 });
 
@@ -181,4 +183,19 @@ test('the editor asks for all its modules at once', () => {
   files.delete('editor/main.js');
   for (const file of ['renderer.js', 'shaders.js', 'camera.js', 'pack.js']) files.add(file);  // when an object is opened
   assert.deepEqual(asked.sort(), [...files].sort());
+});
+
+test('pictures are as fine as there is time for', () => {
+  const run = (pace, costs, pictures) => { for (let i = 0; i < pictures; ++i) pace.took(costs[pace.at] + (pace.first ? 900 : 0)); return pace.at; };
+  const software = [600, 160, 90], hardware = [6, 4, 3];
+  const slow = new Pace(false);
+  assert.equal(run(slow, software, 4), 2);  // the driver prepares itself twice
+  assert.equal(run(slow, software, 100), 2);
+  assert.equal(run(new Pace(true), software, 100), 2);
+  const quick = new Pace(true);
+  assert.equal(run(quick, hardware, 10), 0);
+  assert.equal(run(quick, hardware, 100), 0);
+  assert.ok(run(quick, hardware.map((t) => 20 * t), 10) > 0);  // something else uses it, too
+  assert.equal(run(quick, hardware, 30), 0);
+  assert.deepEqual(steps[0], { scale: 1, rough: false });
 });

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "apps/server/edit_json.h"
 
+#include <algorithm>
+
 #include "core/base/json.h"
 #include "model/geometry/shape/camera_json.h"
 
@@ -27,12 +29,19 @@ void read_place(JsonReader& j, std::string& view, std::optional<Camera>& camera)
 }
 
 template <class Enum>
+std::optional<Enum> named_if_there(JsonReader& j, const char* key,
+                                   std::optional<Enum> (*from_name)(const std::string&)) {
+  const auto name = j.optional<std::string>(key);
+  if (!name) return std::nullopt;
+  const std::optional<Enum> value = from_name(*name);
+  if (!value) fail_usage("{}: there is no {} '{}'.", j.what(), key, *name);
+  return value;
+}
+
+template <class Enum>
 Enum named(JsonReader& j, const char* key, std::optional<Enum> (*from_name)(const std::string&),
            const char* otherwise) {
-  const auto name = j.optional<std::string>(key, otherwise);
-  const std::optional<Enum> value = from_name(name);
-  if (!value) fail_usage("{}: there is no {} '{}'.", j.what(), key, name);
-  return *value;
+  return named_if_there(j, key, from_name).value_or(*from_name(otherwise));
 }
 
 Vec2<double> pixel_from(JsonReader& j, const char* key) {
@@ -209,6 +218,44 @@ FrameRequest frame_request(JsonReader& j, const Uploads& uploads) {
     light.finish();
   }
   r.as_photographed = j.optional("as_photographed", false);
+  return r;
+}
+
+ExportRequest export_request(JsonReader& j) {
+  ExportRequest r;
+  r.out = plain_file_name(j.require<std::string>("file"));
+  r.purpose = named_if_there(j, "for", export_for_from_name).value_or(ExportFor::any);
+  r.faces = j.optional<int>("faces");
+  r.texture = j.optional<int>("texture");
+  r.image = named_if_there(j, "image", export_image_from_name);
+  if (const auto origin = j.optional<std::string>("origin")) {
+    if (*origin != "input" && *origin != "base")
+      fail_usage("{}: there is no origin '{}'.", j.what(), *origin);
+    r.at_base = *origin == "base";
+  }
+  if (j.has("size") && j.has("unit_scale")) fail_usage("{}: size or unit_scale, not both.", j.what());
+  r.unit_scale = j.optional("unit_scale", r.unit_scale);
+  r.size = j.optional("size", r.size);
+  r.points = j.optional("points", false);
+  r.light = j.optional("light", false);
+  return r;
+}
+
+RenderRequest turntable_request(JsonReader& j) {
+  constexpr int kMaxFrames = 720, kMaxSide = 4096, kMaxSamples = 4;
+  RenderRequest r;
+  const auto frames = j.require<int>("turntable");
+  r.samples = j.optional("samples", r.samples);
+  if (frames < 1 || frames > kMaxFrames) fail_usage("A turntable has 1 to {} frames.", kMaxFrames);
+  if (r.samples < 1 || r.samples > kMaxSamples)
+    fail_usage("A frame has 1 to {} samples a pixel and axis.", kMaxSamples);
+  r.cameras = Turntable{frames};
+  if (!j.has("size")) return r;
+  const auto [width, height] = j.numbers<2>("size");
+  if (!(std::min(width, height) >= 1 && std::max(width, height) <= kMaxSide))
+    fail_usage("A frame has 1 to {} pixels a side.", kMaxSide);
+  r.width = int(width);
+  r.height = int(height);
   return r;
 }
 

@@ -16,6 +16,7 @@
 //   POST /api/mask              {"camera", "part" or "token"}: PNG
 //   POST /api/undo redo toggle goto rename restore forget
 //   POST /api/export            {"file", ...}; then GET /api/download/FILE
+//   POST /api/turntable         {"file", "turntable", ...}: its frames in a .zip; then the same
 //   POST /api/open close reconstruct cancel
 //   /socket                     frames and news, see sockets.cpp
 //
@@ -97,11 +98,19 @@ class Editor : public HttpApp, private JobListener {
   void restore(JsonReader&, const HttpRequest&, Reply);
   void forget(JsonReader&, const HttpRequest&, Reply);
   void export_file(JsonReader&, const HttpRequest&, Reply);
+  void turntable(JsonReader&, const HttpRequest&, Reply);
   void open(JsonReader&, const HttpRequest&, Reply);
   void close(JsonReader&, const HttpRequest&, Reply);
   void reconstruct(JsonReader&, const HttpRequest&, Reply);
   void cancel(JsonReader&, const HttpRequest&, Reply);
 
+  // Files below `folder`, and what is said of them.
+  struct Exports {
+    std::vector<std::filesystem::path> files;
+    Json report;
+  };
+  // Has them written and lets them be downloaded; usage error: read-only.
+  void write_exports(Reply, std::function<Exports(Session&, Progress&, const std::filesystem::path& folder)>);
   // Runs the work on the worker; errors become responses.
   void on_worker(const std::string& job, Reply, Work);
   // A change of the history: refused when read-only or at another revision; the answer has the new state.

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Requests of the page: from JSON to one call of the Session and back.
+#include <algorithm>
 #include <array>
 
 #include "apps/server/edit_json.h"
@@ -8,12 +9,15 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "core/base/temp_folder.h"
+#include "engine/export/usdz.h"
 #include "engine/io/jpeg_file.h"
 #include "engine/io/png_file.h"
 #include "engine/session/edit_plan.h"
 #include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
+namespace fs = std::filesystem;
 namespace {
 
 HttpResponse json_response(const Json& j) {
@@ -36,7 +40,8 @@ const std::map<std::string, Editor::Route>& Editor::routes() {
       {"restore", &Editor::restore},    {"forget", &Editor::forget},
       {"export", &Editor::export_file}, {"open", &Editor::open},
       {"close", &Editor::close},        {"reconstruct", &Editor::reconstruct},
-      {"cancel", &Editor::cancel},      {"decal", &Editor::decal}};
+      {"cancel", &Editor::cancel},      {"decal", &Editor::decal},
+      {"turntable", &Editor::turntable}};
   return all;
 }
 
@@ -199,36 +204,60 @@ void Editor::forget(JsonReader& j, const HttpRequest& request, Reply reply) {
 }
 
 void Editor::export_file(JsonReader& j, const HttpRequest&, Reply reply) {
-  ExportRequest request;
-  const std::string name = plain_file_name(j.require<std::string>("file"));
-  if (const auto purpose = j.optional<std::string>("for")) {
-    const auto known = export_for_from_name(*purpose);
-    if (!known) fail_usage("There is no purpose '{}'.", *purpose);
-    request.purpose = *known;
-  }
-  request.faces = j.optional<int>("faces");
-  request.texture = j.optional<int>("texture");
-  request.points = j.optional("points", false);
-  request.light = j.optional("light", false);
+  const ExportRequest request = export_request(j);
   j.finish();
-  if (read_only_) fail_usage("This object is open for looking only.");
-  on_worker("export", std::move(reply), [this, request, name](Session& session, Progress& p) mutable {
-    request.out = exports_folder_ / name;
-    const ExportReport report = session.export_to(request, p);
-    Json files = Json::array();
-    for (const std::filesystem::path& f : report.files) {
-      const std::lock_guard lock(mutex_);
-      exports_.insert(f.filename().string());
-      std::error_code error;
-      files.push_back({{"name", f.filename().string()}, {"bytes", std::filesystem::file_size(f, error)}});
-    }
-    return json_response({{"files", files}, {"folder", exports_folder_.string()}, {"report", report.json()}});
+  write_exports(std::move(reply), [request](Session& session, Progress& progress, const fs::path& folder) {
+    ExportRequest there = request;
+    there.out = folder / request.out;
+    const ExportReport report = session.export_to(there, progress);
+    return Exports{report.files, report.json()};
   });
+}
+
+// Frames are many: the page gets them in one archive.
+void Editor::turntable(JsonReader& j, const HttpRequest&, Reply reply) {
+  const std::string name = plain_file_name(j.require<std::string>("file"));
+  const RenderRequest request = turntable_request(j);
+  j.finish();
+  if (!name.ends_with(".zip")) fail_usage("A turntable is a .zip, not {}.", name);
+  write_exports(std::move(reply),
+                [request, name](Session& session, Progress& progress, const fs::path& folder) {
+                  require_writable(folder / name);
+                  const TempFolder temp;
+                  RenderRequest there = request;
+                  there.out = temp.path();
+                  const RenderReport report = session.render(there, progress);
+                  std::vector<FileBytes> frames;
+                  for (const fs::path& pictures : report.folders)
+                    for (const auto& e : fs::directory_iterator(pictures))
+                      frames.push_back({e.path().filename(), read_file(e.path())});
+                  std::ranges::sort(frames, {}, &FileBytes::path);
+                  write_file_atomic(folder / name, stored_zip(frames));
+                  return Exports{{folder / name}, report.json()};
+                });
+}
+
+void Editor::write_exports(Reply reply,
+                           std::function<Exports(Session&, Progress&, const fs::path& folder)> write) {
+  if (read_only_) fail_usage("This object is open for looking only.");
+  on_worker("export", std::move(reply),
+            [this, write = std::move(write)](Session& session, Progress& progress) {
+              const Exports made = write(session, progress, exports_folder_);
+              Json files = Json::array();
+              for (const fs::path& f : made.files) {
+                const std::lock_guard lock(mutex_);
+                exports_.insert(f.filename().string());
+                std::error_code error;
+                files.push_back({{"name", f.filename().string()}, {"bytes", fs::file_size(f, error)}});
+              }
+              return json_response(
+                  {{"files", files}, {"folder", exports_folder_.string()}, {"report", made.report}});
+            });
 }
 
 void Editor::download(const HttpRequest& request, Reply reply) {
   const auto name = decoded(request.path.substr(std::string("/api/download/").size()));
-  std::filesystem::path file;
+  fs::path file;
   {
     const std::lock_guard lock(mutex_);
     if (name && exports_.contains(*name)) file = exports_folder_ / *name;

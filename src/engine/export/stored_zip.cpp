@@ -63,7 +63,7 @@ std::string stored_zip(std::span<const FileBytes> files) {
     out += shared_fields(f, uint16_t(pad.size())) + name + pad + f.bytes;
   }
   if (out.size() > 0xf0000000u)
-    fail("The object is too large for a USDZ file; export fewer faces or a smaller texture.");
+    fail("Less than 4 GB fit into an archive; write fewer faces, a smaller texture or fewer frames.");
   const uint32_t start = uint32_t(out.size());
   out += directory;
   append_bytes(out, uint32_t(0x06054b50));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Export and help. */
-import { byId, complain, el, openDialog, toast } from './dom.js';
+import { byId, el, openDialog } from './dom.js';
 import { getBlob, postJson } from './api.js';
 import { gestures, keyTable, written } from './keys.js';
 
@@ -14,36 +14,96 @@ export function save(blob, name) {
   setTimeout(() => URL.revokeObjectURL(a.href), 10000);
 }
 
-/** @type {[string, string, string, object][]} suffix, title, for whom, options */
-const formats = [
-  ['.glb', 'GLB', 'Web, games, most programs; one file with textures', {}],
-  ['.usdz', 'USDZ', 'iPhone, iPad, Vision, USD programs', {}],
-  ['.obj', 'OBJ', 'Old programs; with .mtl and pictures', {}],
-  ['.ply', 'PLY', 'Mesh with colors at its vertices', {}],
-  ['.glb', 'GLB for the web', 'Small: 30,000 faces, JPEG textures', { for: 'web' }],
-  ['.hdr', 'Light', 'The environment as a picture for other renderers', {}],
+/** What sizes are chosen for, as `export --for`. @type {[string, string][]} */
+const purposes = [
+  ['', 'Any use: 50,000 faces, textures of 2048 texels'],
+  ['web', 'The web: 30,000 faces, 1024 texels, JPEG'],
+  ['ar', 'Phones and glasses: 50,000 faces, 2048 texels, JPEG, standing in the origin'],
+  ['dcc', 'Modeling programs: 200,000 faces, 4096 texels'],
 ];
+
+/**
+ * One format. ending: of the name, distinct where files would overwrite each other. options: those of the fields below that it has.
+ * @typedef {{title: string, text: string, ending: string, options: string[]}} Format
+ * @type {Format[]}
+ */
+const formats = [
+  { title: 'GLB', text: 'Web, games, most programs; one file with textures', ending: '.glb', options: ['for', 'faces', 'texture', 'image', 'origin', 'size'] },
+  { title: 'glTF and files', text: 'The same as text, with its pictures beside it', ending: '-gltf.gltf', options: ['for', 'faces', 'texture', 'image', 'origin', 'size'] },
+  { title: 'USDZ', text: 'iPhone, iPad, Vision, USD programs', ending: '.usdz', options: ['for', 'faces', 'texture', 'image', 'origin', 'size'] },
+  { title: 'OBJ', text: 'Old programs; with .mtl and pictures', ending: '.obj', options: ['for', 'faces', 'texture', 'image', 'origin', 'size'] },
+  { title: 'PLY', text: 'Mesh with colors at its vertices', ending: '.ply', options: ['faces'] },
+  { title: 'Page', text: 'Share it as one HTML file that any browser shows', ending: '.html', options: ['for', 'faces'] },
+  { title: 'Light, HDR', text: 'The environment as a picture for other renderers', ending: '-light.hdr', options: [] },
+  { title: 'Light, EXR', text: 'The same as OpenEXR', ending: '-light.exr', options: [] },
+];
+const kTurntableSide = 1024;  // pixels
+
+/** @param {string} key @param {string} label @param {[string, string][]} list of value and text */
+const choose = (key, label, list) => el('label', { class: 'field' }, label,
+  el('select', { id: `export-${key}` }, ...list.map(([value, text]) => el('option', { value }, text))));
+/** @param {string} key @param {string} label @param {object} attributes */
+const number = (key, label, attributes) => el('label', { class: 'field wide' }, label, el('input', { type: 'number', id: `export-${key}`, ...attributes }));
+
+/** All fields are optional. */
+function exportFields() {
+  return [choose('for', 'For', purposes), el('details', {}, el('summary', {}, 'More'), el('div', { class: 'two' },
+    number('faces', 'Faces', { min: '4', step: '1', placeholder: 'as many as fit the use' }),
+    choose('texture', 'Texels', [['', 'as fits the use'], ...['512', '1024', '2048', '4096', '8192'].map((n) => /** @type {[string, string]} */ ([n, `${n} × ${n}`]))]),
+    choose('image', 'Pictures', [['', 'as fits the use'], ['png', 'PNG'], ['jpeg', 'JPEG'], ['webp', 'WebP (GLB and glTF)']]),
+    choose('origin', 'Origin', [['', 'as fits the use'], ['input', 'that of the photographs'], ['base', 'below the object, upright']]),
+    number('size', 'Longest side', { min: '0', step: 'any', placeholder: 'meters; as captured' }),
+    number('turntable', 'Turntable', { min: '1', step: '1', value: '36', title: 'How many frames' })))];
+}
+
+/** What the fields say. @param {string[]} keys @returns {Record<string, any>} */
+function chosen(keys) {
+  /** @type {Record<string, any>} */
+  const out = {};
+  for (const key of keys) {
+    const text = byId(`export-${key}`).value;
+    if (text !== '') out[key] = ['faces', 'texture', 'size', 'turntable'].includes(key) ? Number(text) : text;
+  }
+  return out;
+}
+
+/** @param {import('./store.js').Store} store @returns {[number, number]} size of the frames of a turntable */
+function turntableSize(store) {
+  const { width, height } = store.object.start.camera, s = Math.min(1, kTurntableSide / Math.max(width, height));
+  return [Math.max(1, Math.round(width * s)), Math.max(1, Math.round(height * s))];
+}
 
 /** @param {import('./store.js').Store} store @param {import('./stage.js').Stage} stage */
 export function exportDialog(store, stage) {
   const name = store.state.name.replace(/[^A-Za-z0-9._-]/g, '_') || 'object';
-  const note = el('p', { role: 'status' }, `Files are also kept in ${store.state.folder}/exports.`);
-  const choice = (/** @type {[string, string, string, object]} */ [suffix, title, text, options]) => el('button', { 'data-export': title, onclick: async () => {
+  const note = el('p', { role: 'status', id: 'export-note' }, `Files are also kept in ${store.state.folder}/exports.`);
+  /** @param {string} title @param {string} text @param {() => Promise<string>} work returns what was done */
+  const choice = (title, text, work) => el('button', { 'data-export': title, onclick: async () => {
     const buttons = [...byId('dialog').querySelectorAll('.choices button')];
     buttons.forEach((b) => { b.disabled = true; });
     note.textContent = `Writing ${title}…`;
-    try {
-      const made = await postJson('export', { file: `${name}${suffix}`, ...options });
-      for (const f of made.files) save(await getBlob(`/api/download/${encodeURIComponent(f.name)}`), f.name);
-      note.textContent = `${made.files.map((/** @type {any} */ f) => `${f.name} (${(f.bytes / 1e6).toFixed(1)} MB)`).join(', ')} is in your downloads and in ${made.folder}.`;
-    } catch (error) {
-      note.textContent = '';
-      complain(error);
-    }
+    note.textContent = await work().catch((error) => (error.status === 499 ? 'Stopped.' : `${error.message} ${error.hint ?? ''}`));
     buttons.forEach((b) => { b.disabled = false; });
   } }, title, el('small', {}, text));
-  openDialog('Export', el('div', { class: 'choices' }, ...(store.state.read_only ? [] : formats.map(choice)),
-    el('button', { onclick: async () => { const png = await stage.snapshot(); if (png) save(png, `${name}.png`); toast('The picture is in your downloads.'); } }, 'Picture', el('small', {}, 'What you see, as PNG'))),
+  /** @param {string} route @param {object} body */
+  const write = async (route, body) => {
+    const made = await postJson(route, body);
+    for (const f of made.files) save(await getBlob(`/api/download/${encodeURIComponent(f.name)}`), f.name);
+    return `${made.files.map((/** @type {any} */ f) => `${f.name} (${(f.bytes / 1e6).toFixed(1)} MB)`).join(', ')} is in your downloads and in ${made.folder}.`;
+  };
+  const format = (/** @type {Format} */ f) => choice(f.title, f.text, () => {
+    const options = chosen(f.options);
+    return write('export', { file: `${name}${options.for ? `-${options.for}` : ''}${f.ending}`, ...options });
+  });
+  const turntable = () => write('turntable', { file: `${name}-turntable.zip`, size: turntableSize(store), turntable: 36, ...chosen(['turntable']) });
+  const picture = async () => {
+    const png = await stage.snapshot();
+    if (png) save(png, `${name}.png`);
+    return 'The picture is in your downloads.';
+  };
+  const locked = store.state.read_only;
+  openDialog('Export', ...(locked ? [] : exportFields()), el('div', { class: 'choices' }, ...(locked ? [] : [...formats.map(format),
+    choice('Turntable', 'Frames all around it, as PNG in one archive', turntable)]), choice('Picture', 'What you see, as PNG', picture)),
     note, el('div', { class: 'buttons' }, el('button', { onclick: () => byId('dialog').close() }, 'Close')));
 }
 

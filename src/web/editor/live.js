@@ -3,6 +3,9 @@
 /** The object drawn in the page, with the program's own shading. Without WebGL 2 it shows nothing, and the program's frames do. */
 import { getBytes } from './api.js';
 import { partLooks } from './looks.js';
+import { Pace, steps } from './pace.js';
+
+/** @typedef {import('./light.js').Light} Light */
 
 /** @type {Record<string, string>} channels of the program that the renderer knows */
 const kChannels = { rgb: 'lit', albedo: 'albedo', normal: 'normal', roughness: 'roughness' };
@@ -31,6 +34,11 @@ export class Live {
     this.previewed = null;
     /** @type {{keys: Record<string, string>, packs: Map<string, Promise<ArrayBuffer>>} | null} packs that were asked for ahead */
     this.ahead = null;
+    this.pace = new Pace(false);
+    /** @type {{draw: () => void, rest: boolean} | null} the picture that comes next */
+    this.next = null;
+    /** @type {Promise<void> | null} the one that is being drawn, and those after it */
+    this.drawing = null;
     this.off = new URLSearchParams(location.search).has('frames');  // for tests: only the program's frames
     this.prepared = this.off ? Promise.resolve() : this.prepare();  // before there is an object: it takes a while
   }
@@ -50,6 +58,7 @@ export class Live {
     try {
       this.modules = await Promise.all([import('../renderer.js'), import('../pack.js'), import('../camera.js')]);
       this.renderer = new this.modules[0].Renderer(this.canvas);
+      this.pace = new Pace(this.renderer.software);
     } catch { /* there is no WebGL 2 */ }
   }
 
@@ -114,16 +123,40 @@ export class Live {
   /** Whether it has the surface and waits for the light: it can draw the albedo. */
   unlit() { return Boolean(this.renderer && !this.renderer.complete && this.has(kSurface)); }
 
-  /** @param {string} channel @param {import('./light.js').Light} light @param {string | null} preview @param {string | null} photo */
+  /** @param {string} channel @param {Light} light @param {string | null} preview @param {string | null} photo */
   shows(channel, light, preview, photo) {
     const still = photo === null || this.store.object?.material?.light?.motion === 'world';
-    return channel in kChannels && light.scale === 1 && !light.env && !light.sun && preview === this.previewed && still && this.current();
+    return channel in kChannels && !light.env && !light.sun && preview === this.previewed && still && this.current();
   }
 
-  /** @param {any} camera @param {string} channel @param {{rotate: number}} light */
-  draw(camera, channel, light) {
+  /** @param {any} camera @param {string} channel @param {Light} light @param {import('./pace.js').Step} [step] */
+  draw(camera, channel, light, { scale, rough } = steps[0]) {
     const turn = this.modules[2].rotation(this.store.object.up, -light.rotate * Math.PI / 180);
-    this.renderer.draw({ camera, channel: this.renderer.complete ? kChannels[channel] : 'albedo', room_from_object: turn, samples: 1, highlight: 0, hidden: this.hiddenIndices() });
+    const small = this.modules[2].resized(camera, Math.ceil(scale * camera.width), Math.ceil(scale * camera.height));
+    this.renderer.draw({ camera: small, channel: this.renderer.complete ? kChannels[channel] : 'albedo', room_from_object: turn, strength: light.scale, samples: 1, rough, highlight: 0, hidden: this.hiddenIndices() });
+  }
+
+  /**
+   * Draws as finely as there is time for, or, at rest, as well as it can. Of the pictures that are asked for while one is drawn only the
+   * last is.
+   * @param {any} camera @param {string} channel @param {Light} light @param {boolean} [rest]
+   * @returns {Promise<void>} when it, or one after it, is drawn
+   */
+  drawSoon(camera, channel, light, rest = false) {
+    this.next = { draw: () => this.draw(camera, channel, light, rest ? steps[0] : this.pace.step), rest };
+    this.drawing ??= this.drawNext();
+    return this.drawing;
+  }
+
+  async drawNext() {
+    while (this.next) {
+      const { draw, rest } = this.next, began = performance.now();
+      this.next = null;
+      draw();
+      await this.renderer.finished();
+      if (!rest) this.pace.took(performance.now() - began);
+    }
+    this.drawing = null;
   }
 
   /** @returns {number[]} */

@@ -175,6 +175,7 @@ const actions = {
   hide: () => { if (store.part) partsPanel.toggle(store.part); else toast('Select a part first; H hides it.'); },
   'show-all': () => stage.hide([]),
   smaller: () => tool.size?.(1 / 1.15), larger: () => tool.size?.(1.15),
+  opacity: (e) => tool.opacity?.((Number(e.key) || 10) / 10),
   softer: () => tool.hardness?.(-0.1), harder: () => tool.hardness?.(0.1),
   keep: () => (tool.keep ?? (() => {})).call(tool), drop: () => tool.drop ? tool.drop() : tool.cancel?.(),
   frame: () => { stage.camera.frame(store.object.center, store.object.radius); input.leavePhoto(); stage.moved(); },
@@ -198,7 +199,7 @@ window.addEventListener('keydown', (e) => {
   const action = actionOf(e);
   if (!action) return;
   const typing = target.matches('input[type="text"], input[type="number"], select');
-  if (typing || (!onView && ['arrows', 'bare', 'keep', 'home', 'zoom'].includes(action)) || (action === 'bare' && target !== stage.view)) return;
+  if (typing || (!onView && ['arrows', 'keep', 'home', 'zoom'].includes(action))) return;
   if (store.state.mode !== 'project' && action !== 'help') return;
   e.preventDefault();
   if (action.startsWith('tool:')) choose(action.slice(5));

@@ -238,7 +238,10 @@ export class PaintTool {
   /** @param {number} step */
   hardness(step) { this.set('hardness', Math.max(0, Math.min(1, brush.hardness + step))); }
 
-  /** @param {'size' | 'hardness'} key @param {number} value */
+  /** @param {number} share */
+  opacity(share) { if (!this.erase) this.set('opacity', share); }
+
+  /** @param {'size' | 'hardness' | 'opacity'} key @param {number} value */
   set(key, value) {
     brush[key] = value;
     const input = /** @type {HTMLInputElement | null} */ (document.getElementById(`brush-${key}`));

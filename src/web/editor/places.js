@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** What is shown when no object is open: a folder, a capture with what its check found, a reconstruction that runs. */
-import { byId, complain, el } from './dom.js';
+import { byId, complain, el, toast } from './dom.js';
 import { getBlob, postJson } from './api.js';
 
 /** @type {[string, string][]} first words of the program's stages, and what they are for */
@@ -11,6 +11,20 @@ const stages = [['loading', 'Photographs'], ['start', 'Outline'], ['geometry', '
 function clock(seconds) {
   const s = Math.max(0, Math.round(seconds));
   return `${Math.floor(s / 60)}:${String(s % 60).padStart(2, '0')}`;
+}
+
+/** As a shell reads it. @param {string} path */
+const quoted = (path) => (/^[\w./~-]+$/.test(path) ? path : `'${path.replaceAll("'", "'\\''")}'`);
+
+/** A command, and a button that copies it. @param {string} command */
+function copied(command) {
+  const copy = async () => {
+    try {
+      await navigator.clipboard.writeText(command);
+      toast('The command is copied.');
+    } catch { toast('The browser does not let this page copy; select the command.', { bad: true }); }
+  };
+  return el('div', { class: 'inline' }, el('pre', { class: 'command' }, command), el('button', { onclick: copy }, 'Copy'));
 }
 
 export class Places {
@@ -42,7 +56,8 @@ export class Places {
         el('p', {}, 'An object is made from photographs whose cameras are known, with masks of what is the object. Put such a capture into this folder:'),
         el('pre', {}, state.folder),
         el('p', {}, 'A capture is a folder in one of these forms:'), el('pre', {}, state.formats),
-        el('p', {}, 'From bare photographs, COLMAP finds the cameras. Then come back to this page.'),
+        el('p', {}, 'Of bare photographs this command makes one; PHOTOS is their folder, and COLMAP finds the cameras. Then come back to this page.'),
+        copied(`cei3d capture PHOTOS -o ${quoted(`${state.folder}/capture`)}`),
         el('div', { class: 'inline' }, sample, el('button', { class: 'big', onclick: async () => { try { await this.store.take(await postJson('close')); } catch (error) { complain(error); } } }, 'Look again'))];
     const card = (/** @type {any} */ e) => el('button', { class: 'card', onclick: open(e.id) }, el('b', {}, e.name),
       el('span', { class: 'kind' }, e.kind === 'capture' ? 'photographs' : e.finished ? 'object' : 'object, not finished'),

@@ -93,7 +93,8 @@ export class MaterialTool {
   async keep(change, fresh = false) {
     ++this.number;
     this.wanted = null;
-    await this.store.change('edit', { op: 'material', params: this.params(change, fresh), amend: this.own() !== null });
+    // What it amends is known once the changes before it are made.
+    await this.store.change('edit', async () => ({ op: 'material', params: this.params(change, fresh), amend: this.own() !== null }));
     await this.stage.tryEdit(null);
   }
 

@@ -109,15 +109,16 @@ export class Stage extends EventTarget {
   }
 
   /** The page can draw the object anew: below the exact frame, if there is one. */
-  liveReady() {
+  async liveReady() {
     this.emit('looks');
     const first = !byId('cover').classList.contains('done');
     if (!this.isLive() && !(first && this.live.unlit())) return;
     // A driver's first picture takes long where it draws in software; that of the program is on its way.
     if (this.fresh && this.isLive()) return;
-    this.live.draw(this.json(), this.channel, this.light);
+    if (this.exact) return;  // it is under that
+    await this.live.drawSoon(this.json(), this.channel, this.light);
     byId('cover').classList.add('done');
-    if (!this.exact) this.picture.style.opacity = '0';  // it is of the object before
+    if (!this.exact && (first || this.isLive())) this.picture.style.opacity = '0';  // it is of the object before
     if (this.isLive() && (this.asked?.kind === 'quick' || (!this.asked && !this.exact))) this.moved();
   }
 
@@ -142,7 +143,7 @@ export class Stage extends EventTarget {
       cancelAnimationFrame(this.waiting);
       this.fresh = false;
       this.waiting = requestAnimationFrame(() => {
-        this.live.draw(this.json(), this.channel, this.light);
+        this.live.drawSoon(this.json(), this.channel, this.light);
         byId('cover').classList.add('done');
         this.redraw();
       });
@@ -168,15 +169,21 @@ export class Stage extends EventTarget {
   }
 
   rest() {
-    if (this.live.hidden.size && this.live.renderer && (this.isLive() || !this.live.current())) {
-      if (this.isLive()) byId('badge').textContent = 'some parts hidden';
-      return;
-    }
+    const own = this.live.hidden.size > 0 && this.live.renderer;
+    if (this.isLive() && (own || !this.store.line.ready)) this.restLive(own ? 'some parts hidden' : '');
+    if (own && (this.isLive() || !this.live.current())) return;
     if (this.asked?.kind === 'quick') {
       this.timer = window.setTimeout(() => this.rest(), kRest);  // that one first
       return;
     }
     this.ask('rest', 1);
+  }
+
+  /** The page's own picture, where no other comes. @param {string} badge */
+  async restLive(badge) {
+    const { timer } = this;
+    await this.live.drawSoon(this.json(), this.channel, this.light, true);
+    if (timer === this.timer) byId('badge').textContent = badge;
   }
 
   /** @param {'quick' | 'rest'} kind @param {number} samples */
@@ -231,7 +238,7 @@ export class Stage extends EventTarget {
   }
 
   settle() {
-    if (this.fresh && this.isLive()) this.live.draw(this.json(), this.channel, this.light);  // so that it moves at once
+    if (this.fresh && this.isLive()) this.live.drawSoon(this.json(), this.channel, this.light);  // so that it moves at once
     this.fresh = false;
     this.emit('settled');
   }
@@ -258,6 +265,27 @@ export class Stage extends EventTarget {
     this.drawTool(context);
   }
 
-  /** The picture on white, as a PNG. @returns {Promise<Blob | null>} */
-  snapshot() { return new Promise((resolve) => this.picture.toBlob(resolve, 'image/png')); }
+  /** What is seen of the object and the photograph, on white, as a PNG. @returns {Promise<Blob | null>} */
+  snapshot() {
+    const { width, height } = this.picture, copy = document.createElement('canvas');
+    Object.assign(copy, { width, height });
+    const c = /** @type {CanvasRenderingContext2D} */ (copy.getContext('2d'));
+    c.fillStyle = '#fff';
+    c.fillRect(0, 0, width, height);
+    const own = this.picture.style.opacity === '0';
+    if (own) this.live.draw(this.json(), this.channel, this.light);  // a canvas of WebGL can be read only right after that
+    c.drawImage(own ? this.live.canvas : this.picture, 0, 0, width, height);
+    this.drawPhoto(c);
+    return new Promise((resolve) => copy.toBlob(resolve, 'image/png'));
+  }
+
+  /** The photograph as far as it is seen. @param {CanvasRenderingContext2D} c */
+  drawPhoto(c) {
+    const photo = byId('photo'), wipe = byId('wipe'), r = this.camera.rectangle(c.canvas.width, c.canvas.height);
+    if (photo.hidden) return;
+    c.beginPath();
+    c.rect(r.x, r.y, r.width * (wipe.hidden ? 1 : wipe.value / 100), r.height);
+    c.clip();
+    c.drawImage(photo, r.x, r.y, r.width, r.height);
+  }
 }

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// states.cjs PROGRAM FOLDER PICTURES CHROMIUM: what the editor shows where there is nothing to edit: of the folders empty, broken (an
+// object) and object; the last one for looking only, and in a browser without WebGL 2.
+const fs = require('node:fs');
+const path = require('node:path');
+const { settled } = require('./serve.cjs');
+const { check, state, picturesIn, accessible, tidy, middle, pixels, withPage } = require('./page.cjs');
+
+const [program, folder, pictures, executablePath] = process.argv.slice(2);
+fs.mkdirSync(pictures, { recursive: true });
+const picture = picturesIn(pictures);
+const opened = (name, flags, test) => withPage({ program, project: path.join(folder, name), executablePath, picture, flags }, test);
+const mode = (page, name) => page.waitForFunction((m) => globalThis.cei3d?.store.state.mode === m, name, { timeout: 30000 });
+
+async function explainsItself({ page, context, server }) {
+  await context.grantPermissions(['clipboard-read', 'clipboard-write']);
+  await page.goto(server.url);
+  await mode(page, 'library');
+  check('an empty folder offers the sample', (await page.getByRole('button', { name: 'Try the sample' }).count()) === 1);
+  await page.getByRole('button', { name: 'Copy' }).click();
+  await page.locator('.toast').waitFor();
+  const command = await page.evaluate(() => navigator.clipboard.readText());
+  check(`and the command for bare photographs: ${command}`, command === `cei3d capture PHOTOS -o ${path.resolve(folder, 'empty/capture')}`);
+  await picture(page, 'empty');
+  await tidy(page, 'empty');
+  await accessible(page, 'an empty folder');
+}
+
+async function saysWhatFailed({ page, server }) {
+  await page.goto(server.url);
+  await mode(page, 'failed');
+  check(`what failed is said: ${(await state(page)).error}`, (await page.textContent('#place')).includes('scene.json'));
+  await picture(page, 'failed-to-open');
+  await accessible(page, 'what cannot be opened');
+}
+
+async function onlyLooks({ page, server }) {
+  await page.goto(server.url);
+  await settled(page);
+  const tools = await page.locator('#tools button:enabled').evaluateAll((list) => list.map((b) => b.dataset.tool));
+  check(`for looking only: ${tools}`, tools.join() === 'look,light');
+  await page.keyboard.press('b');
+  check('the brush stays where it is', await page.evaluate(() => document.querySelector('[data-tool="look"]').getAttribute('aria-checked')) === 'true');
+  await accessible(page, 'looking only');
+  await page.click('#export');
+  check('nothing but the picture can be saved', (await page.locator('[data-export]').evaluateAll((list) => list.map((b) => b.dataset.export))).join() === 'Picture');
+  await accessible(page, 'looking only, export');
+}
+
+/** The program's frames alone. */
+async function hasNoWebGl({ page, server }) {
+  await page.goto(server.url.replace('/#', '/?frames#'));
+  await settled(page);
+  check('the page does not draw by itself', await page.evaluate(() => globalThis.cei3d.stage.live.renderer === null));
+  check('the object is in the picture', (await middle(page)).n > 2000);
+  const quick = page.evaluate(() => new Promise((resolve) => {
+    const { stage } = globalThis.cei3d, { finish } = stage, frames = [];
+    stage.finish = (frame) => { frames.push(stage.asked?.kind); finish.call(stage, frame); if (stage.settled()) resolve(frames); };
+  }));
+  await page.focus('#view');
+  for (let i = 0; i < 6; ++i) await page.keyboard.press('ArrowLeft');
+  const kinds = await quick;
+  await settled(page);
+  check(`while it turns there are small frames, then the exact ones: ${kinds}`, kinds[0] === 'quick' && kinds.slice(-2).join() === 'rest,rest');
+  await page.keyboard.press('b');
+  const at = await middle(page), [was] = await pixels(page, [[at.fx, at.fy]]);
+  await page.fill('#brush-color', '#10c040');
+  await page.mouse.click(at.x, at.y);
+  await page.waitForFunction(() => globalThis.cei3d.store.state.done === 1, null, { timeout: 30000 });
+  await settled(page);
+  const [is] = await pixels(page, [[at.fx, at.fy]]);
+  check(`and it can be painted: ${was} to ${is}`, is[1] > is[0] + 40 && is[1] > is[2] + 20);
+  await picture(page, 'without-webgl');
+}
+
+(async () => {
+  await opened('empty', [], explainsItself);
+  await opened('broken', [], saysWhatFailed);
+  await opened('object', ['--read-only'], onlyLooks);
+  await opened('object', [], hasNoWebGl);
+})().catch((error) => { console.error(error.message); process.exit(1); });
