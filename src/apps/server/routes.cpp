@@ -213,8 +213,8 @@ void Editor::export_file(JsonReader& j, const HttpRequest&, Reply reply) {
   j.finish();
   if (read_only_) fail_usage("This object is open for looking only.");
   on_worker("export", std::move(reply), [this, request, name](Session& session, Progress& p) mutable {
-    request.out = exports_folder_ / name;
-    const ExportReport report = session.export_to(request, p);
+    request.out = {exports_folder_ / name};
+    const ExportReport report = session.export_to(request, p).front();
     Json files = Json::array();
     for (const std::filesystem::path& f : report.files) {
       const std::lock_guard lock(mutex_);
