@@ -7,17 +7,7 @@
 'use strict';
 const fs = require('fs');
 const path = require('path');
-const {execSync} = require('child_process');
-const {optional} = require('./npm.cjs');
-
-function browserPath() {
-  for (const name of ['chromium-headless-shell', 'chromium', 'chromium-browser', 'google-chrome']) {
-    try {
-      return execSync(`command -v ${name}`, {stdio: ['ignore', 'pipe', 'ignore']}).toString().trim();
-    } catch (e) { /* the next */ }
-  }
-  return null;
-}
+const {browserPath, optional} = require('./npm.cjs');
 
 const dataUrl = (file) => `data:image/png;base64,${fs.readFileSync(file).toString('base64')}`;
 

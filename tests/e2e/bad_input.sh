@@ -92,12 +92,18 @@ refused 2 'webp' export "$project" -o "$out/spot.usdz" --image webp
 refused 1 'not a folder' export "$project" -o "$out/truncated.png/spot.glb"
 absent "$out/spot.glb"
 # A limit on the size of files stands in for a full disk: nothing half-written stays.
-for kind in html glb obj; do
+for kind in html glb gltf obj usdz ply hdr exr; do
   mkdir "$out/full"
-  (trap '' XFSZ; ulimit -f 16; refused 1 'too large|space' export "$project" -o "$out/full/spot.$kind" --faces 2000)
+  size=(--faces 2000)
+  [[ $kind == html || $kind == ply ]] || size+=(--texture 256)
+  (trap '' XFSZ; ulimit -f 16; refused 1 'too large|space' export "$project" -o "$out/full/spot.$kind" "${size[@]}") || exit 1
   [[ -z $(ls -A "$out/full") ]] || fail "left behind by a failed export: $(ls -A "$out/full")"
   rmdir "$out/full"
 done
+# Of several files, the first of which has room, none is written.
+mkdir "$out/full"
+(trap '' XFSZ; ulimit -f 16; refused 1 'too large|space' export "$project" -o "$out/full/light.npy" -o "$out/full/spot.ply") || exit 1
+[[ -z $(ls -A "$out/full") ]] || fail "left behind by a failed export of two files: $(ls -A "$out/full")"
 refused 2 'smell' smell
 
 # A project of a newer format, a damaged one.

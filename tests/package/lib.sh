@@ -22,8 +22,11 @@ enter() { chroot "$tree" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME
 # What `cei3d demo` leaves behind, of the size that pictures and models have.
 check_demo() { # FOLDER
   local file
-  for file in index.html spot.glb spot.html spot.env.hdr painted/rgb/r_004.png relit/rgb/r_034.png; do
+  for file in index.html spot.{glb,gltf,obj,usdz,ply,html} spot.env.{hdr,exr,json} painted/rgb/r_004.png relit/rgb/r_034.png; do
     [[ $(stat -c %s "$1/$file" 2>/dev/null || echo 0) -gt 1000 ]] || fail "the demo left no $file"
   done
   [[ $(head -c 4 "$1/spot.glb") == glTF ]] || fail "spot.glb is no glTF"
+  for file in spot.gltf spot_normal.png spot.env.exr; do
+    grep -q "href=\"$file\"" "$1/index.html" || fail "the demo's page has no link to $file"
+  done
 }

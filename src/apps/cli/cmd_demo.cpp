@@ -27,6 +27,25 @@ struct Step {
   Line line;
 };
 
+// What the finished object is exported as.
+const std::vector<DemoFile> kFiles = {
+    {"spot.html", "the object, live, in one file for any browser"},
+    {"spot.glb", "textured, in one file: Blender, game engines, the web"},
+    {"spot.gltf", "the same with its pictures as files"},
+    {"spot.obj", "the same for programs that do not read glTF"},
+    {"spot.usdz", "for Apple's AR Quick Look"},
+    {"spot.ply", "the finest mesh, its colors at the vertices"},
+    {"spot.env.hdr", "the light, latitude-longitude"},
+    {"spot.env.exr", "the same"},
+    {"spot.env.json", "the light as lobes"},
+};
+
+Line export_line(const std::string& object, const std::string& out) {
+  Line line{"export", object};
+  for (const DemoFile& f : kFiles) line.insert(line.end(), {"-o", out + "/" + f.name});
+  return line;
+}
+
 std::vector<Step> steps_of(const std::string& sample, const std::string& out, const std::string& time) {
   const std::string object = out + "/object", held_out = sample + ":test", sky = sample + "/envs/venice.hdr";
   return {
@@ -45,8 +64,7 @@ std::vector<Step> steps_of(const std::string& sample, const std::string& out, co
       {"The same light, turned",
        {"render", object, "-o", out + "/turned", "--cameras", held_out, "--env", sky, "--env-rotate", "90"}},
       {"All around", {"render", object, "-o", out + "/turntable", "--turntable", "12", "--size", "384x384"}},
-      {"A model file", {"export", object, "-o", out + "/spot.glb", "--light", "fit"}},
-      {"A page that shows it", {"export", object, "-o", out + "/spot.html"}},
+      {"Files for other programs", export_line(object, out)},
   };
 }
 
@@ -60,6 +78,24 @@ void run_steps(const std::vector<Step>& steps, const Commands& commands, Console
   }
 }
 
+// kFiles and what lies beside them, with their sizes.
+std::vector<DemoFile> files_in(const fs::path& out) {
+  std::vector<DemoFile> files = kFiles, beside;
+  for (const auto& entry : fs::directory_iterator(out)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with("spot") || !entry.is_regular_file()) continue;
+    const auto known =
+        std::find_if(files.begin(), files.end(), [&](const DemoFile& f) { return f.name == name; });
+    if (known != files.end())
+      known->bytes = entry.file_size();
+    else
+      beside.push_back({name, "part of the .gltf or the .obj", entry.file_size()});
+  }
+  std::sort(beside.begin(), beside.end(), [](const auto& a, const auto& b) { return a.name < b.name; });
+  files.insert(files.end(), beside.begin(), beside.end());
+  return files;
+}
+
 void write_page(const fs::path& sample, const fs::path& out) {
   const std::vector<std::string> views = {"r_004", "r_034"};
   for (const std::string& view : views)
@@ -68,7 +104,7 @@ void write_page(const fs::path& sample, const fs::path& out) {
   for (const auto& file : fs::directory_iterator(out / "turntable/rgb"))
     turntable.push_back(file.path().stem().string());
   std::sort(turntable.begin(), turntable.end());
-  write_file_atomic(out / "index.html", demo_page(views, turntable));
+  write_file_atomic(out / "index.html", demo_page(views, turntable, files_in(out)));
 }
 
 std::string report_text(const std::string& out) {
@@ -79,6 +115,7 @@ std::string report_text(const std::string& out) {
       "  {0}/turntable/rgb\n"
       "  {0}/spot.html    the object, live, in one file\n"
       "  {0}/spot.glb     the textured model, for Blender and the like; its light: {0}/spot.env.hdr\n"
+      "  {0}/spot.*       the same in other formats\n"
       "  {0}/object       the project: cei3d open {0}/object\n",
       out);
 }

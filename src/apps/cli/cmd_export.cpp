@@ -18,10 +18,13 @@ std::string report_text(const ExportReport& r) {
   std::string text = fmt::format("{}: {} vertices, {} triangles", file, r.vertices, r.triangles);
   if (r.texture > 0)
     text += fmt::format(
-        ", textures of {0} x {0} texels, {1:.0f} % of them used by {2} charts (stretch {3:.3f}). Simplified "
-        "by up to {4:.2g} capture units",
-        r.texture, 100 * r.used, r.charts, r.stretch, r.simplification_error);
+        ", textures of {0} x {0} texels, {1:.1f} % of them used by {2} charts (stretch {3:.3f}, {4} "
+        "triangles "
+        "flipped, {5} texels taken twice)",
+        r.texture, 100 * r.used, r.charts, r.stretch, r.flipped, r.overlapping);
   text += ".";
+  if (r.simplification_error)
+    text += fmt::format(" Simplified by up to {:.2g} capture units.", *r.simplification_error);
   for (const auto& f : r.files)
     if (f != r.out) text += "\n  " + f.string();
   return text;
@@ -40,8 +43,14 @@ ExportRequest request_of(const Options& o) {
 void export_object(const Options& o, Session& session, Console& console) {
   const ExportRequest request = request_of(o);
   session.open(o.project, Session::Access::read);
-  const ExportReport r = session.export_to(request, console);
-  console.done(r.json(), report_text(r));
+  const std::vector<ExportReport> reports = session.export_to(request, console);
+  Json list = Json::array();
+  std::string text;
+  for (const ExportReport& r : reports) {
+    list.push_back(r.json());
+    text += (text.empty() ? "" : "\n") + report_text(r);
+  }
+  console.done(reports.size() == 1 ? list[0] : Json{{"exports", list}}, text);
 }
 
 void add_asset_options(CLI::App* verb, Options& o) {
@@ -84,11 +93,14 @@ void add_export(Commands& commands) {
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option(
           "-o,--output", o->request.out,
-          "By its ending. .glb, .gltf, .obj, .usdz: textured mesh; .ply: mesh with albedo per vertex; .html: "
-          "a page in one file that shows object and light in any browser, without network. .hdr, .exr: the "
-          "light as latitude-longitude picture; .npy, .json: its lobes ([M,7]: axis, sharpness, RGB peak "
-          "radiance)")
-      ->required();
+          "By its ending; given several times, the files share the work. .glb, .gltf, .obj, .usdz: textured "
+          "mesh; .ply: mesh with albedo per vertex; .html: a page in one file that shows object and light in "
+          "any browser, without network. .hdr, .exr: the light as latitude-longitude picture; .npy, .json: "
+          "its "
+          "lobes ([M,7]: axis, sharpness, RGB peak radiance)")
+      ->required()
+      ->expected(1)
+      ->take_all();
   add_asset_options(verb, *o);
   verb->add_flag("--points", o->request.points,
                  "With .ply: write the handler points with their normals instead of the mesh");

@@ -13,7 +13,6 @@ figure{margin:0}img{width:192px;background:#fff;border:1px solid #ddd}figcaption
 iframe{width:100%;height:30em;border:1px solid #ddd}</style>
 <h1>Spot: photographs to an editable object</h1>
 <iframe src="spot.html" title="The painted object, live"></iframe>
-<p><a href="spot.html">The painted object, live</a> · <a href="spot.glb">spot.glb</a> · <a href="spot.env.hdr">its light</a></p>
 )";
 
 std::string figure(const std::string& file, const std::string& caption) {
@@ -24,10 +23,23 @@ std::string row(const std::string& title, const std::string& figures) {
   return fmt::format("<h2>{}</h2><div>\n{}</div>\n", title, figures);
 }
 
+std::string size_text(uintmax_t bytes) {
+  return bytes < 1000000 ? fmt::format("{:.0f} kB", double(bytes) / 1e3)
+                         : fmt::format("{:.1f} MB", double(bytes) / 1e6);
+}
+
+std::string list_of(const std::vector<DemoFile>& files) {
+  std::string items;
+  for (const DemoFile& f : files)
+    items += fmt::format("<li><a href=\"{0}\">{0}</a>: {1}; {2}</li>\n", f.name, f.what, size_text(f.bytes));
+  return "<h2>The painted object as files</h2><ul>\n" + items + "</ul>\n";
+}
+
 }  // namespace
 
-std::string demo_page(const std::vector<std::string>& views, const std::vector<std::string>& turntable) {
-  std::string page = kHead;
+std::string demo_page(const std::vector<std::string>& views, const std::vector<std::string>& turntable,
+                      const std::vector<DemoFile>& files) {
+  std::string page = kHead + list_of(files);
   for (const std::string& view : views) {
     const std::string file = view + ".png";
     page += row("Reconstruction, view " + view,

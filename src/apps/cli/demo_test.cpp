@@ -32,10 +32,17 @@ TEST(Demo, MissingSampleIsASentenceThatSaysWhatToDo) {
 }
 
 TEST(Demo, PageShowsEveryPicture) {
-  const std::string page = demo_page({"r_1", "r_2"}, {"000", "001"});
+  const std::string page = demo_page({"r_1", "r_2"}, {"000", "001"}, {});
   for (const char* file : {"photo_r_2.png", "before/normal/r_1.png", "painted/albedo/r_2.png",
                            "turned/rgb/r_1.png", "turntable/rgb/001.png"})
     EXPECT_THAT(page, HasSubstr(std::string("src=\"") + file + "\""));
+}
+
+TEST(Demo, PageLinksEveryFileAndSaysItsSize) {
+  const std::string page =
+      demo_page({}, {}, {{"spot.glb", "textured", 6'149'000}, {"spot.mtl", "beside it", 312}});
+  EXPECT_THAT(page, HasSubstr("<a href=\"spot.glb\">spot.glb</a>: textured; 6.1 MB"));
+  EXPECT_THAT(page, HasSubstr("<a href=\"spot.mtl\">spot.mtl</a>: beside it; 0 kB"));
 }
 
 }  // namespace

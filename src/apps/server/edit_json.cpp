@@ -223,7 +223,7 @@ FrameRequest frame_request(JsonReader& j, const Uploads& uploads) {
 
 ExportRequest export_request(JsonReader& j) {
   ExportRequest r;
-  r.out = plain_file_name(j.require<std::string>("file"));
+  r.out = {plain_file_name(j.require<std::string>("file"))};
   r.purpose = named_if_there(j, "for", export_for_from_name).value_or(ExportFor::any);
   r.faces = j.optional<int>("faces");
   r.texture = j.optional<int>("texture");

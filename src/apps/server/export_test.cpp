@@ -27,9 +27,10 @@ class ExportTest : public EditorTest {
     Session session("cpu", 2);
     Progress quiet;
     session.open(folder(), Session::Access::read);
-    request.out = temp_.path() / "alone" / request.out;
+    const std::filesystem::path file = temp_.path() / "alone" / request.out.front();
+    request.out = {file};
     session.export_to(request, quiet);
-    return read_file(request.out);
+    return read_file(file);
   }
 };
 
@@ -42,7 +43,7 @@ TEST_F(ExportTest, ReadsWhatTheCommandReads) {
                                         {"origin", "input"},
                                         {"size", 0.3}});
   ExportRequest same;
-  same.out = "ball.glb";
+  same.out = {"ball.glb"};
   same.purpose = ExportFor::ar;
   same.faces = 300;
   same.texture = 64;

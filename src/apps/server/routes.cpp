@@ -208,8 +208,8 @@ void Editor::export_file(JsonReader& j, const HttpRequest&, Reply reply) {
   j.finish();
   write_exports(std::move(reply), [request](Session& session, Progress& progress, const fs::path& folder) {
     ExportRequest there = request;
-    there.out = folder / request.out;
-    const ExportReport report = session.export_to(there, progress);
+    there.out = {folder / request.out.front()};
+    const ExportReport report = session.export_to(there, progress).front();
     return Exports{report.files, report.json()};
   });
 }

@@ -71,14 +71,14 @@ Json run_export(const BatchItem& item, const std::string& source, const BatchSte
                 const fs::path& out) {
   tools.session.open(tools.results(source), Session::Access::read);
   Json files = Json::array();
+  ExportRequest r;
   for (const std::string& kind : item.exports) {
-    ExportRequest r;
-    r.out = out / (item.id + "." + kind);
-    r.purpose = export_for_from_name(item.purpose).value_or(ExportFor::any);
-    r.unit_scale = item.unit_scale;
-    tools.session.export_to(r, tools.progress);
     files.push_back(item.id + "." + kind);
+    r.out.push_back(out / (item.id + "." + kind));
   }
+  r.purpose = export_for_from_name(item.purpose).value_or(ExportFor::any);
+  r.unit_scale = item.unit_scale;
+  tools.session.export_to(r, tools.progress);
   tools.session.close();
   return {{"files", files}};
 }

@@ -47,7 +47,6 @@ MadeAsset make_asset(const Device& device, const Scene& scene, const std::string
   check_cancelled(progress, "The export was interrupted; nothing was written.");
   progress.report({"unwrap", 0.1, -1, ""});
   const Atlas atlas = unwrap(coarse.mesh, options.texture);
-  const AtlasQuality quality = quality_of(coarse.mesh, atlas, options.texture);
   check_cancelled(progress, "The export was interrupted; nothing was written.");
   MadeAsset out;
   out.asset.name = name;
@@ -63,8 +62,7 @@ MadeAsset make_asset(const Device& device, const Scene& scene, const std::string
   out.report = {.vertices = out.asset.mesh.positions.size(),
                 .triangles = out.asset.mesh.triangles.size(),
                 .charts = atlas.charts,
-                .used = quality.used,
-                .stretch = quality.stretch,
+                .atlas = quality_of(coarse.mesh, atlas, options.texture),
                 .error = double(coarse.error) / scene.normalization.scale};
   return out;
 }

@@ -5,6 +5,7 @@
 #include "core/base/progress.h"
 #include "core/compute/device.h"
 #include "engine/export/asset.h"
+#include "model/geometry/unwrap/atlas.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {
@@ -19,9 +20,8 @@ struct AssetOptions {
 struct AssetReport {
   size_t vertices = 0, triangles = 0;
   uint32_t charts = 0;
-  double used = 0;     // share of the texture that charts cover
-  double stretch = 1;  // of the atlas
-  double error = 0;    // of the simplification, capture units
+  AtlasQuality atlas;
+  double error = 0;  // of the simplification, capture units
 };
 
 struct MadeAsset {

@@ -82,7 +82,9 @@ MadeAsset* MakeAsset::made_ = nullptr;
 
 TEST_F(MakeAsset, IsTheSurfaceInTheFrameOfTheCapture) {
   EXPECT_LE(made_->report.triangles, 600u);
-  EXPECT_GT(made_->report.used, 0.4);
+  EXPECT_GT(made_->report.atlas.used, 0.4);
+  EXPECT_EQ(made_->report.atlas.flipped, 0u);
+  EXPECT_EQ(made_->report.atlas.overlapping, 0u);
   EXPECT_GT(made_->report.error, 0);
   EXPECT_LT(made_->report.error, 0.02);
   for (const Vec3f p : made_->asset.mesh.positions)

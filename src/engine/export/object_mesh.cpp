@@ -50,9 +50,11 @@ ColoredMesh colored_mesh(const Device& device, const Scene& scene, size_t faces)
   Appearance look = appearance_at(device, scene, vertex_hits(mesh));
   mesh.colors = std::move(look.albedo);
   if (scene.material.varying()) look.material = rounded(std::move(look.material));
+  double error = 0;
   if (faces > 0) {
     Simplified simple = simplified(mesh, faces);
     mesh = std::move(simple.mesh);
+    error = double(simple.error) / scene.normalization.scale;
     std::vector<Material> kept;
     for (const uint32_t v : simple.vertex) kept.push_back(look.material[v]);
     look.material = std::move(kept);
@@ -60,7 +62,7 @@ ColoredMesh colored_mesh(const Device& device, const Scene& scene, size_t faces)
   MeshMaterials materials = mesh_materials(mesh, look.material);
   if (!scene.shape_versions.empty()) mesh = compact(mesh, mesh.triangles);
   mesh.positions = in_capture_frame(std::move(mesh.positions), scene.normalization);
-  return {std::move(mesh), std::move(materials)};
+  return {std::move(mesh), std::move(materials), error};
 }
 
 Mesh handler_point_cloud(const Scene& scene) {

@@ -11,6 +11,7 @@ namespace cei3d {
 struct ColoredMesh {
   Mesh mesh;
   MeshMaterials materials;
+  double error = 0;  // of the simplification, capture units
 };
 
 // The edited surface; vertex colors are linear albedo (glTF: base color). faces: at most; 0: all there are.

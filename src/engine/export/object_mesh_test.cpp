@@ -109,6 +109,21 @@ TEST(ObjectMesh, VerticesOfRemovedTrianglesAreLeftOut) {
   for (const Vec3f p : out.mesh.positions) EXPECT_LE(p.z, 3.05f + 1e-6f);
 }
 
+// The flat faces between points of the ball lie below it, most in their middles.
+TEST(ObjectMesh, TheErrorOfSimplificationIsInUnitsOfTheCapture) {
+  const Scene s = test_ball(4, {.levels = 4});
+  const ColoredMesh out = colored_mesh(make_device(), s, 300);
+  ASSERT_LE(out.mesh.triangles.size(), 300u);
+  double below = 0;
+  for (const auto& [a, b, c] : out.mesh.triangles) {
+    const Vec3f middle = (out.mesh.positions[a] + out.mesh.positions[b] + out.mesh.positions[c]) / 3.0f;
+    below = std::max(below, double(kBallRadius / 2 - length(middle - Vec3f{1, 2, 3})));
+  }
+  EXPECT_GT(out.error, 0.1 * below);
+  EXPECT_LT(out.error, 1.0 * below);
+  EXPECT_EQ(colored_mesh(make_device(), s).error, 0);
+}
+
 TEST(ObjectMesh, HandlerPointsAreInTheFrameOfTheCapture) {
   Scene s = ball();
   auto handlers = std::make_shared<HandlerPoints>();

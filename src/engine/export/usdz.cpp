@@ -43,20 +43,27 @@ std::string matrix_text(const Placement& p) {
   return out + fmt::format(" ({}, {}, {}, 1) )", p.translation.x, p.translation.y, p.translation.z);
 }
 
+// Metadata stands on lines of its own, as some readers want it.
 std::string mesh_text(const TexturedMesh& m) {
   const std::string counts = list_of(m.triangles, [](auto at, const auto&) { fmt::format_to(at, "3"); });
   const std::string indices = list_of(
       m.triangles, [](auto at, const auto& t) { fmt::format_to(at, "{}, {}, {}", t[0], t[1], t[2]); });
   const std::string st =
       list_of(m.uv, [](auto at, Vec2f uv) { fmt::format_to(at, "({}, {})", uv.x, 1 - uv.y); });
-  return fmt::format(R"(    def Mesh "Surface" (prepend apiSchemas = ["MaterialBindingAPI"])
+  return fmt::format(R"(    def Mesh "Surface" (
+        prepend apiSchemas = ["MaterialBindingAPI"]
+    )
     {{
         float3[] extent = {}
         int[] faceVertexCounts = {}
         int[] faceVertexIndices = {}
         point3f[] points = {}
-        normal3f[] normals = {} (interpolation = "vertex")
-        texCoord2f[] primvars:st = {} (interpolation = "vertex")
+        normal3f[] normals = {} (
+            interpolation = "vertex"
+        )
+        texCoord2f[] primvars:st = {} (
+            interpolation = "vertex"
+        )
         uniform token subdivisionScheme = "none"
         rel material:binding = </Root/Material>
     }}
@@ -117,7 +124,7 @@ std::string material_text(const AssetPictures& p) {
 
 std::string layer_text(const Asset& asset) {
   return "#usda 1.0\n(\n    defaultPrim = \"Root\"\n    metersPerUnit = 1\n    upAxis = \"Y\"\n)\n\n"
-         "def Xform \"Root\" (kind = \"component\")\n{\n"
+         "def Xform \"Root\" (\n    kind = \"component\"\n)\n{\n"
          "    uniform token preliminary:anchoring:type = \"plane\"\n"
          "    matrix4d xformOp:transform = " +
          matrix_text(asset.placement) + "\n    uniform token[] xformOpOrder = [\"xformOp:transform\"]\n\n" +

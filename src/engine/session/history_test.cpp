@@ -204,7 +204,7 @@ TEST_F(RandomEdits, AWholeMaterialIsExported) {
   make_edit(2);  // roughness 0.7
   const fs::path file = temp_.path() / "object.glb";
   ExportRequest request;
-  request.out = file;
+  request.out = {file};
   request.texture = 0;
   session_.export_to(request, quiet_);
   const std::string glb = read_file(file);

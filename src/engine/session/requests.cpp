@@ -233,9 +233,10 @@ Json ExportReport::json() const {
   Json j{{"file", out.string()}, {"vertices", vertices}, {"triangles", triangles}, {"lobes", lobes}};
   for (const auto& f : files) j["files"].push_back(f.string());
   if (texture > 0) {
-    j["texture"] = {{"size", texture}, {"charts", charts}, {"used", used}, {"stretch", stretch}};
-    j["simplification_error"] = simplification_error;
+    j["texture"] = {{"size", texture},    {"charts", charts},   {"used", used},
+                    {"stretch", stretch}, {"flipped", flipped}, {"overlapping", overlapping}};
   }
+  if (simplification_error) j["simplification_error"] = *simplification_error;
   return j;
 }
 

@@ -214,9 +214,10 @@ enum class ExportImage { png, jpeg, webp };
 std::optional<ExportImage> export_image_from_name(const std::string&);  // "png", "jpeg", "webp"
 
 struct ExportRequest {
-  // The suffix says what is written: .glb .gltf .obj .usdz .ply (the object), .html (a page that shows
-  // it), .hdr .exr .npy .json (the light).
-  std::filesystem::path out;
+  // One or more files, all or none of which are written; textures are made once, their names are those of the
+  // first textured file. The suffix says what is written: .glb .gltf .obj .usdz .ply (the object), .html (a
+  // page that shows it), .hdr .exr .npy .json (the light).
+  std::vector<std::filesystem::path> out;
   bool points = false;  // .ply: the handler points instead of the mesh
   ExportFor purpose = ExportFor::any;
   std::optional<int> faces;          // at most; none: as the purpose says; a mesh without texture: all
@@ -227,14 +228,16 @@ struct ExportRequest {
   double size = 0;                   // meters of the longest side, instead of unit_scale; 0: no wish
   bool light = false;                // the light beside the object, as NAME.env.hdr
 };
+// Of one file that was asked for.
 struct ExportReport {
   std::filesystem::path out;
-  std::vector<std::filesystem::path> files;
+  std::vector<std::filesystem::path> files;  // it and those beside it
   size_t vertices = 0, triangles = 0, lobes = 0;
   int texture = 0;  // side in pixels; 0 without one
   size_t charts = 0;
-  double used = 0, stretch = 0;     // share of the texture that charts cover; L2 stretch, 1: isometric
-  double simplification_error = 0;  // capture units
+  double used = 0, stretch = 0;         // share of the texture that charts cover; L2 stretch, 1: isometric
+  size_t flipped = 0, overlapping = 0;  // triangles of the atlas; texels in more than one triangle
+  std::optional<double> simplification_error;  // capture units; none: all faces are exported
   Json json() const;
 };
 

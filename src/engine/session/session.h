@@ -110,7 +110,7 @@ class Session {
   // wide where it was. Error: the view has none, or it cannot be read.
   Image photograph(const std::string& view, int width) const;
   NamedCamera start_camera() const;  // from which the object is well seen
-  ExportReport export_to(const ExportRequest&, Progress&);
+  std::vector<ExportReport> export_to(const ExportRequest&, Progress&);
   EvalReport evaluate(const EvalRequest&, Progress&);
 
  private:

@@ -81,12 +81,13 @@ void check_sizes(const ExportRequest& r) {
   if (!(r.size >= 0) || !std::isfinite(r.size)) fail_usage("Size {}: meters, more than 0.", r.size);
 }
 
-void check_request(const ExportRequest& r, const std::string& kind) {
+void check_request(const ExportRequest& r, const fs::path& out) {
+  const std::string kind = out.extension().string();
   if (!has(kind, {".glb", ".gltf", ".obj", ".usdz", ".ply", ".html", ".hdr", ".exr", ".npy", ".json"}))
     fail_usage(
         "{}: the ending says what to write: .glb, .gltf, .obj, .usdz or .ply for the object, .html for a "
         "page that shows it, .hdr, .exr, .npy or .json for its light.",
-        r.out.string());
+        out.string());
   if (r.points && kind != ".ply") fail_usage("Points are written as .ply, not {}.", kind);
   if (has(kind, {".ply", ".html"}) && r.texture.value_or(0) > 0)
     fail_usage("A {} has its colors at the vertices; for a texture write .glb, .gltf, .obj or .usdz.", kind);
@@ -94,7 +95,7 @@ void check_request(const ExportRequest& r, const std::string& kind) {
     fail_usage("A {} is written with a texture; without one write .glb or .ply.", kind);
   if (r.image == ExportImage::webp && !has(kind, {".glb", ".gltf"}))
     fail_usage("Only .glb and .gltf have WebP pictures, not {}.", kind);
-  check_sizes(r);
+  require_writable(out);
 }
 
 // Rows of Blender's and the program's own maps: of a capture that is y-up, row 0 is +Y.
@@ -118,13 +119,6 @@ std::string light_json(const SgMixture& light) {
       .dump(1);
 }
 
-FileBytes light_file(const Scene& scene, const fs::path& path, const std::string& kind) {
-  if (kind == ".hdr") return {path, encode_hdr(environment_of(scene))};
-  if (kind == ".exr") return {path, encode_exr(environment_of(scene))};
-  if (kind == ".json") return {path, light_json(scene.light)};
-  return {path, encode_npy(to_array(scene.light), int64_t(scene.light.lobes.size()), 7)};
-}
-
 std::vector<FileBytes> asset_files(const MadeAsset& made, const fs::path& out, const std::string& kind,
                                    bool in_capture_frame) {
   if (kind == ".gltf") return gltf_files(made.asset, out);
@@ -132,7 +126,7 @@ std::vector<FileBytes> asset_files(const MadeAsset& made, const fs::path& out, c
   return {{out, kind == ".usdz" ? encode_usdz(made.asset) : encode_glb(made.asset)}};
 }
 
-// One export: scene in, files and report out.
+// Scene in, files and reports out. What several files need is made once.
 class Exporter {
  public:
   // seen_from: where the first photograph was taken, capture frame.
@@ -144,38 +138,61 @@ class Exporter {
         seen_from_(seen_from),
         request_(request),
         progress_(progress),
-        kind_(request.out.extension().string()),
-        preset_(preset_of(request.purpose)) {
-    report_.out = request.out;
-  }
+        preset_(preset_of(request.purpose)) {}
 
-  std::vector<FileBytes> files() {
-    if (has(kind_, {".hdr", ".exr", ".npy", ".json"})) {
-      report_.lobes = scene_.light.lobes.size();
-      return {light_file(scene_, request_.out, kind_)};
+  ExportReport make(const fs::path& out) {
+    ExportReport report;
+    report.out = out;
+    for (FileBytes& file : files_of(report)) {
+      report.files.push_back(file.path);
+      const auto same = [&](const FileBytes& f) { return f.path == file.path; };
+      if (std::none_of(files_.begin(), files_.end(), same)) files_.push_back(std::move(file));
     }
-    if (kind_ == ".html") return {{request_.out, page()}};
-    std::vector<FileBytes> out = kind_ == ".ply" || request_.texture == 0 ? plain() : textured();
-    if (request_.light) out.push_back(light_file(scene_, beside(request_.out, ".env.hdr"), ".hdr"));
-    return out;
+    return report;
   }
-  ExportReport report() && { return std::move(report_); }
+  const std::vector<FileBytes>& files() const { return files_; }
 
  private:
+  std::vector<FileBytes> files_of(ExportReport& report) {
+    const std::string kind = report.out.extension().string();
+    if (has(kind, {".hdr", ".exr", ".npy", ".json"})) {
+      report.lobes = scene_.light.lobes.size();
+      return {light_file(report.out, kind)};
+    }
+    if (kind == ".html") return {{report.out, page(report)}};
+    std::vector<FileBytes> out =
+        kind == ".ply" || request_.texture == 0 ? plain(report, kind) : textured(report, kind);
+    if (request_.light) out.push_back(light_file(beside(report.out, ".env.hdr"), ".hdr"));
+    return out;
+  }
+
   PlacementOptions placement() const {
     return {request_.at_base.value_or(preset_.at_base) ? Origin::base : Origin::input, request_.unit_scale,
             request_.size};
   }
 
-  std::string page() {
+  const Image& environment() {
+    if (environment_.empty()) environment_ = environment_of(scene_);
+    return environment_;
+  }
+
+  FileBytes light_file(const fs::path& path, const std::string& kind) {
+    if (kind == ".hdr") return {path, encode_hdr(environment())};
+    if (kind == ".exr") return {path, encode_exr(environment())};
+    if (kind == ".json") return {path, light_json(scene_.light)};
+    return {path, encode_npy(to_array(scene_.light), int64_t(scene_.light.lobes.size()), 7)};
+  }
+
+  std::string page(ExportReport& report) {
     const ViewMesh mesh = view_mesh(scene_, size_t(request_.faces.value_or(preset_.page_faces)));
-    report_.vertices = mesh.vertices.size();
-    report_.triangles = mesh.triangles.size();
+    report.vertices = mesh.vertices.size();
+    report.triangles = mesh.triangles.size();
+    report.simplification_error = mesh.error;
     progress_.report({"light", 0.2, -1, ""});
     const SceneLight light = frames_.light(scene_);
     progress_.report({"page", 0.6, -1, ""});
     const Vec3d from = seen_from_ - scene_.normalization.center;
-    return object_page(request_.out.stem().string(),
+    return object_page(report.out.stem().string(),
                        {{"up", {scene_.up.x, scene_.up.y, scene_.up.z}}, {"from", {from.x, from.y, from.z}}},
                        {{"tables", view_tables()},
                         {"light", view_light(device_, scene_.light)},
@@ -185,33 +202,37 @@ class Exporter {
   }
 
   // Colors at the vertices.
-  std::vector<FileBytes> plain() {
-    const auto [mesh, materials] = request_.points
-                                       ? ColoredMesh{handler_point_cloud(scene_), {}}
-                                       : colored_mesh(device_, scene_, size_t(request_.faces.value_or(0)));
-    report_.vertices = mesh.positions.size();
-    report_.triangles = mesh.triangles.size();
-    if (kind_ == ".ply") return {{request_.out, encode_ply(mesh)}};
+  std::vector<FileBytes> plain(ExportReport& report, const std::string& kind) const {
+    const auto [mesh, materials, error] =
+        request_.points ? ColoredMesh{handler_point_cloud(scene_), {}}
+                        : colored_mesh(device_, scene_, size_t(request_.faces.value_or(0)));
+    if (request_.faces && !request_.points) report.simplification_error = error;
+    report.vertices = mesh.positions.size();
+    report.triangles = mesh.triangles.size();
+    if (kind == ".ply") return {{report.out, encode_ply(mesh)}};
     if (mesh.positions.empty()) fail("There is no surface to export: the mesh is empty.");
-    return {
-        {request_.out, encode_glb(mesh, materials, placement_of(mesh.positions, scene_.up, placement()))}};
+    return {{report.out, encode_glb(mesh, materials, placement_of(mesh.positions, scene_.up, placement()))}};
   }
 
-  std::vector<FileBytes> textured() {
-    const AssetOptions options{.faces = size_t(request_.faces.value_or(preset_.faces)),
-                               .texture = request_.texture.value_or(preset_.texture),
-                               .pictures = picture_kind(request_.image.value_or(preset_.image)),
-                               .placement = placement()};
-    const std::string name = beside(request_.out, "").filename().string();
-    const MadeAsset made = make_asset(device_, scene_, name, options, progress_);
-    report_.vertices = made.report.vertices;
-    report_.triangles = made.report.triangles;
-    report_.texture = options.texture;
-    report_.charts = made.report.charts;
-    report_.used = made.report.used;
-    report_.stretch = made.report.stretch;
-    report_.simplification_error = made.report.error;
-    return asset_files(made, request_.out, kind_, placement_is_input());
+  std::vector<FileBytes> textured(ExportReport& report, const std::string& kind) {
+    const int texture = request_.texture.value_or(preset_.texture);
+    if (!made_) {
+      const AssetOptions options{.faces = size_t(request_.faces.value_or(preset_.faces)),
+                                 .texture = texture,
+                                 .pictures = picture_kind(request_.image.value_or(preset_.image)),
+                                 .placement = placement()};
+      made_ = make_asset(device_, scene_, beside(report.out, "").filename().string(), options, progress_);
+    }
+    report.vertices = made_->report.vertices;
+    report.triangles = made_->report.triangles;
+    report.texture = texture;
+    report.charts = made_->report.charts;
+    report.used = made_->report.atlas.used;
+    report.stretch = made_->report.atlas.stretch;
+    report.flipped = made_->report.atlas.flipped;
+    report.overlapping = made_->report.atlas.overlapping;
+    report.simplification_error = made_->report.error;
+    return asset_files(*made_, report.out, kind, placement_is_input());
   }
 
   bool placement_is_input() const {
@@ -225,29 +246,29 @@ class Exporter {
   Vec3d seen_from_;
   const ExportRequest& request_;
   Progress& progress_;
-  std::string kind_;
   Preset preset_;
-  ExportReport report_;
+  std::optional<MadeAsset> made_;
+  Image environment_;
+  std::vector<FileBytes> files_;
 };
 
 }  // namespace
 
-ExportReport Session::export_to(const ExportRequest& request, Progress& progress) {
-  return threads_->run([&]() -> ExportReport {
-    check_request(request, request.out.extension().string());
-    require_writable(request.out);
+std::vector<ExportReport> Session::export_to(const ExportRequest& request, Progress& progress) {
+  return threads_->run([&]() -> std::vector<ExportReport> {
+    for (const fs::path& out : request.out) check_request(request, out);
+    check_sizes(request);
     const Scene scene = project().scene();
     const std::vector<View>& views = project().capture().views;
     const Vec3d seen_from = views.empty()
                                 ? scene.normalization.center + Vec3d{1, 1, 1} / scene.normalization.scale
                                 : views.front().camera.center;
     Exporter exporter(*device_, scene, *frames_, seen_from, request, progress);
-    const std::vector<FileBytes> files = exporter.files();
-    write_files_atomic(files);
+    std::vector<ExportReport> reports;
+    for (const fs::path& out : request.out) reports.push_back(exporter.make(out));
+    write_files_atomic(exporter.files());
     progress.report({"export", 1, 0, ""});
-    ExportReport report = std::move(exporter).report();
-    for (const FileBytes& f : files) report.files.push_back(f.path);
-    return report;
+    return reports;
   });
 }
 

@@ -92,6 +92,7 @@ ViewMesh view_mesh(const Scene& scene, size_t faces) {
   const Simplified simple = simplified(mesh, faces);
   ViewMesh out = compacted(simple.mesh.triangles, simple.vertex.size());
   for (uint32_t& v : out.vertices) v = simple.vertex[v];
+  out.error = double(simple.error) / scene.normalization.scale;
   return out;
 }
 

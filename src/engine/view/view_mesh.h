@@ -20,6 +20,7 @@ namespace cei3d {
 struct ViewMesh {
   std::vector<uint32_t> vertices;                  // #V, ids in the surface's mesh
   std::vector<std::array<uint32_t, 3>> triangles;  // #F, positions in `vertices`
+  double error = 0;                                // of the simplification, capture units
 };
 
 // faces: at most; 0: all. Error: the scene has no surface.

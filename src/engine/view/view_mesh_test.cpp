@@ -81,6 +81,10 @@ TEST(ViewMesh, FewerFacesKeepVerticesOfTheSurface) {
   for (const auto& t : view.triangles)
     for (const uint32_t v : t) ASSERT_LT(v, view.vertices.size());
   for (const uint32_t v : view.vertices) ASSERT_LT(v, scene.surface->mesh().positions.size());
+  Scene half = scene;
+  half.normalization.scale *= 2;
+  EXPECT_GT(view.error, 0);
+  EXPECT_NEAR(view_mesh(half, 2000).error, view.error / 2, 1e-6 * view.error);
 }
 
 TEST(ViewMesh, VerticesKnowTheirPart) {

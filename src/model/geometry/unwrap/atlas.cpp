@@ -53,6 +53,10 @@ class Flattener {
     }
   }
 
+  void flatten_halves(const std::vector<uint32_t>& faces, std::vector<FlatChart>& out) const {
+    for (auto& half : halves(faces)) flatten(std::move(half), out);
+  }
+
  private:
   // Joins corners across the edges inside of the piece.
   Patch2d patch_of(std::span<const uint32_t> faces, std::vector<uint32_t>& vertex) const {
@@ -124,8 +128,7 @@ class Flattener {
         return Vec2f{float(p.x), float(p.y)};
       };
       const Vec2f a = at(0), b = at(1), c = at(2);
-      for_each_texel(a, b, c, width, height, [&](int x, int y, float b1, float b2) {
-        if (edge_distance(a, b, c, b1, b2) < kInside) return;
+      for_each_inner_texel(a, b, c, width, height, [&](int x, int y) {
         const size_t i = size_t(y) * width + x;
         twice |= bool(seen[i]);
         seen[i] = true;
@@ -171,11 +174,7 @@ class Flattener {
   double density_;
 };
 
-std::vector<FlatChart> flat_charts(const Mesh& mesh, int texels) {
-  const FaceGraph graph = face_graph(mesh.positions, mesh.triangles);
-  const double area = std::accumulate(graph.areas.begin(), graph.areas.end(), 0.0);
-  if (!(area > 0)) fail("The surface has no triangles with an area, so it cannot have a texture.");
-  const Flattener flattener(mesh, graph, double(texels) / std::sqrt(area));
+std::vector<FlatChart> flat_charts(const FaceGraph& graph, const Flattener& flattener) {
   const std::vector<std::vector<uint32_t>> charts = grow_charts(graph).faces();
   std::vector<std::vector<FlatChart>> flat(charts.size());
   parallel_for(int(charts.size()), [&](int c) { flattener.flatten(charts[c], flat[c]); });
@@ -200,11 +199,29 @@ void add_chart(const FlatChart& chart, std::span<const Vec2d> uv, Atlas& out) {
 
 Vec2f texel_of(const Atlas& atlas, uint32_t v, int texels) { return atlas.uv[v] * float(texels); }
 
-}  // namespace
+// Calls use(x, y, face) for the texels whose centers lie within a triangle.
+template <class Use>
+void for_each_owned_texel(const Atlas& atlas, int texels, const Use& use) {
+  for (size_t f = 0; f < atlas.triangles.size(); ++f) {
+    const auto [i, j, k] = atlas.triangles[f];
+    const Vec2f a = texel_of(atlas, i, texels), b = texel_of(atlas, j, texels),
+                c = texel_of(atlas, k, texels);
+    for_each_inner_texel(a, b, c, texels, texels, [&](int x, int y) { use(x, y, f); });
+  }
+}
 
-Atlas unwrap(const Mesh& mesh, int texels) {
-  if (mesh.triangles.empty()) fail("There is no surface to lay a texture on: the mesh is empty.");
-  const std::vector<FlatChart> charts = flat_charts(mesh, texels);
+// Charts that have a texel in two triangles.
+std::vector<bool> overlapping_charts(const Atlas& atlas, int texels) {
+  std::vector<bool> seen(size_t(texels) * texels, false), out(atlas.charts, false);
+  for_each_owned_texel(atlas, texels, [&](int x, int y, size_t f) {
+    const size_t texel = size_t(y) * texels + x;
+    if (seen[texel]) out[atlas.chart[f]] = true;
+    seen[texel] = true;
+  });
+  return out;
+}
+
+Atlas atlas_of(const Mesh& mesh, const std::vector<FlatChart>& charts, int texels) {
   std::vector<FlatPiece> pieces;
   for (const FlatChart& c : charts) pieces.push_back(c.flat);
   const auto uv = packed(pieces, {texels, std::max(2, texels / kMipFloor)});
@@ -213,6 +230,29 @@ Atlas unwrap(const Mesh& mesh, int texels) {
   out.chart.resize(mesh.triangles.size());
   for (size_t c = 0; c < charts.size(); ++c) add_chart(charts[c], uv[c], out);
   return out;
+}
+
+}  // namespace
+
+Atlas unwrap(const Mesh& mesh, int texels) {
+  if (mesh.triangles.empty()) fail("There is no surface to lay a texture on: the mesh is empty.");
+  const FaceGraph graph = face_graph(mesh.positions, mesh.triangles);
+  const double area = std::accumulate(graph.areas.begin(), graph.areas.end(), 0.0);
+  if (!(area > 0)) fail("The surface has no triangles with an area, so it cannot have a texture.");
+  const Flattener flattener(mesh, graph, double(texels) / std::sqrt(area));
+  std::vector<FlatChart> charts = flat_charts(graph, flattener);
+  while (true) {
+    Atlas out = atlas_of(mesh, charts, texels);
+    const std::vector<bool> overlapping = overlapping_charts(out, texels);
+    std::vector<FlatChart> cut;  // folds thinner than flatten() sees
+    for (size_t c = 0; c < charts.size(); ++c)
+      if (overlapping[c] && charts[c].faces.size() > 1)
+        flattener.flatten_halves(charts[c].faces, cut);
+      else
+        cut.push_back(std::move(charts[c]));
+    if (cut.size() == charts.size()) return out;
+    charts = std::move(cut);
+  }
 }
 
 AtlasQuality quality_of(const Mesh& mesh, const Atlas& atlas, int texels) {
@@ -230,14 +270,11 @@ AtlasQuality quality_of(const Mesh& mesh, const Atlas& atlas, int texels) {
     const double area = signed_area(uv[b] - uv[a], uv[c] - uv[a]) / 2;
     q.used += area;
     q.flipped += area < 0;
-    const Vec2f p = texel_of(atlas, a, texels), r = texel_of(atlas, b, texels),
-                t = texel_of(atlas, c, texels);
-    for_each_texel(p, r, t, texels, texels, [&](int x, int y, float b1, float b2) {
-      if (edge_distance(p, r, t, b1, b2) < kInside) return;
-      uint8_t& n = owners[size_t(y) * texels + x];
-      q.overlapping += n++ == 1;
-    });
   }
+  for_each_owned_texel(atlas, texels, [&](int x, int y, size_t) {
+    uint8_t& n = owners[size_t(y) * texels + x];
+    q.overlapping += n++ == 1;
+  });
   return q;
 }
 

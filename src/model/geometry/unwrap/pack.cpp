@@ -126,7 +126,7 @@ struct Placement {
 };
 
 // The grid that pieces are placed in: `between` texels are kMargin cells.
-constexpr int kMargin = 2;
+constexpr int kMargin = 4;
 
 struct Packing {
   double scale;  // cells per unit of length
@@ -150,21 +150,25 @@ class Packer {
     add_order([](Vec2d size) { return std::min(size.x, size.y); });
   }
 
-  // The largest of a row of scales at which all pieces find a place, in one of the orders.
+  // The largest scale, up to kNear, at which all pieces find a place in one of the orders.
   Packing best(double total_area) const {
-    constexpr double kMax = 0.93, kFactor = 0.985;  // share of the area that is used, and between attempts
-    constexpr int kSteps = 300;
-    for (int step = 0; step < kSteps; ++step) {
-      std::vector<std::optional<Packing>> found(orders_.size());
-      const double scale = std::sqrt(kMax * std::pow(kFactor, step) / total_area) * cells_;
-      const std::vector<Footprints> prints = footprints_at(scale);
-      parallel_for(int(found.size()), [&](int k) { found[k] = attempt(scale, prints, orders_[k]); });
-      for (auto& f : found)
-        if (f) return std::move(*f);
+    constexpr double kFirst = 0.7, kMax = 0.95, kMin = 0.01;  // shares of the area that is used
+    constexpr double kNear = 1.01, kSmaller = 0.9;
+    std::optional<Packing> best;
+    double low = 0, high = kMax;
+    for (double share = kFirst; !best || high / low > kNear;
+         share = best ? std::sqrt(low * high) : kSmaller * share) {
+      if (share < kMin)
+        fail(
+            "The surface falls into {} pieces, too many for the texture; export fewer faces or a larger "
+            "texture.",
+            pieces_.size());
+      if (auto found = in_any_order(std::sqrt(share / total_area) * cells_))
+        best = std::move(found), low = share;
+      else
+        high = share;
     }
-    fail(
-        "The surface falls into {} pieces, too many for the texture; export fewer faces or a larger texture.",
-        pieces_.size());
+    return std::move(*best);
   }
 
   std::vector<Vec2d> placed(const Packing& packing, size_t i) const {
@@ -216,10 +220,19 @@ class Packer {
     return out;
   }
 
+  std::optional<Packing> in_any_order(double scale) const {
+    std::vector<std::optional<Packing>> found(orders_.size());
+    const std::vector<Footprints> prints = footprints_at(scale);
+    parallel_for(int(found.size()), [&](int k) { found[k] = attempt(scale, prints, orders_[k]); });
+    for (auto& f : found)
+      if (f) return std::move(f);
+    return std::nullopt;
+  }
+
   std::optional<Packing> attempt(double scale, const std::vector<Footprints>& prints,
                                  const std::vector<size_t>& order) const {
     const int inner = cells_ - 2;  // a cell along the rim stays free
-    BitGrid taken(inner, inner);
+    Taken taken(BitGrid(inner, inner));
     Packing out{scale, std::vector<Placement>(pieces_.size())};
     for (const size_t i : order) {
       const auto at = place(prints[i], taken);
@@ -230,16 +243,16 @@ class Packer {
   }
 
   // Where its top is the lowest.
-  static std::optional<Placement> place(const Footprints& prints, BitGrid& taken) {
+  static std::optional<Placement> place(const Footprints& prints, Taken& taken) {
     std::optional<Placement> best;
-    int top = taken.height() + 1;
+    int top = taken.cells().height() + 1;
     for (int k = 0; k < int(prints.size()); ++k) {
-      const auto at = lowest_place(taken, prints[k], top - prints[k].height);
+      const auto at = taken.lowest_place(prints[k], top - prints[k].height);
       if (!at) continue;
       best = Placement{at->x, at->y, k / 4, k % 4};
       top = at->y + prints[k].height;
     }
-    if (best) take(taken, prints[best->pose * 4 + best->quarters], {best->x, best->y}, kMargin);
+    if (best) taken.take(prints[best->pose * 4 + best->quarters], {best->x, best->y}, kMargin);
     return best;
   }
 

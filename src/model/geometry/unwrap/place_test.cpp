@@ -40,7 +40,7 @@ TEST(Place, TheLowestPlaceIsThatOfBruteForce) {
     const BitGrid piece = random_grid(1 + int(random() % 70), 1 + int(random() % 9), 20 + round % 70, random);
     const int limit = 10 + round % 40;
     const auto wanted = by_brute_force(taken, piece, limit);
-    const auto got = lowest_place(taken, footprint_of(piece), limit);
+    const auto got = Taken(taken).lowest_place(footprint_of(piece), limit);
     ASSERT_EQ(got.has_value(), wanted.has_value()) << round;
     if (!got) continue;
     ++found;
@@ -50,12 +50,35 @@ TEST(Place, TheLowestPlaceIsThatOfBruteForce) {
   EXPECT_GT(found, 50);
 }
 
+// One piece after the other, as an atlas is packed.
+TEST(Place, AGridThatFillsUpGivesThePlacesOfBruteForce) {
+  std::mt19937 random(6);
+  Taken taken(BitGrid(30, 60));
+  int found = 0;
+  for (int round = 0; round < 200; ++round) {
+    const BitGrid piece =
+        random_grid(3 + int(random() % 8), 3 + int(random() % 6), 60 + 40 * (round % 2), random);
+    const auto wanted = by_brute_force(taken.cells(), piece, 60);
+    const auto got = taken.lowest_place(footprint_of(piece), 60);
+    ASSERT_EQ(got.has_value(), wanted.has_value()) << round;
+    if (!got) continue;
+    ++found;
+    EXPECT_EQ(got->x, wanted->x) << round;
+    EXPECT_EQ(got->y, wanted->y) << round;
+    taken.take(footprint_of(piece), *got, round % 2);
+  }
+  EXPECT_GT(found, 10);
+  EXPECT_LT(found, 200);
+}
+
 TEST(Place, ATakenPlaceKeepsItsDistance) {
-  BitGrid taken(40, 40), piece(3, 3);
+  Taken taken(BitGrid(40, 40));
+  BitGrid piece(3, 3);
   piece.set(1, 1);
-  take(taken, footprint_of(piece), {10, 10}, 2);
+  taken.take(footprint_of(piece), {10, 10}, 2);
   for (int y = 0; y < 40; ++y)
-    for (int x = 0; x < 40; ++x) EXPECT_EQ(taken.at(x, y), std::max(std::abs(x - 11), std::abs(y - 11)) <= 2);
+    for (int x = 0; x < 40; ++x)
+      EXPECT_EQ(taken.cells().at(x, y), std::max(std::abs(x - 11), std::abs(y - 11)) <= 2);
 }
 
 }  // namespace

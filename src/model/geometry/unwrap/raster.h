@@ -25,14 +25,17 @@ void for_each_texel(Vec2f a, Vec2f b, Vec2f c, int width, int height, const Use&
     }
 }
 
-// How far, in texels, the point of a triangle with these barycentric coordinates lies from the nearest edge.
-// A point that is nearer than rounding errors of the corners may lie on the other side.
-inline float edge_distance(Vec2f a, Vec2f b, Vec2f c, float b1, float b2) {
-  const auto side = [](Vec2f p, Vec2f q) { return std::hypot(q.x - p.x, q.y - p.y); };
+// Calls use(x, y) for those texels that lie in the triangle for sure: others are nearer to an edge than
+// rounding errors of the corners.
+template <class Use>
+void for_each_inner_texel(Vec2f a, Vec2f b, Vec2f c, int width, int height, const Use& use) {
+  constexpr float kFromEdge = 0.02f;  // texels
   const float area = std::abs(signed_area(b - a, c - a));
-  return area * std::min({(1 - b1 - b2) / side(b, c), b1 / side(a, c), b2 / side(a, b)});
+  const auto least = [&](Vec2f p, Vec2f q) { return kFromEdge * std::hypot(q.x - p.x, q.y - p.y) / area; };
+  const float least_a = least(b, c), least_b = least(a, c), least_c = least(a, b);
+  for_each_texel(a, b, c, width, height, [&](int x, int y, float b1, float b2) {
+    if (1 - b1 - b2 >= least_a && b1 >= least_b && b2 >= least_c) use(x, y);
+  });
 }
-inline constexpr float kInside =
-    0.02f;  // texels from the edge at which a point lies within a triangle for sure
 
 }  // namespace cei3d
