@@ -15,7 +15,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kHeight = 32, kViews = 400;
+constexpr int kHeight = 24, kViews = 300;
 
 SgMixture studio() {
   return {{{normalize(Vec3f{1, 0.4f, 1}), 30, {6, 5.5f, 5}},
@@ -65,18 +65,19 @@ std::vector<SplitRow> samples_of(const Material& m, Vec3f diffuse, Vec3f metal) 
   return rows;
 }
 
-BestMaterials best_of(const std::vector<SplitRow>& rows) {
+BestMaterials best_of(BlurLadder& blurs, const std::vector<SplitRow>& rows) {
   std::vector<Vec3f> colors;
   for (const SplitRow& r : rows) colors.push_back(r.color);
-  BlurLadder blurs(kHeight);
   const LitSamples lit(1, rows, colors, blurs, image_of(studio()));
   return best_materials(lit.evidence({Vec3f{1, 1, 1}}).of(0));
 }
 
 TEST(MaterialEvidence, FindsTheRoughnessAndTheKindOfAMaterial) {
+  BlurLadder blurs(kHeight);
   for (const float roughness : {0.22f, 0.4f, 0.65f}) {
-    const BestMaterials dielectric = best_of(samples_of({roughness, 0.5f, 0}, {0.15f, 0.1f, 0.05f}, {})),
-                        metal = best_of(samples_of({roughness, 0.5f, 1}, {}, {0.9f, 0.6f, 0.3f}));
+    const Material matte{roughness, 0.5f, 0}, metallic{roughness, 0.5f, 1};
+    const BestMaterials dielectric = best_of(blurs, samples_of(matte, {0.15f, 0.1f, 0.05f}, {})),
+                        metal = best_of(blurs, samples_of(metallic, {}, {0.9f, 0.6f, 0.3f}));
     EXPECT_NEAR(dielectric.dielectric_roughness / roughness, 1, 0.12);
     EXPECT_NEAR(metal.metal_roughness / roughness, 1, 0.12);
     EXPECT_LT(dielectric.dielectric_error, 0.05f * dielectric.metal_error);
