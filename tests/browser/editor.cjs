@@ -22,7 +22,7 @@ async function firstSession(page, url) {
   await accessible(page, 'open');
 
   const at = await middle(page);
-  check('the object is in the picture', at.n > 2000);
+  check('the object is in the picture', at.n > 800);
   const packs = asked.map((p) => p.startsWith('/api/pack/')), photos = asked.map((p) => p.startsWith('/api/photo/'));
   check('what the picture needs is asked for before photographs', packs.lastIndexOf(true) >= 4 && (photos.indexOf(true) < 0 || photos.indexOf(true) > packs.lastIndexOf(true)));
   await drawsItself(page);

@@ -52,7 +52,7 @@ async function hasNoWebGl({ page, server }) {
   await page.goto(server.url.replace('/#', '/?frames#'));
   await settled(page);
   check('the page does not draw by itself', await page.evaluate(() => globalThis.cei3d.stage.live.renderer === null));
-  check('the object is in the picture', (await middle(page)).n > 2000);
+  check('the object is in the picture', (await middle(page)).n > 800);
   const quick = page.evaluate(() => new Promise((resolve) => {
     const { stage } = globalThis.cei3d, { finish } = stage, frames = [];
     stage.finish = (frame) => { frames.push(stage.asked?.kind); finish.call(stage, frame); if (stage.settled()) resolve(frames); };

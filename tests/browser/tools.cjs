@@ -196,7 +196,7 @@ async function lays(page) {
   await page.keyboard.press('Enter');
   await steps(page, done + 1);
   await settled(page);
-  const [color] = await pixels(page, [[at.fx + 12, at.fy + 6]]);
+  const [color] = await pixels(page, [[at.fx + 12 * at.scale, at.fy + 6 * at.scale]]);
   check(`its color is there: ${color}`, color[2] > color[0] + 40 && color[2] > color[1] + 20);
   await picture(page, '7-pressed');
 }
