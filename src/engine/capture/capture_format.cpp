@@ -112,7 +112,8 @@ std::filesystem::path own_file(const std::filesystem::path& root, const std::fil
                               way = std::filesystem::absolute(normal).lexically_relative(home);
   if (way.empty() || *way.begin() == "..")
     fail(
-        "{} names {}, which lies outside of the capture's folder and of the one that holds it. Move that file "
+        "{} names {}, which lies outside of the capture's folder and of the one that holds it. Move that "
+        "file "
         "into the capture's folder, or a link to it.",
         where, normal.string());
   return normal;
