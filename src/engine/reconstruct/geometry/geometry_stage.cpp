@@ -22,7 +22,9 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
       work_([this] { return std::make_unique<Work>(options_); }),
       radiance_gradients_(options.rays / kChunkRays) {
   add_mlp_params(radiance_config(options), radiance_, seed + 1);
-  Optimizer::Group tables{options.table_rate}, layers{options.layer_rate};
+  Optimizer::Group layers{.rate = options.layer_rate, .beta2 = options.adam.beta2, .eps = options.adam.eps},
+      tables = layers;
+  tables.rate = options.table_rate;
   tables.skip_zero = true;
   optimizer_.add(sdf_.params(), "encoding/", tables);
   optimizer_.add(sdf_.params(), "layer", layers);

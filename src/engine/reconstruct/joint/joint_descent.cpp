@@ -22,7 +22,13 @@ constexpr float kAlong = 1e-3f;       // step of differences along rays
 enum : uint64_t { kSamples = 0x301a, kMask = 0x3a5c, kBox = 0xb0c5, kNear = 0x9ea2 };
 
 FieldTrainer::Options sdf_rates(const JointOptions& o) {
-  return {.encoding_rate = o.rates.sdf_tables, .network_rate = o.rates.sdf_layers};
+  return {.encoding_rate = o.rates.sdf_tables,
+          .network_rate = o.rates.sdf_layers,
+          .beta2 = o.adam.beta2,
+          .eps = o.adam.eps};
+}
+FieldTrainer::Options albedo_rates(const JointOptions& o) {
+  return {.beta2 = o.adam.beta2, .eps = o.adam.eps};
 }
 
 }  // namespace
@@ -35,9 +41,9 @@ JointDescent::JointDescent(const Device& device, const AppearanceInput& input, c
       options_(options),
       object_(std::move(start)),
       sdf_trainer_(object_.sdf, sdf_rates(options)),
-      albedo_trainer_(object_.albedo, {}),
-      material_(object_.material, options.rates.material, options.learn_specular),
-      light_(object_.light, options.keep_power),
+      albedo_trainer_(object_.albedo, albedo_rates(options)),
+      material_(object_.material, options.rates.material, options.learn_specular, options.adam),
+      light_(object_.light, options.keep_power, options.adam),
       transport_(input.surface, {}, progress) {
   object_.material = material_.field();
   for (uint32_t i = 0; i < pixels.pixels().size(); ++i)

@@ -12,7 +12,9 @@
 #include "engine/reconstruct/joint/material_descent.h"
 #include "engine/reconstruct/joint/traced_hits.h"
 #include "engine/reconstruct/pixels.h"
+#include "engine/reconstruct/rate_schedule.h"
 #include "engine/render/lighting.h"
+#include "model/field/adam_constants.h"
 
 namespace cei3d {
 
@@ -21,13 +23,15 @@ enum class ColorLoss { display, linear };  // Huber of display-encoded colors; L
 // Of Adam, at the beginning. 0: held constant.
 struct JointRates {
   float sdf_tables = 1e-4f, sdf_layers = 5e-5f;
-  float albedo = 0.05f;    // times the default rates of FieldTrainer
+  float albedo = 0.05f;    // times those of the appearance stage: 1e-2 of tables, 2e-3 of layers
   float material = 1e-3f;  // of logits, see MaterialDescent
-  float light = 0.3f;      // times the rates of LightDescent
+  float light = 0.3f;      // times the rates of LightDescent: 1e-2 of logarithms, 2e-3 of axes
 };
 
 struct JointOptions {
   JointRates rates;
+  RateSchedule schedule;
+  AdamConstants adam;
   ColorLoss color = ColorLoss::display;
   int rays = 4096;             // on the object, per step
   float eikonal = 0.1f;        // weight of (|gradient| - 1)^2 [paper eq. 16]

@@ -12,8 +12,6 @@
 namespace cei3d {
 namespace {
 
-constexpr double kWarmUp = 0.05;  // share of the descent at rising rates: Adam's first steps have full length
-constexpr double kLastRate = 0.1;
 constexpr float kBehind = 2.5f;  // rays of samples begin so far before them: outside the unit sphere
 
 }  // namespace
@@ -30,8 +28,7 @@ JointObject descend_jointly(const Device& device, const AppearanceInput& input, 
     const double time = options.seconds > 0 ? (options.clock() - begin) / options.seconds : 0,
                  u = std::max(time, double(step) / options.steps);
     if (u >= 1) break;
-    const JointLoss loss = descent.step(
-        step, float(std::min(1.0, (u + 1.0 / options.steps) / kWarmUp) * std::pow(kLastRate, u)));
+    const JointLoss loss = descent.step(step, float(rate_at(options.descent.schedule, u, options.steps)));
     if (options.show) options.show(descent.lighting(), descent.object().albedo, descent.object().material);
     sum.color += loss.color, sum.eikonal += loss.eikonal, sum.mask += loss.mask;
     if (++summed < 50) continue;

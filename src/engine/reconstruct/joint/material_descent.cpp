@@ -22,12 +22,13 @@ float roughness_from(float share) { return kMinRoughness + (1 - kMinRoughness) *
 
 }  // namespace
 
-MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool learn_specular)
+MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool learn_specular,
+                                 AdamConstants adam)
     : field_(start), rate_(rate) {
   if (start.varying()) {
     varying_ = std::make_shared<Field>(*start.varying());
     field_ = {start.mean(), varying_};
-    trainer_ = std::make_unique<FieldTrainer>(*varying_, FieldTrainer::Options{});
+    trainer_ = std::make_unique<FieldTrainer>(*varying_, FieldTrainer::Options{.beta2 = adam.beta2, .eps = adam.eps});
     return;
   }
   const Material& m = start.mean();
@@ -38,7 +39,7 @@ MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool le
   learned_[0] = true;
   learned_[1] = learn_specular;
   learned_[2] = m.metalness > 0 && m.metalness < 1;
-  optimizer_.add(params_, "", {.rate = kFullRate, .eps = 1e-12f});
+  optimizer_.add(params_, "", {.rate = kFullRate, .beta2 = adam.beta2, .eps = adam.eps});
 }
 
 Material MaterialDescent::from_logits() const {
