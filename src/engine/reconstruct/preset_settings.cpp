@@ -151,7 +151,8 @@ void add_appearance(const Group<AppearanceOptions>& g) {
 
 void add_joint_rates(const Group<JointOptions>& g) {
   g.part("rates.", &JointOptions::rates)
-      .add("sdf_tables", &JointRates::sdf_tables, {0, 1}, "", "Rate of the hash tables of the distance", kAdam)
+      .add("sdf_tables", &JointRates::sdf_tables, {0, 1}, "", "Rate of the hash tables of the distance",
+           kAdam)
       .add("sdf_layers", &JointRates::sdf_layers, {0, 1}, "", "Rate of the layers of the distance", kAdam)
       .add("albedo", &JointRates::albedo, {0, 100}, "1e-2 of tables, 2e-3 of layers", "Rates of the albedo",
            kAdam)
@@ -168,8 +169,7 @@ void add_joint_rates(const Group<JointOptions>& g) {
 
 void add_joint(const Group<JointOptions>& g) {
   add_joint_rates(g);
-  g.choice("color", &JointOptions::color,
-           {{ColorLoss::display, "display"}, {ColorLoss::linear, "linear"}},
+  g.choice("color", &JointOptions::color, {{ColorLoss::display, "display"}, {ColorLoss::linear, "linear"}},
            "Loss of colors: Huber of display-encoded ones, or L1 of linear ones", "[paper eq. 16]")
       .add("rays", &JointOptions::rays, {1, 1e6}, "rays a step", "On the object", kPaper)
       .add("eikonal", &JointOptions::eikonal, {0, 100}, "", "Weight of (|gradient| - 1)^2", kPaper)
@@ -195,9 +195,21 @@ void add_meshing(const Group<MeshingOptions>& g) {
            "Smaller components are dropped");
 }
 
+void add_beginning(const Group<Preset>& g) {
+  g.choice("start", &Preset::start,
+           {{StartChoice::trials, "trials"}, {StartChoice::hull, "hull"}, {StartChoice::sphere, "sphere"}},
+           "The best of three start shapes where there is time to try them, the visual hull, or a sphere",
+           "[Atzmon and Lipman 2020]")
+      .choice("stages", &Preset::stages, {{StageChoice::all, "all"}, {StageChoice::joint, "joint"}},
+              "Surface, then light and material; or all of them by the joint descent alone, from a sphere",
+              "[paper eq. 16]")
+      .add("start_radius", &Preset::start_radius, {0.05, 0.95}, "object radii", "Of the sphere");
+}
+
 void add_run(const Group<Preset>& g) {
   g.add("iterations", &Preset::iterations, {1, 1e8}, "steps",
-        "Of the geometry stage, without --time or --iterations", kPaper)
+        "Of the geometry stage, or of the joint descent if it is alone, without --time or --iterations",
+        kPaper)
       .add("polish_steps", &Preset::polish_steps, {0, 1e6}, "steps", "Of a round of polishing, at most")
       .add("joint_steps", &Preset::joint_steps, {0, 1e6}, "steps",
            "Of a last descent on everything together, at most; 0: none", "[paper eq. 16]")
@@ -221,6 +233,7 @@ void add_run(const Group<Preset>& g) {
 SettingTable<Preset> make_table() {
   SettingTable<Preset> table;
   const Group<Preset> preset(table, "", [](Preset& p) -> Preset& { return p; });
+  add_beginning(preset);
   add_run(preset);
   add_geometry(preset.part("geometry.", &Preset::geometry));
   const Group<TrialOptions> trial = preset.part("trial.", &Preset::trial);

@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/math/rng.h"
 #include "core/math/sub_pixel.h"
+#include "model/field/sphere_start.h"
 
 namespace cei3d {
 
@@ -30,6 +31,8 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
   optimizer_.add(sdf_.params(), "layer", layers);
   optimizer_.add(radiance_, "layer", layers);
 }
+
+void GeometryStage::begin_as_sphere(float radius) { cei3d::begin_as_sphere(device_, sdf_, radius, seed_); }
 
 void GeometryStage::prefit(const StartShape& start, const Progress& progress) {
   cei3d::prefit(device_, sdf_, start.distance,

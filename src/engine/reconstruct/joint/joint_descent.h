@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "core/base/progress.h"
@@ -63,8 +64,9 @@ inline constexpr size_t kHeldOutStride = 20;
 
 class JointDescent {
  public:
-  // input: the surface, which stands for visibility and bounces throughout, and its hits. pixels: whose empty
-  // pixels the mask loss takes. All must outlive the object.
+  // input: the surface, which stands for visibility and bounces throughout, and its hits; or no surface and
+  // object_rays(), which are then traced through the field alone and lit as if the object hid nothing from
+  // itself. pixels: whose empty pixels the mask loss takes. All must outlive the object.
   JointDescent(const Device&, const AppearanceInput& input, const PixelStore& pixels, JointObject start,
                const JointOptions&, const Progress&);
 
@@ -72,6 +74,10 @@ class JointDescent {
   JointLoss step(int step, float rate);
   const JointObject& object() const { return object_; }
   const Lighting& lighting() const { return *lighting_; }  // of the last step
+
+  // Object and moments. Without a surface, what goes on from them is what would have gone on.
+  void save(Tensors& out) const;
+  void load(const Tensors& in);
 
  private:
   friend struct JointDescentProbe;  // the gradient test sees gradients before they are used
@@ -86,6 +92,8 @@ class JointDescent {
   void update(const Shaded&, float rate);
 
   void relight();
+  std::vector<IncidentLight<float>> light_at(const HitBatch&) const;
+  Ray empty_ray(int step, int i) const;
   std::vector<uint32_t> choose_samples(int step) const;
   double accumulate_color(const TracedHits&, const std::vector<uint32_t>& samples, Shaded&, ValueGrads&);
   double color_loss(uint32_t sample, Vec3f radiance, Vec3f& d_radiance) const;
@@ -103,7 +111,7 @@ class JointDescent {
   FieldTrainer sdf_trainer_, albedo_trainer_;
   MaterialDescent material_;
   LightDescent light_;
-  Transport transport_;
+  std::optional<Transport> transport_;  // none without a surface
   std::unique_ptr<Lighting> lighting_;
   std::vector<uint32_t> empty_;  // pixels without any object
   Vec3f box_min_, box_max_;      // of the object

@@ -14,6 +14,8 @@ struct JointStageOptions {
   double seconds = 0;  // > 0: time limit
   Clock clock = steady_seconds;
   ShowAppearance show{};  // may be empty
+  double spent = 0;       // s of `seconds` that earlier parts of the descent took
+  DescentStore store{};
 };
 
 // Error: interrupted.

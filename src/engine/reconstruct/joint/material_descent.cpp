@@ -28,7 +28,8 @@ MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool le
   if (start.varying()) {
     varying_ = std::make_shared<Field>(*start.varying());
     field_ = {start.mean(), varying_};
-    trainer_ = std::make_unique<FieldTrainer>(*varying_, FieldTrainer::Options{.beta2 = adam.beta2, .eps = adam.eps});
+    trainer_ = std::make_unique<FieldTrainer>(*varying_,
+                                              FieldTrainer::Options{.beta2 = adam.beta2, .eps = adam.eps});
     return;
   }
   const Material& m = start.mean();
@@ -75,6 +76,27 @@ void MaterialDescent::update(const Device& device, float rate) {
     return;
   }
   optimizer_.step(device, rate * rate_ / kFullRate);
+  field_ = MaterialField(from_logits());
+}
+
+void MaterialDescent::save(Tensors& out, const std::string& prefix) const {
+  if (varying_) {
+    varying_->params().save(out, prefix);
+    trainer_->save(out, prefix + "_adam");
+    return;
+  }
+  params_.save(out, prefix);
+  optimizer_.save(out, prefix + "_adam");
+}
+
+void MaterialDescent::load(const Tensors& in, const std::string& prefix) {
+  if (varying_) {
+    varying_->params().load(in, prefix);
+    trainer_->load(in, prefix + "_adam");
+    return;
+  }
+  params_.load(in, prefix);
+  optimizer_.load(in, prefix + "_adam");
   field_ = MaterialField(from_logits());
 }
 

@@ -5,6 +5,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 
 #include "model/field/adam_constants.h"
 #include "model/field/optimizer.h"
@@ -22,6 +23,9 @@ class MaterialDescent {
   // d_material: #positions, dL/d(material there).
   void accumulate(const Device&, std::span<const Vec3f> positions, std::span<const Material> d_material);
   void update(const Device&, float rate);
+
+  void save(Tensors& out, const std::string& prefix) const;
+  void load(const Tensors& in, const std::string& prefix);
 
  private:
   friend struct JointDescentProbe;
