@@ -84,10 +84,27 @@ bool has_finer_meshing(const Preset& preset) {
   return preset.finer_meshing.resolution > preset.meshing.resolution;
 }
 
+int iterations_of(const ReconstructOptions& options, const Preset& preset) {
+  return options.iterations > 0 ? options.iterations : preset.iterations;
+}
+
+// The joint descent alone; t: 0: by steps.
+Plan joint_plan(const ReconstructOptions& options, const Preset& preset, double t, const Costs& c) {
+  Plan p;
+  p.stages = StageChoice::joint;
+  p.joint_steps = iterations_of(options, preset);
+  p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
+  p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
+  p.reserve = std::min(std::max(kReserve * c.surface, kReserveShare * t), (1 - kMinGeometryShare) * t);
+  p.joint = t - p.reserve - p.finer_mesh;
+  return p;
+}
+
 Plan untimed_plan(const ReconstructOptions& options, const Preset& preset) {
   Plan p;
-  p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
-  p.trial_steps = p.iterations >= preset.trials_from_iterations ? preset.trial.steps : 0;
+  p.iterations = iterations_of(options, preset);
+  const bool tries = preset.start == StartChoice::trials && p.iterations >= preset.trials_from_iterations;
+  p.trial_steps = tries ? preset.trial.steps : 0;
   p.polish_rounds = p.iterations >= preset.polish_from_iterations ? 2 : 0;
   p.polish_steps = preset.polish_steps / 2;
   p.joint_steps = p.polish_rounds > 0 ? preset.joint_steps / 2 : 0;
@@ -182,7 +199,8 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, b
   p.reserve = std::max(kReserve * c.surface, kReserveShare * t);
   while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
   p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
-  p.trial_steps = affordable_trial_steps(kTrialsShare * p.geometry, preset.trial.steps, c);
+  if (preset.start == StartChoice::trials)
+    p.trial_steps = affordable_trial_steps(kTrialsShare * p.geometry, preset.trial.steps, c);
   return p;
 }
 
@@ -191,9 +209,12 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, b
 Plan plan_of(const ReconstructOptions& options, const Preset& given, size_t pixels, const Rates& rates) {
   Preset preset = given;
   if (options.joint_steps >= 0) preset.joint_steps = options.joint_steps;
-  if (options.seconds <= 0 || options.iterations > 0) return untimed_plan(options, preset);
-  return timed_plan(options.seconds, preset, pixels, costs_of(rates, preset, pixels),
-                    options.joint_steps > 0);
+  const bool timed = options.seconds > 0 && options.iterations <= 0;
+  const Costs costs = timed ? costs_of(rates, preset, pixels) : Costs{};
+  if (preset.stages == StageChoice::joint)
+    return joint_plan(options, preset, timed ? options.seconds : 0, costs);
+  return timed ? timed_plan(options.seconds, preset, pixels, costs, options.joint_steps > 0)
+               : untimed_plan(options, preset);
 }
 
 Json to_json(const Plan& p) {

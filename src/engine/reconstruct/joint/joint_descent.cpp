@@ -10,6 +10,7 @@
 #include "engine/reconstruct/appearance/pixel_points.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
 #include "model/geometry/shape/trace_field.h"
+#include "model/geometry/shape/visual_hull.h"
 
 namespace cei3d {
 namespace {
@@ -22,7 +23,13 @@ constexpr float kAlong = 1e-3f;       // step of differences along rays
 enum : uint64_t { kSamples = 0x301a, kMask = 0x3a5c, kBox = 0xb0c5, kNear = 0x9ea2 };
 
 FieldTrainer::Options sdf_rates(const JointOptions& o) {
-  return {.encoding_rate = o.rates.sdf_tables, .network_rate = o.rates.sdf_layers};
+  return {.encoding_rate = o.rates.sdf_tables,
+          .network_rate = o.rates.sdf_layers,
+          .beta2 = o.adam.beta2,
+          .eps = o.adam.eps};
+}
+FieldTrainer::Options albedo_rates(const JointOptions& o) {
+  return {.beta2 = o.adam.beta2, .eps = o.adam.eps};
 }
 
 }  // namespace
@@ -35,13 +42,16 @@ JointDescent::JointDescent(const Device& device, const AppearanceInput& input, c
       options_(options),
       object_(std::move(start)),
       sdf_trainer_(object_.sdf, sdf_rates(options)),
-      albedo_trainer_(object_.albedo, {}),
-      material_(object_.material, options.rates.material, options.learn_specular),
-      light_(object_.light, options.keep_power),
-      transport_(input.surface, {}, progress) {
+      albedo_trainer_(object_.albedo, albedo_rates(options)),
+      material_(object_.material, options.rates.material, options.learn_specular, options.adam),
+      light_(object_.light, options.keep_power, options.adam),
+      box_min_{-1, -1, -1},
+      box_max_{1, 1, 1} {
   object_.material = material_.field();
   for (uint32_t i = 0; i < pixels.pixels().size(); ++i)
     if (pixels.pixels()[i].srgba[3] == 0) empty_.push_back(i);
+  if (!input.surface) return;
+  transport_.emplace(input.surface, std::vector<uint8_t>{}, progress);
   box_min_ = box_max_ = input.surface->mesh().positions.at(0);
   for (const Vec3f p : input.surface->mesh().positions)
     for (int c = 0; c < 3; ++c) {
@@ -51,7 +61,7 @@ JointDescent::JointDescent(const Device& device, const AppearanceInput& input, c
 }
 
 JointLoss JointDescent::step(int step, float rate) {
-  if (step % options_.refresh == 0 || !lighting_) relight();
+  if (!lighting_ || (input_.surface && step % options_.refresh == 0)) relight();
   Shaded shaded;
   const JointLoss loss = accumulate(step, shaded);
   update(shaded, rate);
@@ -59,13 +69,21 @@ JointLoss JointDescent::step(int step, float rate) {
 }
 
 void JointDescent::relight() {
+  if (!input_.surface) {
+    lighting_ = std::make_unique<Lighting>(device_, nullptr, object_.light, std::vector<VertexLight>{});
+    return lighting_->use_hit_normals();
+  }
   const std::vector<Vec3f>& vertices = input_.surface->mesh().positions;
   lighting_ = std::make_unique<Lighting>(
       device_, input_.surface, object_.light,
-      turned_vertex_lights(transport_, object_.light,
+      turned_vertex_lights(*transport_, object_.light,
                            {object_.albedo.eval3(device_, vertices), object_.material.at(device_, vertices)},
                            input_.samples.turned.turns));
   lighting_->use_hit_normals();
+}
+
+std::vector<IncidentLight<float>> JointDescent::light_at(const HitBatch& batch) const {
+  return input_.surface ? lighting_->incident_light(batch) : lighting_->open_light(batch);
 }
 
 std::vector<uint32_t> JointDescent::choose_samples(int step) const {
@@ -82,7 +100,7 @@ JointLoss JointDescent::accumulate(int step, Shaded& shaded) {
   const std::vector<uint32_t> samples = choose_samples(step);
   std::vector<Hit> near;
   for (const uint32_t s : samples) near.push_back(input_.samples.hits[s]);
-  const TracedHits traced(device_, object_.sdf, near);
+  const TracedHits traced(device_, object_.sdf, near, bool(input_.surface));
   JointLoss loss;
   ValueGrads by_values;
   loss.color = accumulate_color(traced, samples, shaded, by_values);
@@ -103,11 +121,12 @@ double JointDescent::accumulate_color(const TracedHits& traced, const std::vecto
   shaded.hits.assign(traced.hits().begin(), traced.hits().end());
   const std::vector<Vec3f> positions = positions_of(shaded.hits);
   // What the object hides from itself is known on the mesh, which the field may have left: rays begin there.
-  for (size_t i = 0; i < seen.size(); ++i) shaded.hits[i].position = input_.samples.hits[seen[i]].position;
+  for (size_t i = 0; i < seen.size() && input_.surface; ++i)
+    shaded.hits[i].position = input_.samples.hits[seen[i]].position;
   shaded.materials = object_.material.at(device_, positions);
   shaded.views = views_of(input_.samples.turned, seen);
   const HitBatch batch = batch_of(shaded);
-  const std::vector<IncidentLight<float>> light = lighting_->incident_light(batch);
+  const std::vector<IncidentLight<float>> light = light_at(batch);
   const std::vector<ShadingTerms<float>> terms = lighting_->terms(batch, light);
   std::vector<float> footprints;
   std::vector<Vec3f> points;
@@ -171,13 +190,25 @@ std::vector<float> JointDescent::depth_grads(const TracedHits& traced, std::span
   return out;
 }
 
+// Around the object within the rim of pixels that the store holds; without a surface, which may be anywhere
+// at first, through any background pixel.
+Ray JointDescent::empty_ray(int step, int i) const {
+  constexpr int kTries = 64;
+  Rng rng(options_.seed ^ kMask, uint64_t(step), uint64_t(i));
+  for (int tries = 0; tries < kTries && !input_.surface; ++tries) {
+    const uint32_t view = rng.below(uint32_t(pixels_.cameras().size()));
+    const Camera& camera = pixels_.cameras()[view];
+    const uint32_t x = rng.below(uint32_t(camera.width)), y = rng.below(uint32_t(camera.height));
+    if (pixels_.masks()[view][size_t(y) * size_t(camera.width) + x] == kBackground)
+      return camera.ray(float(x) + 0.5f, float(y) + 0.5f);
+  }
+  return pixels_.ray(pixels_.pixels()[empty_[rng.below(uint32_t(empty_.size()))]]);
+}
+
 // Rays around the object must not meet it; rays through it that missed must. Both at their nearest points.
 double JointDescent::accumulate_mask(int step, const std::vector<Ray>& missed, ValueGrads& by_values) const {
   std::vector<Ray> rays;
-  for (int i = 0; i < options_.mask_rays && !empty_.empty(); ++i) {
-    Rng rng(options_.seed ^ kMask, uint64_t(step), uint64_t(i));
-    rays.push_back(pixels_.ray(pixels_.pixels()[empty_[rng.below(uint32_t(empty_.size()))]]));
-  }
+  for (int i = 0; i < options_.mask_rays && !empty_.empty(); ++i) rays.push_back(empty_ray(step, i));
   const size_t empty = rays.size();
   rays.insert(rays.end(), missed.begin(), missed.end());
   const std::vector<FieldTrace> lowest = lowest_along(device_, object_.sdf, rays);
@@ -230,6 +261,27 @@ void JointDescent::update(const Shaded& shaded, float rate) {
     object_.light = light_.light();
     lighting_->set_lobes(object_.light);
   }
+}
+
+void JointDescent::save(Tensors& out) const {
+  object_.sdf.params().save(out, "sdf");
+  sdf_trainer_.save(out, "sdf_adam");
+  object_.albedo.params().save(out, "albedo");
+  albedo_trainer_.save(out, "albedo_adam");
+  material_.save(out, "material");
+  light_.save(out, "light");
+}
+
+void JointDescent::load(const Tensors& in) {
+  object_.sdf.params().load(in, "sdf");
+  sdf_trainer_.load(in, "sdf_adam");
+  object_.albedo.params().load(in, "albedo");
+  albedo_trainer_.load(in, "albedo_adam");
+  material_.load(in, "material");
+  object_.material = material_.field();
+  light_.load(in, "light");
+  object_.light = light_.light();
+  lighting_ = nullptr;
 }
 
 }  // namespace cei3d

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "core/base/progress.h"
@@ -12,7 +13,9 @@
 #include "engine/reconstruct/joint/material_descent.h"
 #include "engine/reconstruct/joint/traced_hits.h"
 #include "engine/reconstruct/pixels.h"
+#include "engine/reconstruct/rate_schedule.h"
 #include "engine/render/lighting.h"
+#include "model/field/adam_constants.h"
 
 namespace cei3d {
 
@@ -21,13 +24,15 @@ enum class ColorLoss { display, linear };  // Huber of display-encoded colors; L
 // Learning rates of Adam at the beginning. 0: held constant.
 struct JointRates {
   float sdf_tables = 1e-4f, sdf_layers = 5e-5f;
-  float albedo = 0.05f;    // times the default rates of FieldTrainer
+  float albedo = 0.05f;    // times those of the appearance stage: 1e-2 of tables, 2e-3 of layers
   float material = 1e-3f;  // of logits, see MaterialDescent
-  float light = 0.3f;      // times the rates of LightDescent
+  float light = 0.3f;      // times the rates of LightDescent: 1e-2 of logarithms, 2e-3 of axes
 };
 
 struct JointOptions {
   JointRates rates;
+  RateSchedule schedule;
+  AdamConstants adam;
   ColorLoss color = ColorLoss::display;
   int rays = 4096;             // on the object, per step
   float eikonal = 0.1f;        // weight of (|gradient| - 1)^2 [paper eq. 16]
@@ -59,8 +64,9 @@ inline constexpr size_t kHeldOutStride = 20;
 
 class JointDescent {
  public:
-  // input: the surface, which stands for visibility and bounces throughout, and its hits. pixels: whose empty
-  // pixels the mask loss takes. All must outlive the object.
+  // input: the surface, which stands for visibility and bounces throughout, and its hits; or no surface and
+  // object_rays(), which are then traced through the field alone and lit as if the object hid nothing from
+  // itself. pixels: whose empty pixels the mask loss takes. All must outlive the object.
   JointDescent(const Device&, const AppearanceInput& input, const PixelStore& pixels, JointObject start,
                const JointOptions&, const Progress&);
 
@@ -68,6 +74,10 @@ class JointDescent {
   JointLoss step(int step, float rate);
   const JointObject& object() const { return object_; }
   const Lighting& lighting() const { return *lighting_; }  // of the last step
+
+  // Object and moments. Without a surface, what goes on from them is what would have gone on.
+  void save(Tensors& out) const;
+  void load(const Tensors& in);
 
  private:
   friend struct JointDescentProbe;  // the gradient test sees gradients before they are used
@@ -82,6 +92,8 @@ class JointDescent {
   void update(const Shaded&, float rate);
 
   void relight();
+  std::vector<IncidentLight<float>> light_at(const HitBatch&) const;
+  Ray empty_ray(int step, int i) const;
   std::vector<uint32_t> choose_samples(int step) const;
   double accumulate_color(const TracedHits&, const std::vector<uint32_t>& samples, Shaded&, ValueGrads&);
   double color_loss(uint32_t sample, Vec3f radiance, Vec3f& d_radiance) const;
@@ -99,7 +111,7 @@ class JointDescent {
   FieldTrainer sdf_trainer_, albedo_trainer_;
   MaterialDescent material_;
   LightDescent light_;
-  Transport transport_;
+  std::optional<Transport> transport_;  // none without a surface
   std::unique_ptr<Lighting> lighting_;
   std::vector<uint32_t> empty_;  // pixels without any object
   Vec3f box_min_, box_max_;      // of the object

@@ -20,12 +20,14 @@ float share(float logit) { return Sigmoid::eval(logit, 1).value; }
 
 }  // namespace
 
-MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool learn_specular)
+MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool learn_specular,
+                                 AdamConstants adam)
     : field_(start), rate_(rate) {
   if (start.varying()) {
     varying_ = std::make_shared<Field>(*start.varying());
     field_ = {start.mean(), varying_};
-    trainer_ = std::make_unique<FieldTrainer>(*varying_, FieldTrainer::Options{});
+    trainer_ = std::make_unique<FieldTrainer>(*varying_,
+                                              FieldTrainer::Options{.beta2 = adam.beta2, .eps = adam.eps});
     return;
   }
   const Material& m = start.mean();
@@ -36,7 +38,7 @@ MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool le
   learned_[0] = true;
   learned_[1] = learn_specular;
   learned_[2] = m.metalness > 0 && m.metalness < 1;
-  optimizer_.add(params_, "", {.rate = kFullRate, .eps = 1e-12f});
+  optimizer_.add(params_, "", {.rate = kFullRate, .beta2 = adam.beta2, .eps = adam.eps});
 }
 
 Material MaterialDescent::from_logits() const {
@@ -67,6 +69,27 @@ void MaterialDescent::update(const Device& device, float rate) {
     return;
   }
   optimizer_.step(device, rate * rate_ / kFullRate);
+  field_ = MaterialField(from_logits());
+}
+
+void MaterialDescent::save(Tensors& out, const std::string& prefix) const {
+  if (varying_) {
+    varying_->params().save(out, prefix);
+    trainer_->save(out, prefix + "_adam");
+    return;
+  }
+  params_.save(out, prefix);
+  optimizer_.save(out, prefix + "_adam");
+}
+
+void MaterialDescent::load(const Tensors& in, const std::string& prefix) {
+  if (varying_) {
+    varying_->params().load(in, prefix);
+    trainer_->load(in, prefix + "_adam");
+    return;
+  }
+  params_.load(in, prefix);
+  optimizer_.load(in, prefix + "_adam");
   field_ = MaterialField(from_logits());
 }
 
