@@ -104,6 +104,20 @@ std::string view_name(const std::string& file_path, Split split) {
   return inside ? name.generic_string() : fmt::format("{}/{}", split_name(split), name.filename().string());
 }
 
+std::filesystem::path own_file(const std::filesystem::path& root, const std::filesystem::path& file,
+                               const std::string& where) {
+  std::filesystem::path home = std::filesystem::absolute(root / ".").lexically_normal().parent_path();
+  if (home.parent_path() != home.root_path()) home = home.parent_path();
+  const std::filesystem::path normal = file.lexically_normal(),
+                              way = std::filesystem::absolute(normal).lexically_relative(home);
+  if (way.empty() || *way.begin() == "..")
+    fail(
+        "{} names {}, which lies outside of the capture's folder and of the one that holds it. Move that file "
+        "into the capture's folder, or a link to it.",
+        where, normal.string());
+  return normal;
+}
+
 std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   std::error_code error;

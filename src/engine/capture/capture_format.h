@@ -86,6 +86,11 @@ std::string with_slashes(std::string path);
 // The name of a view whose image is file_path, relative to some folder: without suffix. View names become
 // paths below an output folder and never lead out of it.
 std::string view_name(const std::string& file_path, Split split);
+// `file`, which a capture in the folder root names. Error: it lies neither in that folder nor in the one that
+// holds it, so that opening a capture of somebody else reads no other files. Links are followed. where: for
+// the error message.
+std::filesystem::path own_file(const std::filesystem::path& root, const std::filesystem::path& file,
+                               const std::string& where);
 // Image files in a folder, sorted; none if the folder does not exist.
 std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder);
 // Size of an image file; {0, 0} if it is missing or broken.

@@ -272,13 +272,40 @@ TEST(Capture, BadCameraFilesAreErrors) {
               HasSubstr("Known: nerf-synthetic, physg, idr"));
 }
 
+Json frames_of(const std::string& file_path) {
+  return {{"w", 8}, {"h", 8}, {"fl_x", 8.0}, {"frames", {nerf_frame(file_path, Camera())}}};
+}
+
 TEST(Capture, NamesNeverLeadOutOfAFolder) {
   const TempFolder temp;
-  for (const char* path : {"../../etc/r_1", "/abs/r_1", "a/../../r_1"}) {
-    const Json j{{"w", 8}, {"h", 8}, {"fl_x", 8.0}, {"frames", {nerf_frame(path, Camera())}}};
-    write_file_atomic(temp.path() / "transforms_train.json", j.dump());
+  for (const char* path : {"../r_1", "a/../../r_1"}) {
+    write_file_atomic(temp.path() / "transforms_train.json", frames_of(path).dump());
     EXPECT_EQ(load_capture(temp.path()).views[0].name, "train/r_1") << path;
   }
+}
+
+// A capture may name images in its own folder or beside it, and none elsewhere, whether they exist or not.
+TEST(Capture, FilesElsewhereAreNotOpened) {
+  const TempFolder temp;
+  const std::filesystem::path home = temp.path() / "mine/capture", secret = temp.path() / "secret.png";
+  write_png(secret, Image(8, 8, 3, 0.5f));
+  write_png(temp.path() / "mine/images/a.png", Image(8, 8, 3, 0.5f));
+  const auto load = [&](const Json& j, const std::string& file) {
+    write_file_atomic(home / file, j.dump());
+    return load_capture(home).views[0];
+  };
+  for (const std::string& path :
+       {std::string("../../secret.png"), secret.string(), std::string("/etc/passwd"),
+        std::string("a/../../../secret"), std::string("..\\..\\secret.png")}) {
+    const auto says = AllOf(HasSubstr("frame 0 of"), HasSubstr("outside of the capture's folder"));
+    EXPECT_THAT(message([&] { load(frames_of(path), "transforms.json"); }), says) << path;
+    Json masked = frames_of("a.png");
+    masked["frames"][0]["mask_path"] = path;
+    EXPECT_THAT(message([&] { load(masked, "transforms.json"); }), says) << path;
+  }
+  const std::filesystem::path beside = temp.path() / "mine/images/a.png";
+  EXPECT_EQ(load(frames_of("../images/a.png"), "transforms.json").image_path.filename(), "a.png");
+  EXPECT_EQ(load(frames_of(beside.string()), "transforms.json").image_path, beside);
 }
 
 TEST(Capture, NanInJsonIsReadAsNan) {

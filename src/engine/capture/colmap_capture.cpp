@@ -55,7 +55,7 @@ struct Place {
 Place place_of(const fs::path& model, const ColmapModel& m) {
   const fs::path start = fs::absolute(model).lexically_normal();
   fs::path base = start;
-  for (int up = 0; up < 4 && !base.empty(); ++up, base = base.parent_path())
+  for (int up = 0; up < 4 && base != base.root_path(); ++up, base = base.parent_path())
     for (const char* name : {"images", "image", "input", "rgb", "images_2", "images_4", "images_8", "."})
       for (size_t i = 0; i < m.images.size(); i += std::max<size_t>(1, m.images.size() / 8))
         if (const fs::path folder = (base / name).lexically_normal(); fs::exists(folder / m.images[i].name))
@@ -65,13 +65,12 @@ Place place_of(const fs::path& model, const ColmapModel& m) {
   return {root / "images", root};
 }
 
-View view_of(const ColmapImage& image, const ColmapModel& m, const fs::path& images,
-             const std::string& where) {
+View view_of(const ColmapImage& image, const ColmapModel& m, const Place& place, const std::string& where) {
   const auto camera = m.cameras.find(image.camera);
   if (camera == m.cameras.end()) fail("{} names camera {}, which is not in the model.", where, image.camera);
   View view;
   view.name = view_name(image.name, Split::train);
-  view.image_path = (images / image.name).lexically_normal();
+  view.image_path = own_file(place.root, place.images / image.name, where);
   view.camera = camera->second.k;
   view.camera.world_from_cam = transpose(image.cam_from_world);
   view.camera.center = -(view.camera.world_from_cam * image.translation);
@@ -97,7 +96,7 @@ Capture load_colmap(const fs::path& path) {
   capture.root = place.root;
   for (const ColmapImage& image : model.images)
     capture.views.push_back(
-        view_of(image, model, place.images, fmt::format("Image {} of {}", image.name, folder.string())));
+        view_of(image, model, place, fmt::format("Image {} of {}", image.name, folder.string())));
   return capture;
 }
 

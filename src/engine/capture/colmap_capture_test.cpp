@@ -59,6 +59,16 @@ TEST_F(Colmap, OfSeveralModelsTheOneWithMostImages) {
   EXPECT_THAT(capture.warnings.at(0), AllOf(HasSubstr("2 models"), HasSubstr("6 of 8")));
 }
 
+TEST_F(Colmap, ImagesElsewhereAreNotOpened) {
+  std::vector<TestView> views = views_;
+  write_images(folder_ / "home" / "capture" / "images", ball_, views);
+  views[2].stem = "../../../secret";
+  write_png(folder_ / "secret.png", Image(8, 8, 3, 0.5f));
+  write_colmap_txt(folder_ / "home" / "capture" / "sparse" / "0", ball_, views);
+  EXPECT_THAT(message([&] { load_capture(folder_ / "home" / "capture"); }),
+              AllOf(HasSubstr("secret.png"), HasSubstr("outside of the capture's folder")));
+}
+
 struct LensCase {
   TestColmap model;
   const char* name;

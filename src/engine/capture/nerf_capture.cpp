@@ -37,9 +37,8 @@ std::vector<CameraFile> camera_files(const fs::path& path) {
   return files;
 }
 
-// The image that file_path names, as written or with a suffix; the first guess when no file exists.
-fs::path picture_path(const fs::path& folder, const std::string& file_path) {
-  const fs::path base = folder / fs::path(file_path).lexically_normal();
+// The image of a name, as written or with a suffix; the first guess when no file exists.
+fs::path picture_path(const fs::path& base) {
   if (has_image_suffix(base)) return base;
   for (const char* suffix : {".png", ".jpg", ".jpeg", ".exr", ".PNG", ".JPG", ".JPEG", ".EXR"})
     if (fs::exists(base.string() + suffix)) return base.string() + suffix;
@@ -159,9 +158,9 @@ View read_frame(const Json& frame, Split split, const fs::path& folder, const st
   View view;
   view.split = split;
   view.name = view_name(file_path, split);
-  view.image_path = picture_path(folder, file_path);
+  view.image_path = picture_path(own_file(folder, folder / file_path, where));
   if (frame.contains("mask_path") && frame["mask_path"].is_string())
-    view.mask_path = folder / fs::path(with_slashes(frame["mask_path"])).lexically_normal();
+    view.mask_path = own_file(folder, folder / with_slashes(frame["mask_path"]), where);
   set_pose(view.camera, matrix_of(frame["transform_matrix"], fmt::format("transform_matrix of {}", where)));
   return view;
 }

@@ -16,11 +16,12 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "engine/io/image_limits.h"
 
 namespace cei3d {
 namespace {
 
-constexpr int64_t kMaxSide = 65535, kMaxPixels = int64_t(1) << 28;
+constexpr int kMaxChannels = 128;  // of all that a file holds; most are not read
 
 class Source : public Imf::IStream {
  public:
@@ -61,16 +62,25 @@ class Sink : public Imf::OStream {
 int64_t width_of(const Imath::Box2i& b) { return int64_t(b.max.x) - b.min.x + 1; }
 int64_t height_of(const Imath::Box2i& b) { return int64_t(b.max.y) - b.min.y + 1; }
 
-void require_sane(const Imath::Box2i& box) {
-  const int64_t w = width_of(box), h = height_of(box);
-  if (w < 1 || h < 1 || w > kMaxSide || h > kMaxSide || w * h > kMaxPixels)
-    throw std::runtime_error("its size is impossible");
-}
-
 int channel_count(const Imf::ChannelList& list) {
   int n = 0;
   for (auto i = list.begin(); i != list.end(); ++i) ++n;
   return n;
+}
+
+// Opening a file takes memory for rows of its stated width: before that, its header alone.
+void require_readable(const std::string& bytes, const std::string& name) {
+  constexpr size_t kStart = 8;  // after the magic number and the version
+  Source source(bytes, name);
+  int version = 0;
+  if (bytes.size() < kStart) throw std::runtime_error("it ends too early");
+  std::memcpy(&version, bytes.data() + 4, 4);
+  source.seekg(kStart);
+  Imf::Header header;
+  header.readFrom(source, version);
+  for (const Imath::Box2i& box : {header.dataWindow(), header.displayWindow()})
+    readable_size(width_of(box), height_of(box), bytes.size(), name);
+  if (channel_count(header.channels()) > kMaxChannels) throw std::runtime_error("it has too many channels");
 }
 
 std::vector<std::string> wanted_channels(const Imf::ChannelList& list) {
@@ -120,11 +130,12 @@ Image shift_to_display(const Image& data, const Imath::Box2i& from, const Imath:
 template <class F>
 auto reading(const std::string& bytes, const std::string& name, F use) {
   try {
+    require_readable(bytes, name);
     Source source(bytes, name);
     Imf::InputFile file(source, 1);
-    require_sane(file.header().dataWindow());
-    require_sane(file.header().displayWindow());
     return use(file);
+  } catch (const Error&) {
+    throw;
   } catch (const std::exception& e) {
     fail("{} is a broken or unusual EXR: {}. Copy or render it again.", name, e.what());
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "engine/io/image_limits.h"
 
 namespace cei3d {
 namespace {
@@ -40,6 +41,7 @@ class Reader {
     return {r, g, b, e};
   }
   size_t left() const { return bytes_.size() - position_; }
+  ImageSize readable(ImageSize s) const { return readable_size(s.width, s.height, bytes_.size(), name_); }
 
  private:
   const std::string& bytes_;
@@ -64,8 +66,7 @@ Header read_header(Reader& in) {
   ImageSize& size = header.size;
   if (std::sscanf(in.line().c_str(), "-Y %d +X %d", &size.height, &size.width) != 2)
     in.broken("its rows don't run from the top");
-  if (size.width < 1 || size.height < 1 || size.width > 65535 || size.height > 65535)
-    in.broken("its size is impossible");
+  size = in.readable(size);
   return header;
 }
 
@@ -131,8 +132,7 @@ ImageSize hdr_size(const std::string& bytes, const std::string& name) {
 Image decode_hdr(const std::string& bytes, const std::string& name) {
   Reader in(bytes, name);
   const Header header = read_header(in);
-  // A row takes at least 4 bytes (old runs) or 2 bytes per 127 pixels and component; larger sizes are
-  // impossible.
+  // A row takes at least 4 bytes.
   if (in.left() < size_t(header.size.height) * 4) in.broken("it ends too early");
   Image image(header.size.width, header.size.height, 3);
   std::vector<Rgbe> row(size_t(header.size.width));

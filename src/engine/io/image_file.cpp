@@ -12,6 +12,7 @@
 #include "engine/io/color_profile.h"
 #include "engine/io/exr_file.h"
 #include "engine/io/hdr_file.h"
+#include "engine/io/image_limits.h"
 #include "engine/io/jpeg_file.h"
 #include "engine/io/png_file.h"
 #include "engine/io/tiff_file.h"
@@ -29,9 +30,7 @@ ImageSize png_size(const std::string& bytes, const std::string& name) {
     for (size_t k = 0; k < 4; ++k) v = v << 8 | uint8_t(bytes[i + k]);
     return v;
   };
-  if (number(16) - 1 >= 65535 || number(20) - 1 >= 65535)
-    fail("{} is a broken PNG: its size is impossible.", name);
-  return {int(number(16)), int(number(20))};
+  return readable_size(number(16), number(20), bytes.size(), name);
 }
 
 // Decoding by powf would be most of the loading time; a table of the few values of 8-bit files is exact.

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "engine/io/image_limits.h"
 
 namespace cei3d {
 namespace {
@@ -34,7 +35,7 @@ ImageSize read_header(void* handle, const std::string& bytes, const std::string&
                           &space) != 0 ||
       size.width < 1 || size.height < 1)  // a file cut before its frame header is no error to the library
     broken(name, handle);
-  return size;
+  return readable_size(size.width, size.height, bytes.size(), name);
 }
 
 }  // namespace

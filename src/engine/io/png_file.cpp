@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/base/error.h"
+#include "engine/io/image_limits.h"
 
 namespace cei3d {
 namespace {
@@ -56,7 +57,7 @@ struct Profile {
 };
 
 void read_header(png_structp png, png_infop info, Header* h) {
-  png_set_user_limits(png, 65535, 65535);
+  png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
   png_read_info(png, info);
   if (png_get_color_type(png, info) == PNG_COLOR_TYPE_GRAY_ALPHA ||
       (png_get_color_type(png, info) == PNG_COLOR_TYPE_GRAY && png_get_valid(png, info, PNG_INFO_tRNS)))
@@ -72,7 +73,7 @@ void read_header(png_structp png, png_infop info, Header* h) {
 }
 
 void read_profile(png_structp png, png_infop info, Profile* out) {
-  png_set_user_limits(png, 65535, 65535);
+  png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
   png_read_info(png, info);
   png_charp name = nullptr;
   int compression = 0;
@@ -172,11 +173,8 @@ uint32_t quantize(float v, float top) {
 Image decode_png(const std::string& bytes, const std::string& name) {
   Reader reader(bytes, name);
   const Header h = reader.header();
-  const size_t size = size_t(h.width) * h.height * h.channels * (h.bits / 8);
-  // Deflate compresses at most 1032:1 and expansion (1-bit palettes to RGBA) adds a factor of 32; larger
-  // sizes are impossible.
-  if (size > bytes.size() * 33'100) fail("{} is a broken PNG: it is far too short for its size.", name);
-  std::vector<uint8_t> data(size);
+  readable_size(h.width, h.height, bytes.size(), name);
+  std::vector<uint8_t> data(size_t(h.width) * h.height * h.channels * (h.bits / 8));
   reader.rows(row_pointers(data, h.height).data());
 
   Image image(int(h.width), int(h.height), h.channels);

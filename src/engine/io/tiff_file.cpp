@@ -11,6 +11,7 @@
 
 #include "core/base/bytes.h"
 #include "core/base/error.h"
+#include "engine/io/image_limits.h"
 
 namespace cei3d {
 namespace {
@@ -61,8 +62,7 @@ class Reader {
   }
   ImageSize size() const {
     const auto w = field<uint32_t>(TIFFTAG_IMAGEWIDTH), h = field<uint32_t>(TIFFTAG_IMAGELENGTH);
-    if (w - 1 >= 65535 || h - 1 >= 65535) broken();
-    return {int(w), int(h)};
+    return readable_size(w, h, memory_.bytes->size(), name_);
   }
 
  private:
@@ -121,7 +121,7 @@ TiffImage decode_tiff(const std::string& bytes, const std::string& name) {
   const Layout l = layout_of(reader, name);
   const size_t size = size_t(l.size.width) * l.size.height * size_t(l.channels) * size_t(l.bits / 8);
   const auto line = size_t(TIFFScanlineSize64(reader.get()));
-  if (size > bytes.size() * 33'100 || line != size / size_t(l.size.height)) reader.broken();
+  if (line != size / size_t(l.size.height)) reader.broken();
   TiffImage out{Image(l.size.width, l.size.height, l.channels), l.floating, {}};
   std::vector<uint8_t> row(line);
   for (int y = 0; y < l.size.height; ++y) {

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/base/error.h"
+#include "engine/io/image_limits.h"
 
 namespace cei3d {
 namespace {
@@ -40,6 +41,8 @@ std::string encode_webp(const Image& image, int quality) {
 
 Image decode_webp(const std::string& bytes, const std::string& name) {
   int width = 0, height = 0;
+  if (WebPGetInfo(data_of(bytes), bytes.size(), &width, &height))
+    readable_size(width, height, bytes.size(), name);
   const Bytes rgb(WebPDecodeRGB(data_of(bytes), bytes.size(), &width, &height));
   if (!rgb) fail("{} is a broken or unusual WebP. Copy it again.", name);
   Image image(width, height, 3);

@@ -13,7 +13,8 @@ namespace cei3d {
 inline constexpr int kLossless = -1;
 std::string encode_webp(const Image& image, int quality);
 
-// 3 channels, values as stored, /255. Error: names `name`, not a whole WebP.
+// For tests. 3 channels, values as stored, /255. Errors: name `name`; not a whole WebP, or hardly more than
+// one color.
 Image decode_webp(const std::string& bytes, const std::string& name);
 
 }  // namespace cei3d
