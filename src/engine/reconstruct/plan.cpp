@@ -51,6 +51,7 @@ constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // minimum sha
 struct Costs {
   double trial_step;      // of the three trials
   double trials_besides;  // start shapes and the first fits to them
+  double brief_surface;   // with brief_hits
   double surface, full_appearance, brief_appearance, refinement, finer_mesh;
   double look;      // of a polishing round
   double polish;    // all steps of a round
@@ -68,6 +69,7 @@ Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
   c.trial_step = r.trial_step * 3 * kGeometryStep;
   c.trials_besides = r.trial_step * (3 * trial.geometry.prefit_steps + kStartShapes);
   c.surface = mesh(preset.meshing) + hits * r.hit_traced;
+  c.brief_surface = mesh(preset.meshing) + brief_hits * r.hit_traced;
   c.full_appearance = kFullSplit * r.hit_shaded + hits * hit + kFullDescent * r.albedo_step;
   c.brief_appearance = kBriefSplit * r.hit_shaded + brief_hits * hit + kBriefDescent * r.albedo_step;
   c.look = c.surface + c.brief_appearance;
@@ -95,7 +97,7 @@ Plan joint_plan(const ReconstructOptions& options, const Preset& preset, double 
   p.joint_steps = iterations_of(options, preset);
   p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
   p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
-  p.reserve = std::min(std::max(kReserve * c.surface, kReserveShare * t), (1 - kMinGeometryShare) * t);
+  p.reserve = std::min(std::max(kReserve * c.brief_surface, kReserveShare * t), (1 - kMinGeometryShare) * t);
   p.joint = t - p.reserve - p.finer_mesh;
   return p;
 }

@@ -171,6 +171,12 @@ void add_joint(const Group<JointOptions>& g) {
   add_joint_rates(g);
   g.choice("color", &JointOptions::color, {{ColorLoss::display, "display"}, {ColorLoss::linear, "linear"}},
            "Loss of colors: Huber of display-encoded ones, or L1 of linear ones", "[paper eq. 16]")
+      .add("weight_norm", &JointOptions::weight_norm, {}, "",
+           "Normalize the weights of the distance field's layers", "[Salimans and Kingma 2016]")
+      .choice("specular", &JointOptions::specular,
+              {{SpecularTerm::split_sum, "split-sum"}, {SpecularTerm::single_sg, "single-sg"}},
+              "Specular term: the shading model's, or one spherical Gaussian without occlusion",
+              "[paper eq. 14]")
       .add("rays", &JointOptions::rays, {1, 1e6}, "rays a step", "On the object", kPaper)
       .add("eikonal", &JointOptions::eikonal, {0, 100}, "", "Weight of (|gradient| - 1)^2", kPaper)
       .add("box_points", &JointOptions::box_points, {0, 1e6}, "points a step",

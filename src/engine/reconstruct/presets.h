@@ -47,8 +47,9 @@ struct Preset {
   size_t max_residual_hits = 4000000;
 };
 
-// "fast" (hash grids), "balanced" (larger ones, for longer), "paper" (the paper's networks: 8x512 SDF, 4x512
-// albedo, frequency encodings). Usage error for any other name.
+// "fast" (hash grids), "balanced" (larger ones, for longer), "paper" (the paper's own method: the joint
+// descent alone on networks over frequencies, 8x512 for the SDF and 4x512 for the albedo). Usage error for
+// any other name.
 Preset preset_by_name(const std::string& name);
 
 // Sets the hash grids and meshes from the size of a pixel on the object (unit frame): all those of a

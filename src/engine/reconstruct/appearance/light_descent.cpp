@@ -191,7 +191,11 @@ void LightDescent::restore_power() {
 void LightDescent::step(const Device& device, const HitBatch& batch, std::span<const Vec3f> d_irradiance,
                         std::span<const Vec3f> d_reflected, float rate) {
   const std::vector<float> lobes = lobe_planes();
-  set_gradient(lobes, lobes_grad(device, {lobes.data(), count_, padded_}, batch, d_irradiance, d_reflected));
+  step(device, lobes_grad(device, {lobes.data(), count_, padded_}, batch, d_irradiance, d_reflected), rate);
+}
+
+void LightDescent::step(const Device& device, const std::vector<float>& d_lobes, float rate) {
+  set_gradient(lobe_planes(), d_lobes);
   optimizer_.step(device, rate);
   normalize_lobes();
   if (keep_power_) restore_power();

@@ -26,6 +26,8 @@ class LightDescent {
   // One step at `rate` times the full rates. d_irradiance, d_reflected: as in lobes_grad().
   void step(const Device&, const HitBatch&, std::span<const Vec3f> d_irradiance,
             std::span<const Vec3f> d_reflected, float rate);
+  // d_lobes: as lobes_grad() has it, of the present lobes.
+  void step(const Device&, const std::vector<float>& d_lobes, float rate);
   SgMixture light() const;
 
   void save(Tensors& out, const std::string& prefix) const;

@@ -11,15 +11,21 @@
 #include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/appearance/light_descent.h"
 #include "engine/reconstruct/joint/material_descent.h"
+#include "engine/reconstruct/joint/sg_shading.h"
 #include "engine/reconstruct/joint/traced_hits.h"
 #include "engine/reconstruct/pixels.h"
 #include "engine/reconstruct/rate_schedule.h"
 #include "engine/render/lighting.h"
 #include "model/field/adam_constants.h"
+#include "model/field/weight_norm.h"
 
 namespace cei3d {
 
 enum class ColorLoss { display, linear };  // Huber of display-encoded colors; L1 of linear ones, the paper's
+
+// The shading model's own (core/math/shading.h), or one spherical Gaussian without occlusion or reflections
+// of the object in itself (sg_shading.h).
+enum class SpecularTerm { split_sum, single_sg };
 
 // Learning rates of Adam at the beginning. 0: held constant.
 struct JointRates {
@@ -33,7 +39,9 @@ struct JointOptions {
   JointRates rates;
   RateSchedule schedule;
   AdamConstants adam;
+  bool weight_norm = false;  // of the distance field's layers; its hash tables then stay as they are
   ColorLoss color = ColorLoss::display;
+  SpecularTerm specular = SpecularTerm::split_sum;
   int rays = 4096;             // on the object, per step
   float eikonal = 0.1f;        // weight of (|gradient| - 1)^2 [paper eq. 16]
   int box_points = 1024;       // random points of the object's box at which it is taken
@@ -51,6 +59,8 @@ struct JointObject {
   Field sdf, albedo;
   MaterialField material;
   SgMixture light;
+  // Of a single spherical Gaussian; none: made of `material`, which follows it as nearest_material().
+  std::optional<SgMaterial> gloss = {};
 };
 
 // Means over rays and points, weighted.
@@ -74,6 +84,9 @@ class JointDescent {
   JointLoss step(int step, float rate);
   const JointObject& object() const { return object_; }
   const Lighting& lighting() const { return *lighting_; }  // of the last step
+  // PSNR (dB, display-encoded) of the descent's own shading on samples that it leaves out, at most
+  // 20,000 of them. Rays that miss the surface are black.
+  double held_out_psnr();
 
   // Object and moments. Without a surface, what goes on from them is what would have gone on.
   void save(Tensors& out) const;
@@ -93,6 +106,8 @@ class JointDescent {
 
   void relight();
   std::vector<IncidentLight<float>> light_at(const HitBatch&) const;
+  std::vector<ShadingTerms<float>> terms_at(const HitBatch&, const std::vector<IncidentLight<float>>&);
+  void make_gloss();
   Ray empty_ray(int step, int i) const;
   std::vector<uint32_t> choose_samples(int step) const;
   double accumulate_color(const TracedHits&, const std::vector<uint32_t>& samples, Shaded&, ValueGrads&);
@@ -109,8 +124,10 @@ class JointDescent {
   JointOptions options_;
   JointObject object_;
   FieldTrainer sdf_trainer_, albedo_trainer_;
+  std::optional<WeightNorm> sdf_norm_;  // of the distance field
   MaterialDescent material_;
   LightDescent light_;
+  std::unique_ptr<SgShading> gloss_;    // null: split sum
   std::optional<Transport> transport_;  // none without a surface
   std::unique_ptr<Lighting> lighting_;
   std::vector<uint32_t> empty_;  // pixels without any object

@@ -9,8 +9,8 @@
 namespace cei3d {
 namespace {
 
-// Lengths of the stages of a run by steps, in steps of the descent; of the start, in seconds, too.
-constexpr double kStartLength = 0.1, kSurfaceLength = 30, kFinerMeshLength = 60;
+// Lengths of the stages of a run by steps, in steps of the descent.
+constexpr double kSurfaceLength = 30, kFinerMeshLength = 60;
 
 void keep(JointObject object, Scene& scene) {
   scene.sdf = std::make_shared<const Field>(std::move(object.sdf));
@@ -20,17 +20,15 @@ void keep(JointObject object, Scene& scene) {
 }
 
 // How the light moves has to be given: without a surface it cannot be found.
-void begin(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
-  if (run.light)
-    state.scene.light_frame =
-        light_frame(*run.light, run.views.train.cameras(), to_float(normalize(run.capture.up)));
-  state.light_frame_known = true;
-  keep(start_values(run.device, run.preset, run.seed), state.scene);
-  check_cancelled(run.progress);
+LightFrame given_light_frame(const RunContext& run) {
+  if (!run.light) return {};
+  return light_frame(*run.light, run.views.train.cameras(), to_float(normalize(run.capture.up)));
 }
 
 void descend(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
   Scene& scene = state.scene;
+  scene.light_frame = given_light_frame(run);
+  state.light_frame_known = true;
   const PixelStore& pixels = run.views.train;
   const ObjectHits rays = object_rays(pixels, {run.preset.max_hits});
   const auto turns = turns_of(scene.light_frame, pixels.cameras());
@@ -49,7 +47,7 @@ void descend(const RunContext& run, RunState& state, const Stage::Checkpoint& ch
     last_save = clock();
   };
   keep(descend_jointly(run.device, {nullptr, rays.samples(turns.get())}, pixels,
-                       {*scene.sdf, *scene.albedo, scene.material, scene.light}, options, run.progress),
+                       start_values(run.device, run.preset, run.seed), options, run.progress),
        scene);
   state.descent = {};
 }
@@ -57,7 +55,7 @@ void descend(const RunContext& run, RunState& state, const Stage::Checkpoint& ch
 void make_surface(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   Scene& scene = state.scene;
   const SurfaceAndHits made = extract_surface_and_hits(run.device, *scene.sdf, run.preset.meshing,
-                                                       run.views.train, run.preset.max_hits, run.progress);
+                                                       run.views.train, run.preset.brief_hits, run.progress);
   scene.surface = made.surface;
   scene.handlers = handlers_of(made.hits, run.views.footprint);
 }
@@ -66,8 +64,7 @@ void make_surface(const RunContext& run, RunState& state, const Stage::Checkpoin
 
 std::vector<Stage> joint_stages(const Plan& plan, const Stage::Run& make_finer_mesh) {
   const bool timed = plan.joint > 0;
-  std::vector<Stage> stages{{"start", kStartLength, begin},
-                            {"joint", timed ? plan.joint : double(plan.joint_steps), descend},
+  std::vector<Stage> stages{{"joint", timed ? plan.joint : double(plan.joint_steps), descend},
                             {"surface", timed ? plan.reserve : kSurfaceLength, make_surface}};
   if (plan.has_finer_mesh)
     stages.push_back({"finer mesh", timed ? plan.finer_mesh : kFinerMeshLength, make_finer_mesh});

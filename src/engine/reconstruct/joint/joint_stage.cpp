@@ -74,6 +74,7 @@ JointObject descend_jointly(const Device& device, const AppearanceInput& input, 
     if (options.show) options.show(descent.lighting(), descent.object().albedo, descent.object().material);
     summary.add(loss, step, u);
   }
+  progress.log(Json{{"stage", "joint descent"}, {"held_out_psnr", descent.held_out_psnr()}}.dump());
   return descent.object();
 }
 

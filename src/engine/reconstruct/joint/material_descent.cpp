@@ -5,18 +5,12 @@
 
 #include "core/math/activation.h"
 #include "core/math/roughness.h"
+#include "engine/reconstruct/joint/logit.h"
 
 namespace cei3d {
 namespace {
 
 constexpr float kFullRate = 1e-2f;
-constexpr float kMargin = 1e-3f;  // logits of 0 and 1 do not exist
-
-float logit(float x) {
-  const float y = clamp(x, kMargin, 1 - kMargin);
-  return std::log(y / (1 - y));
-}
-float share(float logit) { return Sigmoid::eval(logit, 1).value; }
 
 }  // namespace
 
@@ -44,8 +38,8 @@ MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool le
 Material MaterialDescent::from_logits() const {
   const Material& m = field_.mean();
   const float* v = logits_->value.data();
-  return {learned_[0] ? roughness_of_share(share(v[0])) : m.roughness, learned_[1] ? share(v[1]) : m.specular,
-          learned_[2] ? share(v[2]) : m.metalness};
+  return {learned_[0] ? roughness_of_share(share_of_logit(v[0])) : m.roughness,
+          learned_[1] ? share_of_logit(v[1]) : m.specular, learned_[2] ? share_of_logit(v[2]) : m.metalness};
 }
 
 void MaterialDescent::accumulate(const Device& device, std::span<const Vec3f> positions,

@@ -13,8 +13,10 @@ namespace {
 
 constexpr int kLobes = 128;
 constexpr float kSharpness = 20, kSharpnessSpread = 100;  // of lobes of light: 20 + |100 N(0, 1)|
-constexpr float kLeastGloss = 95, kMostGloss = 125;       // sharpness of the material's lobe
-enum : uint64_t { kLight = 0x11947, kGloss = 0x61055 };   // keys of random numbers: what they choose
+constexpr float kLeastSpecular = 0.18f, kMostSpecular = 0.26f;
+constexpr float kMetalness = 0.05f;                      // not stated; 0 would stay
+constexpr float kLeastGloss = 95, kMostGloss = 125;      // sharpness of the material's lobe
+enum : uint64_t { kLight = 0x11947, kGloss = 0x61055 };  // keys of random numbers: what they choose
 
 SgMixture gray_light(uint64_t seed) {
   SgMixture light;
@@ -29,17 +31,22 @@ SgMixture gray_light(uint64_t seed) {
   return scaled(std::move(light), {factor, factor, factor});
 }
 
-// A Gaussian of this sharpness about the normal stands for GGX of this roughness. [Wang et al. 2009]
-float roughness_of_gloss(float sharpness) { return std::pow(2 / sharpness, 0.25f); }
+SgMaterial random_gloss(uint64_t seed) {
+  Rng rng(seed ^ kGloss, 0, 0);
+  const float sharpness = kLeastGloss + (kMostGloss - kLeastGloss) * rng.uniform(),
+              peak = sharpness / (2 * kPi),
+              specular = kLeastSpecular + (kMostSpecular - kLeastSpecular) * rng.uniform();
+  return {sharpness, {peak, peak, peak}, roughness_of_sharpness(sharpness), specular, kMetalness};
+}
 
 }  // namespace
 
 JointObject start_values(const Device& device, const Preset& preset, uint64_t seed) {
-  Rng rng(seed ^ kGloss, 0, 0);
-  Material material;
-  material.roughness = roughness_of_gloss(kLeastGloss + (kMostGloss - kLeastGloss) * rng.uniform());
+  const SgMaterial gloss = random_gloss(seed);
+  Material material;  // of a dielectric, whose specular albedo is not that of the paper's
+  material.roughness = roughness_of_sharpness(gloss.sharpness);
   JointObject o{Field(preset.geometry.sdf, seed), Field(preset.appearance.albedo, seed + 1), material,
-                gray_light(seed)};
+                gray_light(seed), gloss};
   begin_as_sphere(device, o.sdf, preset.start_radius, seed);
   return o;
 }

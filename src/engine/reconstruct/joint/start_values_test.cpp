@@ -41,6 +41,11 @@ TEST(StartValues, AreAsThePaperStatesThem) {
   const double gloss = 2 / std::pow(double(o.material.mean().roughness), 4);
   EXPECT_GE(gloss, 94.9);
   EXPECT_LE(gloss, 125.1);
+  ASSERT_TRUE(o.gloss);
+  EXPECT_GE(o.gloss->sharpness, 95);
+  EXPECT_LE(o.gloss->sharpness, 125);
+  EXPECT_GE(o.gloss->specular, 0.18f);
+  EXPECT_LE(o.gloss->specular, 0.26f);
 }
 
 TEST(StartValues, AreRandomAndTheSameForASeed) {
