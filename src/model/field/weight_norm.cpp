@@ -30,6 +30,7 @@ WeightNorm::WeightNorm(Field& field, float rate, AdamConstants adam) {
     layers_.push_back({&weight, &bias, first, first + 1, first + 2});
   }
   optimizer_.add(own_, "", {.rate = rate, .beta2 = adam.beta2, .eps = adam.eps});
+  set_field();
 }
 
 // dL/dg = dL/dw . u and dL/dv = g / |v| (dL/dw - u (u . dL/dw)), with u = v / |v|.

@@ -14,8 +14,8 @@ namespace cei3d {
 
 class WeightNorm {
  public:
-  // Of all layers of the field, which must outlive the object; it begins as it is. Fields with hash tables
-  // keep those as they are. rate: of Adam.
+  // Of all layers of the field, which must outlive the object; it begins as it is, up to rounding. Fields
+  // with hash tables keep those as they are. rate: of Adam.
   WeightNorm(Field& field, float rate, AdamConstants adam);
 
   // A step by the gradients that `trainer`, of the same field, has accumulated, which it forgets.

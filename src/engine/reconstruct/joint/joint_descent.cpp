@@ -50,6 +50,7 @@ JointDescent::JointDescent(const Device& device, const AppearanceInput& input, c
       box_min_{-1, -1, -1},
       box_max_{1, 1, 1} {
   object_.material = material_.field();
+  object_.light = light_.light();  // rounded as after load()
   if (options.specular == SpecularTerm::single_sg) make_gloss();
   if (options.weight_norm) sdf_norm_.emplace(object_.sdf, options.rates.sdf_layers, options.adam);
   for (uint32_t i = 0; i < pixels.pixels().size(); ++i)
