@@ -62,19 +62,21 @@ void run_reconstruct(const Options& o, Session& session, Console& console) {
 
 void add_schedule_options(CLI::App* verb, Options& o) {
   ReconstructOptions& options = o.request.options;
-  verb->add_option("--preset", options.preset,
-                   "fast: small networks, minutes. balanced: a deeper network and hash tables four times as "
-                   "large, for a quarter of an hour and more. paper: the paper's network sizes; about 28 "
-                   "hours on two cores unless --time is given")
+  verb->add_option(
+          "--preset", options.preset,
+          "fast: small networks, minutes. balanced: a deeper network and hash tables four times as "
+          "large, for a quarter of an hour and more. paper: the paper's own method, everything "
+          "by one descent from a sphere, with its network sizes; days on two cores unless --time is given")
       ->check(CLI::IsMember({"fast", "balanced", "paper"}))
       ->capture_default_str();
   CLI::Option* time =
       verb->add_option("--time", o.time,
                        "Time for the whole reconstruction: seconds, or 90s, 10m, 1h30m; the schedule is "
                        "fitted to it (default: the preset's number of steps, see --iterations)");
-  verb->add_option("--iterations", options.iterations,
-                   "Steps of the geometry stage, instead of --time; 0: the preset's, 4000 (fast), 16000 "
-                   "(balanced), 200000 (paper)")
+  verb->add_option(
+          "--iterations", options.iterations,
+          "Steps of the geometry stage (paper: of its only descent), instead of --time; 0: the preset's, "
+          "4000 (fast), 16000 (balanced), 200000 (paper)")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str()
       ->excludes(time);

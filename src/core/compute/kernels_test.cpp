@@ -246,8 +246,9 @@ struct Parity<FieldHitsGrad> {
 };
 
 // Kernels whose cases are in shade_kernels_test.cpp.
-using ShadeKernels = KernelList<SgFitResidual, SgFitGather, SgIrradiance, SgReflection, SgReflectionGrad,
-                                ReflectionLobes, SgLobesGrad, Shade, ShadeGrad>;
+using ShadeKernels =
+    KernelList<SgFitResidual, SgFitGather, SgIrradiance, SgReflection, SgReflectionGrad, ReflectionLobes,
+               SgLobesGrad, Shade, ShadeGrad, SgMirror, SgMirrorGrad, SgMirrorLobesGrad>;
 
 template <class K>
 void append_cases(Cases& out) {

@@ -9,6 +9,7 @@
 #include "core/compute/device.h"
 #include "core/compute/kernels/light.h"
 #include "core/compute/kernels/shade.h"
+#include "core/compute/kernels/single_sg.h"
 #include "core/math/rng.h"
 
 namespace cei3d {
@@ -151,6 +152,27 @@ std::vector<float> shade_grad_case(const Device& d) {
   return out;
 }
 
+// Reflection by one Gaussian; some of the points are seen from behind.
+enum class Mirror { forward, points, lobes };
+std::vector<float> mirror_case(const Device& d, Mirror which) {
+  const LobeScene s;
+  std::vector<float> views = directions(kPoints, 12), out(7 * kPoints);
+  for (int i = 0; i < kPoints; ++i)
+    if (i % 16) {
+      const Vec3f n = load_planes<float>(s.normals.data(), kPoints, i);
+      store_planes(views.data(), kPoints, i,
+                   normalize(load_planes<float>(views.data(), kPoints, i) + n * 1.2f));
+    }
+  const MirrorPlanes points{kPoints, s.normals.data(), views.data(), 60};
+  float *first = out.data(), *second = out.data() + 3 * kPoints;
+  if (which == Mirror::forward) d.launch<SgMirror>({s.planes(), points, first, second}, kPoints);
+  if (which == Mirror::points)
+    d.launch<SgMirrorGrad>({s.planes(), points, s.y1.data(), s.y2.data(), first, second}, kPoints);
+  if (which == Mirror::lobes)
+    d.launch<SgMirrorLobesGrad>({s.planes(), points, 0, kPoints, s.y1.data(), s.y2.data(), first}, kLobes);
+  return out;
+}
+
 TEST(ShadeKernels, EveryDeviceAgreesWithTheScalarOne) {
   const std::pair<const char*, std::function<std::vector<float>(const Device&)>> cases[] = {
       {"irradiance", [](const Device& d) { return LobeScene().irradiance(d); }},
@@ -162,6 +184,9 @@ TEST(ShadeKernels, EveryDeviceAgreesWithTheScalarOne) {
       {"shade gradient", [](const Device& d) { return shade_grad_case(d); }},
       {"fit residual", [](const Device& d) { return fit_case(d, false); }},
       {"fit gather", [](const Device& d) { return fit_case(d, true); }},
+      {"mirror", [](const Device& d) { return mirror_case(d, Mirror::forward); }},
+      {"mirror gradient of points", [](const Device& d) { return mirror_case(d, Mirror::points); }},
+      {"mirror gradient of lobes", [](const Device& d) { return mirror_case(d, Mirror::lobes); }},
   };
   for (const auto& [name, run] : cases) {
     const std::vector<float> want = run(make_device("cpu/scalar"));

@@ -63,6 +63,11 @@ SettingTable<BranchOptions> make_settings() {
       .add("table_rate", &BranchOptions::table_rate, {0, 1}, "", "Rate of the hash tables",
            "[Kingma and Ba 2015]")
       .add("layer_rate", &BranchOptions::layer_rate, {0, 1}, "", "Rate of the layers", "[Kingma and Ba 2015]")
+      .add("decay", &BranchOptions::decay, {}, "", "Rates fall along half a cosine; else they are constant")
+      .choice("start", &BranchOptions::start,
+              {{BranchStart::small, "small"}, {BranchStart::trained, "trained"}},
+              "A small new network, or a copy of the trained albedo network, which is the paper's",
+              "[paper sec. 4.2]")
       .choice("loss", &BranchOptions::loss,
               {{BranchLoss::cross_entropy, "cross_entropy"}, {BranchLoss::l1, "l1"}},
               "Of the painted colors; l1 is the paper's", "[paper eq. 17]");
@@ -89,7 +94,9 @@ const SettingTable<BranchOptions>& branch_settings() {
 
 std::shared_ptr<const Field> fit_branch(const Device& device, const BranchSamples& s,
                                         const BranchOptions& options, uint64_t seed, Progress& progress) {
-  auto field = std::make_shared<Field>(branch_config(s, options), seed);
+  const bool copies = options.start == BranchStart::trained && s.trained;
+  auto field =
+      copies ? std::make_shared<Field>(*s.trained) : std::make_shared<Field>(branch_config(s, options), seed);
   FieldTrainer trainer(*field, {.encoding_rate = options.table_rate, .network_rate = options.layer_rate});
   for (int step = 0; step < options.steps; ++step) {
     check_cancelled(progress, "painting was interrupted; nothing was changed");
@@ -98,7 +105,7 @@ std::shared_ptr<const Field> fit_branch(const Device& device, const BranchSample
     trainer.step(
         device, batch.x,
         options.loss == BranchLoss::l1 ? absolute_difference(batch.target) : cross_entropy(batch.target),
-        0.5f * (1 + std::cos(kPi * fraction)) + 1e-3f);
+        options.decay ? 0.5f * (1 + std::cos(kPi * fraction)) + 1e-3f : 1);
     if (step % 40 == 0) progress.report({"paint", 0.2 + 0.8 * fraction, -1, ""});
   }
   return field;

@@ -101,12 +101,15 @@ std::optional<Vec3f> only_color(const Paint& paint) {
 }
 
 // The color of the paint where it is a field of its own.
-std::shared_ptr<const Field> branch_of(const Device& device, const Paint& paint, const PaintRequest& request,
-                                       Progress& progress) {
+std::shared_ptr<const Field> branch_of(const Device& device, const Scene& scene, const Paint& paint,
+                                       const PaintRequest& request, Progress& progress) {
   if (request.color) return uniform_branch(*request.color);
-  if (!request.learn_one_color)
+  const bool copies = request.branch.start == BranchStart::trained;
+  if (!request.learn_one_color && !copies)
     if (const auto color = only_color(paint)) return uniform_branch(*color);
-  return fit_branch(device, samples_of(paint), request.branch, request.seed, progress);
+  BranchSamples samples = samples_of(paint);
+  samples.trained = scene.albedo.get();
+  return fit_branch(device, samples, request.branch, request.seed, progress);
 }
 
 // Replaces the targets by the albedos that give them under the light, after the change of material; returns
@@ -229,7 +232,7 @@ PaintResult paint(const Device& device, const Scene& scene, const PaintRequest& 
     result.layer.everywhere = true;
     result.layer.albedo = relearn_all(device, scene, request, paint, regions, progress);
   } else {
-    if (!request.erase) result.layer.albedo = branch_of(device, paint, request, progress);
+    if (!request.erase) result.layer.albedo = branch_of(device, scene, paint, request, progress);
     result.layer.region = std::move(regions.front());
     result.layer.also.assign(std::make_move_iterator(regions.begin() + 1),
                              std::make_move_iterator(regions.end()));

@@ -51,6 +51,7 @@ constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // minimum sha
 struct Costs {
   double trial_step;      // of the three trials
   double trials_besides;  // start shapes and the first fits to them
+  double brief_surface;   // with brief_hits
   double surface, full_appearance, brief_appearance, refinement, finer_mesh;
   double look;      // of a polishing round
   double polish;    // all steps of a round
@@ -68,6 +69,7 @@ Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
   c.trial_step = r.trial_step * 3 * kGeometryStep;
   c.trials_besides = r.trial_step * (3 * trial.geometry.prefit_steps + kStartShapes);
   c.surface = mesh(preset.meshing) + hits * r.hit_traced;
+  c.brief_surface = mesh(preset.meshing) + brief_hits * r.hit_traced;
   c.full_appearance = kFullSplit * r.hit_shaded + hits * hit + kFullDescent * r.albedo_step;
   c.brief_appearance = kBriefSplit * r.hit_shaded + brief_hits * hit + kBriefDescent * r.albedo_step;
   c.look = c.surface + c.brief_appearance;
@@ -84,10 +86,27 @@ bool has_finer_meshing(const Preset& preset) {
   return preset.finer_meshing.resolution > preset.meshing.resolution;
 }
 
+int iterations_of(const ReconstructOptions& options, const Preset& preset) {
+  return options.iterations > 0 ? options.iterations : preset.iterations;
+}
+
+// The joint descent alone; t: 0: by steps.
+Plan joint_plan(const ReconstructOptions& options, const Preset& preset, double t, const Costs& c) {
+  Plan p;
+  p.stages = StageChoice::joint;
+  p.joint_steps = iterations_of(options, preset);
+  p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
+  p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
+  p.reserve = std::min(std::max(kReserve * c.brief_surface, kReserveShare * t), (1 - kMinGeometryShare) * t);
+  p.joint = t - p.reserve - p.finer_mesh;
+  return p;
+}
+
 Plan untimed_plan(const ReconstructOptions& options, const Preset& preset) {
   Plan p;
-  p.iterations = options.iterations > 0 ? options.iterations : preset.iterations;
-  p.trial_steps = p.iterations >= preset.trials_from_iterations ? preset.trial.steps : 0;
+  p.iterations = iterations_of(options, preset);
+  const bool tries = preset.start == StartChoice::trials && p.iterations >= preset.trials_from_iterations;
+  p.trial_steps = tries ? preset.trial.steps : 0;
   p.polish_rounds = p.iterations >= preset.polish_from_iterations ? 2 : 0;
   p.polish_steps = preset.polish_steps / 2;
   p.joint_steps = p.polish_rounds > 0 ? preset.joint_steps / 2 : 0;
@@ -182,7 +201,8 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, b
   p.reserve = std::max(kReserve * c.surface, kReserveShare * t);
   while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
   p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
-  p.trial_steps = affordable_trial_steps(kTrialsShare * p.geometry, preset.trial.steps, c);
+  if (preset.start == StartChoice::trials)
+    p.trial_steps = affordable_trial_steps(kTrialsShare * p.geometry, preset.trial.steps, c);
   return p;
 }
 
@@ -191,9 +211,12 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, b
 Plan plan_of(const ReconstructOptions& options, const Preset& given, size_t pixels, const Rates& rates) {
   Preset preset = given;
   if (options.joint_steps >= 0) preset.joint_steps = options.joint_steps;
-  if (options.seconds <= 0 || options.iterations > 0) return untimed_plan(options, preset);
-  return timed_plan(options.seconds, preset, pixels, costs_of(rates, preset, pixels),
-                    options.joint_steps > 0);
+  const bool timed = options.seconds > 0 && options.iterations <= 0;
+  const Costs costs = timed ? costs_of(rates, preset, pixels) : Costs{};
+  if (preset.stages == StageChoice::joint)
+    return joint_plan(options, preset, timed ? options.seconds : 0, costs);
+  return timed ? timed_plan(options.seconds, preset, pixels, costs, options.joint_steps > 0)
+               : untimed_plan(options, preset);
 }
 
 Json to_json(const Plan& p) {

@@ -9,9 +9,11 @@
 
 namespace cei3d {
 
-// How much time and how many steps each stage gets. In a run by steps all seconds are 0: no limit, the step
-// counts decide.
+// How much time and how many steps each stage gets. A run of the joint descent alone has joint_steps, joint
+// and reserve, and may have a finer mesh. In a run by steps all seconds are 0: no limit, the step counts
+// decide.
 struct Plan {
+  StageChoice stages = StageChoice::all;
   int trial_steps = 0;    // of each training that tries one of three start shapes; 0: the visual hull
   double geometry = 0;    // s, the comparison of starts included
   int iterations = 0;     // steps of the geometry stage where `geometry` is 0

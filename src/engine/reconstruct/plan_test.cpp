@@ -39,7 +39,7 @@ TEST(Plan, SpendsNoMoreThanWasAskedFor) {
           const Plan p = plan_for(name, seconds, pixels, slowness);
           EXPECT_LE(sum_of(p), seconds * (1 + 1e-9))
               << name << " " << seconds << " " << pixels << " " << slowness;
-          EXPECT_GE(p.geometry, 0.35 * seconds);
+          EXPECT_GE(p.geometry + p.joint, 0.35 * seconds);
           EXPECT_EQ(p.finer_mesh > 0, p.has_finer_mesh);
         }
 }
@@ -93,11 +93,23 @@ TEST(Plan, ASlowerMachineTriesStartsMoreBriefly) {
 TEST(Plan, ByStepsKnowsNoClock) {
   ReconstructOptions options;
   options.iterations = 2000;
-  const Plan p = plan_of(options, preset_by_name("paper"), 3000000, {});
+  const Plan p = plan_of(options, preset_by_name("balanced"), 3000000, {});
   EXPECT_EQ(p.iterations, 2000);
   EXPECT_EQ(sum_of(p), 0);
   EXPECT_EQ(p.polish_steps, 300);
   EXPECT_EQ(p.residual_steps, 1000);
+}
+
+TEST(Plan, OfTheJointDescentAloneGivesItTheTime) {
+  const Plan p = plan_for("paper", 3600, 3000000, 1);
+  EXPECT_EQ(p.stages, StageChoice::joint);
+  EXPECT_GT(p.joint, 0.8 * 3600);
+  EXPECT_EQ(p.joint_steps, 200000);
+  EXPECT_EQ(p.geometry + p.polish_rounds + p.appearance + p.residual, 0);
+  ReconstructOptions by_steps;
+  EXPECT_EQ(plan_of(by_steps, preset_by_name("paper"), 3000000, {}).joint, 0);
+  by_steps.iterations = 25000;
+  EXPECT_EQ(plan_of(by_steps, preset_by_name("paper"), 3000000, {}).joint_steps, 25000);
 }
 
 }  // namespace

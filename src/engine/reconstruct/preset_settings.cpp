@@ -56,6 +56,11 @@ void add_sampling(const Group<SamplingOptions>& g) {
            "Weight below which a sample is skipped");
 }
 
+void add_adam(const Group<AdamConstants>& g) {
+  g.add("beta2", &AdamConstants::beta2, {0, 0.9999999}, "", "Decay of Adam's mean squared gradient", kAdam)
+      .add("eps", &AdamConstants::eps, {0, 1}, "", "Added to its root", kAdam);
+}
+
 void add_schedule(const Group<GeometryOptions>& g) {
   constexpr SettingRange kPosition{1e-3, 1};  // in the schedule
   g.add("rays", &GeometryOptions::rays, {kChunkRays, 65536, kChunkRays}, "rays a step", "Size of a batch",
@@ -72,6 +77,8 @@ void add_schedule(const Group<GeometryOptions>& g) {
       .add("decay_from", &GeometryOptions::decay_from, {0, 0.999}, "of the schedule",
            "Where rates begin to decay")
       .add("decay_to", &GeometryOptions::decay_to, {1e-6, 1}, "", "Factor of the rates at the end")
+      .add("halving_parts", &GeometryOptions::halving_parts, {0, 1000}, "",
+           "Parts of the schedule, after each of which rates are halved instead; 0: no", kPaper)
       .add("table_rate", &GeometryOptions::table_rate, {0, 1}, "", "Rate of the hash tables", kAdam)
       .add("layer_rate", &GeometryOptions::layer_rate, {0, 1}, "", "Rate of the layers", kAdam)
       .add("prefit_steps", &GeometryOptions::prefit_steps, {0, 1e6}, "steps",
@@ -96,6 +103,7 @@ void add_geometry(const Group<GeometryOptions>& g) {
       .add("radiance_width", &GeometryOptions::radiance_width, {1, 1024}, "neurons", "Of a layer of it",
            kNeus);
   add_schedule(g);
+  add_adam(g.part("adam.", &GeometryOptions::adam));
   add_sampling(g.part("sampling.", &GeometryOptions::sampling));
   add_losses(g.part("loss.", &GeometryOptions::loss));
 }
@@ -141,6 +149,51 @@ void add_appearance(const Group<AppearanceOptions>& g) {
       .add("network_rate", &AppearanceOptions::network_rate, {0, 1}, "", "Rate of the layers", kAdam);
 }
 
+void add_joint_rates(const Group<JointOptions>& g) {
+  g.part("rates.", &JointOptions::rates)
+      .add("sdf_tables", &JointRates::sdf_tables, {0, 1}, "", "Rate of the hash tables of the distance",
+           kAdam)
+      .add("sdf_layers", &JointRates::sdf_layers, {0, 1}, "", "Rate of the layers of the distance", kAdam)
+      .add("albedo", &JointRates::albedo, {0, 100}, "1e-2 of tables, 2e-3 of layers", "Rates of the albedo",
+           kAdam)
+      .add("material", &JointRates::material, {0, 1}, "", "Rate of the material's logits; 0: constant", kAdam)
+      .add("light", &JointRates::light, {0, 100}, "1e-2 of logarithms, 2e-3 of axes", "Rates of the lobes",
+           kAdam);
+  g.part("schedule.", &JointOptions::schedule)
+      .add("warm_up", &RateSchedule::warm_up, {0, 1}, "of the descent", "Part with rates that rise")
+      .add("last", &RateSchedule::last, {1e-6, 1}, "", "Factor of the rates at the end")
+      .add("halving_parts", &RateSchedule::halving_parts, {0, 1000}, "",
+           "Parts of the descent, after each of which rates are halved instead; 0: no", kPaper);
+  add_adam(g.part("adam.", &JointOptions::adam));
+}
+
+void add_joint(const Group<JointOptions>& g) {
+  add_joint_rates(g);
+  g.choice("color", &JointOptions::color, {{ColorLoss::display, "display"}, {ColorLoss::linear, "linear"}},
+           "Loss of colors: Huber of display-encoded ones, or L1 of linear ones", "[paper eq. 16]")
+      .add("weight_norm", &JointOptions::weight_norm, {}, "",
+           "Normalize the weights of the distance field's layers", "[Salimans and Kingma 2016]")
+      .choice("specular", &JointOptions::specular,
+              {{SpecularTerm::split_sum, "split-sum"}, {SpecularTerm::single_sg, "single-sg"}},
+              "Specular term: the shading model's, or one spherical Gaussian without occlusion",
+              "[paper eq. 14]")
+      .add("rays", &JointOptions::rays, {1, 1e6}, "rays a step", "On the object", kPaper)
+      .add("eikonal", &JointOptions::eikonal, {0, 100}, "", "Weight of (|gradient| - 1)^2", kPaper)
+      .add("box_points", &JointOptions::box_points, {0, 1e6}, "points a step",
+           "Random points of the object's box at which it is taken", "[paper eq. 16]")
+      .add("near_points", &JointOptions::near_points, {0, 1e6}, "points a step",
+           "Points near hits at which it is taken, too")
+      .add("mask_rays", &JointOptions::mask_rays, {0, 1e6}, "rays a step", "Around the object")
+      .add("mask", &JointOptions::mask, {0, 1e4}, "1 / mask_sharpness", "Weight of the mask loss",
+           "[Yariv et al. 2020]")
+      .add("mask_sharpness", &JointOptions::mask_sharpness, {1, 1e5}, "1 / object radius", "Of the mask loss",
+           "[Yariv et al. 2020]")
+      .add("keep_power", &JointOptions::keep_power, {}, "", "Hold the power of the light")
+      .add("learn_specular", &JointOptions::learn_specular, {}, "", "Train the specular strength")
+      .add("refresh", &JointOptions::refresh, {1, 1e6}, "steps",
+           "After which visibility and bounces are computed again");
+}
+
 void add_meshing(const Group<MeshingOptions>& g) {
   g.add("resolution", &MeshingOptions::resolution, {16, 1024, 4}, "cells an axis", "Of the mesh",
         "[Gibson 1998]")
@@ -148,10 +201,26 @@ void add_meshing(const Group<MeshingOptions>& g) {
            "Smaller components are dropped");
 }
 
+void add_beginning(const Group<Preset>& g) {
+  g.choice("start", &Preset::start,
+           {{StartChoice::trials, "trials"}, {StartChoice::hull, "hull"}, {StartChoice::sphere, "sphere"}},
+           "The best of three start shapes where there is time to try them, the visual hull, or a sphere",
+           "[Atzmon and Lipman 2020]")
+      .choice("stages", &Preset::stages, {{StageChoice::all, "all"}, {StageChoice::joint, "joint"}},
+              "Surface, then light and material; or all of them by the joint descent alone, from a sphere",
+              "[paper eq. 16]")
+      .add("start_radius", &Preset::start_radius, {0.05, 0.95}, "object radii", "Of the sphere");
+}
+
 void add_run(const Group<Preset>& g) {
   g.add("iterations", &Preset::iterations, {1, 1e8}, "steps",
-        "Of the geometry stage, where neither a time nor a number of steps is asked for", kPaper)
+        "Of the geometry stage, or of the joint descent if it is alone, where neither a time nor a number of "
+        "steps "
+        "is asked for",
+        kPaper)
       .add("polish_steps", &Preset::polish_steps, {0, 1e6}, "steps", "Of a round of polishing, at most")
+      .add("joint_steps", &Preset::joint_steps, {0, 1e6}, "steps",
+           "Of a last descent on everything together, at most; 0: none", "[paper eq. 16]")
       .add("exposures_from_steps", &Preset::exposures_from_steps, {0, 1e8}, "steps",
            "Steps after which the model is compared with the exposures of the photographs")
       .add("polish_from_iterations", &Preset::polish_from_iterations, {0, 1e8}, "steps",
@@ -172,6 +241,7 @@ void add_run(const Group<Preset>& g) {
 SettingTable<Preset> make_table() {
   SettingTable<Preset> table;
   const Group<Preset> preset(table, "", [](Preset& p) -> Preset& { return p; });
+  add_beginning(preset);
   add_run(preset);
   add_geometry(preset.part("geometry.", &Preset::geometry));
   const Group<TrialOptions> trial = preset.part("trial.", &Preset::trial);
@@ -185,6 +255,7 @@ SettingTable<Preset> make_table() {
       .add("weight", &PolishOptions::weight, {0, 100}, "",
            "Of the shading loss against the loss of the geometry stage")
       .add("from", &PolishOptions::from, {0, 0.999}, "of the schedule", "Where polishing begins in it");
+  add_joint(preset.part("joint.", &Preset::joint));
   add_meshing(preset.part("meshing.", &Preset::meshing));
   add_meshing(preset.part("finer_meshing.", &Preset::finer_meshing));
   return table;

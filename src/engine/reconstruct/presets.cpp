@@ -10,6 +10,7 @@ namespace cei3d {
 
 namespace {
 
+constexpr float kPaperRate = 5e-4f;
 constexpr int kFeatures = 16;  // outputs of the SDF network that the radiance network reads
 
 Preset fast() {
@@ -47,8 +48,33 @@ Preset balanced() {
   return p;
 }
 
+// The descent of sec. 5.1, in whose text beta is the weight of the eikonal term. The mask loss and its weight
+// are those of [Yariv et al. 2020]; half of the pixels of a batch show the object.
+JointOptions paper_descent() {
+  JointOptions o;
+  o.rates = {.sdf_tables = kPaperRate,
+             .sdf_layers = kPaperRate,
+             .albedo = 0.25f,
+             .material = kPaperRate,
+             .light = 0.05f};
+  o.schedule = {.warm_up = 0, .halving_parts = 8};
+  o.adam = {.beta2 = 0.999f, .eps = 1e-8f};
+  o.weight_norm = true;
+  o.color = ColorLoss::linear;
+  o.specular = SpecularTerm::single_sg;
+  o.rays = o.mask_rays = o.box_points = 1024;
+  o.near_points = 0;
+  o.mask = 0.5f;
+  o.mask_sharpness = 200;
+  o.keep_power = false;
+  return o;
+}
+
 Preset paper() {
   Preset p;
+  p.start = StartChoice::sphere;
+  p.stages = StageChoice::joint;
+  p.joint = paper_descent();
   FieldConfig& sdf = p.geometry.sdf;
   sdf.encoding.frequencies = 6;
   sdf.hidden_layers = 8;
@@ -56,19 +82,9 @@ Preset paper() {
   sdf.skip_layer = 4;
   sdf.activation = Activation::softplus;
   sdf.softplus_beta = 100;
-  sdf.outputs = 1 + kFeatures;
-  sdf.sphere_radius = 0.5f;
+  sdf.outputs = 1;
   p.trial.geometry = fast().geometry;
-  p.geometry.radiance_layers = 4;
-  p.geometry.radiance_width = 512;
-  p.geometry.layer_rate = 5e-4f;
-  p.geometry.prefit_steps = 1000;
-  // The paper takes 2048 pixels of the whole image, of which two in three miss the object. Here all rays pass
-  // near the object, and a smaller batch allows more steps in the same time.
-  p.geometry.rays = 256;
-  p.geometry.refresh_every = 40;
-  p.geometry.anchor_until = 0.4f;
-  p.geometry.hold_start = true;  // a network without a grid forgets regions that it is not trained on
+  p.geometry.layer_rate = kPaperRate;
   p.appearance.albedo.encoding.frequencies = 10;
   p.appearance.albedo.hidden_layers = 4;
   p.appearance.albedo.width = 512;
@@ -78,12 +94,9 @@ Preset paper() {
   p.appearance.materials = p.appearance.albedo;
   p.appearance.materials.width = 128;
   p.appearance.materials.outputs = MaterialField::kOutputs;
-  p.appearance.batch = 1024;
-  p.appearance.network_rate = 5e-4f;
-  p.polish.batch = 1024;
   p.meshing.resolution = p.finer_meshing.resolution = 128;
   p.iterations = 200000;
-  p.max_hits = p.max_residual_hits = 200000;
+  p.brief_hits = 200000;
   return p;
 }
 

@@ -13,7 +13,17 @@
 
 namespace cei3d {
 
+// Where the distance field begins: from one of several start shapes, which short trainings compare; from the
+// visual hull; or as a sphere, of which the photographs say nothing (model/field/sphere_start.h).
+enum class StartChoice { trials, hull, sphere };
+// What is trained: the surface by volume rendering, then light and material on it; or everything together by
+// the joint descent alone, from start values (engine/reconstruct/joint/start_values.h).
+enum class StageChoice { all, joint };
+
 struct Preset {
+  StartChoice start = StartChoice::trials;
+  StageChoice stages = StageChoice::all;
+  float start_radius = 0.5f;  // of the sphere
   GeometryOptions geometry;
   TrialOptions trial;  // with the networks of "fast" in all presets
   AppearanceOptions appearance;
@@ -27,8 +37,8 @@ struct Preset {
   int joint_steps = 0;                 // of the joint descent, at most; half of them in a run by steps
   int residual_steps = 9000;           // at most; half of them in a run by steps
   int refinement_steps = 600;          // of the albedo on another subset of the pixels
-  int iterations = 0;                  // of the geometry stage, when neither a time nor a number is asked for
-  int polish_from_iterations = 1000;   // geometry steps from which an untimed run polishes and meshes finer
+  int iterations = 0;  // of the main stage, geometry or joint, when neither a time nor a number is asked for
+  int polish_from_iterations = 1000;  // geometry steps from which an untimed run polishes and meshes finer
   int exposures_from_steps = 1000;  // geometry steps of a model that is compared with the exposures of views
   int trials_from_iterations = 4000;  // geometry steps from which an untimed run compares start shapes
   size_t max_hits = 1500000;          // training pixels of the appearance stage
@@ -37,8 +47,9 @@ struct Preset {
   size_t max_residual_hits = 4000000;
 };
 
-// "fast" (hash grids), "balanced" (larger ones, for longer), "paper" (the paper's networks: 8x512 SDF, 4x512
-// albedo, frequency encodings). Usage error for any other name.
+// "fast" (hash grids), "balanced" (larger ones, for longer), "paper" (the paper's own method: the joint
+// descent alone on networks over frequencies, 8x512 for the SDF and 4x512 for the albedo). Usage error for
+// any other name.
 Preset preset_by_name(const std::string& name);
 
 // Sets the hash grids and meshes from the size of a pixel on the object (unit frame): all those of a

@@ -12,6 +12,7 @@
 #include "engine/reconstruct/surface_and_hits.h"
 #include "engine/render/render.h"
 #include "engine/render/scene_light.h"
+#include "model/field/sphere_start.h"
 #include "model/geometry/shape/sky.h"
 #include "model/scene/appearance.h"
 
@@ -75,9 +76,11 @@ SgMixture even_light() {
 }
 
 // An untrained object: a sphere of radius 0.5 in even light.
-Scene untrained_scene(const Preset& preset) {
+Scene untrained_scene(const Device& device, const Preset& preset) {
   Scene scene;
-  scene.sdf = std::make_shared<const Field>(preset.geometry.sdf, 1);
+  Field sdf(preset.geometry.sdf, 1);
+  begin_as_sphere(device, sdf, preset.start_radius, 1);
+  scene.sdf = std::make_shared<const Field>(std::move(sdf));
   scene.albedo = std::make_shared<const Field>(preset.appearance.albedo, 1);
   scene.light = even_light();
   return scene;
@@ -113,7 +116,7 @@ Rates measure_rates(const Device& device, const Preset& preset, const PixelStore
   r.trial_step = step(preset.trial.geometry.sdf, kSdfPoints);
   r.albedo_step = step(preset.appearance.albedo, preset.appearance.batch * kPixelPoints);
 
-  Scene scene = untrained_scene(preset);
+  Scene scene = untrained_scene(device, preset);
   const MeshingOptions meshing{std::max(preset.meshing.resolution / kMeshShare / 4 * 4, 16)};
   const double mesh = seconds_of(
       clock, progress, [&] { scene.surface = extract_surface(device, *scene.sdf, meshing, progress); });

@@ -79,6 +79,22 @@ class SmallExposedRun : Owner<ExposedCapture>, public AnyRun {
   SmallExposedRun() : AnyRun(own.capture(), own) { preset.exposures_from_steps = 1; }
 };
 
+// Of everything together, from a sphere.
+class SmallJointRun : Owner<BoxCapture>, public AnyRun {
+ public:
+  SmallJointRun() : AnyRun(own.capture(), own) { preset.stages = StageChoice::joint; }
+};
+
+class SmallPaperRun : Owner<BoxCapture>, public AnyRun {
+ public:
+  SmallPaperRun() : AnyRun(own.capture(), own) { preset = shrunken(preset_by_name("paper")); }
+};
+
+class SmallRunFromASphere : Owner<BoxCapture>, public AnyRun {
+ public:
+  SmallRunFromASphere() : AnyRun(own.capture(), own) { preset.start = StartChoice::sphere; }
+};
+
 void expect_same(const Tensors& a, const Tensors& b, const std::string& where) {
   ASSERT_EQ(a.size(), b.size()) << where;
   for (const auto& [name, tensor] : a) {
@@ -248,6 +264,43 @@ TEST(Reconstruct, ExposuresAreFittedKeptAndResumed) {
   MemoryCheckpoints checkpoints;
   ScriptedProgress progress;
   EXPECT_TRUE(given.run(checkpoints, progress).exposures.empty());
+}
+
+// A run of the joint descent alone.
+void expect_resumed_anywhere(AnyRun& small, const std::vector<std::string>& expected) {
+  const Reference reference(small);
+  ASSERT_EQ(reference.progress.stages, expected);
+  EXPECT_GT(reference.checkpoints.midway.at("joint"), 0);
+  MemoryCheckpoints again;
+  const Checkpoints::State object = with_interruptions(small, again, reference.progress, 1);
+  expect_same(object.tensors, reference.scene.tensors, "the object");
+  EXPECT_EQ(object.head, reference.scene.head);
+  const int checks = reference.progress.checks.at("joint");
+  for (const int check : {checks / 3, checks / 2, checks * 5 / 6}) {
+    expect_same_after(small, reference, 1, check, How::kill);
+    expect_same_after(small, reference, 1, check, How::cancel);
+  }
+}
+
+TEST(Reconstruct, TheJointDescentAloneIsResumedAnywhere) {
+  SmallJointRun small;
+  expect_resumed_anywhere(small, {"loading", "joint", "surface", "finer mesh", "done"});
+}
+
+TEST(Reconstruct, ThePapersRunIsResumedAnywhere) {
+  SmallPaperRun small;
+  expect_resumed_anywhere(small, {"loading", "joint", "surface", "done"});
+}
+
+TEST(Reconstruct, FromASphereIsResumedAnywhere) {
+  SmallRunFromASphere small;
+  const Reference reference(small);
+  MemoryCheckpoints again;
+  const Checkpoints::State object = with_interruptions(small, again, reference.progress, 1);
+  expect_same(object.tensors, reference.scene.tensors, "the object");
+  const std::string weight = "sdf/layer0/weight";
+  EXPECT_NE(object.tensors.at(weight).f32,
+            uninterrupted().scene.tensors.at(weight).f32);  // from another shape
 }
 
 // Before there were stages, checkpoints held the geometry stage alone.

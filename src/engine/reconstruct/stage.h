@@ -38,12 +38,13 @@ constexpr double kCheckpointSeconds = 30;  // between checkpoints within a stage
 
 struct Stage {
   using Checkpoint = std::function<void()>;
+  using Run = std::function<void(const RunContext&, RunState&, const Checkpoint& checkpoint)>;
 
   std::string name;   // unique in the list; checkpoints name it
   double budget = 0;  // length, relative to the other stages': seconds in a run with a time limit
   // Reports fractions of itself, and throws the interrupted Error when progress.cancelled(). checkpoint:
   // saves the state in the middle of the stage, which then must know from the state where to resume.
-  std::function<void(const RunContext&, RunState&, const Checkpoint& checkpoint)> run;
+  Run run;
 };
 
 class StageRunner {

@@ -9,6 +9,7 @@
 #include "engine/reconstruct/appearance/residual_fit.h"
 #include "engine/reconstruct/geometry/silhouette_level.h"
 #include "engine/reconstruct/geometry_training.h"
+#include "engine/reconstruct/joint/joint_run.h"
 #include "engine/reconstruct/joint/joint_stage.h"
 #include "engine/reconstruct/poses/refined_poses.h"
 
@@ -20,8 +21,7 @@ namespace {
 constexpr uint64_t kResidualSubset = 1000, kJointSubset = 1001;
 // Share of the joint stage's time that is descent; the rest is hits, a mesh and the judgment.
 constexpr double kJointDescentShare = 0.7;
-constexpr double kMinJointGain = 0.02;   // dB on pixels that the joint descent does not see
-constexpr float kHandlerSpacing = 1.5f;  // of handler points, in pixels
+constexpr double kMinJointGain = 0.02;  // dB on pixels that the joint descent does not see
 constexpr float kMaxLevel = 0.002f;  // maximum shift of the zero level: the thickness of the sharpest density
 // Of the planned time of a descent. A shorter one is not worth another estimate of light and material.
 constexpr double kMinPolishShare = 1.0 / 3;
@@ -54,7 +54,17 @@ LightFrame first_light_frame(const RunContext& run) {
   return find_light_frame(hull.input(nullptr), hull.hits.views, cameras, axis, run.seed, run.progress);
 }
 
+void begin_as_sphere(const RunContext& run, RunState& state) {
+  const PixelStore& pixels = run.views.train;
+  if (run.light) state.scene.light_frame = light_frame(*run.light, pixels.cameras(), turntable_axis(run));
+  state.light_frame_known = run.light.has_value();
+  state.geometry = std::make_unique<GeometryStage>(run.device, pixels, run.preset.geometry, run.seed);
+  state.geometry->set_light(state.scene.light_frame);
+  state.geometry->begin_as_sphere(run.preset.start_radius);
+}
+
 void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  if (run.preset.start == StartChoice::sphere) return begin_as_sphere(run, state);
   PixelStore& pixels = run.views.train;
   const double begin = run.progress.now();
   TrialOptions trial = run.preset.trial;
@@ -158,11 +168,6 @@ Field at_silhouettes(const RunContext& run, Field sdf) {
   return sdf;
 }
 
-std::shared_ptr<const HandlerPoints> handlers_from(const RunContext& run, const ObjectHits& hits) {
-  return std::make_shared<const HandlerPoints>(
-      thin_hits(hits.hits, hits.footprints, kHandlerSpacing * float(run.views.footprint)));
-}
-
 void make_surface(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   Scene& scene = state.scene;
   scene.sdf = std::make_shared<const Field>(at_silhouettes(run, state.geometry->sdf()));
@@ -173,7 +178,7 @@ void make_surface(const RunContext& run, RunState& state, const Stage::Checkpoin
   scene.surface = std::move(made.surface);
   state.hits = std::move(made.hits);
   run.progress.report({"handler points", 0.8, -1, ""});
-  scene.handlers = handlers_from(run, state.hits);
+  scene.handlers = handlers_of(state.hits, run.views.footprint);
 }
 
 ObjectHits scene_hits(const RunContext& run, const Scene& scene, const HitOptions& options) {
@@ -290,7 +295,7 @@ void descend_on_all(const RunContext& run, RunState& state, const Stage::Checkpo
   run.progress.log(Json{{"stage", "joint"}, {"before", before_psnr}, {"after", psnr}, {"kept", kept}}.dump());
   check_cancelled(run.progress);
   if (!kept) return;
-  after.handlers = handlers_from(run, scene_hits(run, after, {run.preset.max_hits}));
+  after.handlers = handlers_of(scene_hits(run, after, {run.preset.max_hits}), run.views.footprint);
   scene = std::move(after);
 }
 
@@ -347,6 +352,7 @@ Budgets budgets_of(const Plan& p) {
 }  // namespace
 
 std::vector<Stage> stages_of(const Plan& plan) {
+  if (plan.stages == StageChoice::joint) return joint_stages(plan, make_finer_mesh);
   const Budgets budget = budgets_of(plan);
   std::vector<Stage> stages{{"start", budget.start, make_start}, {"geometry", budget.geometry, run_geometry}};
   for (int round = 0; round < plan.polish_rounds; ++round)

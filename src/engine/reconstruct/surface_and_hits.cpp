@@ -14,6 +14,31 @@ namespace {
 // Pixels traced at a time: tracing takes more memory than the hits do, and with the largest networks 5 s of
 // one core.
 constexpr size_t kSlab = 1 << 13;
+constexpr float kHandlerSpacing = 1.5f;  // of handler points, in pixels
+
+// Calls use(index) for the pixels wholly on the object, or for a random subset of them.
+template <class Use>
+void for_chosen_pixels(const PixelStore& pixels, const HitOptions& options, const Use& use) {
+  const auto inside = [](const Pixel& p) { return p.srgba[3] == 255; };
+  const auto inner = size_t(std::count_if(pixels.pixels().begin(), pixels.pixels().end(), inside));
+  const double keep = std::min(1.0, double(options.max_hits) / double(std::max<size_t>(inner, 1)));
+  size_t i = 0;
+  for (size_t pixel = 0; pixel < pixels.pixels().size(); ++pixel) {
+    if (!inside(pixels.pixels()[pixel])) continue;
+    if (keep == 1 || Rng(7, options.subset, i).uniform() < keep) use(pixel);
+    ++i;
+  }
+}
+
+void add_hit(const PixelStore& pixels, size_t pixel, const Hit& hit, ObjectHits& out) {
+  const uint16_t view = pixels.pixels()[pixel].view;
+  const Camera& camera = pixels.cameras()[view];
+  out.hits.push_back(hit);
+  out.colors.push_back(pixels.radiance(pixel));
+  out.clipped.push_back(pixels.clipped(pixel));
+  out.views.push_back(view);
+  out.footprints.push_back(length(hit.position - to_float(camera.center)) / float(camera.fx));
+}
 
 // Traces the pixels of the slab (indices) and empties it.
 void add_hits(const Device& device, const Field& sdf, const Surface& surface, const PixelStore& pixels,
@@ -23,39 +48,39 @@ void add_hits(const Device& device, const Field& sdf, const Surface& surface, co
   for (const size_t i : slab) rays.push_back(pixels.ray(pixels.pixels()[i]));
   std::vector<uint32_t> ray_of_hit;
   const std::vector<Hit> hits = trace_rays(device, sdf, surface, rays, ray_of_hit);
-  for (size_t i = 0; i < hits.size(); ++i) {
-    const size_t pixel = slab[ray_of_hit[i]];
-    const uint16_t view = pixels.pixels()[pixel].view;
-    const Camera& camera = pixels.cameras()[view];
-    out.hits.push_back(hits[i]);
-    out.colors.push_back(pixels.radiance(pixel));
-    out.clipped.push_back(pixels.clipped(pixel));
-    out.views.push_back(view);
-    out.footprints.push_back(length(hits[i].position - to_float(camera.center)) / float(camera.fx));
-  }
+  for (size_t i = 0; i < hits.size(); ++i) add_hit(pixels, slab[ray_of_hit[i]], hits[i], out);
   slab.clear();
 }
 
 }  // namespace
 
+ObjectHits object_rays(const PixelStore& pixels, const HitOptions& options) {
+  ObjectHits out;
+  for_chosen_pixels(pixels, options, [&](size_t pixel) {
+    const Ray ray = pixels.ray(pixels.pixels()[pixel]);
+    const Vec3f nearest = ray.origin - ray.direction * dot(ray.origin, ray.direction);
+    add_hit(pixels, pixel, {nearest, {0, 0, 1}, -ray.direction, 0, 0, 0}, out);
+  });
+  return out;
+}
+
 ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& surface,
                        const PixelStore& pixels, const HitOptions& options, const Progress& progress) {
-  const auto inside = [](const Pixel& p) { return p.srgba[3] == 255; };
-  const auto inner = size_t(std::count_if(pixels.pixels().begin(), pixels.pixels().end(), inside));
-  const double keep = std::min(1.0, double(options.max_hits) / double(std::max<size_t>(inner, 1)));
   ObjectHits out;
-  const auto reserve = [n = std::min(options.max_hits, inner)](auto&... lists) { (lists.reserve(n), ...); };
+  const auto reserve = [n = std::min(options.max_hits, pixels.pixels().size())](auto&... lists) {
+    (lists.reserve(n), ...);
+  };
   reserve(out.hits, out.colors, out.clipped, out.views, out.footprints);
   std::vector<size_t> slab;
-  size_t i = 0;
-  for (size_t pixel = 0; pixel < pixels.pixels().size(); ++pixel) {
-    if (!inside(pixels.pixels()[pixel])) continue;
-    if (keep == 1 || Rng(7, options.subset, i).uniform() < keep) slab.push_back(pixel);
-    ++i;
-    if (slab.size() < kSlab && i < inner) continue;
+  const auto trace = [&] {
     check_cancelled(progress);
     add_hits(device, sdf, surface, pixels, slab, out);
-  }
+  };
+  for_chosen_pixels(pixels, options, [&](size_t pixel) {
+    slab.push_back(pixel);
+    if (slab.size() == kSlab) trace();
+  });
+  if (!slab.empty()) trace();
   return out;
 }
 
@@ -72,6 +97,11 @@ SurfaceAndHits extract_surface_and_hits(const Device& device, const Field& sdf, 
   s.hits = object_hits(device, sdf, *s.surface, pixels, {max_hits}, progress);
   if (s.hits.hits.empty()) fail("no training image shows the reconstructed surface");
   return s;
+}
+
+std::shared_ptr<const HandlerPoints> handlers_of(const ObjectHits& hits, double footprint) {
+  return std::make_shared<const HandlerPoints>(
+      thin_hits(hits.hits, hits.footprints, kHandlerSpacing * float(footprint)));
 }
 
 }  // namespace cei3d

@@ -8,6 +8,7 @@
 #include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/pixels.h"
 #include "model/geometry/mesh/surface_nets.h"
+#include "model/geometry/shape/handlers.h"
 
 namespace cei3d {
 
@@ -29,6 +30,11 @@ struct HitOptions {
   uint64_t subset = 0;  // index of the random subset
 };
 
+// Pixels of the same kind, of which it is not known yet where their rays meet the surface: the position of
+// each is the point of its ray nearest to the origin, the footprint is that there, and normals and triangles
+// mean nothing.
+ObjectHits object_rays(const PixelStore&, const HitOptions&);
+
 // Error: interrupted.
 ObjectHits object_hits(const Device&, const Field& sdf, const Surface&, const PixelStore&, const HitOptions&,
                        const Progress&);
@@ -46,5 +52,8 @@ struct SurfaceAndHits {
 // Errors: no image shows the surface; interrupted.
 SurfaceAndHits extract_surface_and_hits(const Device&, const Field& sdf, const MeshingOptions&,
                                         const PixelStore&, size_t max_hits, const Progress&);
+
+// footprint: TrainingViews::footprint.
+std::shared_ptr<const HandlerPoints> handlers_of(const ObjectHits&, double footprint);
 
 }  // namespace cei3d

@@ -73,10 +73,12 @@ TEST(TimedRun, EveryPresetEndsInTimeWithTheStagesOfItsPlan) {
     r.run();
     EXPECT_LE(r.seconds(), limit) << where;
     EXPECT_GE(r.seconds(), 0.5 * limit) << where;
-    EXPECT_EQ(r.has("polish 1"), limit >= 60) << where;
-    EXPECT_EQ(r.has("polish 2"), limit >= 400) << where;
-    EXPECT_EQ(r.has("residual"), limit >= 400) << where;
-    EXPECT_EQ(r.has("finer mesh"), name != "paper") << where;
+    const bool ours = name != "paper";
+    EXPECT_EQ(r.has("joint"), !ours) << where;
+    EXPECT_EQ(r.has("polish 1"), ours && limit >= 60) << where;
+    EXPECT_EQ(r.has("polish 2"), ours && limit >= 400) << where;
+    EXPECT_EQ(r.has("residual"), ours && limit >= 400) << where;
+    EXPECT_EQ(r.has("finer mesh"), ours) << where;
     expect_complete(r.scene, where);
     const std::vector<double>& fractions = r.progress->fractions;
     EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end())) << where;

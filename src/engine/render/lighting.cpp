@@ -197,6 +197,23 @@ std::vector<IncidentLight<float>> Lighting::incident_light(const HitBatch& batch
   return out;
 }
 
+std::vector<IncidentLight<float>> Lighting::open_light(const HitBatch& batch) const {
+  const Vec3f all{1, 1, 1}, none{0, 0, 0};
+  std::vector<IncidentLight<float>> out(batch.size());
+  parallel_ranges(int(batch.size()), kBlock, [&](int begin, int end) {
+    const HitBatch part = batch.part(begin, end);
+    const std::vector<Vec3f> sky = sky_reflection(part);
+    for (size_t i = 0; i < part.size(); ++i)
+      out[size_t(begin) + i] = {.sky_irradiance = irradiance_.at(part.turned.in_room(i, part.hits[i].normal)),
+                                .visibility = all,
+                                .bounce = none,
+                                .sky_reflection = sky[i],
+                                .mirror_visibility = all,
+                                .object_reflection = none};
+  });
+  return out;
+}
+
 std::vector<ShadingTerms<float>> Lighting::terms(const HitBatch& batch,
                                                  std::span<const IncidentLight<float>> light) const {
   std::vector<ShadingTerms<float>> out(batch.size());

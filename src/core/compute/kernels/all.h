@@ -11,3 +11,4 @@
 #include "core/compute/kernels/network_gradient.h"
 #include "core/compute/kernels/radiance.h"
 #include "core/compute/kernels/shade.h"
+#include "core/compute/kernels/single_sg.h"

@@ -59,6 +59,10 @@ struct ReflectionLobes;
 struct SgLobesGrad;
 struct Shade;
 struct ShadeGrad;
+// kernels/single_sg.h
+struct SgMirror;
+struct SgMirrorGrad;
+struct SgMirrorLobesGrad;
 
 using AllKernels =
     KernelList<EncodePoint, EncodeFrequency, EncodeGrid, EncodeGridGrad,  //
@@ -68,7 +72,8 @@ using AllKernels =
                GradientStep, GradientStepGrad, ActivateGradPlus, PointGradient, PointGradientGrad, Adam,
                RadianceInput, RadianceInputGrad, SgFitResidual, SgFitGather,  //
                FieldHits, FieldHitsGrad,                                      //
-               SgIrradiance, SgReflection, SgReflectionGrad, ReflectionLobes, SgLobesGrad, Shade, ShadeGrad>;
+               SgIrradiance, SgReflection, SgReflectionGrad, ReflectionLobes, SgLobesGrad, Shade, ShadeGrad,
+               SgMirror, SgMirrorGrad, SgMirrorLobesGrad>;
 
 template <class K>
 constexpr int kernel_index() {

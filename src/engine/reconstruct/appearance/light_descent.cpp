@@ -83,7 +83,7 @@ std::vector<float> lobes_grad(const Device& device, const LobePlanes& lobes, con
   return sum;
 }
 
-LightDescent::LightDescent(const SgMixture& light, bool keep_power)
+LightDescent::LightDescent(const SgMixture& light, bool keep_power, AdamConstants adam)
     : count_(int(light.lobes.size())),
       padded_(padded_to_panels(int(light.lobes.size()))),
       keep_power_(keep_power) {
@@ -91,8 +91,8 @@ LightDescent::LightDescent(const SgMixture& light, bool keep_power)
   params_.add("logs", {4, padded_});
   axes_ = &params_.get("axes");
   logs_ = &params_.get("logs");
-  optimizer_.add(params_, "axes", {.rate = kAxisRate, .eps = 1e-12f});
-  optimizer_.add(params_, "logs", {.rate = kLogRate, .eps = 1e-12f});
+  optimizer_.add(params_, "axes", {.rate = kAxisRate, .beta2 = adam.beta2, .eps = adam.eps});
+  optimizer_.add(params_, "logs", {.rate = kLogRate, .beta2 = adam.beta2, .eps = adam.eps});
   for (int k = 0; k < count_; ++k) {
     const SgLobe& l = light.lobes[size_t(k)];
     store_planes(axes_->value.data(), padded_, k, l.axis);
@@ -191,7 +191,11 @@ void LightDescent::restore_power() {
 void LightDescent::step(const Device& device, const HitBatch& batch, std::span<const Vec3f> d_irradiance,
                         std::span<const Vec3f> d_reflected, float rate) {
   const std::vector<float> lobes = lobe_planes();
-  set_gradient(lobes, lobes_grad(device, {lobes.data(), count_, padded_}, batch, d_irradiance, d_reflected));
+  step(device, lobes_grad(device, {lobes.data(), count_, padded_}, batch, d_irradiance, d_reflected), rate);
+}
+
+void LightDescent::step(const Device& device, const std::vector<float>& d_lobes, float rate) {
+  set_gradient(lobe_planes(), d_lobes);
   optimizer_.step(device, rate);
   normalize_lobes();
   if (keep_power_) restore_power();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/render/lighting.h"
+#include "model/field/adam_constants.h"
 #include "model/field/optimizer.h"
 
 namespace cei3d {
@@ -20,11 +21,13 @@ class LightDescent {
  public:
   // keep_power: the total power per channel stays, so that no common factor wanders between light and albedo;
   // the gradient is the one along that constraint.
-  LightDescent(const SgMixture& light, bool keep_power);
+  LightDescent(const SgMixture& light, bool keep_power, AdamConstants adam = {.eps = 1e-12f});
 
   // One step at `rate` times the full rates. d_irradiance, d_reflected: as in lobes_grad().
   void step(const Device&, const HitBatch&, std::span<const Vec3f> d_irradiance,
             std::span<const Vec3f> d_reflected, float rate);
+  // d_lobes: as lobes_grad() has it, of the present lobes.
+  void step(const Device&, const std::vector<float>& d_lobes, float rate);
   SgMixture light() const;
 
   void save(Tensors& out, const std::string& prefix) const;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/reconstruct/rate_schedule.h"
+
 namespace cei3d {
 
 int levels_at(const GeometryOptions& o, double u) {
@@ -27,6 +29,7 @@ GeometrySchedule schedule_at(const GeometryOptions& o, double u) {
 
 float rate_at(const GeometryOptions& o, double u) {
   const double warm_up = std::min(1.0, u / 0.02 + 0.01);
+  if (o.halving_parts > 0) return float(warm_up * halved(u, o.halving_parts));
   const double decay =
       u < o.decay_from ? 1.0 : std::pow(double(o.decay_to), (u - o.decay_from) / (1 - o.decay_from));
   return float(warm_up * decay);

@@ -3,6 +3,7 @@
 // schedule are fractions in [0, 1); lengths are in units of the unit sphere, which the object fills.
 #pragma once
 
+#include "model/field/adam_constants.h"
 #include "model/field/field.h"
 
 namespace cei3d {
@@ -40,6 +41,8 @@ struct GeometryOptions {
   float layer_rate = 2e-3f;      // Adam rate of the layers of both networks
   float decay_from = 0.3f;       // position from which both rates decay exponentially
   float decay_to = 0.01f;        // factor of both rates at the end
+  int halving_parts = 0;         // if > 0, both rates are halved instead, see halved()
+  AdamConstants adam;
   int prefit_steps = 300;        // that fit the field to the start shape
   int refresh_every = 10;        // steps between updates of the occupancy grid
   float tight_grid_from = 0.4f;  // position from which the surface moves little and the grid is trusted more
@@ -62,7 +65,7 @@ inline constexpr int kChunkSamples = kChunkRays * 32;  // their samples, at most
 int levels_at(const GeometryOptions&, double u);
 // For a start shape that is held and colors that depend on the view.
 GeometrySchedule schedule_at(const GeometryOptions&, double u);
-// Factor of the Adam rates: a short warm-up, a plateau and an exponential decay.
+// Factor of the Adam rates: a short warm-up, then a plateau and an exponential decay, or halvings.
 float rate_at(const GeometryOptions&, double u);
 
 }  // namespace cei3d

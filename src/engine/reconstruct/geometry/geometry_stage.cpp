@@ -8,6 +8,7 @@
 #include "core/base/parallel.h"
 #include "core/math/rng.h"
 #include "core/math/sub_pixel.h"
+#include "model/field/sphere_start.h"
 
 namespace cei3d {
 
@@ -22,12 +23,16 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
       work_([this] { return std::make_unique<Work>(options_); }),
       radiance_gradients_(options.rays / kChunkRays) {
   add_mlp_params(radiance_config(options), radiance_, seed + 1);
-  Optimizer::Group tables{options.table_rate}, layers{options.layer_rate};
+  Optimizer::Group layers{.rate = options.layer_rate, .beta2 = options.adam.beta2, .eps = options.adam.eps},
+      tables = layers;
+  tables.rate = options.table_rate;
   tables.skip_zero = true;
   optimizer_.add(sdf_.params(), "encoding/", tables);
   optimizer_.add(sdf_.params(), "layer", layers);
   optimizer_.add(radiance_, "layer", layers);
 }
+
+void GeometryStage::begin_as_sphere(float radius) { cei3d::begin_as_sphere(device_, sdf_, radius, seed_); }
 
 void GeometryStage::prefit(const StartShape& start, const Progress& progress) {
   cei3d::prefit(device_, sdf_, start.distance,

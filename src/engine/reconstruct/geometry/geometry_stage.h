@@ -47,6 +47,7 @@ class GeometryStage {
 
   // The radiance network gets directions in the frame of this light from now on.
   void set_light(const LightFrame& frame) { light_ = frame; }
+  void begin_as_sphere(float radius);
   // Fits the field to a shape: descent then starts from the right object. Error: it is empty.
   void prefit(const StartShape&, const Progress& progress = Progress());
   // One training step at schedule position u in [0, 1). Error: interrupted, before anything has changed.

@@ -5,24 +5,33 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/math/psnr.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/reconstruct/appearance/pixel_points.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
 #include "model/geometry/shape/trace_field.h"
+#include "model/geometry/shape/visual_hull.h"
 
 namespace cei3d {
 namespace {
 
 constexpr float kBoxMargin = 0.1f;    // around the object, unit frame
 constexpr float kNearSpread = 0.01f;  // standard deviation of points near the surface
+constexpr size_t kJudged = 20000;     // samples
 constexpr float kAlong = 1e-3f;       // step of differences along rays
 
 // Keys of random numbers: what they choose.
 enum : uint64_t { kSamples = 0x301a, kMask = 0x3a5c, kBox = 0xb0c5, kNear = 0x9ea2 };
 
 FieldTrainer::Options sdf_rates(const JointOptions& o) {
-  return {.encoding_rate = o.rates.sdf_tables, .network_rate = o.rates.sdf_layers};
+  return {.encoding_rate = o.rates.sdf_tables,
+          .network_rate = o.rates.sdf_layers,
+          .beta2 = o.adam.beta2,
+          .eps = o.adam.eps};
+}
+FieldTrainer::Options albedo_rates(const JointOptions& o) {
+  return {.beta2 = o.adam.beta2, .eps = o.adam.eps};
 }
 
 }  // namespace
@@ -35,13 +44,19 @@ JointDescent::JointDescent(const Device& device, const AppearanceInput& input, c
       options_(options),
       object_(std::move(start)),
       sdf_trainer_(object_.sdf, sdf_rates(options)),
-      albedo_trainer_(object_.albedo, {}),
-      material_(object_.material, options.rates.material, options.learn_specular),
-      light_(object_.light, options.keep_power),
-      transport_(input.surface, {}, progress) {
+      albedo_trainer_(object_.albedo, albedo_rates(options)),
+      material_(object_.material, options.rates.material, options.learn_specular, options.adam),
+      light_(object_.light, options.keep_power, options.adam),
+      box_min_{-1, -1, -1},
+      box_max_{1, 1, 1} {
   object_.material = material_.field();
+  object_.light = light_.light();  // rounded as after load()
+  if (options.specular == SpecularTerm::single_sg) make_gloss();
+  if (options.weight_norm) sdf_norm_.emplace(object_.sdf, options.rates.sdf_layers, options.adam);
   for (uint32_t i = 0; i < pixels.pixels().size(); ++i)
     if (pixels.pixels()[i].srgba[3] == 0) empty_.push_back(i);
+  if (!input.surface) return;
+  transport_.emplace(input.surface, std::vector<uint8_t>{}, progress);
   box_min_ = box_max_ = input.surface->mesh().positions.at(0);
   for (const Vec3f p : input.surface->mesh().positions)
     for (int c = 0; c < 3; ++c) {
@@ -51,7 +66,7 @@ JointDescent::JointDescent(const Device& device, const AppearanceInput& input, c
 }
 
 JointLoss JointDescent::step(int step, float rate) {
-  if (step % options_.refresh == 0 || !lighting_) relight();
+  if (!lighting_ || (input_.surface && step % options_.refresh == 0)) relight();
   Shaded shaded;
   const JointLoss loss = accumulate(step, shaded);
   update(shaded, rate);
@@ -59,13 +74,36 @@ JointLoss JointDescent::step(int step, float rate) {
 }
 
 void JointDescent::relight() {
+  if (!input_.surface) {
+    lighting_ = std::make_unique<Lighting>(device_, nullptr, object_.light, std::vector<VertexLight>{});
+    return lighting_->use_hit_normals();
+  }
   const std::vector<Vec3f>& vertices = input_.surface->mesh().positions;
   lighting_ = std::make_unique<Lighting>(
       device_, input_.surface, object_.light,
-      turned_vertex_lights(transport_, object_.light,
+      turned_vertex_lights(*transport_, object_.light,
                            {object_.albedo.eval3(device_, vertices), object_.material.at(device_, vertices)},
                            input_.samples.turned.turns));
   lighting_->use_hit_normals();
+}
+
+void JointDescent::make_gloss() {
+  gloss_ = std::make_unique<SgShading>(
+      device_, object_.gloss ? *object_.gloss : sg_material_of(object_.material.mean()),
+      options_.rates.material, options_.adam);
+  object_.gloss = gloss_->material();
+  object_.material = nearest_material(*object_.gloss);
+}
+
+// Empty where the shading needs none.
+std::vector<IncidentLight<float>> JointDescent::light_at(const HitBatch& batch) const {
+  if (gloss_) return {};
+  return input_.surface ? lighting_->incident_light(batch) : lighting_->open_light(batch);
+}
+
+std::vector<ShadingTerms<float>> JointDescent::terms_at(const HitBatch& batch,
+                                                        const std::vector<IncidentLight<float>>& light) {
+  return gloss_ ? gloss_->terms(object_.light, batch) : lighting_->terms(batch, light);
 }
 
 std::vector<uint32_t> JointDescent::choose_samples(int step) const {
@@ -82,7 +120,7 @@ JointLoss JointDescent::accumulate(int step, Shaded& shaded) {
   const std::vector<uint32_t> samples = choose_samples(step);
   std::vector<Hit> near;
   for (const uint32_t s : samples) near.push_back(input_.samples.hits[s]);
-  const TracedHits traced(device_, object_.sdf, near);
+  const TracedHits traced(device_, object_.sdf, near, bool(input_.surface));
   JointLoss loss;
   ValueGrads by_values;
   loss.color = accumulate_color(traced, samples, shaded, by_values);
@@ -103,12 +141,13 @@ double JointDescent::accumulate_color(const TracedHits& traced, const std::vecto
   shaded.hits.assign(traced.hits().begin(), traced.hits().end());
   const std::vector<Vec3f> positions = positions_of(shaded.hits);
   // What the object hides from itself is known on the mesh, which the field may have left: rays begin there.
-  for (size_t i = 0; i < seen.size(); ++i) shaded.hits[i].position = input_.samples.hits[seen[i]].position;
+  for (size_t i = 0; i < seen.size() && input_.surface; ++i)
+    shaded.hits[i].position = input_.samples.hits[seen[i]].position;
   shaded.materials = object_.material.at(device_, positions);
   shaded.views = views_of(input_.samples.turned, seen);
   const HitBatch batch = batch_of(shaded);
-  const std::vector<IncidentLight<float>> light = lighting_->incident_light(batch);
-  const std::vector<ShadingTerms<float>> terms = lighting_->terms(batch, light);
+  const std::vector<IncidentLight<float>> light = light_at(batch);
+  const std::vector<ShadingTerms<float>> terms = terms_at(batch, light);
   std::vector<float> footprints;
   std::vector<Vec3f> points;
   for (size_t i = 0; i < seen.size(); ++i) {
@@ -125,8 +164,9 @@ double JointDescent::accumulate_color(const TracedHits& traced, const std::vecto
       d_a = d_radiance[i] * terms[i].gain();
     });
   });
-  shaded.grads = lighting_->grad(batch, light, colors, d_radiance);
-  material_.accumulate(device_, positions, shaded.grads.d_material);
+  shaded.grads =
+      gloss_ ? gloss_->grad(batch, colors, d_radiance) : lighting_->grad(batch, light, colors, d_radiance);
+  if (!gloss_) material_.accumulate(device_, positions, shaded.grads.d_material);
   traced.backward(device_, depth_grads(traced, footprints, shaded.grads), shaded.grads.d_normal, by_values);
   return std::accumulate(losses.begin(), losses.end(), 0.0);
 }
@@ -171,13 +211,25 @@ std::vector<float> JointDescent::depth_grads(const TracedHits& traced, std::span
   return out;
 }
 
+// Around the object within the rim of pixels that the store holds; without a surface, which may be anywhere
+// at first, through any background pixel.
+Ray JointDescent::empty_ray(int step, int i) const {
+  constexpr int kTries = 64;
+  Rng rng(options_.seed ^ kMask, uint64_t(step), uint64_t(i));
+  for (int tries = 0; tries < kTries && !input_.surface; ++tries) {
+    const uint32_t view = rng.below(uint32_t(pixels_.cameras().size()));
+    const Camera& camera = pixels_.cameras()[view];
+    const uint32_t x = rng.below(uint32_t(camera.width)), y = rng.below(uint32_t(camera.height));
+    if (pixels_.masks()[view][size_t(y) * size_t(camera.width) + x] == kBackground)
+      return camera.ray(float(x) + 0.5f, float(y) + 0.5f);
+  }
+  return pixels_.ray(pixels_.pixels()[empty_[rng.below(uint32_t(empty_.size()))]]);
+}
+
 // Rays around the object must not meet it; rays through it that missed must. Both at their nearest points.
 double JointDescent::accumulate_mask(int step, const std::vector<Ray>& missed, ValueGrads& by_values) const {
   std::vector<Ray> rays;
-  for (int i = 0; i < options_.mask_rays && !empty_.empty(); ++i) {
-    Rng rng(options_.seed ^ kMask, uint64_t(step), uint64_t(i));
-    rays.push_back(pixels_.ray(pixels_.pixels()[empty_[rng.below(uint32_t(empty_.size()))]]));
-  }
+  for (int i = 0; i < options_.mask_rays && !empty_.empty(); ++i) rays.push_back(empty_ray(step, i));
   const size_t empty = rays.size();
   rays.insert(rays.end(), missed.begin(), missed.end());
   const std::vector<FieldTrace> lowest = lowest_along(device_, object_.sdf, rays);
@@ -218,18 +270,84 @@ double JointDescent::accumulate_eikonal(int step, const TracedHits& traced) {
 
 void JointDescent::update(const Shaded& shaded, float rate) {
   const JointRates& r = options_.rates;
-  if (r.sdf_tables > 0 || r.sdf_layers > 0) sdf_trainer_.update(device_, rate);
+  if (sdf_norm_)
+    sdf_norm_->update(device_, sdf_trainer_, rate);
+  else if (r.sdf_tables > 0 || r.sdf_layers > 0)
+    sdf_trainer_.update(device_, rate);
   if (r.albedo > 0) albedo_trainer_.update(device_, r.albedo * rate);
-  if (r.material > 0) {
+  if (r.material > 0 && gloss_) {
+    gloss_->update(rate);
+    object_.gloss = gloss_->material();
+    object_.material = nearest_material(*object_.gloss);
+  } else if (r.material > 0) {
     material_.update(device_, rate);
     object_.material = material_.field();
   }
   if (r.light > 0) {
-    light_.step(device_, batch_of(shaded), shaded.grads.d_sky_irradiance, shaded.grads.d_sky_reflection,
-                r.light * rate);
+    if (gloss_)
+      light_.step(device_, gloss_->lobes_grad(), r.light * rate);
+    else
+      light_.step(device_, batch_of(shaded), shaded.grads.d_sky_irradiance, shaded.grads.d_sky_reflection,
+                  r.light * rate);
     object_.light = light_.light();
-    lighting_->set_lobes(object_.light);
+    if (!gloss_) lighting_->set_lobes(object_.light);
   }
+}
+
+double JointDescent::held_out_psnr() {
+  if (!lighting_) relight();
+  const size_t all = input_.samples.hits.size(), held = (all + kHeldOutStride - 1) / kHeldOutStride,
+               stride = kHeldOutStride * std::max<size_t>(1, held / kJudged);
+  std::vector<uint32_t> judged, seen;
+  std::vector<Hit> near;
+  for (size_t s = 0; s < all; s += stride)
+    judged.push_back(uint32_t(s)), near.push_back(input_.samples.hits[s]);
+  const TracedHits traced(device_, object_.sdf, near, bool(input_.surface));
+  for (const uint32_t ray : traced.rays()) seen.push_back(judged[ray]);
+  Shaded shaded;
+  shaded.hits.assign(traced.hits().begin(), traced.hits().end());
+  shaded.materials = object_.material.at(device_, positions_of(shaded.hits));
+  shaded.views = views_of(input_.samples.turned, seen);
+  std::vector<float> footprints;
+  for (const uint32_t s : seen)
+    footprints.push_back(input_.samples.footprints.empty() ? 0 : input_.samples.footprints[s]);
+  const std::vector<Vec3f> albedo = pixel_colors(device_, object_.albedo, traced.hits(), footprints);
+  const HitBatch batch = batch_of(shaded);
+  const std::vector<ShadingTerms<float>> terms = terms_at(batch, light_at(batch));
+  std::vector<Vec3f> got(judged.size(), Vec3f{0, 0, 0});
+  for (size_t i = 0; i < seen.size(); ++i) got[traced.rays()[i]] = terms[i].radiance(albedo[i]);
+  double sum = 1e-12;
+  for (size_t k = 0; k < judged.size(); ++k) sum += display_error(got[k], input_.samples.colors[judged[k]]);
+  return psnr_of_mse(sum / (3 * double(std::max<size_t>(judged.size(), 1))));
+}
+
+void JointDescent::save(Tensors& out) const {
+  object_.sdf.params().save(out, "sdf");
+  sdf_trainer_.save(out, "sdf_adam");
+  if (sdf_norm_) sdf_norm_->save(out, "sdf_norm");
+  object_.albedo.params().save(out, "albedo");
+  albedo_trainer_.save(out, "albedo_adam");
+  material_.save(out, "material");
+  light_.save(out, "light");
+  if (gloss_) gloss_->save(out, "gloss");
+}
+
+void JointDescent::load(const Tensors& in) {
+  object_.sdf.params().load(in, "sdf");
+  sdf_trainer_.load(in, "sdf_adam");
+  if (sdf_norm_) sdf_norm_->load(in, "sdf_norm");
+  object_.albedo.params().load(in, "albedo");
+  albedo_trainer_.load(in, "albedo_adam");
+  material_.load(in, "material");
+  object_.material = material_.field();
+  if (gloss_) {
+    gloss_->load(in, "gloss");
+    object_.gloss = gloss_->material();
+    object_.material = nearest_material(*object_.gloss);
+  }
+  light_.load(in, "light");
+  object_.light = light_.light();
+  lighting_ = nullptr;
 }
 
 }  // namespace cei3d

@@ -4,31 +4,44 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "core/base/progress.h"
 #include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/appearance/light_descent.h"
 #include "engine/reconstruct/joint/material_descent.h"
+#include "engine/reconstruct/joint/sg_shading.h"
 #include "engine/reconstruct/joint/traced_hits.h"
 #include "engine/reconstruct/pixels.h"
+#include "engine/reconstruct/rate_schedule.h"
 #include "engine/render/lighting.h"
+#include "model/field/adam_constants.h"
+#include "model/field/weight_norm.h"
 
 namespace cei3d {
 
 enum class ColorLoss { display, linear };  // Huber of display-encoded colors; L1 of linear ones, the paper's
 
+// The shading model's own (core/math/shading.h), or one spherical Gaussian without occlusion or reflections
+// of the object in itself (sg_shading.h).
+enum class SpecularTerm { split_sum, single_sg };
+
 // Learning rates of Adam at the beginning. 0: held constant.
 struct JointRates {
   float sdf_tables = 1e-4f, sdf_layers = 5e-5f;
-  float albedo = 0.05f;    // times the default rates of FieldTrainer
+  float albedo = 0.05f;    // times those of the appearance stage: 1e-2 of tables, 2e-3 of layers
   float material = 1e-3f;  // of logits, see MaterialDescent
-  float light = 0.3f;      // times the rates of LightDescent
+  float light = 0.3f;      // times the rates of LightDescent: 1e-2 of logarithms, 2e-3 of axes
 };
 
 struct JointOptions {
   JointRates rates;
+  RateSchedule schedule;
+  AdamConstants adam;
+  bool weight_norm = false;  // of the distance field's layers; its hash tables then stay as they are
   ColorLoss color = ColorLoss::display;
+  SpecularTerm specular = SpecularTerm::split_sum;
   int rays = 4096;             // on the object, per step
   float eikonal = 0.1f;        // weight of (|gradient| - 1)^2 [paper eq. 16]
   int box_points = 1024;       // random points of the object's box at which it is taken
@@ -46,6 +59,8 @@ struct JointObject {
   Field sdf, albedo;
   MaterialField material;
   SgMixture light;
+  // Of a single spherical Gaussian; none: made of `material`, which follows it as nearest_material().
+  std::optional<SgMaterial> gloss = {};
 };
 
 // Means over rays and points, weighted.
@@ -59,8 +74,9 @@ inline constexpr size_t kHeldOutStride = 20;
 
 class JointDescent {
  public:
-  // input: the surface, which stands for visibility and bounces throughout, and its hits. pixels: whose empty
-  // pixels the mask loss takes. All must outlive the object.
+  // input: the surface, which stands for visibility and bounces throughout, and its hits; or no surface and
+  // object_rays(), which are then traced through the field alone and lit as if the object hid nothing from
+  // itself. pixels: whose empty pixels the mask loss takes. All must outlive the object.
   JointDescent(const Device&, const AppearanceInput& input, const PixelStore& pixels, JointObject start,
                const JointOptions&, const Progress&);
 
@@ -68,6 +84,13 @@ class JointDescent {
   JointLoss step(int step, float rate);
   const JointObject& object() const { return object_; }
   const Lighting& lighting() const { return *lighting_; }  // of the last step
+  // PSNR (dB, display-encoded) of the descent's own shading on samples that it leaves out, at most
+  // 20,000 of them. Rays that miss the surface are black.
+  double held_out_psnr();
+
+  // Object and moments. Without a surface, what goes on from them is what would have gone on.
+  void save(Tensors& out) const;
+  void load(const Tensors& in);
 
  private:
   friend struct JointDescentProbe;  // the gradient test sees gradients before they are used
@@ -82,6 +105,10 @@ class JointDescent {
   void update(const Shaded&, float rate);
 
   void relight();
+  std::vector<IncidentLight<float>> light_at(const HitBatch&) const;
+  std::vector<ShadingTerms<float>> terms_at(const HitBatch&, const std::vector<IncidentLight<float>>&);
+  void make_gloss();
+  Ray empty_ray(int step, int i) const;
   std::vector<uint32_t> choose_samples(int step) const;
   double accumulate_color(const TracedHits&, const std::vector<uint32_t>& samples, Shaded&, ValueGrads&);
   double color_loss(uint32_t sample, Vec3f radiance, Vec3f& d_radiance) const;
@@ -97,9 +124,11 @@ class JointDescent {
   JointOptions options_;
   JointObject object_;
   FieldTrainer sdf_trainer_, albedo_trainer_;
+  std::optional<WeightNorm> sdf_norm_;  // of the distance field
   MaterialDescent material_;
   LightDescent light_;
-  Transport transport_;
+  std::unique_ptr<SgShading> gloss_;    // null: split sum
+  std::optional<Transport> transport_;  // none without a surface
   std::unique_ptr<Lighting> lighting_;
   std::vector<uint32_t> empty_;  // pixels without any object
   Vec3f box_min_, box_max_;      // of the object

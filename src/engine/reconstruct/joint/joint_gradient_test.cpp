@@ -38,12 +38,21 @@ struct JointDescentProbe {
   static std::span<const float> materials_gradient(JointDescent& d, const Param& p) {
     return d.material_.trainer_->gradient(p);
   }
+  static std::vector<float>& gloss(JointDescent& d) { return d.gloss_->raw_->value; }
+  static std::vector<float> gloss_gradient(JointDescent& d) {
+    const std::span<const float> g = d.gloss_->optimizer_.gradient(*d.gloss_->raw_);
+    return {g.begin(), g.end()};
+  }
+  static std::vector<float> gloss_lobes_gradient(JointDescent& d) { return d.gloss_->lobes_grad(); }
   static Param& logits(JointDescent& d) { return *d.material_.logits_; }
   static std::span<const float> logits_gradient(JointDescent& d) {
     return d.material_.optimizer_.gradient(*d.material_.logits_);
   }
   static void use_logits(JointDescent& d) { d.object_.material = d.material_.from_logits(); }
-  static void set_light(JointDescent& d, const SgMixture& light) { d.lighting_->set_lobes(light); }
+  static void set_light(JointDescent& d, const SgMixture& light) {
+    d.lighting_->set_lobes(light);
+    d.object_.light = light;
+  }
 };
 
 namespace {
@@ -78,7 +87,7 @@ Field smooth_colors(int outputs) {
 
 class JointGradient : public testing::Test {
  protected:
-  void make(const MaterialField& material) {
+  void make(const MaterialField& material, SpecularTerm specular = SpecularTerm::split_sum) {
     JointObject object{pebble(), smooth_colors(3), material, studio()};
     const PixelStore gray = pictures_of(device_, object, surface_of(object.sdf), {6, 32});
     seen_ = extract_surface_and_hits(device_, object.sdf, {48}, gray, 100000, Progress());
@@ -94,6 +103,7 @@ class JointGradient : public testing::Test {
     options.mask_rays = 256;
     options.mask_sharpness = 60;
     options.learn_specular = true;
+    options.specular = specular;
     descent_ =
         std::make_unique<JointDescent>(device_, input_, pixels_, std::move(object), options, Progress());
     step_ = Probe::accumulate(*descent_);
@@ -130,6 +140,32 @@ class JointGradient : public testing::Test {
         for (size_t i = 0; i < direction.of.size(); ++i) p.value[i] = before[i] + h * direction.of[i];
       };
       expect_slope(direction.slope, change, step, what + " " + p.name);
+    }
+  }
+
+  // Of three lobes of light: of their axes, sharpness and color. gradient: planes as of lobes_grad().
+  void expect_light(const SgMixture& light, const std::vector<float>& gradient) {
+    const int padded = kPanel;
+    for (size_t k = 0; k < 3; ++k) {
+      const SgLobe& lobe = light.lobes[k];
+      const Vec3f d_axis = load_planes<float>(gradient.data(), padded, int(k)),
+                  tangent = normalize(d_axis - lobe.axis * dot(lobe.axis, d_axis));
+      const auto change = [&](const std::function<void(SgLobe&)>& move) {
+        SgMixture moved = light;
+        move(moved.lobes[k]);
+        Probe::set_light(*descent_, moved);
+      };
+      const std::string name = " of lobe " + std::to_string(k);
+      expect_slope(
+          dot(d_axis, tangent),
+          [&](float h) { change([&](SgLobe& l) { l.axis = normalize(l.axis + tangent * h); }); }, 0.02f,
+          "axis" + name);
+      expect_slope(
+          double(gradient[3 * size_t(padded) + k]) * lobe.lambda,
+          [&](float h) { change([&](SgLobe& l) { l.lambda *= 1 + h; }); }, 0.02f, "sharpness" + name);
+      expect_slope(
+          dot(load_planes<float>(gradient.data() + 4 * padded, padded, int(k)), lobe.mu),
+          [&](float h) { change([&](SgLobe& l) { l.mu = l.mu * (1 + h); }); }, 0.02f, "color" + name);
     }
   }
 
@@ -182,27 +218,19 @@ TEST_F(JointGradient, OfTheLightEqualsDifferencesOfTheLoss) {
   const std::vector<float> gradient =
       lobes_grad(device_, {planes.data(), int(light.lobes.size()), padded}, {step_.hits, step_.materials},
                  step_.grads.d_sky_irradiance, step_.grads.d_sky_reflection);
-  for (size_t k = 0; k < 3; ++k) {
-    const SgLobe& lobe = light.lobes[k];
-    const Vec3f d_axis = load_planes<float>(gradient.data(), padded, int(k)),
-                tangent = normalize(d_axis - lobe.axis * dot(lobe.axis, d_axis));
-    const auto change = [&](const std::function<void(SgLobe&)>& move) {
-      SgMixture moved = light;
-      move(moved.lobes[k]);
-      Probe::set_light(*descent_, moved);
-    };
-    const std::string name = " of lobe " + std::to_string(k);
-    expect_slope(
-        dot(d_axis, tangent),
-        [&](float h) { change([&](SgLobe& l) { l.axis = normalize(l.axis + tangent * h); }); }, 0.02f,
-        "axis" + name);
-    expect_slope(
-        double(gradient[3 * size_t(padded) + k]) * lobe.lambda,
-        [&](float h) { change([&](SgLobe& l) { l.lambda *= 1 + h; }); }, 0.02f, "sharpness" + name);
-    expect_slope(
-        dot(load_planes<float>(gradient.data() + 4 * padded, padded, int(k)), lobe.mu),
-        [&](float h) { change([&](SgLobe& l) { l.mu = l.mu * (1 + h); }); }, 0.02f, "color" + name);
+  expect_light(light, gradient);
+}
+
+TEST_F(JointGradient, OfASingleGaussianEqualsDifferencesOfTheLoss) {
+  make(Material{0.35f, 0.5f, 0.3f}, SpecularTerm::single_sg);
+  const std::vector<float> gradient = Probe::gloss_gradient(*descent_),
+                           lobes = Probe::gloss_lobes_gradient(*descent_), before = Probe::gloss(*descent_);
+  expect_field(Probe::sdf(*descent_), &Probe::sdf_gradient, 2e-3f, "distance");
+  for (size_t k = 0; k < 7; ++k) {
+    const auto change = [&](float h) { Probe::gloss(*descent_)[k] = before[k] + h; };
+    expect_slope(gradient[k], change, 0.02f, "number " + std::to_string(k) + " of the material");
   }
+  expect_light(studio(), lobes);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/cancel.h"
+#include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/math/psnr.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
@@ -13,39 +14,67 @@
 namespace cei3d {
 namespace {
 
-constexpr double kWarmUp = 0.05;  // share of the descent at rising rates: Adam's first steps have full length
-constexpr double kLastRate = 0.1;
 constexpr float kBehind = 2.5f;  // rays of samples begin so far before them: outside the unit sphere
+
+// Reports and logs the mean losses of every few steps.
+class Summary {
+ public:
+  explicit Summary(Progress& progress) : progress_(progress) {}
+  void add(const JointLoss& loss, int step, double u) {
+    sum_.color += loss.color, sum_.eikonal += loss.eikonal, sum_.mask += loss.mask;
+    if (++summed_ < kSteps) return;
+    progress_.report({"joint descent", u, -1, ""});
+    progress_.log(Json{{"stage", "joint descent"},
+                       {"step", step},
+                       {"color", sum_.color / summed_},
+                       {"eikonal", sum_.eikonal / summed_},
+                       {"mask", sum_.mask / summed_}}
+                      .dump());
+    sum_ = {};
+    summed_ = 0;
+  }
+
+ private:
+  static constexpr int kSteps = 50;
+  Progress& progress_;
+  JointLoss sum_;
+  int summed_ = 0;
+};
+
+// Saves where it is due, and before an interruption.
+void between_steps(const JointDescent& descent, int step, const DescentStore& store,
+                   const Progress& progress) {
+  const bool stop = progress.cancelled();
+  if (store.save && (stop || (store.due && store.due()))) {
+    DescentState state{step, {}};
+    descent.save(state.tensors);
+    store.save(std::move(state));
+  }
+  if (stop) check_cancelled(progress);
+}
 
 }  // namespace
 
 JointObject descend_jointly(const Device& device, const AppearanceInput& input, const PixelStore& pixels,
                             JointObject start, const JointStageOptions& options, Progress& progress) {
-  const double begin = options.clock();
+  const double begin = options.clock() - options.spent;
   progress.report({"joint descent", 0, -1, ""});
   JointDescent descent(device, input, pixels, std::move(start), options.descent, progress);
-  JointLoss sum;
-  int summed = 0;
-  for (int step = 0; step < options.steps; ++step) {
-    check_cancelled(progress);
+  const DescentStore& store = options.store;
+  if (!store.from.tensors.empty()) descent.load(store.from.tensors);
+  Summary summary(progress);
+  for (int step = int(store.from.step); step < options.steps; ++step) {
+    between_steps(descent, step, store, progress);
     const double time = options.seconds > 0 ? (options.clock() - begin) / options.seconds : 0,
                  u = std::max(time, double(step) / options.steps);
     if (u >= 1) break;
-    const JointLoss loss = descent.step(
-        step, float(std::min(1.0, (u + 1.0 / options.steps) / kWarmUp) * std::pow(kLastRate, u)));
+    const JointLoss loss = descent.step(step, float(rate_at(options.descent.schedule, u, options.steps)));
+    if (!std::isfinite(loss.total()))
+      fail("the joint descent diverged at step {}: the loss is not a number", step);
     if (options.show) options.show(descent.lighting(), descent.object().albedo, descent.object().material);
-    sum.color += loss.color, sum.eikonal += loss.eikonal, sum.mask += loss.mask;
-    if (++summed < 50) continue;
-    progress.report({"joint descent", u, -1, ""});
-    progress.log(Json{{"stage", "joint descent"},
-                      {"step", step},
-                      {"color", sum.color / summed},
-                      {"eikonal", sum.eikonal / summed},
-                      {"mask", sum.mask / summed}}
-                     .dump());
-    sum = {};
-    summed = 0;
+    summary.add(loss, step, u);
   }
+  progress.log(Json{{"stage", "joint descent"}, {"held_out_psnr", descent.held_out_psnr()}}.dump());
   return descent.object();
 }
 

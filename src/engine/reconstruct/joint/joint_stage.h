@@ -10,10 +10,12 @@ namespace cei3d {
 
 struct JointStageOptions {
   JointOptions descent;
-  int steps = 400;     // at rates that rise at first and then decay to a tenth
+  int steps = 400;
   double seconds = 0;  // > 0: time limit
   Clock clock = steady_seconds;
   ShowAppearance show{};  // may be empty
+  double spent = 0;       // s of `seconds` that earlier parts of the descent took
+  DescentStore store{};
 };
 
 // Error: interrupted.

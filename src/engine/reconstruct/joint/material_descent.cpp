@@ -5,27 +5,23 @@
 
 #include "core/math/activation.h"
 #include "core/math/roughness.h"
+#include "engine/reconstruct/joint/logit.h"
 
 namespace cei3d {
 namespace {
 
 constexpr float kFullRate = 1e-2f;
-constexpr float kMargin = 1e-3f;  // logits of 0 and 1 do not exist
-
-float logit(float x) {
-  const float y = clamp(x, kMargin, 1 - kMargin);
-  return std::log(y / (1 - y));
-}
-float share(float logit) { return Sigmoid::eval(logit, 1).value; }
 
 }  // namespace
 
-MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool learn_specular)
+MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool learn_specular,
+                                 AdamConstants adam)
     : field_(start), rate_(rate) {
   if (start.varying()) {
     varying_ = std::make_shared<Field>(*start.varying());
     field_ = {start.mean(), varying_};
-    trainer_ = std::make_unique<FieldTrainer>(*varying_, FieldTrainer::Options{});
+    trainer_ = std::make_unique<FieldTrainer>(*varying_,
+                                              FieldTrainer::Options{.beta2 = adam.beta2, .eps = adam.eps});
     return;
   }
   const Material& m = start.mean();
@@ -36,14 +32,14 @@ MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool le
   learned_[0] = true;
   learned_[1] = learn_specular;
   learned_[2] = m.metalness > 0 && m.metalness < 1;
-  optimizer_.add(params_, "", {.rate = kFullRate, .eps = 1e-12f});
+  optimizer_.add(params_, "", {.rate = kFullRate, .beta2 = adam.beta2, .eps = adam.eps});
 }
 
 Material MaterialDescent::from_logits() const {
   const Material& m = field_.mean();
   const float* v = logits_->value.data();
-  return {learned_[0] ? roughness_of_share(share(v[0])) : m.roughness, learned_[1] ? share(v[1]) : m.specular,
-          learned_[2] ? share(v[2]) : m.metalness};
+  return {learned_[0] ? roughness_of_share(share_of_logit(v[0])) : m.roughness,
+          learned_[1] ? share_of_logit(v[1]) : m.specular, learned_[2] ? share_of_logit(v[2]) : m.metalness};
 }
 
 void MaterialDescent::accumulate(const Device& device, std::span<const Vec3f> positions,
@@ -67,6 +63,27 @@ void MaterialDescent::update(const Device& device, float rate) {
     return;
   }
   optimizer_.step(device, rate * rate_ / kFullRate);
+  field_ = MaterialField(from_logits());
+}
+
+void MaterialDescent::save(Tensors& out, const std::string& prefix) const {
+  if (varying_) {
+    varying_->params().save(out, prefix);
+    trainer_->save(out, prefix + "_adam");
+    return;
+  }
+  params_.save(out, prefix);
+  optimizer_.save(out, prefix + "_adam");
+}
+
+void MaterialDescent::load(const Tensors& in, const std::string& prefix) {
+  if (varying_) {
+    varying_->params().load(in, prefix);
+    trainer_->load(in, prefix + "_adam");
+    return;
+  }
+  params_.load(in, prefix);
+  optimizer_.load(in, prefix + "_adam");
   field_ = MaterialField(from_logits());
 }
 

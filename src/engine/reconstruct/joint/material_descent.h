@@ -5,7 +5,9 @@
 
 #include <memory>
 #include <span>
+#include <string>
 
+#include "model/field/adam_constants.h"
 #include "model/field/optimizer.h"
 #include "model/scene/material_field.h"
 
@@ -15,12 +17,15 @@ class MaterialDescent {
  public:
   // rate: of Adam, on logits; the network has the default rates of FieldTrainer times rate / 1e-2. A
   // metalness of 0 or 1 stays; so does the specular strength unless learn_specular.
-  MaterialDescent(const MaterialField& start, float rate, bool learn_specular);
+  MaterialDescent(const MaterialField& start, float rate, bool learn_specular, AdamConstants adam = {});
 
   const MaterialField& field() const { return field_; }
   // d_material: #positions, dL/d(material there).
   void accumulate(const Device&, std::span<const Vec3f> positions, std::span<const Material> d_material);
   void update(const Device&, float rate);
+
+  void save(Tensors& out, const std::string& prefix) const;
+  void load(const Tensors& in, const std::string& prefix);
 
  private:
   friend struct JointDescentProbe;

@@ -46,11 +46,11 @@ TracedHits::Planes TracedHits::planes(const std::vector<float>& values) const {
           planes_of(gradients_along_, stride)};
 }
 
-TracedHits::TracedHits(const Device& device, const Field& sdf, std::span<const Hit> near)
+TracedHits::TracedHits(const Device& device, const Field& sdf, std::span<const Hit> near, bool are_near)
     : config_(sdf.config()) {
   std::vector<Ray> rays;
   for (const Hit& h : near) rays.push_back({h.position + h.to_camera * kBehind, -h.to_camera});
-  const std::vector<float> starts(rays.size(), kBehind);
+  const std::vector<float> starts(are_near ? rays.size() : 0, kBehind);
   const std::vector<FieldTrace> found = trace_field(device, sdf, rays, starts);
   std::vector<Vec3f> directions;
   std::vector<float> values;

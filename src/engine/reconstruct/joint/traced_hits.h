@@ -21,9 +21,9 @@ struct ValueGrads {
 
 class TracedHits {
  public:
-  // near: hits on a mesh close to the surface; each stands for the ray from its camera through it. Their
-  // triangles are kept. sdf: not kept.
-  TracedHits(const Device&, const Field& sdf, std::span<const Hit> near);
+  // near: each stands for the ray from its camera through it. are_near: they are hits on a mesh close to the
+  // surface; else the surface is searched along the whole ray. Their triangles are kept. sdf: not kept.
+  TracedHits(const Device&, const Field& sdf, std::span<const Hit> near, bool are_near = true);
 
   std::span<const Hit> hits() const { return hits_; }          // of the rays that meet the surface
   const std::vector<uint32_t>& rays() const { return rays_; }  // #hits, index of the ray
