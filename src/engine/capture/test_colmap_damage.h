@@ -13,6 +13,20 @@
 
 namespace cei3d {
 
+// What a lens makes of a pinhole image; samples lie a quarter of a pixel apart.
+inline Image through_lens(const Image& image, const PhotoCamera& photo) {
+  constexpr int kFine = 4;
+  const Image fine = scaled_to(image, kFine * image.width, kFine * image.height);
+  Image out(image.width, image.height, image.channels);
+  for (int y = 0; y < out.height; ++y)
+    for (int x = 0; x < out.width; ++x) {
+      const auto p = pinhole_from_photo(photo, photo.camera(), {x + 0.5, y + 0.5});
+      if (p && p->x >= 0 && p->y >= 0 && p->x < image.width && p->y < image.height)
+        std::copy_n(fine.at(int(kFine * p->x), int(kFine * p->y)), image.channels, out.at(x, y));
+    }
+  return out;
+}
+
 class ColmapCopy {
  public:
   // Writes the training views of a good capture of RGBA images, seen through a lens. The points lie on a ball
@@ -26,11 +40,8 @@ class ColmapCopy {
     for (const View& v : good.views) {
       if (v.split != Split::train) continue;
       views_.push_back({std::to_string(1000 + views_.size()).replace(0, 1, "r_"), v.camera});
-      const PhotoCamera photo(v.camera, model_.distortion);
-      const auto seen_by = [&](double x, double y) {
-        return pinhole_from_photo(photo, v.camera, {x, y}).value_or(Vec2d{-1, -1});
-      };
-      write_png(folder / "images" / (views_.back().stem + ".png"), remade(read_image(v.image_path), seen_by));
+      write_png(folder / "images" / (views_.back().stem + ".png"),
+                through_lens(read_image(v.image_path), PhotoCamera(v.camera, model_.distortion)));
     }
     write_model("0", views_);
   }

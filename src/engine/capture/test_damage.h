@@ -285,6 +285,9 @@ inline std::vector<Damage> usual_damages() {
                  "cannot be used"});
   all.push_back({"pose with NaN", [](DamagedCapture& c) { c.frame(2)["transform_matrix"][0][3] = nullptr; },
                  "poses are not a rotation"});
+  all.push_back({"image turned by 90 degrees",
+                 [](DamagedCapture& c) { c.redraw(6, [](const Image& m) { return turned(m, 6); }); },
+                 "cannot be used|turned by .* degrees|do not fit the others"});
   all.push_back({"too few views",
                  [](DamagedCapture& c) {
                    for (size_t i = 9; i < c.size(); ++i) std::filesystem::remove(c.image(i));
@@ -293,12 +296,6 @@ inline std::vector<Damage> usual_damages() {
                    c.keep(few);
                  },
                  "only 9 training views"});
-  all.push_back({"image turned by 90 degrees",
-                 [](DamagedCapture& c) { c.redraw(6, [](const Image& m) { return turned(m, 6); }); },
-                 "cannot be used|turned by .* degrees|do not fit the others"});
-  all.push_back({"image of half the size",
-                 [](DamagedCapture& c) { c.redraw(5, [](const Image& m) { return downscale(m, 2); }); },
-                 "cameras of 1 of .* were scaled to their images"});
   all.push_back({"a side without photographs",
                  [](DamagedCapture& c) {
                    const std::vector<size_t> gone = frames_beside_the_first(c, 1.2);
@@ -308,6 +305,9 @@ inline std::vector<Damage> usual_damages() {
                    c.keep(left);
                  },
                  "side of the object is not photographed"});
+  all.push_back({"image of half the size",
+                 [](DamagedCapture& c) { c.redraw(5, [](const Image& m) { return downscale(m, 2); }); },
+                 "cameras of 1 of .* were scaled to their images"});
   return all;
 }
 
