@@ -11,8 +11,8 @@ namespace cei3d {
 inline double halved(double u, int parts) { return std::exp2(-std::floor(u * parts)); }
 
 struct RateSchedule {
-  double warm_up = 0.05;   // share of the descent at rates that rise: Adam's first steps have full length
-  double last = 0.1;       // factor at the end, which is approached exponentially
+  double warm_up = 0.05;  // share of the descent at rates that rise: Adam's first steps have full length
+  double last = 0.1;      // factor at the end, which is approached exponentially
   int halving_parts = 0;  // if > 0, rates are halved instead, see halved() [paper sec. 5.1]
 };
 

@@ -37,11 +37,11 @@ struct GeometryOptions {
   int first_levels = 5;       // hash levels in use from the beginning
   SamplingOptions sampling;
   GeometryLosses loss;
-  float table_rate = 3e-3f;      // Adam rate of the hash tables
-  float layer_rate = 2e-3f;      // Adam rate of the layers of both networks
-  float decay_from = 0.3f;       // position from which both rates decay exponentially
-  float decay_to = 0.01f;        // factor of both rates at the end
-  int halving_parts = 0;         // if > 0, both rates are halved instead, see halved()
+  float table_rate = 3e-3f;  // Adam rate of the hash tables
+  float layer_rate = 2e-3f;  // Adam rate of the layers of both networks
+  float decay_from = 0.3f;   // position from which both rates decay exponentially
+  float decay_to = 0.01f;    // factor of both rates at the end
+  int halving_parts = 0;     // if > 0, both rates are halved instead, see halved()
   AdamConstants adam;
   int prefit_steps = 300;        // that fit the field to the start shape
   int refresh_every = 10;        // steps between updates of the occupancy grid
