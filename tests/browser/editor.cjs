@@ -25,6 +25,7 @@ async function firstSession(page, url) {
   check('the object is in the picture', at.n > 800);
   const packs = asked.map((p) => p.startsWith('/api/pack/')), photos = asked.map((p) => p.startsWith('/api/photo/'));
   check('what the picture needs is asked for before photographs', packs.lastIndexOf(true) >= 4 && (photos.indexOf(true) < 0 || photos.indexOf(true) > packs.lastIndexOf(true)));
+  check(`and not again and again: ${packs.filter(Boolean).length} packs`, packs.filter(Boolean).length <= 10);
   await drawsItself(page);
   const box = await page.locator('#view').boundingBox();
   const before = await page.evaluate(() => globalThis.cei3d.stage.json().center.join());

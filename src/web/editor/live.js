@@ -34,6 +34,8 @@ export class Live {
     this.previewed = null;
     /** @type {{keys: Record<string, string>, packs: Map<string, Promise<ArrayBuffer>>} | null} packs that were asked for ahead */
     this.ahead = null;
+    /** @type {Map<string, {key: string, bytes: Promise<ArrayBuffer>}>} packs that are on their way, by kind */
+    this.underway = new Map();
     this.pace = new Pace(false);
     /** @type {{draw: () => void, rest: boolean} | null} the picture that comes next */
     this.next = null;
@@ -85,9 +87,17 @@ export class Live {
   fetchMissing() {
     /** @type {Record<string, string>} */
     const keys = this.store.state.packs ?? {};
-    const packs = new Map(Object.keys(keys).filter((kind) => this.have[kind] !== keys[kind]).map((kind) => [kind, getBytes(`/api/pack/${kind}?key=${keys[kind]}${this.packed()}`)]));
-    for (const pack of packs.values()) pack.catch(() => {});  // refresh() awaits each, if those before it arrive
-    return packs;
+    return new Map(Object.keys(keys).filter((kind) => this.have[kind] !== keys[kind]).map((kind) => [kind, this.fetchPack(kind, keys[kind])]));
+  }
+
+  /** @param {string} kind @param {string} key */
+  fetchPack(kind, key) {
+    const before = this.underway.get(kind);
+    if (before?.key === key) return before.bytes;
+    const bytes = getBytes(`/api/pack/${kind}?key=${key}${this.packed()}`);
+    bytes.catch(() => this.underway.delete(kind));  // refresh() awaits each, if those before it arrive
+    this.underway.set(kind, { key, bytes });
+    return bytes;
   }
 
   packed() { return this.store.line.far ? '&packed=1' : ''; }
@@ -99,6 +109,7 @@ export class Live {
     if (kind === 'light') this.light = pack;
     if (kind === 'look') this.looks = partLooks(pack);
     this.have[kind] = key;
+    this.underway.delete(kind);
   }
 
   /** Shows an edit of the look that is not kept. @param {string} token @returns {Promise<boolean>} whether it can */

@@ -68,6 +68,7 @@ export class Store extends EventTarget {
     }
     state.history ??= [];
     state.parts ??= [];
+    if (JSON.stringify(state.packs) === JSON.stringify(before.packs)) state.packs = before.packs;  // the same object: nothing is new
     this.state = state;
     if (this.part && !state.parts.some((/** @type {Part} */ p) => p.name === this.part)) this.part = null;
     if (before.mode !== state.mode || before.folder !== state.folder) this.emit('mode', state);
