@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/joint/joint_run.h"
 
-#include "core/base/cancel.h"
+#include <algorithm>
+
 #include "engine/reconstruct/appearance/find_light_frame.h"
 #include "engine/reconstruct/joint/joint_stage.h"
 #include "engine/reconstruct/joint/start_values.h"
@@ -25,6 +26,14 @@ LightFrame given_light_frame(const RunContext& run) {
   return light_frame(*run.light, run.views.train.cameras(), to_float(normalize(run.capture.up)));
 }
 
+// Seconds of the whole descent, of which `spent` are over; 0: no limit. What came before it may have taken
+// longer than planned.
+double seconds_of(const RunContext& run, double spent) {
+  const Plan& p = run.plan;
+  if (p.joint <= 0) return 0;
+  return std::max(1.0, std::min(spent + run.progress.left() - p.reserve - p.finer_mesh, p.joint));
+}
+
 void descend(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
   Scene& scene = state.scene;
   scene.light_frame = given_light_frame(run);
@@ -35,7 +44,8 @@ void descend(const RunContext& run, RunState& state, const Stage::Checkpoint& ch
   const Clock clock = run.progress.clock();
   const double begin = clock() - state.training_seconds;
   double last_save = clock();
-  JointStageOptions options{run.preset.joint, run.plan.joint_steps, run.plan.joint, clock};
+  JointStageOptions options{run.preset.joint, run.plan.joint_steps, seconds_of(run, state.training_seconds),
+                            clock};
   options.descent.seed = run.seed;
   options.spent = state.training_seconds;
   options.store.from = state.descent;
