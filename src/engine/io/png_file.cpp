@@ -56,16 +56,8 @@ struct Profile {
   png_uint_32 size;
 };
 
-// Texts and profiles are unpacked, too: in all at most 64 MB of them.
-void set_limits(png_structp png) {
-  constexpr int kNotes = 16, kNoteBytes = 4 << 20;
-  png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
-  png_set_chunk_cache_max(png, kNotes);
-  png_set_chunk_malloc_max(png, kNoteBytes);
-}
-
 void read_header(png_structp png, png_infop info, Header* h) {
-  set_limits(png);
+  png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
   png_read_info(png, info);
   if (png_get_color_type(png, info) == PNG_COLOR_TYPE_GRAY_ALPHA ||
       (png_get_color_type(png, info) == PNG_COLOR_TYPE_GRAY && png_get_valid(png, info, PNG_INFO_tRNS)))
@@ -81,7 +73,7 @@ void read_header(png_structp png, png_infop info, Header* h) {
 }
 
 void read_profile(png_structp png, png_infop info, Profile* out) {
-  set_limits(png);
+  png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
   png_read_info(png, info);
   png_charp name = nullptr;
   int compression = 0;
