@@ -10,6 +10,7 @@ for channel in rgb albedo diffuse specular normal depth mask; do
   [[ $(ls "$out/views/$channel" | wc -l) == 8 ]] || fail "not 8 pictures in $out/views/$channel"
 done
 cei3d eval "$object" "$sample:test" --samples 1 --json "$out/eval.json"
+refused 1 'has no val views; it has train, test' eval "$object" "$sample:val"
 # A blurred cow from two seconds of training is about 21 dB on white; an empty picture is at 11, a wrong camera at 13.
 psnr=$(grep -o '"psnr": *[0-9.]*' "$out/eval.json" | head -1 | grep -o '[0-9.]*$')
 awk -v p="$psnr" 'BEGIN {exit !(p > 19)}' || fail "only $psnr dB"

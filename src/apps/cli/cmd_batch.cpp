@@ -7,6 +7,7 @@
 #include "apps/cli/parse.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
+#include "core/base/parse_json.h"
 #include "core/base/system.h"
 #include "engine/batch/launchers.h"
 #include "engine/batch/local_engine.h"
@@ -93,7 +94,7 @@ Json defaults_of(const RunOptions& o) {
   if (!o.purpose.empty()) out["for"] = o.purpose;
   if (!o.keep.empty()) out["keep"] = o.keep;
   if (o.variants.empty()) return out;
-  out["variants"] = Json::parse(read_file(o.variants), nullptr, false);
+  out["variants"] = parse_json(read_file(o.variants));
   if (!out["variants"].is_object()) fail("{} is not a JSON object.", o.variants.string());
   return out;
 }

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/base/json.h"
+#include "core/base/parse_json.h"
 
 namespace cei3d {
 namespace {
@@ -86,7 +87,8 @@ void Editor::answer(HttpRequest request, Reply reply) {
     if (request.path == "/api/upload") return upload(request, reply);
     const auto route = routes().find(request.path.substr(5));
     if (route == routes().end()) return reply(error_response(404, "There is no such request."));
-    const Json body = request.body.empty() ? Json::object() : Json::parse(request.body);
+    const Json body = request.body.empty() ? Json::object() : parse_json(request.body);
+    if (body.is_discarded()) return reply(error_response(400, "The request is not JSON."));
     JsonReader reader(body, "The request");
     (this->*route->second)(reader, request, reply);
   } catch (...) {

@@ -241,8 +241,11 @@ TEST_F(EditorTest, BadRequestsAreSentencesAndChangeNothing) {
   HttpRequest broken;
   broken.method = "POST";
   broken.path = "/api/edit";
-  broken.body = "{\"op\":";
-  EXPECT_EQ(ask(broken).status, 400);
+  for (const std::string& body :
+       {std::string("{\"op\":"), std::string(100'000, '[') + std::string(100'000, ']')}) {
+    broken.body = body;
+    EXPECT_EQ(ask(broken).status, 400);
+  }
   for (const char* path :
        {"/api/none", "/api/photo/..%2f..%2fetc%2fpasswd", "/api/download/..%2fproject.json",
         "/app/../editor.h", "/app/%2e%2e/x", "/etc/passwd", "/api/photo/%zz"})

@@ -18,6 +18,7 @@
 #include "core/base/clock.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/base/parse_json.h"
 #include "engine/io/gzip.h"
 #include "engine/session/tiled_frame.h"
 
@@ -103,7 +104,7 @@ void Editor::received(const SocketPtr& socket, const std::string& text) {
     const std::lock_guard lock(mutex_);
     tab = tabs_[socket];
   }
-  const Json j = Json::parse(text, nullptr, false);
+  const Json j = parse_json(text);
   const std::string type =
       j.is_object() && j.contains("type") && j["type"].is_string() ? j["type"].get<std::string>() : "";
   if (!tab.trusted) {

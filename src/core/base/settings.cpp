@@ -10,6 +10,7 @@
 #include "core/base/json.h"
 #include "core/base/json_reader.h"
 #include "core/base/name_distance.h"
+#include "core/base/parse_json.h"
 
 namespace cei3d {
 namespace {
@@ -61,7 +62,7 @@ Json number_of(const std::string& text) {
 }
 
 void add_file(std::span<const SettingInfo> known, const std::string& path, Json& values) {
-  const Json file = Json::parse(read_file(path), nullptr, false);
+  const Json file = parse_json(read_file(path));
   if (!file.is_object() || !file.contains("set") || !file.at("set").is_object())
     fail_usage("{} should hold {{\"set\": {{\"key\": value, ...}}}}.", path);
   JsonReader reader(file, path);

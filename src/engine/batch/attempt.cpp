@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_reader.h"
+#include "core/base/parse_json.h"
 #include "core/base/system.h"
 
 namespace cei3d {
@@ -70,7 +71,7 @@ std::optional<bool> has_ended(const fs::path& attempt) {
   } catch (const Error&) {
     return std::nullopt;  // it ends just now, or its file system is gone
   }
-  const Json j = Json::parse(bytes, nullptr, false);
+  const Json j = parse_json(bytes);
   if (!j.is_object()) return std::nullopt;  // it begins just now
   JsonReader r(j, attempt.string());
   const Job job = present_job();

@@ -5,6 +5,7 @@
 
 #include "core/base/error.h"
 #include "core/base/name_distance.h"
+#include "core/base/parse_json.h"
 
 namespace cei3d {
 namespace {
@@ -19,7 +20,7 @@ bool is_in(const std::vector<std::string>& list, const std::string& word) {
 }
 
 Json number_of(const std::string& field, const std::string& column, const std::string& what) {
-  const Json j = Json::parse(field, nullptr, false);
+  const Json j = parse_json(field);
   if (!j.is_number()) fail("{}: '{}' of column '{}' is no number.", what, field, column);
   return j;
 }

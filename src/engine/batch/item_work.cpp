@@ -6,6 +6,7 @@
 #include "core/base/cancel.h"
 #include "core/base/clock.h"
 #include "core/base/file.h"
+#include "core/base/parse_json.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -17,7 +18,7 @@ constexpr const char* kStepFile = "step.json";
 Json found_in(const fs::path& folder, const std::string& key) {
   std::error_code error;
   if (!fs::exists(folder / kStepFile, error)) return nullptr;
-  const Json j = Json::parse(read_file(folder / kStepFile), nullptr, false);
+  const Json j = parse_json(read_file(folder / kStepFile));
   return j.is_object() && j.value("key", "") == key ? j.value("found", Json::object()) : Json();
 }
 

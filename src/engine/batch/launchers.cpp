@@ -7,6 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json_reader.h"
+#include "core/base/parse_json.h"
 #include "core/base/process.h"
 #include "core/base/system.h"
 
@@ -36,7 +37,7 @@ fs::path jobs_file(const fs::path& catalog) { return catalog / "slurm" / "jobs.j
 Json known_jobs(const fs::path& catalog) {
   std::error_code error;
   if (!fs::exists(jobs_file(catalog), error)) return Json::array();
-  Json j = Json::parse(read_file(jobs_file(catalog)), nullptr, false);
+  Json j = parse_json(read_file(jobs_file(catalog)));
   return j.is_array() ? j : Json::array();
 }
 

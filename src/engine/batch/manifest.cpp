@@ -8,6 +8,7 @@
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "core/base/json_reader.h"
+#include "core/base/parse_json.h"
 #include "engine/batch/csv.h"
 #include "engine/session/version.h"
 
@@ -18,7 +19,7 @@ namespace {
 constexpr int kCatalogVersion = 1;
 
 Json parsed(std::string_view text, const std::string& what) {
-  Json j = Json::parse(text, nullptr, false);
+  Json j = parse_json(text);
   if (!j.is_object()) fail("{} is not a JSON object.", what);
   return j;
 }

@@ -7,6 +7,7 @@
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "core/base/json_reader.h"
+#include "core/base/parse_json.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -69,7 +70,7 @@ std::optional<BatchState> read_batch_state(const fs::path& item_folder) {
   const fs::path file = item_folder / "state.json";
   std::error_code error;
   if (!fs::exists(file, error)) return std::nullopt;
-  const Json j = Json::parse(read_file(file), nullptr, false);
+  const Json j = parse_json(read_file(file));
   if (j.is_discarded()) fail("{} is damaged; remove it, and the object is made again.", file.string());
   return state_from(j, file.string());
 }

@@ -3,12 +3,13 @@
 
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "core/base/parse_json.h"
 
 namespace cei3d {
 
 Json KeptValues::find(const std::string& name, const Json& settings) const {
   if (!std::filesystem::exists(file(name))) return nullptr;
-  const Json kept = Json::parse(read_file(file(name)), nullptr, false);
+  const Json kept = parse_json(read_file(file(name)));
   if (!kept.is_object() || !kept.contains("settings") || !kept.contains("value")) return nullptr;
   return kept.at("settings") == settings ? kept.at("value") : Json();
 }

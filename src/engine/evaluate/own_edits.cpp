@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "core/base/parse_json.h"
 #include "engine/capture/capture_images.h"
 #include "engine/io/image_file.h"
 
@@ -15,7 +16,7 @@ namespace {
 
 // Other programs write these files, with more in them than is read here.
 Json read_object(const fs::path& file) {
-  Json j = Json::parse(read_file(file), nullptr, false);
+  Json j = parse_json(read_file(file));
   if (!j.is_object() || !j.contains("view") || !j.at("view").is_string())
     fail("{} should be a JSON object that names its \"view\".", file.string());
   return j;

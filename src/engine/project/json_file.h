@@ -7,11 +7,14 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "core/base/parse_json.h"
 
 namespace cei3d {
 
 inline Json parse_json_file(const std::filesystem::path& path) {
   const std::string text = read_file(path);
+  if (nested_too_deep(text))
+    fail("{} is damaged (nested too deep); restore it from a copy of the project.", path.string());
   try {
     return Json::parse(text);
   } catch (const Json::exception& e) {

@@ -124,6 +124,18 @@ TEST_F(ProjectTest, DamagedObjectsAreNamed) {
   EXPECT_NO_THROW(reading());
 }
 
+// Copying what such a file holds would take more of the stack than there is.
+TEST_F(ProjectTest, JsonThatIsNestedTooDeepIsNamed) {
+  make_with_base();
+  for (const char* name : {"project.json", "stack.json", "dataset.json", "base/scene.json"}) {
+    const std::string before = read_file(folder() / name);
+    write_file_atomic(folder() / name, std::string(300'000, '[') + std::string(300'000, ']'));
+    EXPECT_THAT(message_of([&] { Project::open(folder(), Project::Mode::read).base(); }),
+                testing::AllOf(HasSubstr(fs::path(name).filename().string()), HasSubstr("nested too deep")));
+    write_file_atomic(folder() / name, before);
+  }
+}
+
 TEST_F(ProjectTest, DamagedJsonIsNamed) {
   {
     Project p = make_with_base();

@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "core/base/parse_json.h"
 #include "core/math/quantile.h"
 #include "core/math/tangents.h"
 #include "engine/project/dataset.h"
@@ -31,10 +32,21 @@ std::vector<NamedCamera> named(const std::vector<View>& views) {
   return cameras;
 }
 
+// "train, test": the splits that have views.
+std::string split_names(const Capture& capture) {
+  std::string text;
+  for (const Split split : {Split::train, Split::val, Split::test})
+    if (!views_of(capture, split).empty())
+      text += (text.empty() ? "" : ", ") + std::string(split_name(split));
+  return text.empty() ? "none" : text;
+}
+
 std::vector<NamedCamera> read_camera_file(const fs::path& path) {
   std::vector<NamedCamera> cameras;
   try {
-    const Json json = Json::parse(read_file(path));
+    const std::string text = read_file(path);
+    if (nested_too_deep(text)) fail("{} is nested too deep to be a list of cameras.", path.string());
+    const Json json = Json::parse(text);
     JsonReader file(json, path.string());
     for (const char* key : {"program", "project", "edits", "light", "channels", "switches", "depth", "axes"})
       file.has(key);  // what else a render.json has
@@ -96,7 +108,7 @@ bool shows_photographs(const CameraChoice& choice) {
 bool is_camera_file(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return false;
-  const Json j = Json::parse(read_file(path), nullptr, false);
+  const Json j = parse_json(read_file(path));
   return j.is_object() && j.contains("cameras");
 }
 
@@ -113,8 +125,8 @@ std::vector<View> choose_views(const Project& project, const fs::path& path, std
       if (const auto it = known.find(v.name); it != known.end()) v.split = it->second;
   const std::vector<View> views = split ? views_of(capture, *split) : capture.views;
   if (views.empty())
-    fail("{} has no {} views.", path.empty() ? project.capture().root.string() : path.string(),
-         split_name(*split));
+    fail("{} has no {} views; it has {}.", path.empty() ? project.capture().root.string() : path.string(),
+         split ? split_name(*split) : "such", split_names(capture));
   return views;
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "core/base/temp_folder.h"
@@ -85,7 +85,8 @@ TEST_F(CamerasTest, FilesAreNamedLikeViews) {
   const std::vector<View> all = choose_views(p, "", std::nullopt);
   EXPECT_EQ(all.size(), 3u);
   EXPECT_EQ(choose_views(p, "", Split::test).size(), 1u);
-  EXPECT_THROW(choose_views(p, "", Split::val), Error);
+  EXPECT_EQ(message([&] { choose_views(p, "", Split::val); }),
+            "/photos has no val views; it has train, test.");
   const std::vector<NamedCamera> own = choose_cameras(p, ProjectViews{}, 0, 0);  // the held-out ones
   ASSERT_EQ(own.size(), 1u);
   EXPECT_EQ(own[0].file, "r_1");
@@ -116,10 +117,15 @@ TEST_F(CamerasTest, DamagedCameraFilesAreRefused) {
   flat.update(camera_json(no_size));
   Json extra = {{"name", "a"}, {"distortion", 0.1}};
   extra.update(camera_json(camera_at({0, 0, -3})));
+  Json two_rows = extra;
+  two_rows.erase("distortion");
+  two_rows["world_from_cam"].erase(2);
   for (const std::string& text :
        {std::string("{"), std::string("[]"), std::string(R"({"cameras": 3})"),
         std::string(R"({"cameras": []})"), std::string(R"({"cameras": [{"name": "a"}]})"),
         Json{{"cameras", Json::array({outside})}}.dump(), Json{{"cameras", Json::array({extra})}}.dump(),
+        Json{{"cameras", Json::array({two_rows})}}.dump(),
+        std::string(R"({"cameras": )") + std::string(300'000, '['),
         Json{{"cameras", Json::array({flat})}}.dump()}) {
     write_file_atomic(file, text);
     EXPECT_THROW(choose_cameras(p, CameraFile{file}, 0, 0), Error) << text;

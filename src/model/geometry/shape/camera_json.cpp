@@ -7,8 +7,16 @@ namespace cei3d {
 namespace {
 
 Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
-Vec3d vector_from(const Json& j) {
-  return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
+
+Mat3d rotation_from(JsonReader& reader) {
+  const Json& rows = reader.array("world_from_cam");
+  Mat3d m;
+  for (size_t i = 0; i < 3; ++i) {
+    const Json row{{"world_from_cam", rows.size() == 3 ? rows[i] : Json()}};
+    const auto [x, y, z] = JsonReader(row, reader.what()).numbers<3>("world_from_cam");
+    m.row[i] = {x, y, z};
+  }
+  return m;
 }
 
 }  // namespace
@@ -36,7 +44,7 @@ Camera camera_from_json(JsonReader& reader) {
   c.cx = reader.require<double>("cx");
   c.cy = reader.require<double>("cy");
   c.skew = reader.optional("skew", 0.0);
-  for (size_t i = 0; i < 3; ++i) c.world_from_cam.row[i] = vector_from(reader.array("world_from_cam").at(i));
+  c.world_from_cam = rotation_from(reader);
   const auto [x, y, z] = reader.numbers<3>("center");
   c.center = {x, y, z};
   return c;
