@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// libFuzzer target: files of cameras of every format. The first byte of the input chooses the file, the rest
-// is its content. Anything but a capture or an Error is a finding.
+// libFuzzer target: files of cameras of every format, beside two images. The first byte of the input chooses
+// the file, the rest is its content. What can be loaded is checked. Anything but a report or an Error is a
+// finding.
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "engine/capture/capture.h"
+#include "engine/capture/check.h"
+#include "engine/io/png_file.h"
 
 namespace {
 namespace fs = std::filesystem;
@@ -50,8 +54,16 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   fs::create_directories(folder);
   write_plainly(folder / target.file, {reinterpret_cast<const char*>(data) + 1, size - 1});
   if (*target.other_file) write_plainly(folder / target.other_file, target.other);
+  static const std::string image = [] {
+    cei3d::Image rgba(8, 8, 4, 0.0f);
+    for (int y = 2; y < 6; ++y) std::fill_n(rgba.at(3, y), 12, 1.0f);
+    return cei3d::encode_png(rgba, 8);
+  }();
+  for (const char* place : {"images", "image"}) fs::create_directories(folder / place);
+  for (const char* name : {"a.png", "image/a.png", "images/a.png", "images/b.png"})
+    write_plainly(folder / name, image);
   try {
-    cei3d::load_capture(folder, {target.format});
+    cei3d::check(cei3d::load_capture(folder, {target.format}));
   } catch (const cei3d::Error&) {
   }
   fs::remove_all(folder);
