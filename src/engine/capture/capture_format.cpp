@@ -8,6 +8,7 @@
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "engine/capture/capture.h"
+#include "engine/io/heic_file.h"
 #include "engine/io/image_file.h"
 
 namespace cei3d {
@@ -99,7 +100,7 @@ std::string with_slashes(std::string path) {
 
 std::string view_name(const std::string& file_path, Split split) {
   std::filesystem::path name = std::filesystem::path(file_path).lexically_normal();
-  if (has_image_suffix(name)) name.replace_extension();
+  if (has_image_suffix(name) || is_heic(name)) name.replace_extension();
   const bool inside = name.is_relative() && !name.empty() && *name.begin() != "..";
   return inside ? name.generic_string() : fmt::format("{}/{}", split_name(split), name.filename().string());
 }
@@ -113,10 +114,18 @@ std::filesystem::path own_file(const std::filesystem::path& root, const std::fil
   if (way.empty() || *way.begin() == "..")
     fail(
         "{} names {}, which lies outside of the capture's folder and of the one that holds it. Move that "
-        "file "
-        "into the capture's folder, or a link to it.",
+        "file into the capture's folder, or a link to it.",
         where, normal.string());
   return normal;
+}
+
+std::filesystem::path readable_image(const std::filesystem::path& image) {
+  if (!is_heic(image)) return image;
+  const std::filesystem::path jpeg = std::filesystem::path(image).replace_extension(".jpg");
+  std::error_code error;
+  if (!std::filesystem::exists(jpeg, error) && std::filesystem::exists(image, error))
+    convert_heic(image, jpeg);
+  return jpeg;
 }
 
 std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder) {

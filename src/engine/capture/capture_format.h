@@ -91,6 +91,8 @@ std::string view_name(const std::string& file_path, Split split);
 // the error message.
 std::filesystem::path own_file(const std::filesystem::path& root, const std::filesystem::path& file,
                                const std::string& where);
+// The image, or in place of a HEIC file the JPEG beside it, which is made where there is none.
+std::filesystem::path readable_image(const std::filesystem::path& image);
 // Image files in a folder, sorted; none if the folder does not exist.
 std::vector<std::filesystem::path> images_in(const std::filesystem::path& folder);
 // Size of an image file; {0, 0} if it is missing or broken.

@@ -2,6 +2,7 @@
 // One object in every format: the same cameras and the same pixels.
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <functional>
 
 #include "core/base/error_of.h"
@@ -219,6 +220,60 @@ TEST_F(Formats, CamerasAreScaledToTheirImages) {
     for (size_t k = 0; k < mask.object.size(); ++k) wrong += mask.object[k] != (truth.data[4 * k + 3] > 0.5f);
     EXPECT_LT(wrong, 60u);  // pixels of the outline
   }
+}
+
+// A converter that copies, and counts its calls.
+class Heic : public Formats {
+ protected:
+  Heic() : path_(std::getenv("PATH")) {
+    write_images(folder() / "images", ball_, views_);
+    for (const TestView& v : views_) fs::rename(image(v, ".png"), image(v, ".HEIC"));
+    write_converter(fmt::format("echo >> {}\ncp \"$3\" \"$4\"\n", calls().string()));
+    setenv("PATH", ((temp_.path() / "bin").string() + ":" + path_).c_str(), 1);
+  }
+  ~Heic() override { setenv("PATH", path_.c_str(), 1); }
+  fs::path folder() const { return temp_.path() / "capture"; }
+  void write_converter(const std::string& script) const {
+    const fs::path program = temp_.path() / "bin/heif-convert";
+    write_file_atomic(program, "#!/bin/sh\n" + script);
+    fs::permissions(program, fs::perms::owner_all);
+  }
+  fs::path calls() const { return temp_.path() / "calls"; }
+  fs::path image(const TestView& v, const char* suffix) const {
+    return folder() / "images" / (v.stem + suffix);
+  }
+  void expect_all_read() const {
+    for (int i = 0; i < 2; ++i) {
+      const Capture capture = load_capture(folder());
+      ASSERT_EQ(capture.views.size(), views_.size());
+      EXPECT_EQ(capture.views[2].image_path.filename(), "r_002.jpg");
+      EXPECT_EQ(capture.views[2].name.find('.'), std::string::npos) << capture.views[2].name;
+      EXPECT_EQ(load_mask(capture.views[2]).width, views_[2].camera.width);
+      EXPECT_EQ(read_file(calls()).size(), views_.size());  // once each
+    }
+  }
+
+ private:
+  std::string path_;
+};
+
+TEST_F(Heic, ImagesOfPosedCapturesAreConvertedOnce) {
+  Json j{{"camera_angle_x", 2 * std::atan(0.5 * views_[0].camera.width / views_[0].camera.fx)},
+         {"frames", Json::array()}};
+  for (const TestView& v : views_) j["frames"].push_back(nerf_frame("images/" + v.stem + ".HEIC", v.camera));
+  write_file_atomic(folder() / "transforms.json", j.dump());
+  expect_all_read();
+}
+
+TEST_F(Heic, AreFoundByTheirNames) {
+  write_meshroom(folder(), views_, false);
+  expect_all_read();
+}
+
+TEST_F(Heic, ThatCannotBeReadAreNamed) {
+  write_meshroom(folder(), views_, false);
+  write_converter("echo no good\nexit 1\n");
+  EXPECT_THAT(message([&] { load_capture(folder()); }), HasSubstr("heif-convert said: no good"));
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "core/base/json.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_format.h"
+#include "engine/io/heic_file.h"
 #include "engine/io/image_file.h"
 
 namespace cei3d {
@@ -39,9 +40,10 @@ std::vector<CameraFile> camera_files(const fs::path& path) {
 
 // The image of a name, as written or with a suffix; the first guess when no file exists.
 fs::path picture_path(const fs::path& base) {
-  if (has_image_suffix(base)) return base;
-  for (const char* suffix : {".png", ".jpg", ".jpeg", ".exr", ".PNG", ".JPG", ".JPEG", ".EXR"})
-    if (fs::exists(base.string() + suffix)) return base.string() + suffix;
+  if (has_image_suffix(base) || is_heic(base)) return readable_image(base);
+  for (const char* suffix :
+       {".png", ".jpg", ".jpeg", ".exr", ".PNG", ".JPG", ".JPEG", ".EXR", ".heic", ".HEIC"})
+    if (fs::exists(base.string() + suffix)) return readable_image(base.string() + suffix);
   return base.string() + ".png";
 }
 

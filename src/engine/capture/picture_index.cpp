@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/capture/capture_format.h"
+#include "engine/io/heic_file.h"
 #include "engine/io/image_file.h"
 
 namespace cei3d {
@@ -14,7 +15,7 @@ namespace {
 constexpr int kDepth = 4;
 
 fs::path without_suffix(fs::path path) {
-  if (has_image_suffix(path)) path.replace_extension();
+  if (has_image_suffix(path) || is_heic(path)) path.replace_extension();
   return path;
 }
 
@@ -37,7 +38,8 @@ PictureIndex::PictureIndex(const fs::path& root) : root_(root) {
     const std::string name = it->path().filename().string();
     if (it->is_directory(error)) {
       if (name == "mask" || name == "masks" || it.depth() >= kDepth) it.disable_recursion_pending();
-    } else if (has_image_suffix(it->path()) && it->path().stem().extension() != ".mask") {
+    } else if ((has_image_suffix(it->path()) || is_heic(it->path())) &&
+               it->path().stem().extension() != ".mask") {
       files.push_back(it->path());
     }
   }
@@ -54,7 +56,7 @@ fs::path PictureIndex::find(const std::string& name) const {
     for (auto it = first; it != last; ++it)
       if (const int n = common_end(it->second, wanted); !best || n > longest) best = &it->second, longest = n;
   }
-  return best ? *best : root_ / "images" / wanted.filename();
+  return best ? readable_image(*best) : root_ / "images" / wanted.filename();
 }
 
 }  // namespace cei3d

@@ -16,7 +16,7 @@ class PictureIndex {
 
   // The image of a name: a path of which only the end has to fit, from any system, with or without suffix.
   // Where several fit, that with the longest common end, then the first in sorted order. None:
-  // root/images/NAME.
+  // root/images/NAME. Of a HEIC file the JPEG beside it, which is made where there is none.
   std::filesystem::path find(const std::string& name) const;
 
  private:

@@ -11,6 +11,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/process.h"
+#include "engine/io/heic_file.h"
 #include "engine/io/image_file.h"
 
 namespace cei3d {
@@ -21,11 +22,6 @@ std::string lower_suffix(const fs::path& file) {
   std::string s = file.extension().string();
   for (char& c : s) c = char(std::tolower(static_cast<unsigned char>(c)));
   return s;
-}
-
-bool is_heic(const fs::path& file) {
-  const std::string s = lower_suffix(file);
-  return s == ".heic" || s == ".heif";
 }
 
 bool is_photo(const fs::path& file) {
@@ -53,16 +49,6 @@ ProgramOutput run_tool(const std::vector<std::string>& command, const char* pack
 [[noreturn]] void fail_reading(const fs::path& file, const char* program, std::string said) {
   while (!said.empty() && std::isspace(static_cast<unsigned char>(said.back()))) said.pop_back();
   fail("{} could not be read. {} said: {}", file.string(), program, said.substr(0, 300));
-}
-
-// What it writes appears among the photographs only when it is complete.
-void convert_heic(const fs::path& from, const fs::path& to) {
-  fs::create_directories(to.parent_path());
-  const fs::path partial = to.parent_path().parent_path() / ("partial-" + to.filename().string());
-  const ProgramOutput out =
-      run_tool({"heif-convert", "-q", "95", from.string(), partial.string()}, "libheif-examples");
-  if (out.exit_code != 0 || !fs::exists(partial)) fail_reading(from, "heif-convert", out.text);
-  move_path(partial, to);
 }
 
 std::string copy_photo(const fs::path& from, const fs::path& to) {
