@@ -131,6 +131,17 @@ Area warped(const Area& mask, int width, int height, double scale, bool mirror) 
   return out;
 }
 
+// The mask of a square image turned by quarters of a circle.
+Area turned_mask(const Area& mask, int size, int quarters) {
+  Area out = mask;
+  for (int q = 0; q < quarters; ++q) {
+    const Area from = out;
+    for (int y = 0; y < size; ++y)
+      for (int x = 0; x < size; ++x) out[size_t(y) * size + x] = from[size_t(size - 1 - x) * size + y];
+  }
+  return out;
+}
+
 // Mean and standard deviation of colors.
 struct Colors {
   Vec3d mean{0, 0, 0}, deviation{0, 0, 0};
@@ -204,8 +215,8 @@ struct Explanation {
   std::optional<size_t> camera;  // of the view whose camera would fit
 };
 
-// What would make the suspect fit: its image mirrored, of another camera, or of another size; else nothing is
-// known.
+// What would make the suspect fit: its image mirrored, turned, of another camera, or of another size; else
+// nothing is known.
 Explanation explanation(size_t suspect, const Area& object, std::span<const JudgedMask> masks,
                         const std::vector<MaskDoubt>& doubts) {
   const MaskDoubt& doubt = doubts[suspect];
@@ -224,6 +235,9 @@ Explanation explanation(size_t suspect, const Area& object, std::span<const Judg
   for (const double scale : {0.5, 2 / 3.0, 0.8, 1.25, 1.5, 2.0})
     take(overlap(warped(object, w, h, scale, false), doubt.consensus) - 0.02,
          fmt::format("fits if its image is scaled by {:.2g}", scale), {});
+  for (int quarters = 1; w == h && quarters < 4; ++quarters)
+    take(overlap(turned_mask(object, w, quarters), doubt.consensus) - 0.02,
+         fmt::format("fits if its image is turned by {} degrees", 90 * quarters), {});
   return found;
 }
 

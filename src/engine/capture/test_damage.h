@@ -3,6 +3,7 @@
 // write_capture() writes it), and what the check should say about each.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -118,6 +119,21 @@ inline Json turned_pose(const Json& pose, double radians) {
     out[r][2] = std::sin(radians) * x + std::cos(radians) * z;
   }
   return out;
+}
+
+// Directions of the cameras from the middle between them, and those within an angle of the first one's
+// azimuth.
+inline std::vector<size_t> frames_beside_the_first(DamagedCapture& c, double radians) {
+  const auto at = [&](size_t i, size_t axis) {
+    return c.frame(i)["transform_matrix"][axis][3].get<double>();
+  };
+  double x = 0, y = 0;
+  for (size_t i = 0; i < c.size(); ++i) x += at(i, 0) / double(c.size()), y += at(i, 1) / double(c.size());
+  const auto azimuth = [&](size_t i) { return std::atan2(at(i, 1) - y, at(i, 0) - x); };
+  std::vector<size_t> beside;
+  for (size_t i = 0; i < c.size(); ++i)
+    if (std::cos(azimuth(i) - azimuth(0)) > std::cos(radians)) beside.push_back(i);
+  return beside;
 }
 
 inline std::vector<Damage> usual_damages() {
@@ -269,6 +285,9 @@ inline std::vector<Damage> usual_damages() {
                  "cannot be used"});
   all.push_back({"pose with NaN", [](DamagedCapture& c) { c.frame(2)["transform_matrix"][0][3] = nullptr; },
                  "poses are not a rotation"});
+  all.push_back({"image turned by 90 degrees",
+                 [](DamagedCapture& c) { c.redraw(6, [](const Image& m) { return turned(m, 6); }); },
+                 "cannot be used|turned by .* degrees|do not fit the others"});
   all.push_back({"too few views",
                  [](DamagedCapture& c) {
                    for (size_t i = 9; i < c.size(); ++i) std::filesystem::remove(c.image(i));
@@ -277,6 +296,18 @@ inline std::vector<Damage> usual_damages() {
                    c.keep(few);
                  },
                  "only 9 training views"});
+  all.push_back({"a side without photographs",
+                 [](DamagedCapture& c) {
+                   const std::vector<size_t> gone = frames_beside_the_first(c, 1.2);
+                   Json left = Json::array();
+                   for (size_t i = 0; i < c.size(); ++i)
+                     if (std::find(gone.begin(), gone.end(), i) == gone.end()) left.push_back(c.frame(i));
+                   c.keep(left);
+                 },
+                 "side of the object is not photographed"});
+  all.push_back({"image of half the size",
+                 [](DamagedCapture& c) { c.redraw(5, [](const Image& m) { return downscale(m, 2); }); },
+                 "cameras of 1 of .* were scaled to their images"});
   return all;
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "core/base/json.h"
 #include "engine/capture/test_capture.h"
 #include "engine/capture/test_npz.h"
+#include "engine/capture/words.h"
 #include "model/scene/view.h"
 
 namespace cei3d {
@@ -147,6 +149,23 @@ inline void write_colmap_txt(const std::filesystem::path& folder, const TestBall
   write_file_atomic(folder / "cameras.txt", cameras);
   write_file_atomic(folder / "images.txt", images);
   write_file_atomic(folder / "points3D.txt", points);
+}
+
+// Changes the parameters of every camera in cameras.txt, which all have `count`.
+inline void change_colmap_cameras(const std::filesystem::path& folder, size_t count,
+                                  const std::function<void(std::vector<double>&)>& change) {
+  std::string text;
+  const std::string cameras = read_file(folder / "cameras.txt");
+  for (Lines lines(cameras); lines.next_data();) {
+    Words words(lines.line(), "x");
+    for (int i = 0; i < 4; ++i) text += std::string(words.word()) + " ";
+    std::vector<double> params(count);
+    for (double& p : params) p = words.number();
+    change(params);
+    for (const double p : params) text += fmt::format("{:.17g} ", p);
+    text += "\n";
+  }
+  write_file_atomic(folder / "cameras.txt", text);
 }
 
 // Metashape's XML: the calibration once, OpenCV's p1 and p2 swapped, principal point from the middle.

@@ -3,10 +3,12 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
 #include "core/base/bytes.h"
+#include "core/math/vec.h"
 #include "engine/io/jpeg_file.h"
 
 namespace cei3d {
@@ -40,21 +42,23 @@ inline std::string with_exif(const std::string& jpeg, uint16_t orientation) {
   return with_segment(jpeg, 0xe1, std::string("Exif\0\0", 6) + tiff);
 }
 
-// An ICC profile whose red is sRGB's green and the reverse, with linear values.
-inline std::string swapped_profile() {
+// An ICC profile of three primaries (XYZ under D50), with linear values or sRGB's curve.
+inline std::string profile_of(Vec3d red, Vec3d green, Vec3d blue, bool linear) {
   const auto big = [](uint32_t v) {
     return std::string{char(v >> 24), char(v >> 16 & 255), char(v >> 8 & 255), char(v & 255)};
   };
-  const auto fixed = [&](double v) { return big(uint32_t(int32_t(v * 65536 + 0.5))); };
-  const auto xyz = [&](double x, double y, double z) {
-    return std::string("XYZ ") + big(0) + fixed(x) + fixed(y) + fixed(z);
+  const auto fixed = [&](double v) { return big(uint32_t(int32_t(std::lround(v * 65536)))); };
+  const auto xyz = [&](Vec3d v) {
+    return std::string("XYZ ") + big(0) + fixed(v.x) + fixed(v.y) + fixed(v.z);
   };
   const std::string d50 = fixed(0.9642) + fixed(1) + fixed(0.8249);
+  const std::string curve = linear ? std::string("curv") + big(0) + big(0)
+                                   : std::string("para") + big(0) + big(3 << 16) + fixed(2.4) +
+                                         fixed(1 / 1.055) + fixed(0.055 / 1.055) + fixed(1 / 12.92) +
+                                         fixed(0.04045);
   const std::pair<const char*, std::string> tags[] = {
-      {"rXYZ", xyz(0.3851, 0.7169, 0.0971)},           {"gXYZ", xyz(0.4361, 0.2225, 0.0139)},
-      {"bXYZ", xyz(0.1431, 0.0606, 0.7141)},           {"wtpt", xyz(0.9642, 1, 0.8249)},
-      {"rTRC", std::string("curv") + big(0) + big(0)}, {"gTRC", std::string("curv") + big(0) + big(0)},
-      {"bTRC", std::string("curv") + big(0) + big(0)}};
+      {"rXYZ", xyz(red)}, {"gXYZ", xyz(green)}, {"bXYZ", xyz(blue)}, {"wtpt", xyz({0.9642, 1, 0.8249})},
+      {"rTRC", curve},    {"gTRC", curve},      {"bTRC", curve}};
   std::string table = big(7), data;
   for (const auto& [name, bytes] : tags) {
     table += name + big(uint32_t(128 + 4 + 7 * 12 + data.size())) + big(uint32_t(bytes.size()));
@@ -63,6 +67,15 @@ inline std::string swapped_profile() {
   const std::string rest = table + data;
   return big(uint32_t(128 + rest.size())) + big(0) + big(0x02400000) + "mntrRGB XYZ " +
          std::string(12, '\0') + "acsp" + std::string(28, '\0') + d50 + std::string(48, '\0') + rest;
+}
+
+// Its red is sRGB's green and the reverse.
+inline std::string swapped_profile() {
+  return profile_of({0.3851, 0.7169, 0.0971}, {0.4361, 0.2225, 0.0139}, {0.1431, 0.0606, 0.7141}, true);
+}
+// Display P3, as telephones write it.
+inline std::string p3_profile() {
+  return profile_of({0.5151, 0.2412, -0.0011}, {0.2920, 0.6922, 0.0419}, {0.1571, 0.0666, 0.7841}, false);
 }
 
 inline std::string with_profile(const std::string& jpeg, const std::string& profile) {
