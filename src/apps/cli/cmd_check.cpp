@@ -2,6 +2,7 @@
 #include "apps/cli/command.h"
 #include "core/base/error.h"
 #include "engine/capture/capture.h"
+#include "engine/capture/coverage.h"
 
 namespace cei3d {
 namespace {
@@ -38,6 +39,11 @@ std::string report_text(const CheckReport& checked) {
                         c.x, c.y, c.z);
     text += fmt::format("cameras     {:.4g} away ({:.4g} to {:.4g})\n", r.distance, r.distance_min,
                         r.distance_max);
+    const SeenSides seen = seen_sides(checked.capture, c);
+    text += fmt::format(
+        "seen        {:.0f} % of all directions are within {} degrees of a camera; the widest gap is around "
+        "({:.2f}, {:.2f}, {:.2f}), {:.0f} degrees from the nearest\n",
+        100 * seen.share, kSeenWithin, seen.unseen.x, seen.unseen.y, seen.unseen.z, seen.gap);
   }
   for (const std::string& what : checked.repaired) text += fmt::format("repaired: {}\n", what);
   for (const Finding& f : r.findings) text += finding_text(f);

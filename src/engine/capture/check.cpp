@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_images.h"
+#include "engine/capture/coverage.h"
 #include "engine/capture/doctor.h"
 #include "engine/capture/normalize.h"
 
@@ -295,6 +296,7 @@ CaptureReport check(const Capture& capture, std::optional<Split> only) {
   }
   report_problems(all, report);
   diagnose(capture, all, report);
+  if (report.normalization) check_coverage(capture, report.normalization->center, report.findings);
   report_counts(capture, report);
   for (const std::string& w : capture.warnings) report.findings.push_back({Severity::warning, w, ""});
   std::stable_sort(report.findings.begin(), report.findings.end(),

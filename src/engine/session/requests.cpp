@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "engine/capture/coverage.h"
 
 namespace cei3d {
 namespace {
@@ -30,6 +31,10 @@ Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
 Json normalization_json(const Normalization& n) {
   return {{"center", vector_json(n.center)}, {"scale", n.scale}};
+}
+
+Json seen_json(const SeenSides& s) {
+  return {{"share", s.share}, {"gap", s.gap}, {"unseen", vector_json(s.unseen)}};
 }
 
 Json material_json(const Material& m) {
@@ -82,17 +87,19 @@ Json CheckReport::json() const {
         {"coverage", {{"mean", r.coverage}, {"least", r.coverage_min}, {"most", r.coverage_max}}}};
   for (const Finding& f : report.findings)
     findings.push_back({{"severity", kSeverities[size_t(f.severity)]}, {"what", f.what}, {"fix", f.fix}});
-  return {{"format", report.format},
-          {"root", capture.root.string()},
-          {"splits", splits},
-          {"up", vector_json(report.up)},
-          {"normalization", report.normalization ? normalization_json(*report.normalization) : Json()},
-          {"object_radius", object_radius},
-          {"camera_distance",
-           {{"least", report.distance_min}, {"mean", report.distance}, {"most", report.distance_max}}},
-          {"findings", findings},
-          {"repaired", repaired},
-          {"usable", report.usable()}};
+  return {
+      {"format", report.format},
+      {"root", capture.root.string()},
+      {"splits", splits},
+      {"up", vector_json(report.up)},
+      {"normalization", report.normalization ? normalization_json(*report.normalization) : Json()},
+      {"object_radius", object_radius},
+      {"camera_distance",
+       {{"least", report.distance_min}, {"mean", report.distance}, {"most", report.distance_max}}},
+      {"seen", report.normalization ? seen_json(seen_sides(capture, report.normalization->center)) : Json()},
+      {"findings", findings},
+      {"repaired", repaired},
+      {"usable", report.usable()}};
 }
 
 Json ObjectSummary::json() const {
