@@ -132,6 +132,25 @@ std::string near_names(const Capture& capture, const std::string& name) {
   return text;
 }
 
+std::string shortened(const std::string& text) {
+  constexpr size_t kLetters = 100;
+  return text.size() <= kLetters ? text : text.substr(0, kLetters) + "...";
+}
+
+Capture loaded(const fs::path& path, const CaptureOptions& options) {
+  if (!fs::exists(path)) fail("There is no capture at {}; check the path.", path.string());
+  Capture capture = format_of(path, options.format).load(path);
+  if (capture.views.empty()) fail("{} lists no views.", path.string());
+  fit_to_photographs(capture, options.strict);
+  hold_out(capture, options);
+  keep_training_views(capture, options.views);
+  std::stable_sort(capture.views.begin(), capture.views.end(),
+                   [](const View& a, const View& b) { return a.split < b.split; });
+  make_names_unique(capture);
+  capture.up = up_axis(capture);
+  return capture;
+}
+
 }  // namespace
 
 const char* split_name(Split split) {
@@ -171,17 +190,12 @@ std::string capture_format_layouts(const std::string& separator) {
 }
 
 Capture load_capture(const fs::path& path, const CaptureOptions& options) {
-  if (!fs::exists(path)) fail("There is no capture at {}; check the path.", path.string());
-  Capture capture = format_of(path, options.format).load(path);
-  if (capture.views.empty()) fail("{} lists no views.", path.string());
-  fit_to_photographs(capture, options.strict);
-  hold_out(capture, options);
-  keep_training_views(capture, options.views);
-  std::stable_sort(capture.views.begin(), capture.views.end(),
-                   [](const View& a, const View& b) { return a.split < b.split; });
-  make_names_unique(capture);
-  capture.up = up_axis(capture);
-  return capture;
+  try {
+    return loaded(path, options);
+  } catch (const fs::filesystem_error& e) {  // names that are longer than any file's
+    fail("{} names a file that cannot be looked for: {}. {}", path.string(), e.code().message(),
+         shortened(e.path1().string()));
+  }
 }
 
 const View& find_view(const Capture& capture, const std::string& name) {

@@ -284,6 +284,12 @@ TEST(Capture, NamesNeverLeadOutOfAFolder) {
   }
 }
 
+TEST(Capture, NamesThatNoFileCanHaveAreErrors) {
+  const TempFolder temp;
+  write_file_atomic(temp.path() / "transforms_train.json", frames_of(std::string(5000, 'a')).dump());
+  EXPECT_THAT(message([&] { load_capture(temp.path()); }), HasSubstr("File name too long"));
+}
+
 // A capture may name images in its own folder or beside it, and none elsewhere, whether they exist or not.
 TEST(Capture, FilesElsewhereAreNotOpened) {
   const TempFolder temp;
