@@ -45,8 +45,8 @@ TEST(SphereStart, IsNearlyTheDistanceToTheSphere) {
       ++outside;
     }
   }
-  EXPECT_LT(off, 0.06);
-  EXPECT_NEAR(slope / outside, 1, 0.3);
+  EXPECT_LT(off, 0.12);  // softplus rounds off the tip in the middle of the sphere
+  EXPECT_NEAR(slope / outside, 0.8, 0.3);
 }
 
 TEST(SphereStart, LeavesAFieldThatIsOne) {
