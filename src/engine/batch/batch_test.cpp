@@ -143,6 +143,8 @@ TEST(BatchManifest, ReadsTables) {
                       {"tags", {{"price", "12"}}}};
   EXPECT_EQ(line, expected);
   EXPECT_EQ(csv_table(csv_line({"a,\"b\"\n", "c"}), "t").at(0), (std::vector<std::string>{"a,\"b\"\n", "c"}));
+  EXPECT_EQ(lines_of_csv("id,capture\nm\xc3\xbcg,c\n", "t").at(0).at("id"), "m\xc3\xbcg");
+  EXPECT_THAT(message([] { lines_of_csv("id,capture\nm\xfcg,c\n", "t"); }), HasSubstr("not UTF-8"));
 }
 
 TEST(Launchers, ArraysCoverEveryObjectOnce) {

@@ -51,6 +51,15 @@ void put(const std::string& column, const std::string& field, const std::string&
     line["tags"][column.substr(std::string("tag.").size())] = field;
 }
 
+// Spreadsheets save tables in the encoding of the system, too.
+void check_encoding(const std::string& text, const std::string& what) {
+  try {
+    Json(text).dump();
+  } catch (const Json::exception&) {
+    fail("{} is not UTF-8; save it as a CSV in UTF-8.", what);
+  }
+}
+
 void check_columns(const std::vector<std::string>& columns, const std::string& what) {
   std::vector<std::string> known;
   for (const auto* list : {&kTexts, &kLists, &kNumbers, &kTextOptions, &kNumberOptions})
@@ -103,6 +112,7 @@ std::string csv_line(const std::vector<std::string>& fields) {
 }
 
 std::vector<Json> lines_of_csv(const std::string& text, const std::string& what) {
+  check_encoding(text, what);
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   const auto table =
       csv_table(text.starts_with(kByteOrderMark) ? text.substr(kByteOrderMark.size()) : text, what);

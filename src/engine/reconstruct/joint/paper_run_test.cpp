@@ -75,7 +75,8 @@ double psnr_over_white(const Image& got, const Image& truth) {
 double color_loss(const std::vector<Json>& lines, double first, double last) {
   std::vector<double> all;
   for (const Json& line : lines)
-    if (line.at("stage") == "joint descent") all.push_back(line.at("color").get<double>());
+    if (line.at("stage") == "joint descent" && line.contains("color"))
+      all.push_back(line.at("color").get<double>());
   double sum = 0;
   const auto begin = size_t(first * double(all.size())), end = size_t(last * double(all.size()));
   for (size_t i = begin; i < end; ++i) sum += all[i] / double(end - begin);

@@ -25,7 +25,7 @@ TEST(StartValues, AreAsThePaperStatesThem) {
   const Device device = make_device();
   const JointObject o = start_values(device, preset_by_name("paper"), 7);
   for (const Vec3f a : o.albedo.eval3(device, random_points()))
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], 0.5f, 0.1f);  // "about 0.5 at all locations"
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], 0.5f, 0.15f);  // "about 0.5 at all locations"
   ASSERT_EQ(o.light.lobes.size(), 128u);
   double power = 0;
   float nearest = 4;  // squared distance of two axes
