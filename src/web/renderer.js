@@ -124,7 +124,7 @@ export class Renderer {
     if (head.kind === 'shape') this.setShape(arrays);
     if (head.kind === 'look') this.setAttributes([[2, 'albedo', arrays.albedo, true], [3, 'material', arrays.material, true]]);
     if (head.kind === 'vertex_light')
-      this.setAttributes([[4, 'visibility', arrays.visibility, true], [5, 'bounce', arrays.bounce, false]]);
+      this.setAttributes([[4, 'sky', arrays.visibility, true], [5, 'bounce', arrays.bounce, false]]);  // 'visibility' is the shape's
     if (head.kind === 'light') this.setLight(head, arrays);
     if (head.kind === 'tables') this.setTables(head, arrays);
     this.heads.set(head.kind, head);

@@ -35,9 +35,25 @@ async function firstSession(page, url) {
   await settled(page);
 }
 
+/** For how many vertices each input of the page's shader has values. */
+const vertexCounts = (page) => page.evaluate(() => {
+  const { gl, vertices } = globalThis.cei3d.stage.live.renderer;
+  const bytes = { [gl.BYTE]: 1, [gl.UNSIGNED_BYTE]: 1, [gl.SHORT]: 2, [gl.UNSIGNED_SHORT]: 2, [gl.UNSIGNED_INT]: 4 };
+  gl.bindVertexArray(vertices);
+  const counts = Array.from({ length: 9 }, (_, i) => {
+    const of = (what) => gl.getVertexAttrib(i, gl[`VERTEX_ATTRIB_ARRAY_${what}`]);
+    gl.bindBuffer(gl.ARRAY_BUFFER, of('BUFFER_BINDING'));
+    return gl.getBufferParameter(gl.ARRAY_BUFFER, gl.BUFFER_SIZE) / (of('STRIDE') || of('SIZE') * bytes[of('TYPE')]);
+  });
+  gl.bindVertexArray(null);
+  return counts;
+});
+
 /** What the page draws while something moves is nearly the program's own frame. */
 async function drawsItself(page) {
   await page.waitForFunction(() => globalThis.cei3d.stage.live.current(), null, { timeout: 30000 });
+  const counts = await vertexCounts(page);
+  check(`every input has a value for every vertex: ${counts}`, new Set(counts).size === 1 && counts[0] > 100);
   const psnr = await likeness(page);
   check(`the page draws what the program does: ${psnr.toFixed(1)} dB`, psnr > 34);
 }
