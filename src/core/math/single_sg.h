@@ -17,7 +17,7 @@
 
 namespace cei3d {
 
-inline constexpr float kLeastMirrorCosine = 0.05f;  // n.v of flatter views is taken for this: 87 degrees
+inline constexpr float kMinMirrorCosine = 0.05f;  // n.v of flatter views is taken for this: 87 degrees
 
 // Integral of a light lobe of unit peak times the lobe about r times the clamped cosine. q: squared distance
 // of the light's axis from r. nl, nr: cosines of both axes to the normal. sharpness: of the lobe about r.
@@ -56,7 +56,7 @@ struct MirrorLobe {
 template <class T>
 HD MirrorLobe<T> mirror_lobe(Vec3<T> n, Vec3<T> v, T sharpness) {
   const T nv = dot(n, v);
-  return {n * (T(2.0f) * nv) - v, nv, sharpness / (T(4.0f) * max(nv, T(kLeastMirrorCosine)))};
+  return {n * (T(2.0f) * nv) - v, nv, sharpness / (T(4.0f) * max(nv, T(kMinMirrorCosine)))};
 }
 // dL/d(n) and dL/d(sharpness) from dL/d(axis, nv, sharpness of the lobe); the view is constant.
 template <class T>
@@ -66,8 +66,8 @@ struct MirrorLobeGrad {
 };
 template <class T>
 HD MirrorLobeGrad<T> mirror_lobe_grad(Vec3<T> n, Vec3<T> v, T sharpness, MirrorLobe<T> d) {
-  const T nv = dot(n, v), held = max(nv, T(kLeastMirrorCosine)), inverse = T(1.0f) / (T(4.0f) * held);
-  const T d_held = select(nv < T(kLeastMirrorCosine), T(0.0f), -d.sharpness * sharpness * inverse / held);
+  const T nv = dot(n, v), held = max(nv, T(kMinMirrorCosine)), inverse = T(1.0f) / (T(4.0f) * held);
+  const T d_held = select(nv < T(kMinMirrorCosine), T(0.0f), -d.sharpness * sharpness * inverse / held);
   return {d.axis * (T(2.0f) * nv) + v * (T(2.0f) * dot(d.axis, n) + d.nv + d_held), d.sharpness * inverse};
 }
 
@@ -75,7 +75,7 @@ HD MirrorLobeGrad<T> mirror_lobe_grad(Vec3<T> n, Vec3<T> v, T sharpness, MirrorL
 // [Karis 2013]
 template <class T>
 HD T mirror_gain(T nv, T roughness, T specular) {
-  const T c = max(nv, T(kLeastMirrorCosine)), k = (roughness + T(1.0f)) * (roughness + T(1.0f)) * T(0.125f);
+  const T c = max(nv, T(kMinMirrorCosine)), k = (roughness + T(1.0f)) * (roughness + T(1.0f)) * T(0.125f);
   const T fresnel = specular + (T(1.0f) - specular) * exp((T(-3.850245f) * c - T(4.840358f)) * c);
   const T shadow = c * (T(1.0f) - k) + k;
   return fresnel / (T(4.0f) * shadow * shadow);
@@ -86,13 +86,12 @@ struct MirrorGainGrad {
 };
 template <class T>
 HD MirrorGainGrad<T> mirror_gain_grad(T nv, T roughness, T specular) {
-  const T one(1.0f), c = max(nv, T(kLeastMirrorCosine)),
-                     k = (roughness + one) * (roughness + one) * T(0.125f);
+  const T one(1.0f), c = max(nv, T(kMinMirrorCosine)), k = (roughness + one) * (roughness + one) * T(0.125f);
   const T rise = exp((T(-3.850245f) * c - T(4.840358f)) * c), fresnel = specular + (one - specular) * rise;
   const T shadow = c * (one - k) + k, inverse = one / shadow, gain = T(0.25f) * inverse * inverse;
   const T value = fresnel * gain, d_shadow = T(-2.0f) * value * inverse;
   const T d_c = gain * (one - specular) * rise * (T(-7.700491f) * c - T(4.840358f)) + d_shadow * (one - k);
-  return {value, select(nv < T(kLeastMirrorCosine), T(0.0f), d_c),
+  return {value, select(nv < T(kMinMirrorCosine), T(0.0f), d_c),
           d_shadow * (one - c) * T(0.25f) * (roughness + one), gain * (one - rise)};
 }
 

@@ -138,7 +138,7 @@ TEST(SingleSg, IsFiniteAndHeldWhereTheViewIsFlat) {
   for (const double nv : {0.0, 0.02, -0.5}) {
     const Vec3d n{0, 0, 1}, v{std::sqrt(1 - nv * nv), 0, nv};
     const MirrorLobe<double> lobe = mirror_lobe(n, v, 110.0);
-    EXPECT_EQ(lobe.sharpness, 110 / (4 * double(kLeastMirrorCosine)));
+    EXPECT_EQ(lobe.sharpness, 110 / (4 * double(kMinMirrorCosine)));
     EXPECT_EQ(mirror_gain_grad(nv, 0.4, 0.2).d_nv, 0);
     EXPECT_TRUE(std::isfinite(radiance(n, v, 110.0, 0.4, 0.2, lobe.axis, 50.0)));
   }
