@@ -13,9 +13,9 @@ namespace {
 
 constexpr int kLobes = 128;
 constexpr float kSharpness = 20, kSharpnessSpread = 100;  // of lobes of light: 20 + |100 N(0, 1)|
-constexpr float kLeastSpecular = 0.18f, kMostSpecular = 0.26f;
+constexpr float kMinSpecular = 0.18f, kMaxSpecular = 0.26f;
 constexpr float kMetalness = 0.05f;                      // not stated; 0 would stay
-constexpr float kLeastGloss = 95, kMostGloss = 125;      // sharpness of the material's lobe
+constexpr float kMinGloss = 95, kMaxGloss = 125;         // sharpness of the material's lobe
 enum : uint64_t { kLight = 0x11947, kGloss = 0x61055 };  // keys of random numbers: what they choose
 
 SgMixture gray_light(uint64_t seed) {
@@ -33,9 +33,8 @@ SgMixture gray_light(uint64_t seed) {
 
 SgMaterial random_gloss(uint64_t seed) {
   Rng rng(seed ^ kGloss, 0, 0);
-  const float sharpness = kLeastGloss + (kMostGloss - kLeastGloss) * rng.uniform(),
-              peak = sharpness / (2 * kPi),
-              specular = kLeastSpecular + (kMostSpecular - kLeastSpecular) * rng.uniform();
+  const float sharpness = kMinGloss + (kMaxGloss - kMinGloss) * rng.uniform(), peak = sharpness / (2 * kPi),
+              specular = kMinSpecular + (kMaxSpecular - kMinSpecular) * rng.uniform();
   return {sharpness, {peak, peak, peak}, roughness_of_sharpness(sharpness), specular, kMetalness};
 }
 
