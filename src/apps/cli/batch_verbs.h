@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The commands of `batch` that are not in cmd_batch.cpp.
 #pragma once
 
 #include "apps/cli/command.h"

@@ -86,7 +86,6 @@ TEST(Cli, MaterialsAreListedAndNearNamesAreTold) {
   EXPECT_EQ(near.code, 2);
   EXPECT_THAT(near.err, HasSubstr("gold"));
   EXPECT_THAT(near.err, Not(HasSubstr("rubber")));
-  EXPECT_THAT(near.err, HasSubstr("See `cei3d edit material -h`"));
   EXPECT_THAT(type({"edit", "p", "material", "--material", "unobtainium"}).err, HasSubstr("rubber"));
 }
 
@@ -164,6 +163,11 @@ TEST(Cli, WrongUsageIsTwo) {
     EXPECT_NE(t.err, "") << ::testing::PrintToString(line);
     EXPECT_EQ(t.out, "") << ::testing::PrintToString(line);
   }
+}
+
+TEST(Cli, WrongUsageNamesTheHelpToCall) {
+  EXPECT_THAT(type({"reconstruct", "photos", "--split"}).err, HasSubstr("See `cei3d reconstruct -h`"));
+  EXPECT_THAT(type({"reconstruct", "photos"}).err, HasSubstr("See `cei3d reconstruct -h`"));  // no project
 }
 
 TEST(Cli, FailuresAreOneAndOneSentence) {

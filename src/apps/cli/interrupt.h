@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Ctrl-C and SIGTERM as a question that a running command asks now and then.
 #pragma once
 
 namespace cei3d {

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Where exceptions of the server's work become responses.
 #pragma once
 
 #include <functional>

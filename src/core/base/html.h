@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Text for HTML.
 #pragma once
 
 #include <string>

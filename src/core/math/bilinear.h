@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Bilinear interpolation in a square, and its derivatives.
 #pragma once
 
 #include "core/math/scalar.h"

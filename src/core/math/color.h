@@ -10,7 +10,7 @@ inline float srgb_from_linear(float c) {
   return c <= 0.0031308f ? 12.92f * c : 1.055f * ::powf(c, 1 / 2.4f) - 0.055f;
 }
 // d srgb / d linear.
-inline float srgb_slope(float linear) {
+inline float srgb_derivative(float linear) {
   return linear <= 0.0031308f ? 12.92f : 1.055f / 2.4f * ::powf(linear, 1 / 2.4f - 1);
 }
 inline float linear_from_srgb(float c) {

@@ -12,7 +12,7 @@ TEST(Color, TheSlopeOfTheDisplayCurveEqualsItsDifferences) {
   for (const float c : {0.001f, 0.01f, 0.1f, 0.5f, 0.9f}) {
     const float h = 0.01f * c;
     const double slope = double(srgb_from_linear(c + h) - srgb_from_linear(c - h)) / (2 * double(h));
-    EXPECT_NEAR(srgb_slope(c), slope, 0.005 * slope) << c;
+    EXPECT_NEAR(srgb_derivative(c), slope, 0.005 * slope) << c;
   }
 }
 

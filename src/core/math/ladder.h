@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Numbers that grow by equal ratios.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Errors in decibels.
 #pragma once
 
 #include <cmath>

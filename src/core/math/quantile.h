@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Medians and other ranks of values.
 #pragma once
 
 #include <algorithm>

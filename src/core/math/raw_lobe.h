@@ -7,7 +7,7 @@
 
 namespace cei3d {
 
-// Of a lobe, of its raw numbers, or derivatives by either.
+// Numbers of a lobe, its raw numbers, or derivatives by either.
 template <class T>
 struct LobeNumbers {
   Vec3<T> axis;

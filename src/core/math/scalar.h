@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+// For functions of host and device. nvcc's attributes are not C++, hence a macro; it has no prefix because it
+// stands before hundreds of formulas, and no header of this program is installed.
 #ifdef __CUDACC__
 #define HD __host__ __device__ __forceinline__
 #else

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// A frame around a direction.
 #pragma once
 
 #include <cmath>

@@ -20,7 +20,7 @@ template <class T>
 HD Vec2<T> operator*(Vec2<T> a, T s) {
   return {a.x * s, a.y * s};
 }
-// Of the parallelogram that two vectors span, positive when b lies counter-clockwise of a.
+// Area of the parallelogram that two vectors span, positive when b lies counter-clockwise of a.
 template <class T>
 HD T signed_area(Vec2<T> a, Vec2<T> b) {
   return a.x * b.y - a.y * b.x;

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// What sticks out of values that should change smoothly with direction.
 #pragma once
 
 #include <span>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The rule by which paint finds the surface that it covers. docs/method.md#regions-and-routing
 #pragma once
 
 namespace cei3d {

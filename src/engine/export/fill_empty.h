@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Colors for the texels of a texture that no chart covers.
 #pragma once
 
 #include "core/image/area.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Where an exported object stands in the world of its file.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Ambient occlusion of the vertices, for exported materials.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Finds the reconstructed surface below the simplified one, to bake from.
 #pragma once
 
 #include <span>

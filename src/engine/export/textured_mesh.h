@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The mesh that assets are written from: with texture coordinates and tangents.
 #pragma once
 
 #include <array>

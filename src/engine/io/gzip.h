@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Compressed bytes, with the header of gzip.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Width and height of an image file.
 #pragma once
 
 namespace cei3d {

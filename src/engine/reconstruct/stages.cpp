@@ -23,7 +23,7 @@ constexpr uint64_t kResidualSubset = 1000, kJointSubset = 1001;
 constexpr double kJointDescentShare = 0.7;
 constexpr double kMinJointGain = 0.02;  // dB on pixels that the joint descent does not see
 constexpr float kMaxLevel = 0.002f;  // maximum shift of the zero level: the thickness of the sharpest density
-// Of the planned time of a descent. A shorter one is not worth another estimate of light and material.
+// Minimum share of a descent's planned time; less is not worth another estimate of light and material.
 constexpr double kMinPolishShare = 1.0 / 6;
 constexpr double kLightShare = 0.6;  // of the planned time of light and appearance
 

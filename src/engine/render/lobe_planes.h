@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The light as planes of numbers, which shading kernels read.
 #pragma once
 
 #include <vector>

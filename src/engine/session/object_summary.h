@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Fills in what `info` and the editor say about an object.
 #pragma once
 
 #include "core/compute/device.h"

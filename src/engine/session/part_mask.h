@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// A part as seen in one view.
 #pragma once
 
 #include "engine/render/render.h"

@@ -228,7 +228,7 @@ struct ExportRequest {
   double size = 0;                   // meters of the longest side, instead of unit_scale; 0: no wish
   bool light = false;                // the light beside the object, as NAME.env.hdr
 };
-// Of one file that was asked for.
+// What was written for one file that was asked for.
 struct ExportReport {
   std::filesystem::path out;
   std::vector<std::filesystem::path> files;  // it and those beside it

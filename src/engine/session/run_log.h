@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The log file of a reconstruction.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Times of the steps of a command.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The version of the program, and of its results.
 #pragma once
 
 namespace cei3d {

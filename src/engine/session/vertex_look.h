@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// What the session remembers of the last look that it packed for a page.
 #pragma once
 
 #include "engine/session/session.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The mesh of a made-up body, as ground truth.
 #pragma once
 
 #include "engine/synthetic/body.h"

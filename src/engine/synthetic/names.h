@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Lists of names in messages.
 #pragma once
 
 #include <string>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The description that a synthetic capture carries.
 #pragma once
 
 #include "core/base/json.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Material of a surface point besides its albedo.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The reconstructed material, as a function of the place on the surface.
 #pragma once
 
 #include <memory>

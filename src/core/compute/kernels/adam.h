@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The kernel of a step of Adam.
 #pragma once
 
 #include "core/compute/kernel.h"

@@ -54,7 +54,7 @@ Field smooth_colors() {
   return Field(c, 6);
 }
 
-// Of the mean albedo of the points of each pixel.
+// Loss of the shaded mean albedo of the points of each pixel.
 double loss(const Device& device, const Field& albedo, const std::vector<Hit>& hits,
             const std::vector<ShadingTerms<float>>& terms) {
   const std::vector<float> footprints(hits.size(), kFootprint);

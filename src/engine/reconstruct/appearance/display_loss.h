@@ -19,7 +19,7 @@ inline LossValue<float> display_loss(float radiance, float photo, bool clipped =
   if (clipped && radiance >= photo) return {0, 0};
   const LossValue<float> loss =
       huber(srgb_from_linear(std::max(radiance, 0.0f)) - srgb_from_linear(photo), kWidth);
-  return {loss.value, loss.gradient * srgb_slope(std::max(radiance, kDarkest))};
+  return {loss.value, loss.gradient * srgb_derivative(std::max(radiance, kDarkest))};
 }
 inline float display_loss_grad(float radiance, float photo, bool clipped = false) {
   return display_loss(radiance, photo, clipped).gradient;

@@ -16,10 +16,11 @@ class NormalGrads {
   NormalGrads(const Device&, const AppearanceInput&, const AppearanceResult& appearance, const PolishOptions&,
               const Progress&);
 
-  // Of a random batch of samples. Positions of hits are held constant. Valid until the next call.
+  // Derivatives of the loss of a random batch of samples. Positions of hits are held constant. Valid until
+  // the next call.
   ValueGradSpans at(const Field& sdf, int step);
 
-  // Of the last batch: hits on the field, and which samples they are.
+  // The last batch: hits on the field, and which samples they are.
   std::span<const Hit> hits() const { return hits_; }
   std::span<const uint32_t> samples() const { return batch_; }
 

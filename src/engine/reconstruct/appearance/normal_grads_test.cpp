@@ -59,7 +59,7 @@ class NormalGradsTest : public testing::Test {
         kGlossy);
   }
 
-  // Of hits whose normals are those of a field.
+  // Loss of hits whose normals are those of a field.
   double loss(const Field& sdf, std::span<const Hit> on_sphere) const {
     std::vector<Hit> hits(on_sphere.begin(), on_sphere.end());
     std::vector<Vec3f> normals(hits.size());

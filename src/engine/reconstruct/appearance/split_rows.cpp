@@ -49,7 +49,7 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     row.held_out = options.hold_out > 0 && samples.turned.views[kept[k]] % options.hold_out == 0;
     row.nv = dot(h.normal, h.to_camera);
     row.color = samples.colors[kept[k]];
-    for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_slope(row.color[c]));
+    for (int c = 0; c < 3; ++c) row.weight[c] = square(srgb_derivative(row.color[c]));
     row.clipped = samples.clipped.empty() ? 0 : samples.clipped[kept[k]];
     origins[k] = ray_origin(h);
     directions[k] = mirror_direction(h);

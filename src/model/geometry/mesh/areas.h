@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+// Areas of a mesh that belong to its vertices.
 #pragma once
 
 #include "model/geometry/mesh/mesh.h"
 
 namespace cei3d {
 
-// Of every vertex, a third of the area of the triangles around it: #V.
+// A third of the area of the triangles around each vertex: #V.
 std::vector<double> vertex_areas(const Mesh&);
 
 }  // namespace cei3d

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Removes unused vertices and triangles without area.
 #pragma once
 
 #include "model/geometry/mesh/mesh.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Triangle meshes, and values of vertices inside a triangle.
 #pragma once
 
 #include <array>

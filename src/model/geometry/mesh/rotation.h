@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// The rotation part of a matrix.
 #pragma once
 
 #include "core/math/vec.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Where rays meet the surface: what tracing returns, and shading and edits work on.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Sets of cells, which packing of charts shifts and compares by whole words.
 #pragma once
 
 #include <cstdint>

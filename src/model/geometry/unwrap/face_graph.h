@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Neighborhood of the faces of a mesh.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Places for pieces of an atlas: which cells they cover and where these are free.
 #pragma once
 
 #include <optional>

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+// Rasterizes triangles of an atlas.
 #pragma once
 
 #include <algorithm>
