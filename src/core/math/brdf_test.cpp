@@ -91,11 +91,21 @@ TEST(Brdf, DiffuseViewIsTheMeanOfBurleysTermOverUniformLight) {
     }
 }
 
-TEST(Brdf, SchlickRunsFromF0ToOne) {
+// By Snell's law and the two polarizations.
+double reflectance_of_glass(double cosine) {
+  const double index = 1.5, below = std::sqrt(1 - (1 - cosine * cosine) / (index * index));
+  const double s = (cosine - index * below) / (cosine + index * below),
+               p = (index * cosine - below) / (index * cosine + below);
+  return (s * s + p * p) / 2;
+}
+
+TEST(Brdf, FresnelsTermOfADielectricIsThatOfGlass) {
+  for (double c = 0; c <= 1; c += 1.0 / 64) EXPECT_NEAR(fresnel(0.04, c), reflectance_of_glass(c), 1e-7) << c;
+  EXPECT_NEAR(fresnel(0.7, 1.0), 0.7, 1e-7);
+  EXPECT_NEAR(fresnel(0.7, 0.0), 1, 1e-7);
   using D = Dual<double>;
-  EXPECT_DOUBLE_EQ(schlick(0.04, 1.0), 0.04);
-  EXPECT_DOUBLE_EQ(schlick(0.04, 0.0), 1.0);
-  EXPECT_NEAR(derivative_of(schlick(D(0.3), D(0.6, 1.0))), -5 * 0.7 * std::pow(0.4, 4), 1e-12);
+  const double d = derivative_of(fresnel(D(0.3), D(0.6, 1.0)));
+  EXPECT_NEAR(d, (fresnel(0.3, 0.6 + 1e-5) - fresnel(0.3, 0.6 - 1e-5)) / 2e-5, 1e-6);
 }
 
 }  // namespace

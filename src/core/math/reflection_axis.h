@@ -14,7 +14,7 @@
 
 namespace cei3d {
 
-// The parts of the split sum: base is scaled by F0, fresnel is what Schlick's term adds to it at grazing
+// The parts of the split sum: base is scaled by F0, fresnel is what Fresnel's term adds to it at grazing
 // angles.
 enum class ReflectionPart { base, fresnel };
 

@@ -8,7 +8,7 @@ namespace cei3d {
 SplitSum<double> split_sum_integral(double nv, double roughness) {
   SplitSum<double> sum{0, 0};
   for_reflections(nv, roughness, [&](double weight, const Vec3d&, double vh) {
-    const double f = schlick(0.0, vh);
+    const double f = fresnel(0.0, vh);
     sum.scale += weight * (1 - f);
     sum.bias += weight * f;
   });

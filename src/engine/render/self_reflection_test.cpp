@@ -32,7 +32,7 @@ bool reflect(Path& path, Vec3f& out, Vec3f f0, float roughness, Rng& rng) {
   const float nl = dot(n, out);
   if (vh <= 0 || nl <= 0 || nv <= 0) return false;
   for (int k = 0; k < 3; ++k)
-    path.weight[k] *= schlick(f0[k], vh) * smith_g1(nv, alpha) * smith_g1(nl, alpha) * vh / (c * nv);
+    path.weight[k] *= fresnel(f0[k], vh) * smith_g1(nv, alpha) * smith_g1(nl, alpha) * vh / (c * nv);
   return true;
 }
 

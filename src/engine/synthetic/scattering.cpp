@@ -19,14 +19,14 @@ Scattering::Scattering(Vec3f normal, Vec3f to_viewer, const Material& m, Vec3f a
       f0_(f0_of(albedo, m.specular, m.metalness)),
       model_(model) {
   diffuse_ = albedo * (1 - m.metalness);
-  const float mirror = schlick(luminance(f0_), nv_), base = luminance(diffuse_);
+  const float mirror = fresnel(luminance(f0_), nv_), base = luminance(diffuse_);
   mirror_share_ = base > 0 ? clamp(mirror / (mirror + base), 0.2f, 0.8f) : 1.0f;
 }
 
 Vec3f Scattering::reflected(Vec3f l) const {
   const float nl = dot(normal_, l);
   if (nl <= 0) return {0, 0, 0};
-  // Schlick's term, and with it the whole, is linear in F0.
+  // Fresnel's term, and with it the whole, is linear in F0.
   const float at_0 = microfacet_brdf(normal_, view_, l, 0.0f, roughness_),
               at_1 = microfacet_brdf(normal_, view_, l, 1.0f, roughness_);
   float base = 1;

@@ -24,7 +24,7 @@ Json material_json(const SyntheticScene& scene, bool lambert) {
     if (f.second_color) r["second_color_linear"] = json_of(*f.second_color);
   }
   return {{"model",
-           fmt::format("GGX microfacets (alpha = roughness^2, Smith masking, Schlick's Fresnel term, F0 = "
+           fmt::format("GGX microfacets (alpha = roughness^2, Smith masking, Fresnel's term of index 1.5, F0 = "
                        "(1 - metalness) 0.08 specular + metalness albedo) over a {} diffuse base (1 - "
                        "metalness) albedo / pi",
                        lambert ? "Lambertian" : "Burley")},

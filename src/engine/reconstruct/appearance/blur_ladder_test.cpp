@@ -48,7 +48,7 @@ SplitRow seen_at(float nv) {
 double reflected(float nv, double roughness, float turn) {
   double sum = 0, total = 0;
   for_reflections(nv, roughness, [&](double weight, const Vec3d& l, double vh) {
-    const double share = weight * (1 - schlick(0.0, vh));
+    const double share = weight * (1 - fresnel(0.0, vh));
     for (const double y : {l.y, -l.y}) {
       const Vec3f d{float(std::cos(turn) * l.x - std::sin(turn) * y),
                     float(std::sin(turn) * l.x + std::cos(turn) * y), float(l.z)};
