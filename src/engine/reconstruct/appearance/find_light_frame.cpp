@@ -2,16 +2,24 @@
 #include "engine/reconstruct/appearance/find_light_frame.h"
 
 #include "core/base/json.h"
+#include "core/math/quantile.h"
 
 namespace cei3d {
 namespace {
 
-// A turning light has to leave so much less; where one that stands still leaves next to nothing, 43 dB, it
-// stays.
+// A turning light has to leave so much less in the median view; where one that stands still leaves next to
+// nothing, 43 dB, it stays.
 constexpr double kTurningBy = 0.8, kExplained = 5e-5;
 constexpr float kRoughness = 0.3f;
 constexpr int kLightHeight = 24;  // a rough answer will do
 constexpr int kHoldOut = 5;  // every so many views judge what the others say, where there are twice as many
+
+// Of every view. A few may be of another brightness, or see what no other does.
+double median_ratio(const std::vector<double>& a, const std::vector<double>& b) {
+  std::vector<double> ratios;
+  for (size_t i = 0; i < a.size(); ++i) ratios.push_back(a[i] / std::max(b[i], 1e-12));
+  return median(std::move(ratios));
+}
 
 }  // namespace
 
@@ -35,23 +43,22 @@ LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16
   options.seed = seed;
   options.hold_out = cameras.size() >= 2 * kHoldOut ? kHoldOut : 0;
   const Transport transport(input.surface);
-  const auto residual = [&](LightMotion motion) {
+  const auto residuals = [&](LightMotion motion) {
     const auto turns = turns_of(light_frame(motion, cameras, axis), cameras);
     SurfaceSamples samples = input.samples;
     samples.turned = {turns.get(), views};
-    const double r = dielectric_residual(transport, samples, options, kRoughness, progress);
-    progress.log(
-        Json{{"stage", "light motion"}, {"motion", light_motion_name(motion)}, {"residual", r}}.dump());
-    return r;
+    return dielectric_residuals(transport, samples, options, kRoughness, progress);
   };
-  const double still = residual(LightMotion::world);
-  if (still < kExplained) return {};
-  double smallest = kTurningBy * still;
+  const std::vector<double> still = residuals(LightMotion::world);
+  if (still.empty() || median(still) < kExplained) return {};
+  double smallest = kTurningBy;
   LightMotion best = LightMotion::world;
   for (const LightMotion motion : {LightMotion::camera, LightMotion::turntable}) {
-    const double r = residual(motion);
-    if (r >= smallest) continue;
-    smallest = r;
+    const double ratio = median_ratio(residuals(motion), still);
+    progress.log(
+        Json{{"stage", "light motion"}, {"motion", light_motion_name(motion)}, {"ratio", ratio}}.dump());
+    if (ratio >= smallest) continue;
+    smallest = ratio;
     best = motion;
   }
   return light_frame(best, cameras, axis);

@@ -290,9 +290,14 @@ float smoothest_of(const std::vector<Material>& materials) {
 
 }  // namespace
 
-double dielectric_residual(const Transport& transport, const SurfaceSamples& samples,
-                           const LinearSplitOptions& options, float roughness, Progress& progress) {
-  return SplitSolver(transport, samples, options, progress).dielectric(roughness).residual;
+std::vector<double> dielectric_residuals(const Transport& transport, const SurfaceSamples& samples,
+                                         const LinearSplitOptions& options, float roughness,
+                                         Progress& progress) {
+  SplitSolver solver(transport, samples, options, progress);
+  std::vector<double> out;
+  for (const SplitSystem::ViewError& e : solver.errors_of_views(solver.dielectric(roughness)))
+    if (e.count > 0) out.push_back(e.mean());
+  return out;
 }
 
 LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples,

@@ -73,8 +73,9 @@ struct LinearSplit {
 
 LinearSplit linear_split(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&);
 
-// Residual of the separation for one dielectric of that roughness, as LinearSplit::Trial::residual.
-double dielectric_residual(const Transport&, const SurfaceSamples&, const LinearSplitOptions&,
-                           float roughness, Progress&);
+// Residuals of the separation for one dielectric of that roughness, as LinearSplit::Trial::residual: of each
+// view that has any samples and does not take part (options.hold_out), in their order.
+std::vector<double> dielectric_residuals(const Transport&, const SurfaceSamples&, const LinearSplitOptions&,
+                                         float roughness, Progress&);
 
 }  // namespace cei3d

@@ -45,7 +45,7 @@ std::vector<SplitRow> make_split_rows(const Surface& surface, const SurfaceSampl
     row.barycentric = barycentrics(h.b1, h.b2);
     row.normal = samples.turned.in_room(kept[k], h.normal);
     row.to_camera = samples.turned.in_room(kept[k], h.to_camera);
-    row.view = samples.turned.turns ? samples.turned.views[kept[k]] : 0;
+    row.view = samples.turned.views.empty() ? 0 : samples.turned.views[kept[k]];
     row.held_out = options.hold_out > 0 && samples.turned.views[kept[k]] % options.hold_out == 0;
     row.nv = dot(h.normal, h.to_camera);
     row.color = samples.colors[kept[k]];

@@ -21,7 +21,7 @@ struct SplitRow {
   Vec3f color;                           // linear
   Vec3f weight;                          // squared slope of the display curve
   uint8_t clipped;                       // SurfaceSamples::clipped
-  uint16_t view = 0;                     // under a turning light: index of the camera
+  uint16_t view = 0;                     // index of the camera; 0 where the samples have no views
   bool held_out = false;                 // takes no part in the solution, only in its residual
   // Irradiance in this view over the mean of all views; 1 under a light that does not turn.
   Vec3f diffuse_light{1, 1, 1};

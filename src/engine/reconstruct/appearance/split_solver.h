@@ -34,6 +34,9 @@ class SplitSolver {
   const SplitGuess& last() const { return guess_; }
   SplitSolution dielectric(float roughness);
   SplitSolution metal(float roughness);
+  std::vector<SplitSystem::ViewError> errors_of_views(const SplitSolution& s) const {
+    return system_.errors_of_views(s.x);
+  }
   // Materials per vertex: alternates between the best materials under the light and the light for these
   // materials. start: initial light. max_residual: stops after the first round if it leaves a larger
   // residual.

@@ -2,6 +2,7 @@
 #include "engine/reconstruct/appearance/split_system.h"
 
 #include <algorithm>
+#include <span>
 
 #include "core/base/parallel.h"
 #include "core/math/brdf.h"
@@ -27,6 +28,7 @@ SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
       blurs_(options.light_height),
       harmonics_(options.light_height) {
   for (const SplitRow& row : rows) weights_.push_back(row.held_out ? Vec3f{0, 0, 0} : row.weight);
+  for (const SplitRow& row : rows) views_ = std::max(views_, row.view + 1);
   for (const auto& t : mesh.triangles)
     for (int c = 0; c < 3; ++c)
       if (t[c] < t[(c + 1) % 3]) edges_.push_back({t[c], t[(c + 1) % 3]});
@@ -223,25 +225,33 @@ void SplitSystem::right_side(SplitUnknowns& out) const {
   accumulate([&](size_t row) { return rows_[row].color - constant(row); }, out);
 }
 
-double SplitSystem::residual(const SplitUnknowns& x) const {
+std::vector<SplitSystem::ViewError> SplitSystem::errors_of_views(const SplitUnknowns& x) const {
   const Sky sky = sky_change(x.light);
-  std::vector<double> sum(kChunks, 0), count(kChunks, 0);  // of rows and channels
+  std::vector<std::vector<ViewError>> parts(kChunks, std::vector<ViewError>(size_t(views_)));
   parallel_for(kChunks, [&](int chunk) {
     const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
     for (size_t i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
       if (row.blocked || row.held_out != (options_.hold_out > 0)) continue;
       const Vec3f e = predict(i, x, sky) - row.color;
-      count[chunk] += 3;
+      ViewError& of_view = parts[size_t(chunk)][row.view];
+      of_view.count += 3;
       for (int c = 0; c < 3; ++c) {
         if ((row.clipped >> c & 1) && e[c] > 0) continue;
-        sum[chunk] += double(row.weight[c]) * e[c] * e[c];
+        of_view.sum += double(row.weight[c]) * e[c] * e[c];
       }
     }
   });
-  double total = 0, n = 0;
-  for (int c = 0; c < kChunks; ++c) total += sum[c], n += count[c];
-  return total / std::max(n, 1.0);
+  std::vector<ViewError> out = parts.front();
+  for (const std::vector<ViewError>& part : std::span(parts).subspan(1))
+    for (size_t v = 0; v < out.size(); ++v) out[v].sum += part[v].sum, out[v].count += part[v].count;
+  return out;
+}
+
+double SplitSystem::residual(const SplitUnknowns& x) const {
+  ViewError all;
+  for (const ViewError& e : errors_of_views(x)) all.sum += e.sum, all.count += e.count;
+  return all.mean();
 }
 
 SplitUnknowns SplitSystem::diagonal() const {

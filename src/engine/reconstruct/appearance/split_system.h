@@ -2,6 +2,7 @@
 // The equations of the linear separation for given materials, and their solution by conjugate gradients.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <memory>
@@ -54,8 +55,14 @@ class SplitSystem {
 
   // Improves x by rounds of conjugate gradients, with light and D >= 0, and clipped channels as lower bounds.
   void solve(SplitUnknowns& x, int rounds, int steps);
-  // Mean of weight * error^2 over rows whose mirror ray meets the sky.
-  double residual(const SplitUnknowns& x) const;
+  // Sum of weight * error^2, and number of channels, of the rows of each view whose mirror ray meets the sky;
+  // of the views that do not take part, if there are any.
+  struct ViewError {
+    double sum = 0, count = 0;
+    double mean() const { return sum / std::max(count, 1.0); }
+  };
+  std::vector<ViewError> errors_of_views(const SplitUnknowns& x) const;
+  double residual(const SplitUnknowns& x) const;  // mean over all of them
   // Albedo per vertex that fits best under the light if all vertices were metal: #V. Clipped channels are
   // treated as in the last solve().
   std::vector<Vec3f> fit_metal_color(const SplitUnknowns& x);
@@ -102,6 +109,7 @@ class SplitSystem {
 
   const Mesh& mesh_;
   const std::vector<SplitRow>& rows_;
+  int views_ = 0;               // number of cameras that rows are of
   std::vector<Vec3f> weights_;  // #rows; 0 where the prediction of a clipped channel is above its color
   LinearSplitOptions options_;
   std::vector<std::array<uint32_t, 2>> edges_;
