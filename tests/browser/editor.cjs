@@ -346,10 +346,11 @@ withPage({ program, project, executablePath, picture }, async (at) => {
   await exports(page);
   await keyboardOnly(page);
   await twoWindows(at.context, page, at.server.url);
-  const revision = (await state(page)).revision;
+  const revision = (await state(page)).revision, thumbs = await page.locator('#history img.thumb').count();
   await page.reload();
   await settled(page);
   check('a reload shows the same', (await state(page)).revision === revision);
+  check('with the pictures of its history', thumbs > 1 && await page.locator('#history img.thumb').count() >= thumbs);
   const { done } = await state(page);
   await dies(page, at.server);
   await at.restart();

@@ -102,8 +102,10 @@ void add_export(Commands& commands) {
       ->expected(1)
       ->take_all();
   add_asset_options(verb, *o);
-  verb->add_flag("--points", o->request.points,
-                 "With .ply: write the handler points with their normals instead of the mesh");
+  verb->add_flag(
+      "--points", o->request.points,
+      "With .ply: instead of the mesh, the handler points with normals, albedo, footprints and the parts "
+      "that they are in");
   commands.on(verb, o, export_object);
 }
 

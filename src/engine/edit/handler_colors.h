@@ -10,9 +10,6 @@
 
 namespace cei3d {
 
-// The handler points as hits on the present surface, so that they are known in every shape version.
-std::vector<Hit> handler_hits(const Scene&);
-
 // #handlers, linear albedo.
 std::vector<Vec3f> handler_colors(const Device&, const Scene&);
 

@@ -8,6 +8,7 @@
 #include "engine/edit/handler_colors.h"
 #include "engine/edit/part_seeds.h"
 #include "model/scene/appearance.h"
+#include "model/scene/handler_hits.h"
 
 namespace cei3d {
 namespace {

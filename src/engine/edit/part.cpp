@@ -12,6 +12,7 @@
 #include "engine/segment/grow.h"
 #include "engine/segment/seen_points.h"
 #include "model/scene/appearance.h"
+#include "model/scene/handler_hits.h"
 #include "model/scene/parts.h"
 
 namespace cei3d {

@@ -6,9 +6,11 @@
 #include <tuple>
 
 #include "core/base/error.h"
+#include "engine/io/ply.h"
 #include "model/geometry/mesh/compact.h"
 #include "model/geometry/mesh/simplify.h"
 #include "model/scene/appearance.h"
+#include "model/scene/handler_hits.h"
 
 namespace cei3d {
 namespace {
@@ -65,12 +67,24 @@ ColoredMesh colored_mesh(const Device& device, const Scene& scene, size_t faces)
   return {std::move(mesh), std::move(materials), error};
 }
 
-Mesh handler_point_cloud(const Scene& scene) {
+HandlerCloud handler_cloud(const Device& device, const Scene& scene) {
   if (!scene.handlers) fail("The object has no handler points; reconstruct it again.");
-  Mesh points;
-  points.positions = in_capture_frame(scene.handlers->positions, scene.normalization);
-  points.normals = scene.handlers->normals;
-  return points;
+  const std::vector<Hit> hits = handler_hits(scene);
+  HandlerCloud out{{in_capture_frame(scene.handlers->positions, scene.normalization),
+                    scene.handlers->normals,
+                    appearance_at(device, scene, hits).albedo,
+                    {}},
+                   scene.handlers->footprints,
+                   parts_of(scene, hits)};
+  for (float& f : out.footprints) f /= float(scene.normalization.scale);
+  return out;
+}
+
+std::string encode_handlers(const HandlerCloud& cloud) {
+  PlyExtras extras{{}, {{"footprint", cloud.footprints}, {"part", cloud.parts.of}}};
+  for (size_t k = 1; k < cloud.parts.names.size(); ++k)
+    extras.comments.push_back(fmt::format("part {} {}", k, cloud.parts.names[k]));
+  return encode_ply(cloud.points, extras);
 }
 
 }  // namespace cei3d

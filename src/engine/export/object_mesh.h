@@ -4,7 +4,7 @@
 
 #include "core/compute/device.h"
 #include "engine/export/gltf.h"
-#include "model/scene/scene.h"
+#include "model/scene/parts.h"
 
 namespace cei3d {
 
@@ -18,7 +18,15 @@ struct ColoredMesh {
 // Error: the scene has no surface.
 ColoredMesh colored_mesh(const Device&, const Scene&, size_t faces = 0);
 
-// The handler points and their normals, without triangles. Error: the scene has none.
-Mesh handler_point_cloud(const Scene&);
+// The handler points with all that is known of them. Error: the scene has none.
+struct HandlerCloud {
+  Mesh points;                    // positions, normals and linear albedo; no triangles
+  std::vector<float> footprints;  // #points, capture units
+  PartsOfHits parts;
+};
+HandlerCloud handler_cloud(const Device&, const Scene&);
+
+// As PLY: comments "part 1 lid" name the values of the property "part", 0 is none.
+std::string encode_handlers(const HandlerCloud&);
 
 }  // namespace cei3d

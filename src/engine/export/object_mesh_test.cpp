@@ -4,10 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <set>
 
 #include "core/base/error.h"
 #include "engine/export/test_ball.h"
+#include "engine/io/ply.h"
+#include "model/scene/appearance.h"
+#include "model/scene/handler_hits.h"
 
 namespace cei3d {
 namespace {
@@ -129,8 +133,11 @@ TEST(ObjectMesh, HandlerPointsAreInTheFrameOfTheCapture) {
   auto handlers = std::make_shared<HandlerPoints>();
   handlers->positions = {{0, 0, 0.5f}, {0.2f, -0.4f, 0}};
   handlers->normals = {{0, 0, 1}, {0, -1, 0}};
+  handlers->footprints = {0.01f, 0.02f};
+  handlers->spacing = 0.02f;
   s.handlers = handlers;
-  const Mesh points = handler_point_cloud(s);
+  const HandlerCloud cloud = handler_cloud(make_device(), s);
+  const Mesh& points = cloud.points;
   EXPECT_TRUE(points.triangles.empty());
   ASSERT_EQ(points.positions.size(), 2u);
   EXPECT_NEAR(length(points.positions[0] - Vec3f{1, 2, 3.25f}), 0, 1e-6);
@@ -138,10 +145,40 @@ TEST(ObjectMesh, HandlerPointsAreInTheFrameOfTheCapture) {
   EXPECT_EQ(points.normals[1].y, -1);
 }
 
+TEST(ObjectMesh, HandlerPointsKnowTheirAlbedoFootprintAndPart) {
+  Scene s = ball();
+  auto handlers = std::make_shared<HandlerPoints>();
+  handlers->positions = {{0, 0, kBallRadius}, {0, 0, -kBallRadius}};
+  handlers->normals = {{0, 0, 1}, {0, 0, -1}};
+  handlers->footprints = {0.01f, 0.02f};
+  handlers->spacing = 0.02f;
+  s.handlers = handlers;
+  EditLayer lid = upper_half(s.surface->mesh());
+  lid.part = "lid";
+  s.layers = {lid};
+  const HandlerCloud cloud = handler_cloud(make_device(), s);
+  EXPECT_EQ(cloud.parts.of, (std::vector<uint8_t>{1, 0}));
+  EXPECT_FLOAT_EQ(cloud.footprints[1], 0.01f);  // a unit of the capture is two of the unit frame
+  const std::vector<Vec3f> albedo = appearance_at(make_device(), s, handler_hits(s)).albedo;
+  for (size_t i = 0; i < 2; ++i) EXPECT_EQ(length(cloud.points.colors[i] - albedo[i]), 0);
+
+  const std::string ply = encode_handlers(cloud);
+  EXPECT_NE(ply.find("comment part 1 lid\n"), std::string::npos);
+  EXPECT_NE(ply.find("property float footprint\nproperty uchar part\nelement face 0\n"), std::string::npos);
+  const std::string last = ply.substr(ply.size() - 5);  // footprint and part of the second point
+  float footprint;
+  std::memcpy(&footprint, last.data(), 4);
+  EXPECT_EQ(footprint, cloud.footprints[1]);
+  EXPECT_EQ(last[4], 0);
+  const Mesh read = decode_ply(ply, "points.ply");
+  ASSERT_EQ(read.positions.size(), 2u);
+  EXPECT_EQ(length(read.positions[1] - cloud.points.positions[1]), 0);
+}
+
 TEST(ObjectMesh, AnObjectWithoutSurfaceOrHandlersIsAnError) {
   const Scene nothing;
   EXPECT_THROW(colored_mesh(make_device(), nothing), Error);
-  EXPECT_THROW(handler_point_cloud(nothing), Error);
+  EXPECT_THROW(handler_cloud(make_device(), nothing), Error);
 }
 
 }  // namespace

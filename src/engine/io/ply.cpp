@@ -19,6 +19,10 @@ uint8_t to_byte(float linear) {
   return v > 0 ? uint8_t(std::min(v, 1.0f) * 255 + 0.5f) : 0;
 }
 
+std::string declared(const PlyProperty& p) {
+  return fmt::format("property {} {}\n", p.values.index() == 0 ? "uchar" : "float", p.name);
+}
+
 struct Property {
   std::string name, type, count_type;  // count_type: of a list, else empty
 };
@@ -163,20 +167,24 @@ void read_faces(Reader& in, const Element& e, Mesh& mesh) {
 
 }  // namespace
 
-std::string encode_ply(const Mesh& mesh) {
+std::string encode_ply(const Mesh& mesh, const PlyExtras& extras) {
   const bool normals = mesh.normals.size() == mesh.positions.size(),
              colors = mesh.colors.size() == mesh.positions.size();
   std::string out = "ply\nformat binary_little_endian 1.0\ncomment CEI-3D\n";
+  for (const std::string& line : extras.comments) out += "comment " + line + "\n";
   out += fmt::format("element vertex {}\nproperty float x\nproperty float y\nproperty float z\n",
                      mesh.positions.size());
   if (normals) out += "property float nx\nproperty float ny\nproperty float nz\n";
   if (colors) out += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+  for (const PlyProperty& p : extras.properties) out += declared(p);
   out += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
                      mesh.triangles.size());
   for (size_t i = 0; i < mesh.positions.size(); ++i) {
     append_bytes(out, mesh.positions[i]);
     if (normals) append_bytes(out, mesh.normals[i]);
     for (int c = 0; colors && c < 3; ++c) append_bytes(out, to_byte(mesh.colors[i][c]));
+    for (const PlyProperty& p : extras.properties)
+      std::visit([&](const auto& values) { append_bytes(out, values[i]); }, p.values);
   }
   for (const auto& t : mesh.triangles) {
     append_bytes(out, uint8_t(3));

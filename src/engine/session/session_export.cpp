@@ -201,12 +201,17 @@ class Exporter {
                         {"vertex_light", view_vertex_light(light.vertices(), mesh)}});
   }
 
+  std::vector<FileBytes> handlers(ExportReport& report) const {
+    const HandlerCloud cloud = handler_cloud(device_, scene_);
+    report.vertices = cloud.points.positions.size();
+    return {{report.out, encode_handlers(cloud)}};
+  }
+
   // Colors at the vertices.
   std::vector<FileBytes> plain(ExportReport& report, const std::string& kind) const {
-    const auto [mesh, materials, error] =
-        request_.points ? ColoredMesh{handler_point_cloud(scene_), {}}
-                        : colored_mesh(device_, scene_, size_t(request_.faces.value_or(0)));
-    if (request_.faces && !request_.points) report.simplification_error = error;
+    if (request_.points) return handlers(report);
+    const auto [mesh, materials, error] = colored_mesh(device_, scene_, size_t(request_.faces.value_or(0)));
+    if (request_.faces) report.simplification_error = error;
     report.vertices = mesh.positions.size();
     report.triangles = mesh.triangles.size();
     if (kind == ".ply") return {{report.out, encode_ply(mesh)}};

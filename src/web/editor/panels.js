@@ -5,6 +5,7 @@ import { byId, el, glyph, nameInPlace, toast } from './dom.js';
 import { getBlob } from './api.js';
 import { lookText, swatch } from './looks.js';
 import { partColors } from './select.js';
+import { Thumbs } from './thumbs.js';
 
 /** @type {Record<string, string>} */
 const opNames = { paint: 'Paint', material: 'Material', light: 'Light', deform: 'Bend', remove: 'Remove', part: 'Part' };
@@ -88,36 +89,32 @@ export class HistoryPanel {
   /** @param {import('./store.js').Store} store @param {import('./stage.js').Stage} stage */
   constructor(store, stage) {
     this.store = store;
-    /** @type {Map<string, string>} pictures of what edits did, by id; '': of the object before them */
-    this.thumbs = new Map();
+    this.thumbs = new Thumbs();
     store.on('state', () => this.draw());
-    store.on('mode', () => {  // another object
-      for (const url of this.thumbs.values()) URL.revokeObjectURL(url);
-      this.thumbs.clear();
-    });
+    store.on('mode', () => this.thumbs.clear());  // another object
     stage.addEventListener('exact', () => this.keepThumb(stage));
   }
 
   /** @param {import('./stage.js').Stage} stage */
   keepThumb(stage) {
-    const id = this.store.last()?.id ?? '';
-    if (this.thumbs.has(id) || stage.preview || stage.channel !== 'rgb') return;
-    const small = document.createElement('canvas'), c = small.getContext('2d');
-    small.width = 80;
-    small.height = 60;
-    const { width: w, height: h } = stage.picture, s = Math.max(80 / w, 60 / h);
-    c?.drawImage(stage.picture, (80 - w * s) / 2, (60 - h * s) / 2, w * s, h * s);
-    this.thumbs.set(id, '');
-    small.toBlob((blob) => {
-      if (!blob) return;
-      this.thumbs.set(id, URL.createObjectURL(blob));
-      this.draw();
-    });
+    const edit = this.store.last() ?? null;
+    if (this.thumbOf(edit) || stage.preview || stage.channel !== 'rgb') return;
+    this.thumbs.keep(...this.thumbKey(edit), stage.picture);
+    this.draw();
   }
 
-  /** @param {string} id @param {string} otherwise name of a glyph */
-  thumb(id, otherwise) {
-    const url = this.thumbs.get(id);
+  /** Key of the edit's picture, and what it is of: another one is needed when that changes. @param {import('./store.js').Edit | null} edit null: the object before all edits @returns {[string, string]} */
+  thumbKey(edit) {
+    const { state, object } = this.store;
+    return [`thumb ${state.folder} ${edit?.id ?? ''}`, `${object?.summary} ${JSON.stringify(edit?.params)}`];
+  }
+
+  /** @param {import('./store.js').Edit | null} edit */
+  thumbOf(edit) { return this.thumbs.get(...this.thumbKey(edit)); }
+
+  /** @param {import('./store.js').Edit | null} edit @param {string} otherwise name of a glyph */
+  thumb(edit, otherwise) {
+    const url = this.thumbOf(edit);
     return url ? el('img', { class: 'thumb', src: url, alt: '' }) : el('span', { class: 'thumb' }, glyph(otherwise));
   }
 
@@ -126,7 +123,7 @@ export class HistoryPanel {
     const { store } = this, text = describe(e), locked = store.state.read_only;
     const now = index === store.state.done - 1 && e.done;
     return el('li', { class: [now ? 'on' : '', e.enabled ? '' : 'off', e.done ? '' : 'undone'].join(' ') }, el('div', { class: 'row' },
-      this.thumb(e.id, opGlyphs[e.op] ?? 'paint'),
+      this.thumb(e, opGlyphs[e.op] ?? 'paint'),
       el('button', { class: 'label', disabled: locked, title: e.done ? 'Go back to this step' : 'Go forward to this step', 'aria-current': now ? 'step' : undefined,
         onclick: () => store.change('goto', { done: index + 1 }) }, e.name || `${opNames[e.op] ?? e.op}`, ' ', el('span', { class: 'quiet' }, text)),
       el('button', { 'aria-label': `Rename ${e.id}`, title: 'Rename', disabled: locked, onclick: () => this.rename(e) }, glyph('pencil')),
@@ -144,7 +141,7 @@ export class HistoryPanel {
     const { store } = this, all = store.state.history;
     const steps = all.filter((e) => !e.set_aside), aside = all.filter((e) => e.set_aside);
     const rows = steps.map((e, i) => this.row(e, i)).reverse();
-    const start = el('li', { class: store.state.done === 0 ? 'on' : '' }, el('div', { class: 'row' }, this.thumb('', 'look'),
+    const start = el('li', { class: store.state.done === 0 ? 'on' : '' }, el('div', { class: 'row' }, this.thumb(null, 'look'),
       el('button', { class: 'label', disabled: store.state.read_only, title: 'Go back to the object before all edits', 'aria-current': store.state.done === 0 ? 'step' : undefined,
         onclick: () => store.change('goto', { done: 0 }) }, 'As reconstructed')));
     byId('history').replaceChildren(el('h2', { id: 'history-title' }, 'History'),
