@@ -98,7 +98,7 @@ TEST_F(JointRecovery, RoughnessComesBack) {
   start.material = Material{0.4f, 0.5f, 0};
   JointOptions o = options();
   o.rates.material = 5e-2f;
-  const JointObject after = descended(start, o, 250);
+  const JointObject after = descended(start, o, 400);
   EXPECT_NEAR(after.material.mean().roughness, 0.2f, 0.02f);
 }
 
