@@ -20,8 +20,7 @@ Moments moments(ReflectionPart part, double nv, double roughness) {
   Moments m;
   double total = 0;
   for_reflections(nv, roughness, [&](double weight, const Vec3d& l, double vh) {
-    const double rise = fresnel(0.0, vh),
-                 share = weight * (part == ReflectionPart::base ? 1 - rise : rise);
+    const double rise = fresnel(0.0, vh), share = weight * (part == ReflectionPart::base ? 1 - rise : rise);
     m.mean += l * share;
     m.xx += share * l.x * l.x;
     m.xz += share * l.x * l.z;

@@ -23,12 +23,13 @@ Json material_json(const SyntheticScene& scene, bool lambert) {
          {"color_linear", json_of(f.color)}};
     if (f.second_color) r["second_color_linear"] = json_of(*f.second_color);
   }
-  return {{"model",
-           fmt::format("GGX microfacets (alpha = roughness^2, Smith masking, Fresnel's term of index 1.5, F0 = "
-                       "(1 - metalness) 0.08 specular + metalness albedo) over a {} diffuse base (1 - "
-                       "metalness) albedo / pi",
-                       lambert ? "Lambertian" : "Burley")},
-          {"regions", regions}};
+  return {
+      {"model",
+       fmt::format("GGX microfacets (alpha = roughness^2, Smith masking, Fresnel's term of index 1.5, F0 = "
+                   "(1 - metalness) 0.08 specular + metalness albedo) over a {} diffuse base (1 - "
+                   "metalness) albedo / pi",
+                   lambert ? "Lambertian" : "Burley")},
+      {"regions", regions}};
 }
 
 Json lighting_json(const SynthRequest& r, const SyntheticScene& scene,
