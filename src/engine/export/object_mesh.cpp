@@ -80,10 +80,21 @@ HandlerCloud handler_cloud(const Device& device, const Scene& scene) {
   return out;
 }
 
+namespace {
+
+// Comments of PLY end with the line.
+std::string on_one_line(std::string text) {
+  for (char& c : text)
+    if (uint8_t(c) < ' ') c = ' ';
+  return text;
+}
+
+}  // namespace
+
 std::string encode_handlers(const HandlerCloud& cloud) {
   PlyExtras extras{{}, {{"footprint", cloud.footprints}, {"part", cloud.parts.of}}};
   for (size_t k = 1; k < cloud.parts.names.size(); ++k)
-    extras.comments.push_back(fmt::format("part {} {}", k, cloud.parts.names[k]));
+    extras.comments.push_back(fmt::format("part {} {}", k, on_one_line(cloud.parts.names[k])));
   return encode_ply(cloud.points, extras);
 }
 

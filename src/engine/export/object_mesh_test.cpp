@@ -154,7 +154,7 @@ TEST(ObjectMesh, HandlerPointsKnowTheirAlbedoFootprintAndPart) {
   handlers->spacing = 0.02f;
   s.handlers = handlers;
   EditLayer lid = upper_half(s.surface->mesh());
-  lid.part = "lid";
+  lid.part = "lid\nlock";
   s.layers = {lid};
   const HandlerCloud cloud = handler_cloud(make_device(), s);
   EXPECT_EQ(cloud.parts.of, (std::vector<uint8_t>{1, 0}));
@@ -163,7 +163,7 @@ TEST(ObjectMesh, HandlerPointsKnowTheirAlbedoFootprintAndPart) {
   for (size_t i = 0; i < 2; ++i) EXPECT_EQ(length(cloud.points.colors[i] - albedo[i]), 0);
 
   const std::string ply = encode_handlers(cloud);
-  EXPECT_NE(ply.find("comment part 1 lid\n"), std::string::npos);
+  EXPECT_NE(ply.find("comment part 1 lid lock\n"), std::string::npos);
   EXPECT_NE(ply.find("property float footprint\nproperty uchar part\nelement face 0\n"), std::string::npos);
   const std::string last = ply.substr(ply.size() - 5);  // footprint and part of the second point
   float footprint;
