@@ -40,8 +40,8 @@ template <class T>
 struct LobeGap {
   Vec3<T> along;  // from the light's axis to the reflection's
   T across;
-  T q() const { return dot(along, along); }
-  T h() const { return across * across; }
+  HD T q() const { return dot(along, along); }
+  HD T h() const { return across * across; }
 };
 template <class T>
 HD LobeGap<T> lobe_gap(Vec3<T> axis, Vec3<T> across, Vec3<T> light) {

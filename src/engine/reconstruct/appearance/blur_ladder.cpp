@@ -52,13 +52,28 @@ ReflectedSky stretched_sky(const LobeFrame<float>& lobe, int height) {
   return sky;
 }
 
+HiddenRings energy_at(BlurLadder::Place at) {
+  static const auto ladder = [] {
+    std::array<HiddenRings, BlurLadder::kLevels> energy;
+    for (int i = 0; i < BlurLadder::kLevels; ++i) energy[size_t(i)] = ring_energy(BlurLadder::roughness(i));
+    return energy;
+  }();
+  HiddenRings mix;
+  const HiddenRings &below = ladder[size_t(at.level)], &above = ladder[size_t(at.level) + 1];
+  for (size_t i = 0; i < kSkyRings; ++i) mix[i] = below[i] * (1 - at.above) + above[i] * at.above;
+  return mix;
+}
+
 }  // namespace
 
 ReflectedSky reflected_sky(const SplitRow& row, ReflectionPart part, float roughness, int light_height) {
   const PartTables tables{reflection_axis_table(part), reflection_stretch_table(part)};
+  const ReflectionAxis<float> round = reflection_axis(tables.axis, row.normal, row.to_camera, roughness);
   const LobeFrame<float> lobe = lobe_frame(tables, row.normal, row.to_camera, roughness);
-  if (lobe.stretch > kRound) return stretched_sky(lobe, light_height);
-  return round_sky(reflection_axis(tables.axis, row.normal, row.to_camera, roughness), light_height);
+  ReflectedSky sky =
+      lobe.stretch > kRound ? stretched_sky(lobe, light_height) : round_sky(round, light_height);
+  sky.open = 1 - hidden_share(row.hidden, energy_at(BlurLadder::place(round.roughness)));
+  return sky;
 }
 
 Vec3f radiance_at(const Blurred& blurred, const ReflectedSky& at) {
@@ -70,14 +85,14 @@ Vec3f radiance_at(const Blurred& blurred, const ReflectedSky& at) {
       sum += (below[pixel] * (1 - at.lobe.above) + above[pixel] * at.lobe.above) *
              (at.weight[l] * at.taps[l].weight[k]);
     }
-  return sum;
+  return sum * at.open;
 }
 
 void scatter_radiance(const ReflectedSky& at, Vec3f radiance, Blurred& sum) {
   auto &below = sum[size_t(at.lobe.level)], &above = sum[size_t(at.lobe.level) + 1];
   for (int l = 0; l < at.count; ++l)
     for (int k = 0; k < 4; ++k) {
-      const Vec3f part = radiance * (at.weight[l] * at.taps[l].weight[k]);
+      const Vec3f part = radiance * (at.open * at.weight[l] * at.taps[l].weight[k]);
       below[at.taps[l].pixel[k]] += part * (1 - at.lobe.above);
       above[at.taps[l].pixel[k]] += part * at.lobe.above;
     }

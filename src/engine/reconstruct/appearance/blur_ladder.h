@@ -42,12 +42,17 @@ struct ReflectedSky {
   int count = 1;
   EnvTaps taps[kMaxLobes];
   float weight[kMaxLobes] = {1, 0, 0};
+  float open = 1;  // share of the lobe that meets the sky
 };
 ReflectedSky reflected_sky(const SplitRow&, ReflectionPart, float roughness, int light_height);
 
 // Blurs of a light by level; empty: level not in use.
 using Blurred = std::array<std::vector<Vec3f>, BlurLadder::kLevels>;
 Vec3f radiance_at(const Blurred&, const ReflectedSky&);
+// The same with what hides a part of the sky from the row.
+inline Vec3f incident_at(const Blurred& blurred, const ReflectedSky& at, const SplitRow& row) {
+  return radiance_at(blurred, at) + row.far_radiance() * (1 - at.open);
+}
 // The adjoint of radiance_at(): adds to sum.
 void scatter_radiance(const ReflectedSky&, Vec3f radiance, Blurred& sum);
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -11,6 +10,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/math/color.h"
+#include "core/math/parabola.h"
 #include "core/math/quantile.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
 #include "engine/reconstruct/appearance/split_solver.h"
@@ -35,32 +35,30 @@ constexpr double kPlainlyOne = 0.85;
 // Maximum roughness of the one material with which the search for several materials begins.
 constexpr float kFirstRoughness = 0.3f;
 
-// The largest roughness whose non-negative light fits within the tolerance of the best: a smaller one with a
-// blurred light fits about as well as the truth, a larger one needs negative light. A coarse scan, then
-// bisection.
+// The roughness of the smallest residual: a coarse scan, refined about the smallest, and a parabola through
+// it and its neighbors over the logarithm.
 template <class F>
 float search_roughness(F residual_at, const LinearSplitOptions& o) {
   if (o.fixed_roughness > 0) return o.fixed_roughness;
   std::map<float, double> tried;
-  double smallest = std::numeric_limits<double>::infinity();
-  const auto solve = [&](float r) {
-    tried[r] = residual_at(r);
-    smallest = std::min(smallest, tried[r]);
+  const auto smallest = [&] {
+    return std::min_element(tried.begin(), tried.end(),
+                            [](const auto& a, const auto& b) { return a.second < b.second; });
   };
-  for (float r = kSmoothest; r < kRoughest && (tried.empty() || tried.rbegin()->second < kFar * smallest);
+  const auto solve = [&](float r) { tried[r] = residual_at(r); };
+  for (float r = kSmoothest;
+       r < kRoughest && (tried.empty() || tried.rbegin()->second < kFar * smallest()->second);
        r *= o.scan_step)
     solve(r);
-  const auto last_good = [&] {
-    auto it = std::prev(tried.end());
-    while (it->second > (1 + o.tolerance) * smallest) --it;
-    return it;
-  };
   for (int k = 0; k < o.refinements; ++k) {
-    const auto good = last_good(), next = std::next(good);
-    if (next == tried.end()) break;
-    solve(std::sqrt(good->first * next->first));
+    const auto best = smallest(), next = std::next(best);
+    if (best != tried.begin()) solve(std::sqrt(std::prev(best)->first * best->first));
+    if (next != tried.end()) solve(std::sqrt(best->first * next->first));
   }
-  return last_good()->first;
+  const auto best = smallest(), next = std::next(best);
+  if (best == tried.begin() || next == tried.end()) return best->first;
+  const double steps = lowest_offset(std::prev(best)->second, best->second, next->second);
+  return best->first * float(std::pow(next->first / best->first, steps));
 }
 
 // Reflections of metals determine light and color only up to a factor per channel: the mean of the light is

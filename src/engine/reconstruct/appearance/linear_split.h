@@ -42,13 +42,11 @@ struct LinearSplitOptions {
   int material_hits = 600000;  // maximum number of samples while materials of the vertices are searched
   int search_height = 32;      // rows of the light in both searches
   float scan_step = 1.4f;      // factor between the roughnesses of the scan
-  int refinements = 3;         // bisections of the roughness after the scan
+  int refinements = 1;         // halvings of that step, about the best roughness of the scan
   float fixed_roughness = 0;   // > 0: known, not searched
   LightColorPrior light_color;
   // Weight of the light's smoothness, relative to the mean curvature of its unknowns.
   float smoothness = 1e-4f;
-  // Relative: the largest roughness whose residual is this close to the best is taken.
-  float tolerance = 0.008f;
   uint64_t seed = 1;
   // Every n-th view does not take part, and residuals are of those views alone; 0: all take part. Needs
   // SurfaceSamples::turned.views.

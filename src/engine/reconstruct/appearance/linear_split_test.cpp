@@ -35,6 +35,20 @@ TEST(LinearSplit, FindsLightRoughnessAndAlbedoOfADielectric) {
   EXPECT_LT(match(got, truth).error, 0.45);  // a deconvolution: sharp spots come out spiky
 }
 
+// Where a part of the body hides a part of the sky, less is reflected. A light that is taken to be seen whole
+// everywhere comes out too weak, here by a quarter, and colors too bright.
+TEST(LinearSplit, TheLightIsAsStrongWhereTheBodyHidesAPartOfIt) {
+  const auto plastic = [](Vec3f) { return Material{0.3f, 0.5f, 0}; };
+  const Drawn d = draw(plastic, paint, LightMotion::world, two_bumpy_balls());
+  LinearSplitOptions o = small();
+  o.fixed_roughness = 0.3f;
+  Progress quiet;
+  const LinearSplit split = linear_split(*d.transport, d.samples(), o, quiet);
+  const Match albedo = match(pick(split.albedo, seen(d)), pick(d.base, seen(d)));
+  EXPECT_NEAR(albedo.scale, 1, 0.04);
+  EXPECT_LT(albedo.error, 0.05);
+}
+
 // Many lights on every point: what no light that stands still explains.
 TEST(LinearSplit, FindsAlbedoUnderALightThatTurns) {
   const Drawn d = draw([](Vec3f) { return Material{0.3f, 0.5f, 0}; }, paint, LightMotion::turntable);

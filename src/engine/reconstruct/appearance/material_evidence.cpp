@@ -7,6 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/math/color.h"
 #include "core/math/ladder.h"
+#include "core/math/parabola.h"
 
 namespace cei3d {
 namespace {
@@ -45,10 +46,7 @@ void minimum(const float* e, float& roughness, float& error) {
   const int best = int(std::min_element(e, e + kLevels) - e);
   float at = float(best);
   error = e[best];
-  if (best > 0 && best < kLevels - 1) {
-    const float a = e[best - 1], b = e[best], c = e[best + 1], bend = a - 2 * b + c;
-    if (bend > 0) at += clamp(0.5f * (a - c) / bend, -0.5f, 0.5f);
-  }
+  if (best > 0 && best < kLevels - 1) at += float(lowest_offset(e[best - 1], e[best], e[best + 1]));
   const int level = std::min(int(at), kLevels - 2);
   const GeometricLadder step{BlurLadder::roughness(level), BlurLadder::roughness(level + 1)};
   roughness = step.at(at - float(level));
@@ -69,24 +67,21 @@ LitSamples::LitSamples(size_t vertices, const std::vector<SplitRow>& rows, std::
 
 LitSamples::RowLight LitSamples::light_of(const SplitRow& row, float roughness) const {
   const SplitSum<float> s = split_sum(split_sum_table(), row.nv, roughness);
-  const auto sky = [&](ReflectionPart part) {
-    return radiance_at(sky_, reflected_sky(row, part, roughness, light_height_));
+  const auto incident = [&](ReflectionPart part) {
+    return incident_at(sky_, reflected_sky(row, part, roughness, light_height_), row);
   };
-  return {sky(ReflectionPart::base) * s.scale, sky(ReflectionPart::fresnel) * s.bias,
+  return {incident(ReflectionPart::base) * s.scale, incident(ReflectionPart::fresnel) * s.bias,
           row.diffuse_light * diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness)};
 }
 
-// Calls visit(row, its color, RowLight) for the vertex' samples that mirror the sky. Returns their number.
+// Calls visit(row, its color, RowLight) for the vertex' samples. Returns their number.
 template <class F>
 int LitSamples::for_samples(uint32_t vertex, float roughness, const F& visit) const {
-  int count = 0;
   for (uint32_t k = start_[vertex]; k < start_[vertex + 1]; ++k) {
     const SplitRow& row = rows_[order_[k]];
-    if (row.blocked) continue;
     visit(row, colors_[order_[k]], light_of(row, roughness));
-    ++count;
   }
-  return count;
+  return int(start_[vertex + 1] - start_[vertex]);
 }
 
 // Adds the errors of the dielectric and the metal of that level. Returns the number of samples.
@@ -194,18 +189,6 @@ BestMaterials best_materials(const float* errors) {
   minimum(errors, b.dielectric_roughness, b.dielectric_error);
   minimum(errors + kLevels, b.metal_roughness, b.metal_error);
   return b;
-}
-
-std::vector<Vec3f> mean_colors(size_t vertices, const std::vector<SplitRow>& rows) {
-  std::vector<Vec3f> sum(vertices, Vec3f{0, 0, 0});
-  std::vector<float> count(vertices, 0);
-  for (const SplitRow& r : rows)
-    for (int k = 0; k < 3 && !r.held_out; ++k) {
-      sum[r.vertices[k]] += r.color * r.barycentric[k];
-      count[r.vertices[k]] += r.barycentric[k];
-    }
-  for (size_t v = 0; v < vertices; ++v) sum[v] = sum[v] / max(count[v], 1e-6f);
-  return sum;
 }
 
 namespace {

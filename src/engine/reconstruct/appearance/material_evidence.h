@@ -67,9 +67,6 @@ struct BestMaterials {
 };
 BestMaterials best_materials(const float* errors);
 
-// Mean linear color of each vertex's samples, 0 where there are none. #V
-std::vector<Vec3f> mean_colors(size_t vertices, const std::vector<SplitRow>&);
-
 // Replaces the sums of each vertex by sums over its surroundings of similar color: `steps` steps of diffusion
 // between neighbors. colors: #V, linear.
 void diffuse_evidence(const Mesh&, const std::vector<Vec3f>& colors, int steps, MaterialEvidence&);

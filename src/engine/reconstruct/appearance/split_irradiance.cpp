@@ -133,7 +133,7 @@ DiffuseLightGrad TurningIrradiance::turn(const SplitUnknowns& x, const SplitMate
                   more = (dot(in_view, grad.light) - dot(in_bin, grad.light)) / mean_light;
       row.diffuse_light = at_corners(bin, row.vertices, row.barycentric) + more;
       for (int c = 0; c < 3; ++c) row.diffuse_light[c] = max(row.diffuse_light[c], 0.0f);
-      if (row.blocked) row.far_diffuse_light = at_corners(bin, row.far_vertices, row.far_barycentric);
+      row.far_diffuse_light = at_corners(bin, row.far_vertices, row.far_barycentric);
       DiffuseLightGrad::OfRow& of_row = grad.rows[size_t(i)];
       const float share = luminance(row.diffuse_light);
       for (size_t j = 0; j < kHarmonics; ++j) of_row.d_light[j] = in_view[j] - share * mean[j];

@@ -5,30 +5,38 @@
 #include <array>
 #include <vector>
 
+#include "engine/reconstruct/appearance/hidden_sky.h"
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "model/geometry/shape/surface.h"
 
 namespace cei3d {
 
 struct SplitRow {
-  std::array<uint32_t, 3> vertices;      // of the triangle of the hit
-  std::array<float, 3> barycentric;      // of the hit
-  Vec3f normal, to_camera;               // unit, in the frame of the light
-  float nv;                              // cosine of normal and to_camera
-  bool blocked;                          // whether the mirror ray meets the surface again, at the "far" point
-  std::array<uint32_t, 3> far_vertices;  // of the triangle of the far point
+  std::array<uint32_t, 3> vertices;  // of the triangle of the hit
+  std::array<float, 3> barycentric;  // of the hit
+  Vec3f normal, to_camera;           // unit, in the frame of the light
+  float nv;                          // cosine of normal and to_camera
+  HiddenRings hidden;                // what the surface hides of the sky about the mirror direction
+  std::array<uint32_t, 3>
+      far_vertices;  // of the triangle of the far point: in the middle of what hides the sky
   std::array<float, 3> far_barycentric;  // of the far point
+  Vec3f far_color;                       // of the far point, mean of the samples, linear
   Vec3f color;                           // linear
-  Vec3f weight;                          // squared slope of the display curve
+  Vec3f weight;                          // squared slope of the display curve, times `trust`
+  float trust;                           // in (0, 1]; less where the surface hides a part of the sky
   uint8_t clipped;                       // SurfaceSamples::clipped
   uint16_t view = 0;                     // index of the camera; 0 where the samples have no views
   bool held_out = false;                 // takes no part in the solution, only in its residual
   // Irradiance in this view over the mean of all views; 1 under a light that does not turn.
   Vec3f diffuse_light{1, 1, 1};
   Vec3f far_diffuse_light{1, 1, 1};  // at the far point
+  Vec3f far_radiance() const { return far_color * far_diffuse_light; }
 };
 
 // A row for each sample of the random subset of options.max_hits samples.
 std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&);
+
+// Mean linear color of each vertex's samples, 0 where there are none. #V
+std::vector<Vec3f> mean_colors(size_t vertices, const std::vector<SplitRow>&);
 
 }  // namespace cei3d

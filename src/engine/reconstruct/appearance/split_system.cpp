@@ -39,22 +39,18 @@ SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {
   const auto& b = row.barycentric;
   float roughness = 0;
   Vec3f f0{0, 0, 0};
-  bool metal = false;
   for (int k = 0; k < 3; ++k) {
     const Material& m = materials_.of[v[k]];
     roughness += m.roughness * b[k];
     f0 += f0_of(materials_.color[v[k]], m.specular, m.metalness) * b[k];
-    metal = metal || (materials_.is_metal(v[k]) && b[k] > 0);
   }
-  bool far_metal = false;
-  for (int k = 0; k < 3 && row.blocked; ++k)
-    far_metal = far_metal || materials_.is_metal(row.far_vertices[k]);
   Optics o;
-  o.used = !row.blocked || (!metal && !far_metal);
   o.base = reflected_sky(row, ReflectionPart::base, roughness, options_.light_height);
   o.fresnel = reflected_sky(row, ReflectionPart::fresnel, roughness, options_.light_height);
   o.split_sum = split_sum(split_sum_table(), row.nv, roughness);
   o.base_gain = f0 * o.split_sum.scale;
+  const float bias = o.split_sum.bias * (1 - o.fresnel.open);
+  o.far_gain = o.base_gain * (1 - o.base.open) + Vec3f{bias, bias, bias};
   o.diffuse_view = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness);
   return o;
 }
@@ -92,9 +88,6 @@ Vec3f SplitSystem::predict(size_t i, const SplitUnknowns& x, const Sky& sky) con
   if (!diffuse_light_grad_.rows.empty())
     diffuse += diffuse_light_grad_.rows[i].gain * dot(diffuse_light_grad_.rows[i].d_light, sky.harmonics);
   diffuse = diffuse * o.diffuse_view;
-  if (row.blocked)
-    return diffuse +
-           o.gain() * row.far_diffuse_light * at_corners(x.diffuse, row.far_vertices, row.far_barycentric);
   return diffuse + o.base_gain * radiance_at(sky.blurred, o.base) +
          radiance_at(sky.blurred, o.fresnel) * o.split_sum.bias;
 }
@@ -105,7 +98,7 @@ void SplitSystem::release_bounds(const SplitUnknowns& x) {
     for (int i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
       if (!row.clipped || row.held_out) continue;
-      const Vec3f above = predict(size_t(i), x, sky) - row.color;
+      const Vec3f above = predict(size_t(i), x, sky) + far_reflected(size_t(i)) - row.color;
       for (int c = 0; c < 3; ++c) weights_[i][c] = (row.clipped >> c & 1) && above[c] > 0 ? 0 : row.weight[c];
     }
   });
@@ -118,7 +111,7 @@ std::vector<Vec3f> SplitSystem::targets(const SplitUnknowns& x) const {
     for (int i = begin; i < end; ++i) {
       out[i] = rows_[i].color;
       if (!rows_[i].clipped) continue;
-      const Vec3f seen = predict(size_t(i), x, sky);
+      const Vec3f seen = predict(size_t(i), x, sky) + far_reflected(size_t(i));
       for (int c = 0; c < 3; ++c)
         if (rows_[i].clipped >> c & 1) out[i][c] = max(out[i][c], seen[c]);
     }
@@ -143,11 +136,6 @@ void SplitSystem::add_row(size_t i, Vec3f y, RowSums& sum) const {
     const Vec3f weight = y * diffuse_light_grad_.rows[i].gain * o.diffuse_view;
     for (size_t j = 0; j < kHarmonics; ++j)
       sum.harmonics[j] += weight * diffuse_light_grad_.rows[i].d_light[j];
-  }
-  if (row.blocked) {
-    const Vec3f g = y * o.gain() * row.far_diffuse_light;
-    for (int k = 0; k < 3; ++k) sum.diffuse[row.far_vertices[k]] += g * row.far_barycentric[k];
-    return;
   }
   scatter_radiance(o.base, y * o.base_gain, sum.sky);
   scatter_radiance(o.fresnel, y * o.split_sum.bias, sum.sky);
@@ -177,8 +165,7 @@ void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
     for (size_t i = 0; i < BlurLadder::kLevels; ++i)
       if (in_use_[i]) sum.sky[i].assign(cells(), {0, 0, 0});
     const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
-    for (size_t i = begin; i < end; ++i)
-      if (optics_[i].used) add_row(i, row_value(i) * weights_[i], sum);
+    for (size_t i = begin; i < end; ++i) add_row(i, row_value(i) * weights_[i], sum);
   });
   out.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
   parallel_ranges(int(out.diffuse.size()), 4096, [&](int begin, int end) {
@@ -222,7 +209,7 @@ void SplitSystem::right_side(SplitUnknowns& out) const {
     const DiffuseLightGrad::OfRow& s = diffuse_light_grad_.rows[row];
     return s.gain * dot(s.d_light, diffuse_light_grad_.light) * (-optics_[row].diffuse_view);
   };
-  accumulate([&](size_t row) { return rows_[row].color - constant(row); }, out);
+  accumulate([&](size_t row) { return rows_[row].color - far_reflected(row) - constant(row); }, out);
 }
 
 std::vector<SplitSystem::ViewError> SplitSystem::errors_of_views(const SplitUnknowns& x) const {
@@ -232,10 +219,10 @@ std::vector<SplitSystem::ViewError> SplitSystem::errors_of_views(const SplitUnkn
     const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
     for (size_t i = begin; i < end; ++i) {
       const SplitRow& row = rows_[i];
-      if (row.blocked || row.held_out != (options_.hold_out > 0)) continue;
-      const Vec3f e = predict(i, x, sky) - row.color;
+      if (row.held_out != (options_.hold_out > 0)) continue;
+      const Vec3f e = predict(i, x, sky) + far_reflected(i) - row.color;
       ViewError& of_view = parts[size_t(chunk)][row.view];
-      of_view.count += 3;
+      of_view.count += 3 * row.trust;
       for (int c = 0; c < 3; ++c) {
         if ((row.clipped >> c & 1) && e[c] > 0) continue;
         of_view.sum += double(row.weight[c]) * e[c] * e[c];
@@ -263,17 +250,12 @@ SplitUnknowns SplitSystem::diagonal() const {
   for (size_t i = 0; i < rows_.size(); ++i) {
     const SplitRow& row = rows_[i];
     const Optics& o = optics_[i];
-    if (!o.used) continue;
-    const Vec3f gg = row.weight * o.gain() * o.gain(), here = row.diffuse_light, far = row.far_diffuse_light;
+    const Vec3f gg = row.weight * o.sky_gain() * o.sky_gain(), here = row.diffuse_light;
     for (int k = 0; k < 3; ++k)
       d.diffuse[row.vertices[k]] += row.weight * here * here * square(row.barycentric[k] * o.diffuse_view);
-    if (row.blocked)
-      for (int k = 0; k < 3; ++k)
-        d.diffuse[row.far_vertices[k]] += gg * far * far * square(row.far_barycentric[k]);
-    else
-      for (int k = 0; k < 4; ++k)
-        mass[size_t(o.base.lobe.level) + (o.base.lobe.above > 0.5f)][o.base.taps[0].pixel[k]] +=
-            gg * o.base.taps[0].weight[k];
+    for (int k = 0; k < 4; ++k)
+      mass[size_t(o.base.lobe.level) + (o.base.lobe.above > 0.5f)][o.base.taps[0].pixel[k]] +=
+          gg * o.base.taps[0].weight[k];
   }
   for (int level = 0; level < BlurLadder::kLevels; ++level) {
     if (!in_use_[size_t(level)]) continue;
@@ -291,10 +273,9 @@ std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) {
   std::vector<Vec3f> above(n, Vec3f{0, 0, 0}), below(n, Vec3f{0, 0, 0});
   for (size_t i = 0; i < rows_.size(); ++i) {
     const SplitRow& row = rows_[i];
-    if (row.blocked) continue;
     const Optics& o = optics_[i];
-    const Vec3f slope = radiance_at(sky, o.base) * o.split_sum.scale,
-                rest = row.color - radiance_at(sky, o.fresnel) * o.split_sum.bias;
+    const Vec3f slope = incident_at(sky, o.base, row) * o.split_sum.scale,
+                rest = row.color - incident_at(sky, o.fresnel, row) * o.split_sum.bias;
     for (int k = 0; k < 3; ++k) {
       above[row.vertices[k]] += weights_[i] * rest * row.barycentric[k];
       below[row.vertices[k]] += weights_[i] * slope * row.barycentric[k];

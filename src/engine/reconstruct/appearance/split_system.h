@@ -48,15 +48,15 @@ class SplitSystem {
  public:
   SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows, const LinearSplitOptions& options);
 
-  // Metals have no D, and rows on metals whose mirror ray is blocked are not used.
+  // Metals have no D.
   void set_materials(SplitMaterials);
   const SplitMaterials& materials() const { return materials_; }
   void set_diffuse_light_grad(DiffuseLightGrad grad) { diffuse_light_grad_ = std::move(grad); }
 
   // Improves x by rounds of conjugate gradients, with light and D >= 0, and clipped channels as lower bounds.
   void solve(SplitUnknowns& x, int rounds, int steps);
-  // Sum of weight * error^2, and number of channels, of the rows of each view whose mirror ray meets the sky;
-  // of the views that do not take part, if there are any.
+  // Sum of weight * error^2, and of the trust in the channels, of the rows of each view; of the views that do
+  // not take part, if there are any.
   struct ViewError {
     double sum = 0, count = 0;
     double mean() const { return sum / std::max(count, 1.0); }
@@ -77,12 +77,15 @@ class SplitSystem {
   friend struct SplitSystemProbe;  // the test compares the operator with its adjoint
   // Optical coefficients of a row for the present materials.
   struct Optics {
-    bool used = true;
     ReflectedSky base, fresnel;
     SplitSum<float> split_sum;
     Vec3f base_gain;     // factor from the light at `base` to the viewer; that at `fresnel` is split_sum.bias
     float diffuse_view;  // factor of D towards the viewer; 0 for metals
-    Vec3f gain() const { return base_gain + Vec3f{split_sum.bias, split_sum.bias, split_sum.bias}; }
+    Vec3f far_gain;      // factor from the radiance of the far point
+    Vec3f sky_gain() const {
+      const float bias = split_sum.bias * fresnel.open;
+      return base_gain * base.open + Vec3f{bias, bias, bias};
+    }
   };
   Optics optics_of(const SplitRow&) const;
   // A light as the rows read it.
@@ -92,7 +95,8 @@ class SplitSystem {
   };
   Sky sky_of(const std::vector<Vec3f>& light) const;
   Sky sky_change(const std::vector<Vec3f>& light) const;  // harmonics relative to those of the gradient
-  Vec3f predict(size_t row, const SplitUnknowns&, const Sky&) const;
+  Vec3f predict(size_t row, const SplitUnknowns&, const Sky&) const;  // without what does not depend on them
+  Vec3f far_reflected(size_t row) const { return optics_[row].far_gain * rows_[row].far_radiance(); }
   void smooth(const SplitUnknowns& x, SplitUnknowns& out) const;  // out += gradient of the priors
   void release_bounds(const SplitUnknowns& x);                    // sets weights_
   struct RowSums;

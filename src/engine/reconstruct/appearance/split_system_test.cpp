@@ -14,13 +14,15 @@
 namespace cei3d {
 
 struct SplitSystemProbe {
-  // What rows see of the unknowns, without what they see of none; 0 for rows that are not used.
+  // What rows see of the unknowns, without what they see of none.
   static std::vector<Vec3f> predict(const SplitSystem& s, const SplitUnknowns& x) {
     return rows(s, x, s.sky_of(x.light));
   }
   // What rows see of no unknowns.
   static std::vector<Vec3f> constant(const SplitSystem& s, const SplitUnknowns& zero) {
-    return rows(s, zero, s.sky_change(zero.light));
+    std::vector<Vec3f> out = rows(s, zero, s.sky_change(zero.light));
+    for (size_t i = 0; i < out.size(); ++i) out[i] += s.far_reflected(i);
+    return out;
   }
   static SplitUnknowns normal(const SplitSystem& s, const SplitUnknowns& x) {
     SplitUnknowns out;
@@ -39,8 +41,7 @@ struct SplitSystemProbe {
  private:
   static std::vector<Vec3f> rows(const SplitSystem& s, const SplitUnknowns& x, const SplitSystem::Sky& sky) {
     std::vector<Vec3f> out(s.rows_.size(), Vec3f{0, 0, 0});
-    for (size_t i = 0; i < out.size(); ++i)
-      if (s.optics_[i].used) out[i] = s.predict(i, x, sky);
+    for (size_t i = 0; i < out.size(); ++i) out[i] = s.predict(i, x, sky);
     return out;
   }
 };
@@ -68,9 +69,9 @@ std::vector<SplitRow> random_rows(const Mesh& mesh) {
     row.normal = fibonacci_direction(int(i), kRows);
     row.to_camera = normalize(row.normal + Vec3f{rng.normal(), rng.normal(), rng.normal()} * 0.4f);
     row.nv = dot(row.normal, row.to_camera);
-    row.blocked = i % 5 == 0;
-    row.far_vertices = mesh.triangles[rng.below(uint32_t(mesh.triangles.size()))];
-    row.far_barycentric = random_barycentrics(rng);
+    for (float& h : row.hidden) h = i % 3 == 0 ? 0.0f : rng.uniform();
+    row.trust = 1;
+    row.far_color = random_color(rng);
     row.color = random_color(rng);
     row.weight = random_color(rng);
     row.diffuse_light = random_color(rng);

@@ -39,6 +39,19 @@ inline Mesh bumpy_ball(int n = 40) {
   return m;
 }
 
+// Two of them, close to one another: much of what one mirrors is the other.
+inline Mesh two_bumpy_balls() {
+  constexpr float kScale = 0.55f, kAway = 0.44f;
+  const Mesh ball = bumpy_ball(28);
+  Mesh m;
+  for (const float side : {-1.0f, 1.0f}) {
+    const auto first = uint32_t(m.positions.size());
+    for (const Vec3f& p : ball.positions) m.positions.push_back(p * kScale + Vec3f{side * kAway, 0, 0});
+    for (const auto& t : ball.triangles) m.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  }
+  return m;
+}
+
 inline Vec3f paint(Vec3f p) {
   const bool stripe = std::sin(9 * p.x + 4 * p.z) > 0;
   return stripe ? Vec3f{0.6f, 0.3f, 0.15f} : Vec3f{0.2f, 0.35f, 0.5f};
@@ -106,9 +119,9 @@ inline std::vector<Vec3f> look_at(Drawn& d) {
 
 // motion: how the light turns from view to view, about +Z.
 inline Drawn draw(const Materials& material_at, const Colors& color_at,
-                  LightMotion motion = LightMotion::world) {
+                  LightMotion motion = LightMotion::world, Mesh body = bumpy_ball()) {
   Drawn d;
-  d.surface = std::make_shared<const Surface>(bumpy_ball());
+  d.surface = std::make_shared<const Surface>(std::move(body));
   d.transport = std::make_shared<Transport>(d.surface);
   const Mesh& m = d.surface->mesh();
   for (const Vec3f& p : m.positions) d.base.push_back(color_at(p));
