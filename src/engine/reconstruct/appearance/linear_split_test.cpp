@@ -67,6 +67,17 @@ TEST(LinearSplit, FindsAlbedoUnderALightThatTurns) {
   EXPECT_LT(albedo.error, 0.05);
 }
 
+// What one photograph has that the others do not, no light explains; it must not decide.
+TEST(LinearSplit, ADarkPhotographDoesNotHideThatTheLightTurns) {
+  constexpr uint16_t kDark = 10;  // one of every fifth view, which judge
+  Drawn d = draw([](Vec3f) { return Material{0.3f, 0.5f, 0}; }, paint, LightMotion::turntable);
+  for (size_t i = 0; i < d.colors.size(); ++i)
+    if (d.views[i] == kDark) d.colors[i] = d.colors[i] * 0.3f;
+  Progress quiet;
+  EXPECT_EQ(find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, 1, quiet).motion,
+            LightMotion::turntable);
+}
+
 TEST(LinearSplit, TakesALightThatStandsStillForWhatItIs) {
   const Drawn d = draw({0.3f, 0.5f, 0});
   Progress quiet;

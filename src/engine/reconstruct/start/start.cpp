@@ -24,8 +24,8 @@ constexpr std::array<std::pair<Start, const char*>, 3> kStarts{
 // to the surface: there highlights would dent it if colors could not depend on the view.
 constexpr float kMatteUntil = 0.25f;
 // dB by which another start must be better than the visual hull, which is robust: where the hull is wrong the
-// difference is at least 1.5 dB.
-constexpr double kMinGain = 0.3;
+// difference is at least 1.1 dB; between tries of equal worth it is up to .4.
+constexpr double kMinGain = 0.8;
 // Minimum number of views that must have a cell in their frame for the start shape to fill it. With fewer
 // views, floating blobs in front of the surface remain.
 constexpr int kMinViews = 3;
