@@ -10,7 +10,7 @@ import { Renderer, channels } from './renderer.js';
 /** @typedef {import('./camera.js').Camera} Camera */
 /** @typedef {import('./pack.js').Pack} Pack */
 
-const kPacks = ['tables', 'light', 'shape', 'look', 'vertex_light'];
+const kPacks = ['tables', 'light', 'shape', 'look', 'vertex_light', 'reflections'];
 const kRest = 150;             // milliseconds after the last change until the fine picture is drawn
 const kMaxPixels = 2600;      // of a side of the canvas
 

@@ -125,6 +125,7 @@ export class Renderer {
     if (head.kind === 'look') this.setAttributes([[2, 'albedo', arrays.albedo, true], [3, 'material', arrays.material, true]]);
     if (head.kind === 'vertex_light')
       this.setAttributes([[4, 'sky', arrays.visibility, true], [5, 'bounce', arrays.bounce, false]]);  // 'visibility' is the shape's
+    if (head.kind === 'reflections') this.setReflections(arrays);
     if (head.kind === 'light') this.setLight(head, arrays);
     if (head.kind === 'tables') this.setTables(head, arrays);
     this.heads.set(head.kind, head);
@@ -134,15 +135,29 @@ export class Renderer {
   setShape(arrays) {
     const {gl} = this;
     this.setAttributes([[0, 'positions', arrays.positions, true], [1, 'normals', arrays.normals, true]]);
-    this.upload(gl.ARRAY_BUFFER, 'visibility', arrays.visibility);
+    this.setBytes(6, 'visibility', arrays.visibility, 3);
     gl.bindVertexArray(this.vertices);
-    for (let k = 0; k < 3; ++k) {
-      gl.enableVertexAttribArray(6 + k);
-      gl.vertexAttribPointer(6 + k, 4, gl.BYTE, true, 12, 4 * k);
-    }
     this.upload(gl.ELEMENT_ARRAY_BUFFER, 'triangles', arrays.triangles);
     gl.bindVertexArray(null);
     this.indices = arrays.triangles.length;
+  }
+
+  /** What is closer to the program's picture than the visibility of the shape: comes after it. @param {Object<string, Numbers>} arrays */
+  setReflections(arrays) {
+    this.setBytes(6, 'visibility', arrays.visibility, 3);
+    this.setBytes(9, 'object', arrays.object, 7);
+  }
+
+  /** @param {number} first location @param {string} name @param {Numbers} values @param {number} count of locations, of four bytes each */
+  setBytes(first, name, values, count) {
+    const {gl} = this;
+    gl.bindVertexArray(this.vertices);
+    this.upload(gl.ARRAY_BUFFER, name, values);
+    for (let k = 0; k < count; ++k) {
+      gl.enableVertexAttribArray(first + k);
+      gl.vertexAttribPointer(first + k, 4, gl.BYTE, true, 4 * count, 4 * k);
+    }
+    gl.bindVertexArray(null);
   }
 
   /** @param {[number, string, Numbers, boolean][]} list of location, name, values, and whether the shader reads shares of 1 */
@@ -258,7 +273,9 @@ export class Renderer {
     gl.uniform1f(u.uStrength, view.strength ?? 1);
     const [a, b, c] = view.room_from_object;
     gl.uniformMatrix3fv(u.uRoom, true, [...a, ...b, ...c]);
-    gl.uniform1f(u.uVisibilityScale, this.heads.get('shape').visibility_scale);
+    const fitted = this.heads.get('reflections');
+    gl.uniform1f(u.uVisibilityScale, (fitted ?? this.heads.get('shape')).visibility_scale);
+    gl.uniform1f(u.uObjectScale, fitted ? fitted.object_scale : 0);
     gl.uniform1f(u.uIrradianceSide, light.irradiance_side);
     gl.uniform1f(u.uReflectionSide, light.reflection_side);
     gl.uniform1f(u.uReflectionLevels, light.reflection_levels);

@@ -14,10 +14,17 @@ layout(location = 5) in uint aBounce;
 layout(location = 6) in vec4 aVisibility0;
 layout(location = 7) in vec4 aVisibility1;
 layout(location = 8) in vec4 aVisibility2;
+layout(location = 9) in vec4 aObject0;
+layout(location = 10) in vec4 aObject1;
+layout(location = 11) in vec4 aObject2;
+layout(location = 12) in vec4 aObject3;
+layout(location = 13) in vec4 aObject4;
+layout(location = 14) in vec4 aObject5;
+layout(location = 15) in vec4 aObject6;
 uniform mat4 uClip;
 uniform vec3 uBoxMin, uBoxSize;  // relative to the camera
-uniform float uVisibilityScale;
-out vec3 vPosition, vNormal, vVisibility, vBounce, vMaterial;
+uniform float uVisibilityScale, uObjectScale;
+out vec3 vPosition, vNormal, vVisibility, vBounce, vMaterial, vObject;
 out vec4 vAlbedo, vVisibility1, vVisibility2;
 out float vVisibility0;
 flat out int vPart;
@@ -32,6 +39,16 @@ vec3 fromSharedExponent(uint bits) {
   return vec3(uvec3(bits, bits >> 9, bits >> 18) & 511u) * exp2(float(bits >> 27) - 24.0);
 }
 
+// Mean radiance of the surface itself over the reflection lobe. docs: src/engine/view/reflection_fit.h
+vec3 objectReflected(vec3 n, vec3 v) {
+  vec3 d = 2.0 * dot(n, v) * n - v;
+  vec3 sum = aObject0.xyz + vec3(aObject0.w, aObject1.xy) * d.y + vec3(aObject1.zw, aObject2.x) * d.z + aObject2.yzw * d.x +
+             aObject3.xyz * (d.x * d.y) + vec3(aObject3.w, aObject4.xy) * (d.y * d.z) +
+             vec3(aObject4.zw, aObject5.x) * (3.0 * d.z * d.z - 1.0) + aObject5.yzw * (d.x * d.z) +
+             aObject6.xyz * (d.x * d.x - d.y * d.y);
+  return max(sum * (aObject6.w * aObject6.w * uObjectScale), 0.0);
+}
+
 void main() {
   vPosition = uBoxMin + aPosition.xyz * uBoxSize;
   vNormal = fromOctahedron(aNormal);
@@ -43,6 +60,7 @@ void main() {
   vVisibility1 = vec4(aVisibility0.yzw, aVisibility1.x) * uVisibilityScale;
   vVisibility2 = vec4(aVisibility1.yzw, aVisibility2.x) * uVisibilityScale;
   vPart = int(aMaterial.w * 255.0 + 0.5);
+  vObject = objectReflected(vNormal, normalize(-vPosition));
   gl_Position = uClip * vec4(vPosition, 1.0);
 }`;
 
@@ -54,7 +72,7 @@ const surfaceWith = (before, color) => `#version 300 es
 precision highp float;
 precision highp int;
 precision highp sampler3D;
-in vec3 vPosition, vNormal, vVisibility, vBounce, vMaterial;
+in vec3 vPosition, vNormal, vVisibility, vBounce, vMaterial, vObject;
 in vec4 vAlbedo, vVisibility1, vVisibility2;
 in float vVisibility0;
 flat in int vPart;
@@ -86,6 +104,7 @@ uniform sampler3D uReflection;
 uniform float uIrradianceSide, uReflectionSide, uReflectionLevels;
 uniform vec2 uTableSize;
 uniform float uMinRoughness, uMiddleShare, uDielectricF0, uMetalF0, uStrength;
+uniform float uObjectScale;  // 0: what the surface reflects of itself is not known
 const float kPi = 3.14159265;
 
 vec2 octahedral(vec3 d, float side) {
@@ -115,6 +134,15 @@ vec3 alongLobe(vec4 lobe, vec3 n, vec3 mirror, vec3 across, out vec3 axis) {
          (reflection(middle + side, lobe.y) + reflection(middle - side, lobe.y)) * (0.5 - 0.5 * uMiddleShare);
 }
 
+// What is reflected where the surface hides a part of the sky.
+vec3 withObject(vec3 sky, vec3 n, vec3 mirror, vec3 axis, vec2 smoothed) {
+  if (uObjectScale > 0.0) return sky * visibility(mirror, vec2(1.0)) + vObject;
+  float free = visibility(axis, smoothed);
+  // The mean radiance of what blocks the sky: the bounce over the blocked share of the cosine.
+  float blocked = 1.0 - visibility(n, vec2(2.0 / 3.0, 0.25));
+  return sky * free + vBounce / (kPi * max(blocked, 0.05)) * (1.0 - free);
+}
+
 vec3 lit(vec3 n, vec3 v, float roughness, float specular, float metalness) {
   vec3 albedo = vAlbedo.rgb;
   float nv = dot(n, v);
@@ -130,11 +158,7 @@ vec3 lit(vec3 n, vec3 v, float roughness, float specular, float metalness) {
   vec3 baseAxis, fresnelAxis;
   vec3 sky = alongLobe(texture(uBase, uv), n, mirror, across, baseAxis) * share;
   sky += alongLobe(texture(uFresnel, uv), n, mirror, across, fresnelAxis) * (1.0 - share);
-  float free = visibility(normalize(mix(fresnelAxis, baseAxis, share)), smoothed);
-  // The mean radiance of what blocks the sky: the bounce over the blocked share of the cosine.
-  float blocked = 1.0 - visibility(n, vec2(2.0 / 3.0, 0.25));
-  vec3 object = vBounce / (kPi * max(blocked, 0.05));
-  vec3 reflected = sky * free + object * (1.0 - free);
+  vec3 reflected = withObject(sky, n, mirror, normalize(mix(fresnelAxis, baseAxis, share)), smoothed);
   vec3 irradiance = texture(uIrradiance, octahedral(uRoom * n, uIrradianceSide)).rgb * vVisibility + vBounce;
   vec3 color = albedo * irradiance * ((1.0 - metalness) / kPi * surface.z) +
                ((albedo * metalness + dielectric) * surface.x + surface.y) * reflected;

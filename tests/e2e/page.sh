@@ -17,7 +17,7 @@ import base64, gzip, json, re, struct, sys
 text = open(sys.argv[1], encoding='utf-8').read()
 blocks = dict(re.findall(r'<script id="data-(\w+)" type="application/octet-stream">([^<]*)</script>', text))
 rows = {}
-for kind in ('tables', 'light', 'shape', 'look', 'vertex_light'):
+for kind in ('tables', 'light', 'shape', 'look', 'vertex_light', 'reflections'):
     data = gzip.decompress(base64.b64decode(blocks[kind]))
     size, = struct.unpack_from('<I', data)
     head = json.loads(data[4:4 + size])

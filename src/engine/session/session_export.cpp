@@ -24,6 +24,7 @@
 #include "engine/render/render_cache.h"
 #include "engine/render/scene_light.h"
 #include "engine/session/session.h"
+#include "engine/view/reflection_fit.h"
 #include "engine/view/view_light.h"
 #include "engine/view/view_mesh.h"
 #include "model/light/envmap.h"
@@ -190,15 +191,19 @@ class Exporter {
     report.simplification_error = mesh.error;
     progress_.report({"light", 0.2, -1, ""});
     const SceneLight light = frames_.light(scene_);
-    progress_.report({"page", 0.6, -1, ""});
+    const Appearance look = appearance_at(device_, scene_, vertex_hits(scene_.surface->mesh()));
+    progress_.report({"reflections", 0.4, -1, ""});
+    const Lighting lighting(device_, scene_.surface, scene_.light, light.vertices());
     const Vec3d from = seen_from_ - scene_.normalization.center;
-    return object_page(report.out.stem().string(),
-                       {{"up", {scene_.up.x, scene_.up.y, scene_.up.z}}, {"from", {from.x, from.y, from.z}}},
-                       {{"tables", view_tables()},
-                        {"light", view_light(device_, scene_.light)},
-                        {"shape", view_shape(scene_, mesh)},
-                        {"look", view_look(device_, scene_, mesh)},
-                        {"vertex_light", view_vertex_light(light.vertices(), mesh)}});
+    return object_page(
+        report.out.stem().string(),
+        {{"up", {scene_.up.x, scene_.up.y, scene_.up.z}}, {"from", {from.x, from.y, from.z}}},
+        {{"tables", view_tables()},
+         {"light", view_light(device_, scene_.light)},
+         {"shape", view_shape(scene_, mesh)},
+         {"look", view_look(scene_, mesh, look)},
+         {"vertex_light", view_vertex_light(light.vertices(), mesh)},
+         {"reflections", view_reflections(reflection_fits(lighting, *scene_.surface, mesh, look))}});
   }
 
   std::vector<FileBytes> handlers(ExportReport& report) const {

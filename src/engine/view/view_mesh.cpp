@@ -67,19 +67,11 @@ std::vector<int16_t> octahedral(const std::vector<Vec3f>& normals, const ViewMes
   return out;
 }
 
-void add_visibility(const Surface& surface, const ViewMesh& view, Pack& pack) {
-  constexpr size_t kColumns = 12;  // hardware likes multiples of 4
+std::vector<VisibilityTerms> visibility_of(const Surface& surface, const ViewMesh& view) {
   const std::vector<VisibilityTerms> terms = visibility_harmonics(surface);
-  float largest = 1e-6f;
-  for (const uint32_t v : view.vertices)
-    for (const float t : terms[v]) largest = std::max(largest, std::abs(t));
-  std::vector<int8_t> out;
-  for (const uint32_t v : view.vertices) {
-    for (const float t : terms[v]) out.push_back(snorm8(t / largest));
-    out.resize(out.size() + kColumns - kVisibilityTerms, 0);
-  }
-  pack["visibility_scale"] = largest;
-  pack.add("visibility", out, kColumns);
+  std::vector<VisibilityTerms> out;
+  for (const uint32_t v : view.vertices) out.push_back(terms[v]);
+  return out;
 }
 
 }  // namespace
@@ -107,7 +99,7 @@ std::string view_shape(const Scene& scene, const ViewMesh& view) {
   pack["size"] = {box.size.x, box.size.y, box.size.z};
   pack.add("positions", quantized(points, box), 4);
   pack.add("normals", octahedral(mesh.normals, view), 2);
-  add_visibility(*scene.surface, view, pack);
+  add_visibility(visibility_of(*scene.surface, view), pack);
   std::vector<uint32_t> indices;
   for (const auto& t : view.triangles) indices.insert(indices.end(), t.begin(), t.end());
   pack.add("triangles", indices, 3);

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/view/visibility_harmonics.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/base/parallel.h"
 #include "core/math/harmonics.h"
+#include "engine/view/quantize.h"
 
 namespace cei3d {
 namespace {
@@ -56,6 +60,20 @@ std::vector<VisibilityTerms> visibility_harmonics(const Surface& surface) {
     for (int v = begin; v < end; ++v) out[size_t(v)] = terms_of(surface, uint32_t(v), weights);
   });
   return out;
+}
+
+void add_visibility(const std::vector<VisibilityTerms>& terms, Pack& pack) {
+  constexpr size_t kColumns = 12;  // hardware likes multiples of 4
+  float largest = 1e-6f;
+  for (const VisibilityTerms& of_vertex : terms)
+    for (const float t : of_vertex) largest = std::max(largest, std::abs(t));
+  std::vector<int8_t> out;
+  for (const VisibilityTerms& of_vertex : terms) {
+    for (const float t : of_vertex) out.push_back(snorm8(t / largest));
+    out.resize(out.size() + kColumns - kVisibilityTerms, 0);
+  }
+  pack["visibility_scale"] = largest;
+  pack.add("visibility", out, kColumns);
 }
 
 }  // namespace cei3d

@@ -6,6 +6,7 @@
 #include <array>
 #include <vector>
 
+#include "engine/view/pack.h"
 #include "model/geometry/shape/surface.h"
 
 namespace cei3d {
@@ -20,5 +21,8 @@ VisibilityTerms visibility_basis(Vec3f direction);  // 1, y, z, ...
 // #V. Below the horizon of a vertex, where nothing is reflected, the sky counts as visible to the share that
 // is visible above.
 std::vector<VisibilityTerms> visibility_harmonics(const Surface& surface);
+
+// Adds "visibility", i8 [#terms, 12] in units of the head's visibility_scale; the last columns are 0.
+void add_visibility(const std::vector<VisibilityTerms>&, Pack&);
 
 }  // namespace cei3d
