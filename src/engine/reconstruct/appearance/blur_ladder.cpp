@@ -25,7 +25,7 @@ BlurLadder::Place BlurLadder::place(float roughness) {
 
 const LobeBlur& BlurLadder::level(int i) {
   auto& blur = blurs_[size_t(i)];
-  if (!blur) blur = std::make_unique<LobeBlur>(roughness(i), height_, true);
+  if (!blur) blur = std::make_unique<LobeBlur>(roughness(i), height_);
   return *blur;
 }
 

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "core/math/facets.h"
-#include "core/math/reflection.h"
 #include "core/math/rng.h"
 
 namespace cei3d {
@@ -87,40 +86,6 @@ TEST(BlurLadder, StretchedLobesAreNearerToTheFacetsThanRoundOnes) {
       }
   EXPECT_LT(stretched_error, 0.8 * round_error);
   EXPECT_LT(stretched_error, 0.035 * square_sum);
-}
-
-// What a round lobe sees of a lamp, read between cells, against the closed form: the mean over places where
-// the lamp is brightest.
-TEST(BlurLadder, ReadingBetweenCellsDoesNotWidenLobes) {
-  constexpr float kLamp = 150;
-  for (const int height : {32, 48})
-    for (const float roughness : {0.27f, 0.4f}) {
-      BlurLadder ladder(height);
-      double got = 0, want = 0;
-      for (uint64_t k = 0; k < 12; ++k) {
-        Rng rng(4, 0, k);
-        const Vec3f lamp = normalize(Vec3f{rng.normal(), rng.normal(), rng.normal()});
-        std::vector<Vec3f> light;
-        for (int i = 0; i < 2 * height * height; ++i) {
-          const Vec3f d = env_direction(float(i % (2 * height)) + 0.5f, float(i / (2 * height)) + 0.5f,
-                                        2 * height, height);
-          light.push_back(Vec3f{1, 1, 1} * std::exp(kLamp * (dot(d, lamp) - 1)));
-        }
-        const BlurLadder::Place place = BlurLadder::place(roughness);
-        Blurred blurred;
-        for (const int level : {place.level, place.level + 1})
-          ladder.level(level).apply(light, blurred[size_t(level)]);
-        for (int i = 0; i < 20; ++i) {
-          const Vec3f axis = normalize(lamp + Vec3f{rng.normal(), rng.normal(), rng.normal()} * 0.02f);
-          ReflectedSky sky{place, 1, {}, {1, 0, 0}};
-          sky.taps[0] = env_taps(axis, 2 * height, height);
-          got += radiance_at(blurred, sky).x;
-          const Vec3f gap = axis - lamp;
-          want += sg_reflected(kLamp, stretched_lobe(roughness, 1.0f), dot(gap, gap), 0.0f);
-        }
-      }
-      EXPECT_NEAR(got / want, 1, 0.015) << height << ' ' << roughness;
-    }
 }
 
 TEST(BlurLadder, LookupAndScatteringAreAdjoint) {

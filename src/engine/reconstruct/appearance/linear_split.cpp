@@ -32,13 +32,17 @@ constexpr double kSeveralBy = 0.65, kNoise = 2e-4;
 constexpr double kSharedError = 0.1;
 // The search for several materials stops if its first round leaves a larger share of the residual of one.
 constexpr double kPlainlyOne = 0.85;
+// The roughness of a metal is the largest whose residual is so close to the smallest, relatively: of what a
+// metal reflects of itself the separation knows mean colors only, and the smallest residual is that of a
+// surface that is too smooth (.27 for .30).
+constexpr double kMetalTolerance = 0.008;
 // Maximum roughness of the one material with which the search for several materials begins.
 constexpr float kFirstRoughness = 0.3f;
 
-// The roughness of the smallest residual: a coarse scan, refined about the smallest, and a parabola through
-// it and its neighbors over the logarithm.
+// The roughness of the smallest residual, or the largest within the tolerance of it: a coarse scan, refined
+// about the smallest, and a parabola through it and its neighbors over the logarithm.
 template <class F>
-float search_roughness(F residual_at, const LinearSplitOptions& o) {
+float search_roughness(F residual_at, const LinearSplitOptions& o, double tolerance) {
   if (o.fixed_roughness > 0) return o.fixed_roughness;
   std::map<float, double> tried;
   const auto smallest = [&] {
@@ -57,7 +61,8 @@ float search_roughness(F residual_at, const LinearSplitOptions& o) {
   }
   const auto best = smallest(), next = std::next(best);
   if (best == tried.begin() || next == tried.end()) return best->first;
-  const double steps = lowest_offset(std::prev(best)->second, best->second, next->second);
+  const double steps =
+      last_offset_within(std::prev(best)->second, best->second, next->second, tolerance * best->second);
   return best->first * float(std::pow(next->first / best->first, steps));
 }
 
@@ -189,8 +194,9 @@ OneMaterial search_one_material(SplitSolver search, const LinearSplitOptions& op
   const double dielectric_residual = search.dielectric(0.2f).residual,
                metal_residual = search.metal(0.2f).residual;
   const bool is_metal = metal_residual < kMetalBy * dielectric_residual;
-  const float roughness = search_roughness(
-      [&](float r) { return (is_metal ? search.metal(r) : search.dielectric(r)).residual; }, options);
+  const float roughness =
+      search_roughness([&](float r) { return (is_metal ? search.metal(r) : search.dielectric(r)).residual; },
+                       options, is_metal ? kMetalTolerance : 0);
   trials = std::move(search.trials);
   guess = search.last();
   return {is_metal, roughness};

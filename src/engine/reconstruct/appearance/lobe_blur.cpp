@@ -25,31 +25,12 @@ float lobe_in_cell(Vec3f r, int column, int row, int height, const ReflectionLob
   return sum * env_solid_angle(row, 2 * height, height);
 }
 
-// Variance along a tangent that bilinear interpolation in a row adds on average: a sixth of the square of the
-// spacing, which is smaller between columns near the poles.
-float interpolation_variance(int row, int height) {
-  const float spacing = kPi / float(height), sine = std::sin(spacing * (float(row) + 0.5f));
-  return square(spacing) / 6 * (1 + square(sine)) / 2;
-}
-
-// The lobe without that variance, at least a tenth as wide.
-ReflectionLobe<float> without_variance(ReflectionLobe<float> lobe, float variance) {
-  for (int j = 0; j < kReflectionLobes; ++j) {
-    const float own = 1 / lobe.lambda[j];
-    lobe.lambda[j] = 1 / max(own - variance, own / 10);
-    lobe.weight[j] = reflection_share(j) / sg_integral(lobe.lambda[j]);
-  }
-  return lobe;
-}
-
 // [row out][row in][column difference]: rows of the matrix sum to 1.
-std::vector<float> lobe_kernel(float roughness, int height, bool sharpened) {
+std::vector<float> lobe_kernel(float roughness, int height) {
   const int width = 2 * height;
-  const ReflectionLobe<float> whole = reflection_lobe(roughness);
+  const ReflectionLobe<float> lobe = reflection_lobe(roughness);
   std::vector<float> kernel(size_t(height) * height * width);
   parallel_for(height, [&](int out) {
-    const ReflectionLobe<float> lobe =
-        sharpened ? without_variance(whole, interpolation_variance(out, height)) : whole;
     float* entries = &kernel[size_t(out) * height * width];
     const Vec3f r = env_direction(0.5f, float(out) + 0.5f, width, height);
     double total = 0;
@@ -63,7 +44,7 @@ std::vector<float> lobe_kernel(float roughness, int height, bool sharpened) {
 
 }  // namespace
 
-LobeBlur::LobeBlur(float roughness, int height, bool sharpened)
+LobeBlur::LobeBlur(float roughness, int height)
     : height_(height), width_(2 * height), frequencies_(height + 1) {
   for (int f = 0; f < frequencies_; ++f)
     for (int k = 0; k < width_; ++k) {
@@ -71,7 +52,7 @@ LobeBlur::LobeBlur(float roughness, int height, bool sharpened)
       cosines_.push_back(float(std::cos(angle)));
       sines_.push_back(float(std::sin(angle)));
     }
-  std::vector<float> kernel = lobe_kernel(roughness, height, sharpened);
+  std::vector<float> kernel = lobe_kernel(roughness, height);
   spectrum_ = spectrum_of(kernel);
   for (float& k : kernel) k *= k;
   squared_spectrum_ = spectrum_of(kernel);

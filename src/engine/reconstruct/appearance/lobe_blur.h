@@ -13,9 +13,7 @@ namespace cei3d {
 // per frequency.
 class LobeBlur {
  public:
-  // sharpened: the lobe is narrower by as much as reading P between cells by bilinear interpolation widens
-  // it, as far as the lobe is that wide.
-  LobeBlur(float roughness, int height, bool sharpened = false);
+  LobeBlur(float roughness, int height);
 
   void apply(const std::vector<Vec3f>& light, std::vector<Vec3f>& blurred) const;
   void apply_transposed(const std::vector<Vec3f>& blurred, std::vector<Vec3f>& light) const;
