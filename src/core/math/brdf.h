@@ -62,14 +62,37 @@ HD T burley_diffuse(T nl, T nv, T lh, T roughness) {
 }
 
 // Reflected radiance of a diffuse surface towards a viewer at cosine nv, relative to a Lambertian one: a
-// smooth surface is darker at grazing angles, a rough one brighter. Burley's diffuse term averaged over
-// uniform light, with the mean cosine of half vector and viewer taken as 2/3 nv in the view factor and 1/4 nv
-// in the light factor.
+// smooth surface is darker at grazing angles, a rough one brighter. Burley's diffuse term with the mean
+// cosine lv of light and viewer in the view factor, and averaged over uniform light in the light factor, with
+// 1/4 nv as that mean.
 template <class T>
-HD T diffuse_view(T nv, T roughness) {
-  const T view = roughness * (T(1.0f) + nv * T(2.0f / 3)) - T(0.5f), c = T(1.0f) - nv, c2 = c * c;
+HD T diffuse_view(T nv, T roughness, T lv) {
+  const T view = roughness * (T(1.0f) + lv) - T(0.5f), c = T(1.0f) - nv, c2 = c * c;
   const T light = roughness * (T(1.0f) + nv * T(0.25f)) - T(0.5f);
   return (T(1.0f) + view * c2 * c2 * c) * (T(1.0f) + light * T(1.0f / 21));
+}
+// Under uniform light.
+template <class T>
+HD T diffuse_view(T nv, T roughness) {
+  return diffuse_view(nv, roughness, nv * T(2.0f / 3));
+}
+// How much more that is under light with that mean cosine lv than under uniform light.
+template <class T>
+HD T diffuse_towards(T nv, T roughness, T lv) {
+  return diffuse_view(nv, roughness, lv) / diffuse_view(nv, roughness);
+}
+template <class T>
+struct DiffuseTowardsGrad {
+  T value, d_nv, d_roughness, d_lv;
+};
+template <class T>
+HD DiffuseTowardsGrad<T> diffuse_towards_grad(T nv, T roughness, T lv) {
+  const T one(1.0f), third(2.0f / 3), c = one - nv, c2 = c * c, c4 = c2 * c2, c5 = c4 * c,
+                                      d_c5 = T(-5.0f) * c4;
+  const T view = roughness * (one + lv) - T(0.5f), even = roughness * (one + nv * third) - T(0.5f);
+  const T inverse = one / (one + even * c5), value = (one + view * c5) * inverse;
+  return {value, (view * d_c5 - value * (roughness * third * c5 + even * d_c5)) * inverse,
+          ((one + lv) - value * (one + nv * third)) * c5 * inverse, roughness * c5 * inverse};
 }
 template <class T>
 struct DiffuseViewGrad {

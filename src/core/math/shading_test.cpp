@@ -100,6 +100,20 @@ TEST(Brdf, DiffuseViewSlopesEqualDualNumbers) {
   }
 }
 
+TEST(Brdf, DiffuseTowardsSlopesEqualDualNumbers) {
+  for (const Sample s : kSamples)
+    for (const double lv : {-0.6, 0.1, 0.9}) {
+      const DiffuseTowardsGrad<double> g = diffuse_towards_grad(s.nv, s.roughness, lv);
+      EXPECT_NEAR(g.value, diffuse_towards(s.nv, s.roughness, lv), 1e-14);
+      const auto f = [&](D nv, D r) { return diffuse_towards(nv, r, D(lv)); };
+      EXPECT_NEAR(g.d_nv, along_nv(f, s), 1e-12);
+      EXPECT_NEAR(g.d_roughness, along_roughness(f, s), 1e-12);
+      Sample at_lv = s;
+      at_lv.nv = lv;
+      EXPECT_NEAR(g.d_lv, along_nv([&](D x, D r) { return diffuse_towards(D(s.nv), r, x); }, at_lv), 1e-12);
+    }
+}
+
 // All numbers of a point, to differentiate by one of them.
 constexpr int kMembers = 13;
 template <class T>

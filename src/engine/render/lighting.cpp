@@ -6,7 +6,9 @@
 
 #include "core/base/parallel.h"
 #include "core/compute/kernels/shade.h"
+#include "core/math/tangents.h"
 #include "engine/render/hit_reflection.h"
+#include "engine/render/light_direction.h"
 #include "engine/render/lobe_frames.h"
 #include "engine/render/lobe_planes.h"
 #include "engine/render/radiance_map.h"
@@ -103,6 +105,7 @@ Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface,
     : device_(device), surface_(std::move(surface)), vertices_(std::move(by_bin)) {
   set_lobes(light);
   radiance_ = radiance_map(device_, lobes());
+  directions_ = light_directions(sky_radiance(light));
 }
 
 Lighting::Lighting(const Device& device, std::shared_ptr<const Surface> surface, const SgMixture& light,
@@ -168,6 +171,31 @@ std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
   return radiance;
 }
 
+float Lighting::towards_viewer(const HitBatch& batch, size_t hit) const {
+  const Hit& h = batch.hits[hit];
+  const Vec3f light = directions_.at(batch.turned.in_room(hit, h.normal));
+  return diffuse_towards(clamp(dot(h.normal, h.to_camera), 0.0f, 1.0f), batch.materials[hit].roughness,
+                         dot(batch.turned.in_room(hit, h.to_camera), light));
+}
+
+Lighting::Towards Lighting::towards_viewer_grad(const HitBatch& batch, size_t hit) const {
+  constexpr float kStep = 0.02f;  // of differences: the table changes slowly
+  const Hit& h = batch.hits[hit];
+  const Vec3f n = batch.turned.in_room(hit, h.normal), v = batch.turned.in_room(hit, h.to_camera),
+              light = directions_.at(n);
+  const float nv = clamp(dot(n, v), 0.0f, 1.0f);
+  const DiffuseTowardsGrad<float> g = diffuse_towards_grad(nv, batch.materials[hit].roughness, dot(v, light));
+  const Tangents<float> t = tangents_of(n);
+  const auto slope = [&](Vec3f along) {
+    return dot(v,
+               directions_.at(normalize(n + along * kStep)) - directions_.at(normalize(n - along * kStep))) /
+           (2 * kStep);
+  };
+  const Vec3f d_n = (v - n * nv) * g.d_nv + (t.x * slope(t.x) + t.y * slope(t.y)) * g.d_lv,
+              d_v = (n - v * nv) * g.d_nv + (light - v * dot(v, light)) * g.d_lv;
+  return {g.value, g.d_roughness, batch.turned.in_object(hit, d_n), batch.turned.in_object(hit, d_v)};
+}
+
 IncidentLight<float> Lighting::incident_at(const HitBatch& batch, size_t hit, Vec3f sky_reflection,
                                            const SelfReflection::Reflected& seen) const {
   const Mesh& mesh = surface_->mesh();
@@ -176,7 +204,7 @@ IncidentLight<float> Lighting::incident_at(const HitBatch& batch, size_t hit, Ve
   const VertexLight& vertices = vertices_[batch.turned.bin(hit)];
   const Vec3f normal = hit_normals_ ? h.normal : normalize(at_corners(mesh.normals, t, h.b1, h.b2));
   return {.sky_irradiance = irradiance_.at(batch.turned.in_room(hit, normal)),
-          .visibility = at_corners(vertices.visibility, t, h.b1, h.b2),
+          .visibility = at_corners(vertices.visibility, t, h.b1, h.b2) * towards_viewer(batch, hit),
           .bounce = at_corners(vertices.bounce, t, h.b1, h.b2),
           .sky_reflection = sky_reflection,
           .mirror_visibility = seen.visibility,
@@ -205,7 +233,7 @@ std::vector<IncidentLight<float>> Lighting::open_light(const HitBatch& batch) co
     const std::vector<Vec3f> sky = sky_reflection(part);
     for (size_t i = 0; i < part.size(); ++i)
       out[size_t(begin) + i] = {.sky_irradiance = irradiance_.at(part.turned.in_room(i, part.hits[i].normal)),
-                                .visibility = all,
+                                .visibility = all * towards_viewer(part, i),
                                 .bounce = none,
                                 .sky_reflection = sky[i],
                                 .mirror_visibility = all,
@@ -279,9 +307,13 @@ ShadingGrads Lighting::block_grad(const HitBatch& batch, std::span<const Inciden
   using Rows = ShadingRows;
   Planes<Rows::kRows> d_points = shade_grad(device_, batch, light, albedo, d_radiance);
   ShadingGrads out(batch.size());
+  std::vector<Towards> towards(batch.size());
+  std::vector<float> d_towards(batch.size());
   for (size_t i = 0; i < batch.size(); ++i) {
     const IncidentLight<float> d =
         incident_light_grad(light[i], d_points.get(Rows::kIrradiance, i), d_points.get(Rows::kReflected, i));
+    towards[i] = towards_viewer_grad(batch, i);
+    d_towards[i] = dot(d.visibility, light[i].visibility) / towards[i].value;
     out.d_albedo[i] = d_points.get(Rows::kAlbedo, i);
     out.d_sky_irradiance[i] = d.sky_irradiance;
     out.d_sky_reflection[i] = d.sky_reflection;
@@ -291,14 +323,14 @@ ShadingGrads Lighting::block_grad(const HitBatch& batch, std::span<const Inciden
     const Vec3f n = batch.hits[i].normal, v = batch.hits[i].to_camera;
     const float d_nv = d_points.row(Rows::kNv)[i], nv = dot(n, v);
     const SurfaceReflectionGrad<float>& r = reflection[i];
-    out.d_normal[i] = (v - n * nv) * d_nv + r.d_n;
+    out.d_normal[i] = (v - n * nv) * d_nv + r.d_n + towards[i].d_normal * d_towards[i];
     if (hit_normals_)
       out.d_normal[i] +=
           batch.turned.in_object(i, irradiance_.grad(batch.turned.in_room(i, n), out.d_sky_irradiance[i]));
-    out.d_view[i] = (n - v * nv) * d_nv + r.d_v;
-    out.d_material[i] = {d_points.row(Rows::kRoughness)[i] + r.d_roughness,
-                         d_points.row(Rows::kSpecular)[i] + r.d_specular,
-                         d_points.row(Rows::kMetalness)[i] + r.d_metalness};
+    out.d_view[i] = (n - v * nv) * d_nv + r.d_v + towards[i].d_view * d_towards[i];
+    out.d_material[i] = {
+        d_points.row(Rows::kRoughness)[i] + r.d_roughness + towards[i].d_roughness * d_towards[i],
+        d_points.row(Rows::kSpecular)[i] + r.d_specular, d_points.row(Rows::kMetalness)[i] + r.d_metalness};
   }
   return out;
 }

@@ -65,7 +65,7 @@ class Lighting {
   // The radiance of every hit as a linear function of its albedo.
   std::vector<ShadingTerms<float>> terms(const HitBatch&, std::span<const IncidentLight<float>>) const;
   std::vector<ShadingTerms<float>> terms(const HitBatch&, const VertexMaterials& seen = {}) const;
-  // The adjoint. Visibility, bounces and self reflection are held constant.
+  // The adjoint. What the object hides, bounces and self reflection are held constant.
   ShadingGrads grad(const HitBatch&, std::span<const IncidentLight<float>>, std::span<const Vec3f> albedo,
                     std::span<const Vec3f> d_radiance) const;
 
@@ -82,6 +82,13 @@ class Lighting {
                                                             std::span<const Vec3f> d_reflection) const;
   ShadingGrads block_grad(const HitBatch&, std::span<const IncidentLight<float>>,
                           std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const;
+  // diffuse_towards() the viewer of a hit, and its derivatives.
+  struct Towards {
+    float value, d_roughness;
+    Vec3f d_normal, d_view;
+  };
+  float towards_viewer(const HitBatch&, size_t hit) const;
+  Towards towards_viewer_grad(const HitBatch&, size_t hit) const;
   IncidentLight<float> incident_at(const HitBatch&, size_t hit, Vec3f sky_reflection,
                                    const SelfReflection::Reflected&) const;
 
@@ -90,9 +97,9 @@ class Lighting {
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
   IrradianceMap irradiance_;
-  DirectionMap radiance_;              // of the light that visibility was found for
-  std::vector<VertexLight> vertices_;  // by bin of the light's turns
-  bool hit_normals_ = false;           // see use_hit_normals()
+  DirectionMap radiance_, directions_;  // of the light that visibility was found for
+  std::vector<VertexLight> vertices_;   // by bin of the light's turns
+  bool hit_normals_ = false;            // see use_hit_normals()
 };
 
 }  // namespace cei3d

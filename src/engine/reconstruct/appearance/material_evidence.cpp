@@ -8,6 +8,8 @@
 #include "core/math/color.h"
 #include "core/math/ladder.h"
 #include "core/math/parabola.h"
+#include "engine/reconstruct/appearance/split_irradiance.h"
+#include "engine/render/light_direction.h"
 
 namespace cei3d {
 namespace {
@@ -57,6 +59,7 @@ void minimum(const float* e, float& roughness, float& error) {
 LitSamples::LitSamples(size_t vertices, const std::vector<SplitRow>& rows, std::vector<Vec3f> colors,
                        BlurLadder& blurs, const std::vector<Vec3f>& light)
     : rows_(rows), colors_(std::move(colors)), light_height_(blurs.height()), start_(vertices + 1, 0) {
+  light_directions_ = light_directions(sky_radiance(light_image(light, light_height_)));
   for (int level = 0; level < kLevels; ++level) blurs.level(level).apply(light, sky_[size_t(level)]);
   for (const SplitRow& r : rows) ++start_[nearest_vertex(r) + 1];
   for (size_t v = 0; v < vertices; ++v) start_[v + 1] += start_[v];
@@ -71,7 +74,8 @@ LitSamples::RowLight LitSamples::light_of(const SplitRow& row, float roughness) 
     return incident_at(sky_, reflected_sky(row, part, roughness, light_height_), row);
   };
   return {incident(ReflectionPart::base) * s.scale, incident(ReflectionPart::fresnel) * s.bias,
-          row.diffuse_light * diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness)};
+          row.diffuse_light * diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
+                                           dot(row.to_camera, light_directions_.at(row.normal)))};
 }
 
 // Calls visit(row, its color, RowLight) for the vertex' samples. Returns their number.

@@ -72,6 +72,7 @@ void SplitSolver::remember(const SplitUnknowns& x) {
 
 SplitSolution SplitSolver::solved(SplitSolution s, int rounds, int steps) {
   check_cancelled(progress_);
+  system_.set_light(s.x.light);
   system_.set_materials(s.materials);
   system_.solve(s.x, rounds, steps);
   turn_diffuse_light(s);

@@ -6,6 +6,8 @@
 
 #include "core/base/parallel.h"
 #include "core/math/brdf.h"
+#include "engine/reconstruct/appearance/split_irradiance.h"
+#include "engine/render/light_direction.h"
 
 namespace cei3d {
 namespace {
@@ -51,8 +53,13 @@ SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {
   o.base_gain = f0 * o.split_sum.scale;
   const float bias = o.split_sum.bias * (1 - o.fresnel.open);
   o.far_gain = o.base_gain * (1 - o.base.open) + Vec3f{bias, bias, bias};
-  o.diffuse_view = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness);
+  o.diffuse_view = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
+                                dot(row.to_camera, light_directions_.at(row.normal)));
   return o;
+}
+
+void SplitSystem::set_light(const std::vector<Vec3f>& light) {
+  light_directions_ = light_directions(sky_radiance(light_image(light, options_.light_height)));
 }
 
 void SplitSystem::set_materials(SplitMaterials materials) {

@@ -12,6 +12,7 @@
 #include "engine/reconstruct/appearance/light_harmonics.h"
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "engine/reconstruct/appearance/split_rows.h"
+#include "engine/render/direction_map.h"
 
 namespace cei3d {
 
@@ -51,6 +52,8 @@ class SplitSystem {
   // Metals have no D.
   void set_materials(SplitMaterials);
   const SplitMaterials& materials() const { return materials_; }
+  // The light by which the diffuse term is sent to viewers, from now on in set_materials().
+  void set_light(const std::vector<Vec3f>& light);
   void set_diffuse_light_grad(DiffuseLightGrad grad) { diffuse_light_grad_ = std::move(grad); }
 
   // Improves x by rounds of conjugate gradients, with light and D >= 0, and clipped channels as lower bounds.
@@ -119,6 +122,7 @@ class SplitSystem {
   std::vector<std::array<uint32_t, 2>> edges_;
   mutable BlurLadder blurs_;
   LightHarmonics harmonics_;
+  DirectionMap light_directions_;
   DiffuseLightGrad diffuse_light_grad_;
   SplitMaterials materials_;
   std::vector<Optics> optics_;  // #rows
