@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/base/json.h"
 #include "core/base/test_unknown_keys.h"
 #include "engine/reconstruct/run_state.h"
@@ -175,8 +178,10 @@ TEST(Reconstruct, IsSeenWhileItIsMadeAndIsTheSame) {
   for (const auto& [stage, p] : pictures) {
     SCOPED_TRACE(stage);
     EXPECT_LE(std::max(p.width, p.height), 160);
-    EXPECT_GT(p.at(0, 0)[0], 0.9f);                                    // the corner shows the white ground
-    EXPECT_LT(*std::min_element(p.data.begin(), p.data.end()), 0.9f);  // the object is darker
+    EXPECT_NEAR(p.at(0, 0)[0], 1, 0.1f);  // the corner shows the white ground
+    const bool seen =
+        std::any_of(p.data.begin(), p.data.end(), [](float x) { return std::abs(x - 1) > 0.1f; });
+    EXPECT_TRUE(seen);  // the object: darker, or, before its albedo is learned, brighter
   }
 }
 
