@@ -179,6 +179,7 @@ float Lighting::towards_viewer(const HitBatch& batch, size_t hit) const {
 }
 
 Lighting::Towards Lighting::towards_viewer_grad(const HitBatch& batch, size_t hit) const {
+  if (!surface_) return {1, 0, {0, 0, 0}, {0, 0, 0}};
   constexpr float kStep = 0.02f;  // of differences: the table changes slowly
   const Hit& h = batch.hits[hit];
   const Vec3f n = batch.turned.in_room(hit, h.normal), v = batch.turned.in_room(hit, h.to_camera),
@@ -233,7 +234,7 @@ std::vector<IncidentLight<float>> Lighting::open_light(const HitBatch& batch) co
     const std::vector<Vec3f> sky = sky_reflection(part);
     for (size_t i = 0; i < part.size(); ++i)
       out[size_t(begin) + i] = {.sky_irradiance = irradiance_.at(part.turned.in_room(i, part.hits[i].normal)),
-                                .visibility = all * towards_viewer(part, i),
+                                .visibility = all,
                                 .bounce = none,
                                 .sky_reflection = sky[i],
                                 .mirror_visibility = all,

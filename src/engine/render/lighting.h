@@ -60,7 +60,8 @@ class Lighting {
   Shading shade(const HitBatch&, std::span<const Vec3f> albedo, const VertexMaterials& seen = {}) const;
 
   std::vector<IncidentLight<float>> incident_light(const HitBatch&, const VertexMaterials& seen = {}) const;
-  // As if the object hid nothing of the environment and reflected nothing of itself: needs no surface.
+  // As if the object hid nothing of the environment and reflected nothing of itself, and diffuse light came
+  // evenly from everywhere: of a Lighting without a surface.
   std::vector<IncidentLight<float>> open_light(const HitBatch&) const;
   // The radiance of every hit as a linear function of its albedo.
   std::vector<ShadingTerms<float>> terms(const HitBatch&, std::span<const IncidentLight<float>>) const;
