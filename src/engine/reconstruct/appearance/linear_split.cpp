@@ -32,17 +32,18 @@ constexpr double kSeveralBy = 0.65, kNoise = 2e-4;
 constexpr double kSharedError = 0.1;
 // The search for several materials stops if its first round leaves a larger share of the residual of one.
 constexpr double kPlainlyOne = 0.85;
-// The roughness of a metal is the largest whose residual is so close to the smallest, relatively: of what a
-// metal reflects of itself the separation knows mean colors only, and the smallest residual is that of a
-// surface that is too smooth (.27 for .30).
-constexpr double kMetalTolerance = 0.008;
+// The roughness is the largest whose residual is so close to the smallest, relatively, where photographs are
+// explained worse than to 30 dB: what shape and reflections of the object in itself leave unexplained is
+// smallest for surfaces that are too smooth. Where they are explained well, the smallest residual is nearer
+// to the truth.
+constexpr double kTolerance = 0.008, kBadlyExplained = 1e-3;
 // Maximum roughness of the one material with which the search for several materials begins.
 constexpr float kFirstRoughness = 0.3f;
 
 // The roughness of the smallest residual, or the largest within the tolerance of it: a coarse scan, refined
 // about the smallest, and a parabola through it and its neighbors over the logarithm.
 template <class F>
-float search_roughness(F residual_at, const LinearSplitOptions& o, double tolerance) {
+float search_roughness(F residual_at, const LinearSplitOptions& o) {
   if (o.fixed_roughness > 0) return o.fixed_roughness;
   std::map<float, double> tried;
   const auto smallest = [&] {
@@ -60,10 +61,12 @@ float search_roughness(F residual_at, const LinearSplitOptions& o, double tolera
     if (next != tried.end()) solve(std::sqrt(best->first * next->first));
   }
   const auto best = smallest(), next = std::next(best);
-  if (best == tried.begin() || next == tried.end()) return best->first;
-  const double steps =
-      last_offset_within(std::prev(best)->second, best->second, next->second, tolerance * best->second);
-  return best->first * float(std::pow(next->first / best->first, steps));
+  const double rise = kTolerance * std::min(1.0, best->second / kBadlyExplained) * best->second;
+  auto last = std::prev(tried.end());
+  while (last->second > best->second + rise) --last;
+  if (best == tried.begin() || next == tried.end()) return last->first;
+  const double steps = last_offset_within(std::prev(best)->second, best->second, next->second, rise);
+  return std::max(last->first, best->first * float(std::pow(next->first / best->first, steps)));
 }
 
 // Reflections of metals determine light and color only up to a factor per channel: the mean of the light is
@@ -194,9 +197,8 @@ OneMaterial search_one_material(SplitSolver search, const LinearSplitOptions& op
   const double dielectric_residual = search.dielectric(0.2f).residual,
                metal_residual = search.metal(0.2f).residual;
   const bool is_metal = metal_residual < kMetalBy * dielectric_residual;
-  const float roughness =
-      search_roughness([&](float r) { return (is_metal ? search.metal(r) : search.dielectric(r)).residual; },
-                       options, is_metal ? kMetalTolerance : 0);
+  const float roughness = search_roughness(
+      [&](float r) { return (is_metal ? search.metal(r) : search.dielectric(r)).residual; }, options);
   trials = std::move(search.trials);
   guess = search.last();
   return {is_metal, roughness};
