@@ -26,7 +26,7 @@ constexpr double kFar = 1.25;  // a residual this much above the best ends the s
 constexpr double kMetalBy = 0.5;
 // Several materials always fit a little better than one. They are chosen only if the residual falls below
 // this factor, and by more than the noise of photographs, 37 dB.
-constexpr double kSeveralBy = 0.65, kNoise = 2e-4;
+constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
 constexpr double kSharedError = 0.1;
