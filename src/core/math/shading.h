@@ -15,10 +15,9 @@ namespace cei3d {
 // object.
 template <class T>
 struct IncidentLight {
-  Vec3<T> sky_irradiance;  // of the environment without occlusion
-  Vec3<T> visibility;  // fraction of it that arrives, per channel, and is sent to the viewer, of what would
-                       // be if it came evenly from everywhere
-  Vec3<T> bounce;      // irradiance from the object
+  Vec3<T> sky_irradiance;     // of the environment without occlusion
+  Vec3<T> visibility;         // fraction of it that arrives, per channel, times diffuse_towards() the viewer
+  Vec3<T> bounce;             // irradiance from the object
   Vec3<T> sky_reflection;     // mean radiance of the environment over the reflection lobe, without occlusion
   Vec3<T> mirror_visibility;  // fraction of that radiance that is not occluded, per channel
   Vec3<T> object_reflection;  // mean radiance from the object over the lobe, 0 where it is not occluded

@@ -7,7 +7,6 @@
 
 #include "core/math/brdf.h"
 #include "core/math/fibonacci.h"
-#include "core/math/rng.h"
 
 namespace cei3d {
 namespace {
