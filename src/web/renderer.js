@@ -16,6 +16,7 @@ import { filterShader, litShader, partShader, plainShader, screenShader, vertexS
  * @property {number} [strength] of the light, as a factor
  * @property {number} samples per pixel and axis, 1 or 2
  * @property {boolean} [rough] edges of triangles are not smoothed, which takes less time
+ * @property {boolean} [coarse] drawn by the coarse triangles, if there are any, which takes less time
  * @property {number} highlight index of a part, 0 for none
  * @property {number[]} [hidden] indices of parts that are not drawn
  */
@@ -93,7 +94,8 @@ export class Renderer {
     this.textures = new Map();
     /** @type {Map<string, any>} heads of the packs by kind */
     this.heads = new Map();
-    this.indices = 0;
+    /** Numbers of corners of the triangles and of the coarse ones. */
+    this.corners = {triangles: 0, coarse: 0};
     /** @type {{samples: Target | null, mean: Target} | null} samples: none of a rough picture */
     this.targets = null;
     /** @type {Target | null} */
@@ -122,6 +124,7 @@ export class Renderer {
   set(pack) {
     const {head, arrays} = pack;
     if (head.kind === 'shape') this.setShape(arrays);
+    if (head.kind === 'coarse') this.setTriangles('coarse', arrays.triangles);
     if (head.kind === 'look') this.setAttributes([[2, 'albedo', arrays.albedo, true], [3, 'material', arrays.material, true]]);
     if (head.kind === 'vertex_light')
       this.setAttributes([[4, 'sky', arrays.visibility, true], [5, 'bounce', arrays.bounce, false]]);  // 'visibility' is the shape's
@@ -133,13 +136,19 @@ export class Renderer {
 
   /** @param {Object<string, Numbers>} arrays */
   setShape(arrays) {
-    const {gl} = this;
     this.setAttributes([[0, 'positions', arrays.positions, true], [1, 'normals', arrays.normals, true]]);
     this.setBytes(6, 'visibility', arrays.visibility, 3);
+    this.corners.coarse = 0;  // they were of another surface
+    this.setTriangles('triangles', arrays.triangles);
+  }
+
+  /** @param {'triangles' | 'coarse'} name @param {Numbers} corners */
+  setTriangles(name, corners) {
+    const {gl} = this;
     gl.bindVertexArray(this.vertices);
-    this.upload(gl.ELEMENT_ARRAY_BUFFER, 'triangles', arrays.triangles);
+    this.upload(gl.ELEMENT_ARRAY_BUFFER, name, corners);
     gl.bindVertexArray(null);
-    this.indices = arrays.triangles.length;
+    this.corners[name] = corners.length;
   }
 
   /** What is closer to the program's picture than the visibility of the shape: comes after it. @param {Object<string, Numbers>} arrays */
@@ -258,7 +267,7 @@ export class Renderer {
     gl.uniform1i(u.uHighlight, view.highlight);
     gl.uniform3fv(u.uHighlightColor, kHighlight);
     if (lit) this.bindLight(view, u);
-    this.drawTriangles();
+    this.drawTriangles(view.coarse && this.corners.coarse > 0 ? 'coarse' : 'triangles');
   }
 
   /** @param {View} view @param {Object<string, WebGLUniformLocation | null>} u of the program */
@@ -306,10 +315,12 @@ export class Renderer {
     return u;
   }
 
-  drawTriangles() {
+  /** @param {'triangles' | 'coarse'} name */
+  drawTriangles(name) {
     const {gl} = this;
     gl.bindVertexArray(this.vertices);
-    gl.drawElements(gl.TRIANGLES, this.indices, gl.UNSIGNED_INT, 0);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, this.buffers.get(name) ?? null);
+    gl.drawElements(gl.TRIANGLES, this.corners[name], gl.UNSIGNED_INT, 0);
     gl.bindVertexArray(null);
   }
 
@@ -340,7 +351,7 @@ export class Renderer {
     if (!this.hasSurface || gl.isContextLost()) return -1;
     this.pixel ??= this.makeTarget(1, 1, gl.RGBA8, 0);
     this.begin(this.part, ofPixel(camera, x, y), this.pixel.frame, 1, 1, hidden);
-    this.drawTriangles();
+    this.drawTriangles('triangles');
     const out = new Uint8Array(4);
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, out);
     return out[3] > 0 ? out[0] : -1;

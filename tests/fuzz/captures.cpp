@@ -30,6 +30,7 @@ constexpr Target kTargets[] = {
     {"colmap", "cameras.txt", "images.txt", "1 1 0 0 0 0 0 0 1 a.png\n1 2 1\n"},
     {"colmap", "images.txt", "cameras.txt", "1 PINHOLE 8 8 9 9 4 4\n"},
     {"colmap", "points3D.txt", "cameras.txt", "1 PINHOLE 8 8 9 9 4 4\n"},
+    {"colmap", "points3D.bin", "cameras.txt", "1 PINHOLE 8 8 9 9 4 4\n"},
     {"colmap", "cameras.bin", "images.bin", ""},
     {"colmap", "images.bin", "cameras.txt", "1 PINHOLE 8 8 9 9 4 4\n"},
     {"metashape", "cameras.xml"},

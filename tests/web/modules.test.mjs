@@ -197,5 +197,5 @@ test('pictures are as fine as there is time for', () => {
   assert.equal(run(quick, hardware, 100), 0);
   assert.ok(run(quick, hardware.map((t) => 20 * t), 10) > 0);  // something else uses it, too
   assert.equal(run(quick, hardware, 30), 0);
-  assert.deepEqual(steps[0], { scale: 1, rough: false });
+  assert.deepEqual(steps[0], { scale: 1, rough: false, coarse: false });
 });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The microfacet model: GGX normal distribution with alpha = roughness^2, Smith masking, Fresnel's term
-// [Walter et al. 2007]; the view factor of Burley's diffuse term [Burley 2012]. Roughness is in
+// [Walter et al. 2007]; Burley's diffuse term [Burley 2012]. Roughness is in
 // [kMinRoughness, 1]; cosines are those of angles to the normal.
 #pragma once
 
@@ -61,54 +61,71 @@ HD T burley_diffuse(T nl, T nv, T lh, T roughness) {
   return (T(1.0f) + flat * a2 * a2 * a) * (T(1.0f) + flat * b2 * b2 * b);
 }
 
-// Reflected radiance of a diffuse surface towards a viewer at cosine nv, relative to a Lambertian one: a
-// smooth surface is darker at grazing angles, a rough one brighter. Burley's diffuse term with the mean
-// cosine lv of light and viewer in the view factor, and averaged over uniform light in the light factor, with
-// 1/4 nv as that mean.
+// What Burley's diffuse term depends on in the light that reaches a point: means over that light, weighted by
+// the cosine to the normal.
 template <class T>
-HD T diffuse_view(T nv, T roughness, T lv) {
-  const T view = roughness * (T(1.0f) + lv) - T(0.5f), c = T(1.0f) - nv, c2 = c * c;
-  const T light = roughness * (T(1.0f) + nv * T(0.25f)) - T(0.5f);
-  return (T(1.0f) + view * c2 * c2 * c) * (T(1.0f) + light * T(1.0f / 21));
+struct DiffuseLight {
+  T lv;          // cosine of light and viewer
+  T grazing;     // (1 - nl)^5
+  T grazing_lv;  // their product
+};
+// Of light that comes evenly from everywhere.
+template <class T>
+HD DiffuseLight<T> even_light(T nv) {
+  return {nv * T(2.0f / 3), T(1.0f / 21), nv * T(1.0f / 84)};
 }
-// Under uniform light.
+
+// Reflected radiance of a diffuse surface towards a viewer at cosine nv, relative to a Lambertian one: a
+// smooth surface is darker where light enters or leaves at a grazing angle, a rough one brighter. The mean of
+// Burley's diffuse term, but for the product of the deviations of its two factors.
+template <class T>
+HD T diffuse_view(T nv, T roughness, const DiffuseLight<T>& light) {
+  const T half(0.5f), view = roughness * (T(1.0f) + light.lv) - half, c = T(1.0f) - nv, c2 = c * c;
+  return (T(1.0f) + view * c2 * c2 * c) *
+         (T(1.0f) + (roughness - half) * light.grazing + roughness * light.grazing_lv);
+}
+// Under even light.
 template <class T>
 HD T diffuse_view(T nv, T roughness) {
-  return diffuse_view(nv, roughness, nv * T(2.0f / 3));
+  return diffuse_view(nv, roughness, even_light(nv));
 }
-// How much more that is under light with that mean cosine lv than under uniform light.
+// How much more that is under this light than under even light.
 template <class T>
-HD T diffuse_towards(T nv, T roughness, T lv) {
-  return diffuse_view(nv, roughness, lv) / diffuse_view(nv, roughness);
+HD T diffuse_towards(T nv, T roughness, const DiffuseLight<T>& light) {
+  return diffuse_view(nv, roughness, light) / diffuse_view(nv, roughness);
 }
-template <class T>
-struct DiffuseTowardsGrad {
-  T value, d_nv, d_roughness, d_lv;
-};
-template <class T>
-HD DiffuseTowardsGrad<T> diffuse_towards_grad(T nv, T roughness, T lv) {
-  const T one(1.0f), third(2.0f / 3), c = one - nv, c2 = c * c, c4 = c2 * c2, c5 = c4 * c,
-                                      d_c5 = T(-5.0f) * c4;
-  const T view = roughness * (one + lv) - T(0.5f), even = roughness * (one + nv * third) - T(0.5f);
-  const T inverse = one / (one + even * c5), value = (one + view * c5) * inverse;
-  return {value, (view * d_c5 - value * (roughness * third * c5 + even * d_c5)) * inverse,
-          ((one + lv) - value * (one + nv * third)) * c5 * inverse, roughness * c5 * inverse};
-}
+
 template <class T>
 struct DiffuseViewGrad {
   T value, d_nv, d_roughness;
+  DiffuseLight<T> d_light;
 };
 template <class T>
-HD DiffuseViewGrad<T> diffuse_view_grad(T nv, T roughness) {
-  const T one(1.0f), third(2.0f / 3), quarter(0.25f), light_weight(1.0f / 21);
-  const T view = roughness * (one + nv * third) - T(0.5f), light = roughness * (one + nv * quarter) - T(0.5f);
-  const T c = one - nv, c2 = c * c, c4 = c2 * c2;
-  const T view_factor = one + view * c4 * c, light_factor = one + light * light_weight;
-  const T view_d_nv = roughness * third * c4 * c - T(5.0f) * view * c4;
-  const T view_d_roughness = (one + nv * third) * c4 * c;
+HD DiffuseViewGrad<T> diffuse_view_grad(T nv, T roughness, const DiffuseLight<T>& light) {
+  const T one(1.0f), half(0.5f), c = one - nv, c2 = c * c, c4 = c2 * c2, c5 = c4 * c;
+  const T view = roughness * (one + light.lv) - half, view_factor = one + view * c5;
+  const T light_factor = one + (roughness - half) * light.grazing + roughness * light.grazing_lv;
   return {view_factor * light_factor,
-          view_d_nv * light_factor + view_factor * roughness * quarter * light_weight,
-          view_d_roughness * light_factor + view_factor * (one + nv * quarter) * light_weight};
+          T(-5.0f) * view * c4 * light_factor,
+          (one + light.lv) * c5 * light_factor + view_factor * (light.grazing + light.grazing_lv),
+          {roughness * c5 * light_factor, view_factor * (roughness - half), view_factor * roughness}};
+}
+// Under even light, which depends on nv.
+template <class T>
+HD DiffuseViewGrad<T> diffuse_view_grad(T nv, T roughness) {
+  DiffuseViewGrad<T> g = diffuse_view_grad(nv, roughness, even_light(nv));
+  g.d_nv += g.d_light.lv * T(2.0f / 3) + g.d_light.grazing_lv * T(1.0f / 84);
+  return g;
+}
+template <class T>
+HD DiffuseViewGrad<T> diffuse_towards_grad(T nv, T roughness, const DiffuseLight<T>& light) {
+  const DiffuseViewGrad<T> lit = diffuse_view_grad(nv, roughness, light),
+                           even = diffuse_view_grad(nv, roughness);
+  const T inverse = T(1.0f) / even.value, value = lit.value * inverse;
+  return {value,
+          (lit.d_nv - value * even.d_nv) * inverse,
+          (lit.d_roughness - value * even.d_roughness) * inverse,
+          {lit.d_light.lv * inverse, lit.d_light.grazing * inverse, lit.d_light.grazing_lv * inverse}};
 }
 
 }  // namespace cei3d

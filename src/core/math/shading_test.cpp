@@ -101,16 +101,28 @@ TEST(Brdf, DiffuseViewSlopesEqualDualNumbers) {
 }
 
 TEST(Brdf, DiffuseTowardsSlopesEqualDualNumbers) {
+  const auto constant = [](double x) { return D(x); };
   for (const Sample s : kSamples)
-    for (const double lv : {-0.6, 0.1, 0.9}) {
-      const DiffuseTowardsGrad<double> g = diffuse_towards_grad(s.nv, s.roughness, lv);
-      EXPECT_NEAR(g.value, diffuse_towards(s.nv, s.roughness, lv), 1e-14);
-      const auto f = [&](D nv, D r) { return diffuse_towards(nv, r, D(lv)); };
+    for (const DiffuseLight<double> l :
+         {DiffuseLight<double>{-0.6, 0.3, -0.25}, {0.1, 0.05, 0.01}, {0.9, 0, 0}}) {
+      const DiffuseLight<D> light{constant(l.lv), constant(l.grazing), constant(l.grazing_lv)};
+      const DiffuseViewGrad<double> g = diffuse_towards_grad(s.nv, s.roughness, l);
+      EXPECT_NEAR(g.value, diffuse_towards(s.nv, s.roughness, l), 1e-14);
+      const auto f = [&](D nv, D r) { return diffuse_towards(nv, r, light); };
       EXPECT_NEAR(g.d_nv, along_nv(f, s), 1e-12);
       EXPECT_NEAR(g.d_roughness, along_roughness(f, s), 1e-12);
-      Sample at_lv = s;
-      at_lv.nv = lv;
-      EXPECT_NEAR(g.d_lv, along_nv([&](D x, D r) { return diffuse_towards(D(s.nv), r, x); }, at_lv), 1e-12);
+      const auto along = [&](double value, D DiffuseLight<D>::*member) {
+        return along_nv(
+            [&](D x, D r) {
+              DiffuseLight<D> moved = light;
+              moved.*member = x;
+              return diffuse_towards(D(s.nv), r, moved);
+            },
+            Sample{value, s.roughness});
+      };
+      EXPECT_NEAR(g.d_light.lv, along(l.lv, &DiffuseLight<D>::lv), 1e-12);
+      EXPECT_NEAR(g.d_light.grazing, along(l.grazing, &DiffuseLight<D>::grazing), 1e-12);
+      EXPECT_NEAR(g.d_light.grazing_lv, along(l.grazing_lv, &DiffuseLight<D>::grazing_lv), 1e-12);
     }
 }
 

@@ -74,6 +74,8 @@ const std::vector<Column> kNovelViews{
      }},
     {"SSIM", [](const EvaluationRow& r) { return fmt::format("{:.4f}", r.scores.ssim); }},
     {"PSNR in the mask", [](const EvaluationRow& r) { return db(r.scores.psnr_masked); }},
+    {"the same at the photographs' exposures",
+     [](const EvaluationRow& r) { return r.scores.psnr_exposed ? db(*r.scores.psnr_exposed) : ""; }},
     {"light and material alone: PSNR, in the mask",
      [](const EvaluationRow& r) {
        const auto& alone = r.scores.alone;

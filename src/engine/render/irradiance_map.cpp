@@ -14,7 +14,7 @@ constexpr int kCells = 64;  // along a side: some 2 degrees apart
 }  // namespace
 
 IrradianceMap::IrradianceMap(const Device& device, const LobePlanes& lobes) {
-  std::vector<Vec3f> nodes = DirectionMap::node_directions(kCells);
+  std::vector<Vec3f> nodes = map_node_directions(kCells);
   const int stride = padded_to_panels(int(nodes.size()));
   std::vector<float> normals(size_t(3) * stride, 0.0f), out(normals.size());
   for (size_t i = 0; i < nodes.size(); ++i) store_planes(normals.data(), stride, int(i), nodes[i]);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/render/light_direction.h"
 
+#include <cmath>
+
 #include "core/base/parallel.h"
 #include "core/math/color.h"
 
@@ -11,19 +13,19 @@ constexpr int kCells = 32;  // along a side: the mean over half a sky changes sl
 
 }  // namespace
 
-DirectionMap light_directions(const SkyRadiance& radiance) {
-  const std::vector<Vec3f>& sky = sky_directions();
-  std::vector<Vec3f> nodes = DirectionMap::node_directions(kCells);
+LightDirectionMap light_directions(const SkyRadiance& radiance) {
+  const std::vector<Vec3f>&sky = sky_directions(), normals = map_node_directions(kCells);
+  std::vector<LightDirection> nodes(normals.size());
   parallel_for(int(nodes.size()), [&](int i) {
-    const Vec3f normal = nodes[size_t(i)];
-    Vec3f sum{0, 0, 0};
+    LightDirection sum{};
     float total = 1e-12f;
     for (int k = 0; k < kSkyDirections; ++k) {
-      const float weight = luminance(radiance[size_t(k)]) * max(dot(normal, sky[size_t(k)]), 0.0f);
-      sum += sky[size_t(k)] * weight;
+      const float cosine = max(dot(normals[size_t(i)], sky[size_t(k)]), 0.0f),
+                  weight = luminance(radiance[size_t(k)]) * cosine, grazing = std::pow(1 - cosine, 5.0f);
+      sum = sum + weight * LightDirection{sky[size_t(k)], sky[size_t(k)] * grazing, grazing};
       total += weight;
     }
-    nodes[size_t(i)] = sum / total;
+    nodes[size_t(i)] = (1 / total) * sum;
   });
   return {kCells, std::move(nodes)};
 }

@@ -8,7 +8,6 @@
 #include "core/compute/kernels/shade.h"
 #include "core/math/tangents.h"
 #include "engine/render/hit_reflection.h"
-#include "engine/render/light_direction.h"
 #include "engine/render/lobe_frames.h"
 #include "engine/render/lobe_planes.h"
 #include "engine/render/radiance_map.h"
@@ -173,27 +172,32 @@ std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
 
 float Lighting::towards_viewer(const HitBatch& batch, size_t hit) const {
   const Hit& h = batch.hits[hit];
-  const Vec3f light = directions_.at(batch.turned.in_room(hit, h.normal));
+  const LightDirection light = directions_.at(batch.turned.in_room(hit, h.normal));
   return diffuse_towards(clamp(dot(h.normal, h.to_camera), 0.0f, 1.0f), batch.materials[hit].roughness,
-                         dot(batch.turned.in_room(hit, h.to_camera), light));
+                         light.towards(batch.turned.in_room(hit, h.to_camera)));
 }
 
 Lighting::Towards Lighting::towards_viewer_grad(const HitBatch& batch, size_t hit) const {
   if (!surface_) return {1, 0, {0, 0, 0}, {0, 0, 0}};
   constexpr float kStep = 0.02f;  // of differences: the table changes slowly
   const Hit& h = batch.hits[hit];
-  const Vec3f n = batch.turned.in_room(hit, h.normal), v = batch.turned.in_room(hit, h.to_camera),
-              light = directions_.at(n);
+  const Vec3f n = batch.turned.in_room(hit, h.normal), v = batch.turned.in_room(hit, h.to_camera);
   const float nv = clamp(dot(n, v), 0.0f, 1.0f);
-  const DiffuseTowardsGrad<float> g = diffuse_towards_grad(nv, batch.materials[hit].roughness, dot(v, light));
-  const Tangents<float> t = tangents_of(n);
+  const LightDirection light = directions_.at(n);
+  const DiffuseViewGrad<float> g = diffuse_towards_grad(nv, batch.materials[hit].roughness, light.towards(v));
+  const auto d_of = [&](const DiffuseLight<float>& change) {
+    return change.lv * g.d_light.lv + change.grazing * g.d_light.grazing +
+           change.grazing_lv * g.d_light.grazing_lv;
+  };
   const auto slope = [&](Vec3f along) {
-    return dot(v,
-               directions_.at(normalize(n + along * kStep)) - directions_.at(normalize(n - along * kStep))) /
+    return (d_of(directions_.at(normalize(n + along * kStep)).towards(v)) -
+            d_of(directions_.at(normalize(n - along * kStep)).towards(v))) /
            (2 * kStep);
   };
-  const Vec3f d_n = (v - n * nv) * g.d_nv + (t.x * slope(t.x) + t.y * slope(t.y)) * g.d_lv,
-              d_v = (n - v * nv) * g.d_nv + (light - v * dot(v, light)) * g.d_lv;
+  const Tangents<float> t = tangents_of(n);
+  const Vec3f d_light = light.mean * g.d_light.lv + light.grazing_mean * g.d_light.grazing_lv,
+              d_n = (v - n * nv) * g.d_nv + t.x * slope(t.x) + t.y * slope(t.y),
+              d_v = (n - v * nv) * g.d_nv + d_light - v * dot(v, d_light);
   return {g.value, g.d_roughness, batch.turned.in_object(hit, d_n), batch.turned.in_object(hit, d_v)};
 }
 

@@ -14,6 +14,7 @@
 #include "core/math/shading.h"
 #include "engine/render/hit_batch.h"
 #include "engine/render/irradiance_map.h"
+#include "engine/render/light_direction.h"
 #include "engine/render/self_reflection.h"
 #include "engine/render/vertex_light.h"
 #include "model/light/sg_mixture.h"
@@ -98,9 +99,10 @@ class Lighting {
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
   IrradianceMap irradiance_;
-  DirectionMap radiance_, directions_;  // of the light that visibility was found for
-  std::vector<VertexLight> vertices_;   // by bin of the light's turns
-  bool hit_normals_ = false;            // see use_hit_normals()
+  DirectionMap radiance_;  // these two: of the light that visibility was found for
+  LightDirectionMap directions_;
+  std::vector<VertexLight> vertices_;  // by bin of the light's turns
+  bool hit_normals_ = false;           // see use_hit_normals()
 };
 
 }  // namespace cei3d

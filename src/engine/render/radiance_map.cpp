@@ -14,7 +14,7 @@ constexpr float kRoughness = 0.2f;  // half of the energy of the lobe is within 
 }  // namespace
 
 DirectionMap radiance_map(const Device& device, const LobePlanes& light) {
-  std::vector<Vec3f> nodes = DirectionMap::node_directions(kCells);
+  std::vector<Vec3f> nodes = map_node_directions(kCells);
   const int stride = padded_to_panels(int(nodes.size()));
   LobeFrames lobes{stride};
   const Vec3f round{0, 0, 0};  // a lobe without a plane of incidence

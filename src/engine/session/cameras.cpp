@@ -114,10 +114,16 @@ bool is_camera_file(const fs::path& path) {
 
 std::vector<View> choose_views(const Project& project, const fs::path& path, std::optional<Split> split) {
   Capture capture = path.empty() ? project.capture() : load_capture(path);
-  if (!path.empty() && capture_fingerprint(capture) == project.fingerprint())
-    capture = with_poses(std::move(capture), project.refined_poses());
   std::map<std::string, Split> known;
-  for (const View& v : project.capture().views) known[v.name] = v.split;
+  std::map<std::string, fs::path> doubtful;
+  for (const View& v : project.capture().views) {
+    known[v.name] = v.split;
+    doubtful[v.name] = v.doubtful_path;
+  }
+  if (!path.empty() && capture_fingerprint(capture) == project.fingerprint()) {
+    capture = with_poses(std::move(capture), project.refined_poses());
+    for (View& v : capture.views) v.doubtful_path = doubtful[v.name];
+  }
   const bool has_splits = std::any_of(capture.views.begin(), capture.views.end(),
                                       [](const View& v) { return v.split != Split::train; });
   if (!has_splits)

@@ -162,7 +162,7 @@ TEST_F(LookTest, TilesAreThePictureThatRenderWrites) {
 
 // A page fetches only what an edit has changed.
 TEST_F(LookTest, KeysOfPacksChangeWithThePacks) {
-  const char* const kinds[] = {"tables", "shape", "look", "light", "vertex_light"};
+  const char* const kinds[] = {"tables", "shape", "coarse", "look", "light", "vertex_light"};
   const auto packs = [&] {
     std::map<std::string, std::string> all;
     for (const char* kind : kinds) all[kind] = session_.view_pack(kind);
@@ -191,7 +191,7 @@ TEST_F(LookTest, KeysOfPacksChangeWithThePacks) {
   EXPECT_EQ(changed_by([&] {
               session_.deform({PointDrag{{0, -0.7, 0}, {0, -0.85, 0}}, 0.35, ""}, quiet_);
             }),
-            "shape look vertex_light ");
+            "shape coarse look vertex_light ");
   EXPECT_THAT(message([&] { session_.view_pack("color"); }), HasSubstr("no pack"));
 }
 

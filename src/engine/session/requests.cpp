@@ -143,8 +143,14 @@ std::string ObjectSummary::light_text() const {
 }
 
 std::string ObjectSummary::warning() const {
-  constexpr double kMuchLess = 3;  // dB
-  if (!explained || explained->with_residual - explained->physical < kMuchLess) return {};
+  constexpr double kMuchLess = 1.5, kBad = 22;  // dB
+  if (!explained) return {};
+  if (explained->with_residual < kBad)
+    return fmt::format(
+        "The object explains its photographs to {:.1f} dB only: look at its pictures, and at what a check of "
+        "the capture says about poses and masks.",
+        explained->with_residual);
+  if (explained->with_residual - explained->physical < kMuchLess) return {};
   return fmt::format(
       "Light and material explain the photographs to {:.1f} dB, with the correction network {:.1f} dB: edits "
       "and other light will look less realistic than the object as photographed.",

@@ -40,6 +40,7 @@ std::string Session::view_pack(const std::string& kind, const EditPreview* on_to
     if (kind == "light") return view_light(*device_, scene.light);
     const ViewMesh mesh = view_mesh(scene);
     if (kind == "shape") return view_shape(scene, mesh);
+    if (kind == "coarse") return view_coarse(scene, mesh);
     if (kind == "look") return view_look(scene, mesh, look_of_vertices(scene));
     if (kind == "vertex_light") {
       const SceneLight light = on_top ? frames_->light(scene) : frames_->light_to_keep(scene);
@@ -62,6 +63,7 @@ Json Session::view_keys() const {
     const std::string light = key_of(scene.light);
     return {{"tables", kVersion},
             {"shape", shape},
+            {"coarse", shape},
             {"look", content_hash(shape + look)},
             {"vertex_light", content_hash(shape + light)},
             {"light", kVersion + light}};

@@ -16,6 +16,7 @@
 namespace cei3d {
 namespace {
 
+constexpr size_t kCoarseFaces = 30'000;
 constexpr uint32_t kUnused = std::numeric_limits<uint32_t>::max();
 
 // The vertices that the triangles use, in their order.
@@ -67,6 +68,12 @@ std::vector<int16_t> octahedral(const std::vector<Vec3f>& normals, const ViewMes
   return out;
 }
 
+std::vector<uint32_t> indices_of(const std::vector<std::array<uint32_t, 3>>& triangles) {
+  std::vector<uint32_t> out;
+  for (const auto& t : triangles) out.insert(out.end(), t.begin(), t.end());
+  return out;
+}
+
 std::vector<VisibilityTerms> visibility_of(const Surface& surface, const ViewMesh& view) {
   const std::vector<VisibilityTerms> terms = visibility_harmonics(surface);
   std::vector<VisibilityTerms> out;
@@ -100,9 +107,18 @@ std::string view_shape(const Scene& scene, const ViewMesh& view) {
   pack.add("positions", quantized(points, box), 4);
   pack.add("normals", octahedral(mesh.normals, view), 2);
   add_visibility(visibility_of(*scene.surface, view), pack);
-  std::vector<uint32_t> indices;
-  for (const auto& t : view.triangles) indices.insert(indices.end(), t.begin(), t.end());
-  pack.add("triangles", indices, 3);
+  pack.add("triangles", indices_of(view.triangles), 3);
+  return pack.bytes();
+}
+
+std::string view_coarse(const Scene& scene, const ViewMesh& view) {
+  Mesh mesh{{}, {}, {}, view.triangles};
+  for (const uint32_t v : view.vertices) mesh.positions.push_back(scene.surface->mesh().positions[v]);
+  Simplified simple = simplified(mesh, kCoarseFaces);
+  for (auto& t : simple.mesh.triangles)
+    for (uint32_t& v : t) v = simple.vertex[v];
+  Pack pack("coarse");
+  pack.add("triangles", indices_of(simple.mesh.triangles), 3);
   return pack.bytes();
 }
 

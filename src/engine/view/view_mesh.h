@@ -31,6 +31,10 @@ ViewMesh view_mesh(const Scene&, size_t faces = 0);
 // visibility_scale, triangles u32 [#F, 3].
 std::string view_shape(const Scene&, const ViewMesh&);
 
+// "coarse": triangles u32 [#F, 3], positions in the view's vertices, 30,000 at most: for pictures that must
+// be drawn quickly.
+std::string view_coarse(const Scene&, const ViewMesh&);
+
 // "look": albedo u16 [#V, 4], the square roots of linear RGB, and the share that is shown without light;
 // material u8 [#V, 4]: roughness, specular, metalness in 255ths, and the part, an index in the head's list of
 // part names, 0 for none. Where parts overlap the later one counts.

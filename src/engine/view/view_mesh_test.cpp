@@ -87,6 +87,17 @@ TEST(ViewMesh, FewerFacesKeepVerticesOfTheSurface) {
   EXPECT_NEAR(view_mesh(half, 2000).error, view.error / 2, 1e-6 * view.error);
 }
 
+TEST(ViewMesh, CoarseTrianglesLieOnTheSurface) {
+  const Scene scene = sphere_scene();
+  const ViewMesh view = view_mesh(scene);
+  const auto corners = ReadPack(view_coarse(scene, view)).array<uint32_t>("triangles");
+  EXPECT_LE(corners.size(), 3 * 30'000u);
+  EXPECT_GT(corners.size(), 3 * 500u);
+  const auto corner = [&](size_t i) { return scene.surface->mesh().positions[view.vertices.at(corners[i])]; };
+  for (size_t i = 0; i < corners.size(); i += 3)
+    EXPECT_NEAR(length((corner(i) + corner(i + 1) + corner(i + 2)) / 3.0f), kSphereRadius, 0.01f);
+}
+
 TEST(ViewMesh, VerticesKnowTheirPart) {
   Scene scene = sphere_scene();
   const std::vector<Vec3f>& positions = scene.surface->mesh().positions;

@@ -10,6 +10,7 @@ import { Pace, steps } from './pace.js';
 /** @type {Record<string, string>} channels of the program that the renderer knows */
 const kChannels = { rgb: 'lit', albedo: 'albedo', normal: 'normal', roughness: 'roughness' };
 const kLate = 1200;  // milliseconds
+const kCoarse = 'coarse';  // triangles for quick pictures: come last, and only where pictures take long
 const kSurface = ['shape', 'look'], kLight = ['tables', 'light', 'vertex_light'];
 
 export class Live {
@@ -81,13 +82,21 @@ export class Live {
       kinds.forEach((kind, i) => this.set(kind, /** @type {ArrayBuffer} */ (bytes[i]), keys[kind]));
       if (kinds.length) this.ready();
     }
+    this.refreshCoarse();
+  }
+
+  async refreshCoarse() {
+    const key = this.store.state.packs?.[kCoarse];
+    if (!key || !this.pace.step.coarse || this.have[kCoarse] === key || !this.has(['shape'])) return;
+    const bytes = await this.fetchPack(kCoarse, key).catch(() => null);  // the fine ones do
+    if (bytes && this.store.state.packs?.[kCoarse] === key && this.has(['shape'])) this.set(kCoarse, bytes, key);
   }
 
   /** @returns {Map<string, Promise<ArrayBuffer>>} packs on their way, by kind */
   fetchMissing() {
     /** @type {Record<string, string>} */
     const keys = this.store.state.packs ?? {};
-    return new Map(Object.keys(keys).filter((kind) => this.have[kind] !== keys[kind]).map((kind) => [kind, this.fetchPack(kind, keys[kind])]));
+    return new Map(Object.keys(keys).filter((kind) => kind !== kCoarse && this.have[kind] !== keys[kind]).map((kind) => [kind, this.fetchPack(kind, keys[kind])]));
   }
 
   /** @param {string} kind @param {string} key */
@@ -108,6 +117,7 @@ export class Live {
     this.renderer.set(pack);
     if (kind === 'light') this.light = pack;
     if (kind === 'look') this.looks = partLooks(pack);
+    if (kind === 'shape') delete this.have[kCoarse];
     this.have[kind] = key;
     this.underway.delete(kind);
   }
@@ -141,10 +151,10 @@ export class Live {
   }
 
   /** @param {any} camera @param {string} channel @param {Light} light @param {import('./pace.js').Step} [step] */
-  draw(camera, channel, light, { scale, rough } = steps[0]) {
+  draw(camera, channel, light, { scale, rough, coarse } = steps[0]) {
     const turn = this.modules[2].rotation(this.store.object.up, -light.rotate * Math.PI / 180);
     const small = this.modules[2].resized(camera, Math.ceil(scale * camera.width), Math.ceil(scale * camera.height));
-    this.renderer.draw({ camera: small, channel: this.renderer.complete ? kChannels[channel] : 'albedo', room_from_object: turn, strength: light.scale, samples: 1, rough, highlight: 0, hidden: this.hiddenIndices() });
+    this.renderer.draw({ camera: small, channel: this.renderer.complete ? kChannels[channel] : 'albedo', room_from_object: turn, strength: light.scale, samples: 1, rough, coarse, highlight: 0, hidden: this.hiddenIndices() });
   }
 
   /**
@@ -165,7 +175,9 @@ export class Live {
       this.next = null;
       draw();
       await this.renderer.finished();
-      if (!rest) this.pace.took(performance.now() - began);
+      if (rest) continue;
+      this.pace.took(performance.now() - began);
+      this.refreshCoarse();
     }
     this.drawing = null;
   }

@@ -2,14 +2,14 @@
 // @ts-check
 /** How fine the page's own pictures are while something moves: as fine as there is time for. */
 
-/** @typedef {{scale: number, rough: boolean}} Step share of the pixels of a side; whether edges are left as they are */
+/** @typedef {{scale: number, rough: boolean, coarse: boolean}} Step share of the pixels of a side; whether edges are left as they are; whether triangles are few */
 
 /**
- * Where a driver draws in software the second takes a third of the time of the first, the third half of that; less than that the triangles
- * take however few the pixels are.
+ * Where a driver draws in software the second takes a third of the time of the first, and most of that goes into the triangles.
  * @type {Step[]}
  */
-export const steps = [{ scale: 1, rough: false }, { scale: 1, rough: true }, { scale: 0.5, rough: true }];
+export const steps = [{ scale: 1, rough: false, coarse: false }, { scale: 1, rough: true, coarse: false },
+  { scale: 1, rough: true, coarse: true }, { scale: 0.5, rough: true, coarse: true }];
 const kSlow = 100;  // milliseconds
 const kQuick = kSlow / 4;  // so that the next finer one is not slow
 const kOften = 4;  // pictures that must be quick

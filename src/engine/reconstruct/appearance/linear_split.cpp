@@ -27,6 +27,9 @@ constexpr double kMetalBy = 0.5;
 // Several materials always fit a little better than one. They are chosen only if the residual falls below
 // this factor, and by more than the noise of photographs, 37 dB.
 constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
+// A light that was raised by more than this, so that nothing is whiter than white, is one of assumed
+// strength.
+constexpr float kAssumed = 1.1f;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
 constexpr double kSharedError = 0.1;
@@ -148,8 +151,8 @@ float bright_albedo(const std::vector<Vec3f>& color, const SplitMaterials& mater
 // comes out too dark and colors above 1. That no color exceeds 1 raises the light and lowers the specular
 // reflectance: until it holds for most dielectrics, and costs little in the images for all that is seen.
 // Errors of surface that receives little light do not count much there.
-void brighten_light(const Transport& transport, const std::vector<uint32_t>& seen, SplitSolution& s,
-                    int height, const LightTurns* turns, Progress& progress) {
+float brighten_light(const Transport& transport, const std::vector<uint32_t>& seen, SplitSolution& s,
+                     int height, const LightTurns* turns, Progress& progress) {
   constexpr double kKept = 0.98;  // share of the dielectric samples
   constexpr double kCost = 0.02;  // share of the residual that the bound may add to it
   constexpr float kStep = 1.02f, kMaxGain = 4;
@@ -168,6 +171,7 @@ void brighten_light(const Transport& transport, const std::vector<uint32_t>& see
   }
   for (Material& m : s.materials.of) m.specular /= all;
   progress.log(Json{{"stage", "light strength"}, {"gain", all}}.dump());
+  return all;
 }
 
 std::vector<Vec3f> clamped(std::vector<Vec3f> v, float high) {
@@ -316,9 +320,9 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
   s.x.diffuse = clamped(std::move(s.x.diffuse), 1e6f);
   if (all_metal(s))
     make_light_gray(s, options.light_height);
-  else
-    brighten_light(transport, seen_vertices(transport.surface().mesh(), samples), s, options.light_height,
-                   turns, progress);
+  else if (brighten_light(transport, seen_vertices(transport.surface().mesh(), samples), s,
+                          options.light_height, turns, progress) > kAssumed)
+    result.light_error = {};
   result.material = mean_of(of);
   if (std::any_of(of.begin(), of.end(), [&](const Material& m) { return !(m == of.front()); }))
     result.materials = of;

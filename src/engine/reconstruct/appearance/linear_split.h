@@ -57,10 +57,12 @@ struct LinearSplit {
   Material material;                // mean over the surface
   std::vector<Material> materials;  // #V, metalness 0 or 1; empty: `material` everywhere
   float smoothest = 0;              // roughness of the smoothest hundredth of the surface
-  LightCovariance light_error{};    // of the light; 0 where all is metal: its light is assumed to be gray
-  Image light;                      // light_height rows, 2 light_height columns, RGB, linear, >= 0
-  std::vector<Vec3f> albedo;        // #V, linear, [0, 1]
-  std::vector<Vec3f> diffuse;       // #V, view-independent radiance D, linear; zero for metals
+  // Of the light; 0 where its strength is assumed: all is metal, or it was raised so that nothing is whiter
+  // than white.
+  LightCovariance light_error{};
+  Image light;                 // light_height rows, 2 light_height columns, RGB, linear, >= 0
+  std::vector<Vec3f> albedo;   // #V, linear, [0, 1]
+  std::vector<Vec3f> diffuse;  // #V, view-independent radiance D, linear; zero for metals
   struct Trial {
     bool metal;
     float roughness;

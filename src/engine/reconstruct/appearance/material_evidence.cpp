@@ -9,7 +9,6 @@
 #include "core/math/ladder.h"
 #include "core/math/parabola.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
-#include "engine/render/light_direction.h"
 
 namespace cei3d {
 namespace {
@@ -75,7 +74,7 @@ LitSamples::RowLight LitSamples::light_of(const SplitRow& row, float roughness) 
   };
   return {incident(ReflectionPart::base) * s.scale, incident(ReflectionPart::fresnel) * s.bias,
           row.diffuse_light * diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
-                                           dot(row.to_camera, light_directions_.at(row.normal)))};
+                                           light_directions_.at(row.normal).towards(row.to_camera))};
 }
 
 // Calls visit(row, its color, RowLight) for the vertex' samples. Returns their number.

@@ -57,7 +57,7 @@ class LitSamples {
   std::vector<Vec3f> colors_;
   int light_height_;
   Blurred sky_;
-  DirectionMap light_directions_;
+  LightDirectionMap light_directions_;
   std::vector<uint32_t> start_, order_;  // #V + 1; rows by the vertex nearest to them
 };
 

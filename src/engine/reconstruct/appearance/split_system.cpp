@@ -7,7 +7,6 @@
 #include "core/base/parallel.h"
 #include "core/math/brdf.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
-#include "engine/render/light_direction.h"
 
 namespace cei3d {
 namespace {
@@ -54,7 +53,7 @@ SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {
   const float bias = o.split_sum.bias * (1 - o.fresnel.open);
   o.far_gain = o.base_gain * (1 - o.base.open) + Vec3f{bias, bias, bias};
   o.diffuse_view = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
-                                dot(row.to_camera, light_directions_.at(row.normal)));
+                                light_directions_.at(row.normal).towards(row.to_camera));
   return o;
 }
 

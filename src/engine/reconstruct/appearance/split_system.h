@@ -12,7 +12,7 @@
 #include "engine/reconstruct/appearance/light_harmonics.h"
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "engine/reconstruct/appearance/split_rows.h"
-#include "engine/render/direction_map.h"
+#include "engine/render/light_direction.h"
 
 namespace cei3d {
 
@@ -122,7 +122,7 @@ class SplitSystem {
   std::vector<std::array<uint32_t, 2>> edges_;
   mutable BlurLadder blurs_;
   LightHarmonics harmonics_;
-  DirectionMap light_directions_;
+  LightDirectionMap light_directions_;
   DiffuseLightGrad diffuse_light_grad_;
   SplitMaterials materials_;
   std::vector<Optics> optics_;  // #rows
