@@ -74,6 +74,11 @@ template <class T>
 HD DiffuseLight<T> even_light(T nv) {
   return {nv * T(2.0f / 3), T(1.0f / 21), nv * T(1.0f / 84)};
 }
+// dL/d(nv) from dL/d(its members).
+template <class T>
+HD T even_light_grad(const DiffuseLight<T>& d) {
+  return d.lv * T(2.0f / 3) + d.grazing_lv * T(1.0f / 84);
+}
 
 // Reflected radiance of a diffuse surface towards a viewer at cosine nv, relative to a Lambertian one: a
 // smooth surface is darker where light enters or leaves at a grazing angle, a rough one brighter. The mean of
@@ -89,12 +94,6 @@ template <class T>
 HD T diffuse_view(T nv, T roughness) {
   return diffuse_view(nv, roughness, even_light(nv));
 }
-// How much more that is under this light than under even light.
-template <class T>
-HD T diffuse_towards(T nv, T roughness, const DiffuseLight<T>& light) {
-  return diffuse_view(nv, roughness, light) / diffuse_view(nv, roughness);
-}
-
 template <class T>
 struct DiffuseViewGrad {
   T value, d_nv, d_roughness;
@@ -110,22 +109,4 @@ HD DiffuseViewGrad<T> diffuse_view_grad(T nv, T roughness, const DiffuseLight<T>
           (one + light.lv) * c5 * light_factor + view_factor * (light.grazing + light.grazing_lv),
           {roughness * c5 * light_factor, view_factor * (roughness - half), view_factor * roughness}};
 }
-// Under even light, which depends on nv.
-template <class T>
-HD DiffuseViewGrad<T> diffuse_view_grad(T nv, T roughness) {
-  DiffuseViewGrad<T> g = diffuse_view_grad(nv, roughness, even_light(nv));
-  g.d_nv += g.d_light.lv * T(2.0f / 3) + g.d_light.grazing_lv * T(1.0f / 84);
-  return g;
-}
-template <class T>
-HD DiffuseViewGrad<T> diffuse_towards_grad(T nv, T roughness, const DiffuseLight<T>& light) {
-  const DiffuseViewGrad<T> lit = diffuse_view_grad(nv, roughness, light),
-                           even = diffuse_view_grad(nv, roughness);
-  const T inverse = T(1.0f) / even.value, value = lit.value * inverse;
-  return {value,
-          (lit.d_nv - value * even.d_nv) * inverse,
-          (lit.d_roughness - value * even.d_roughness) * inverse,
-          {lit.d_light.lv * inverse, lit.d_light.grazing * inverse, lit.d_light.grazing_lv * inverse}};
-}
-
 }  // namespace cei3d

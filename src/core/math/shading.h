@@ -16,16 +16,17 @@ namespace cei3d {
 template <class T>
 struct IncidentLight {
   Vec3<T> sky_irradiance;     // of the environment without occlusion
-  Vec3<T> visibility;         // fraction of it that arrives, per channel, times diffuse_towards() the viewer
+  Vec3<T> visibility;         // fraction of it that arrives, per channel
   Vec3<T> bounce;             // irradiance from the object
   Vec3<T> sky_reflection;     // mean radiance of the environment over the reflection lobe, without occlusion
   Vec3<T> mirror_visibility;  // fraction of that radiance that is not occluded, per channel
   Vec3<T> object_reflection;  // mean radiance from the object over the lobe, 0 where it is not occluded
+  DiffuseLight<T> diffuse_light{};  // of the environment
 
   HD Vec3<T> irradiance() const { return sky_irradiance * visibility + bounce; }
   HD Vec3<T> reflected() const { return sky_reflection * mirror_visibility + object_reflection; }
 };
-// dL/d(each member) from dL/d(irradiance) and dL/d(reflected radiance).
+// dL/d(each member) but the last from dL/d(irradiance) and dL/d(reflected radiance).
 template <class T>
 HD IncidentLight<T> incident_light_grad(const IncidentLight<T>& light, Vec3<T> d_irradiance,
                                         Vec3<T> d_reflected) {
@@ -41,6 +42,7 @@ struct ShadingPoint {
   T nv;                              // cosine of normal and direction to the viewer
   Vec3<T> irradiance;                // all of it
   Vec3<T> reflected;                 // mean radiance over the reflection lobe
+  DiffuseLight<T> diffuse_light;
 };
 
 template <class T>
@@ -76,7 +78,7 @@ template <class T>
 HD ShadingTerms<T> shading_terms(const float* table, const ShadingPoint<T>& p) {
   const T zero(0.0f), one(1.0f);
   const SplitSum<T> s = split_sum(table, p.nv, p.roughness);
-  const T view = diffuse_view(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)));
+  const T view = diffuse_view(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)), p.diffuse_light);
   const Vec3<T> white{one, one, one}, black{zero, zero, zero};
   const Vec3<T> offset = reflectance(s, f0_of(black, p.specular, p.metalness));
   return {p.irradiance * ((one - p.metalness) * T(1 / kPi) * view),
@@ -90,7 +92,7 @@ HD ShadingPoint<T> shading_grad(const float* table, const ShadingPoint<T>& p, Ve
   const T zero(0.0f), one(1.0f), k = (one - p.metalness) * T(1 / kPi);
   const SplitSumGrad<T> s = split_sum_grad(table, p.nv, p.roughness);
   const DiffuseViewGrad<T> view =
-      diffuse_view_grad(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)));
+      diffuse_view_grad(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)), p.diffuse_light);
   const Vec3<T> f0 = f0_of(p.albedo, p.specular, p.metalness);
   const T lit = dot(d_diffuse, p.albedo * p.irradiance), mirrored = dot(d_specular, p.reflected),
           mirrored_f0 = dot(d_specular, p.reflected * f0),
@@ -108,6 +110,8 @@ HD ShadingPoint<T> shading_grad(const float* table, const ShadingPoint<T>& p, Ve
   d.nv = lit * k * select(nv_clamped, zero, view.d_nv) + mirrored_f0 * s.d_nv.scale + mirrored * s.d_nv.bias;
   d.irradiance = d_diffuse * p.albedo * (k * view.value);
   d.reflected = d_specular * reflectance(s.value, f0);
+  d.diffuse_light = {lit * k * view.d_light.lv, lit * k * view.d_light.grazing,
+                     lit * k * view.d_light.grazing_lv};
   return d;
 }
 

@@ -91,51 +91,59 @@ TEST(SplitSum, OutOfRangeIsTheBorderAndFlat) {
 }
 
 TEST(Brdf, DiffuseViewSlopesEqualDualNumbers) {
-  for (const Sample s : kSamples) {
-    const auto f = [](D nv, D r) { return diffuse_view(nv, r); };
-    const DiffuseViewGrad<double> g = diffuse_view_grad(s.nv, s.roughness);
-    EXPECT_NEAR(g.value, diffuse_view(s.nv, s.roughness), 1e-14);
-    EXPECT_NEAR(g.d_nv, along_nv(f, s), 1e-12);
-    EXPECT_NEAR(g.d_roughness, along_roughness(f, s), 1e-12);
-  }
-}
-
-TEST(Brdf, DiffuseTowardsSlopesEqualDualNumbers) {
-  const auto constant = [](double x) { return D(x); };
   for (const Sample s : kSamples)
     for (const DiffuseLight<double> l :
          {DiffuseLight<double>{-0.6, 0.3, -0.25}, {0.1, 0.05, 0.01}, {0.9, 0, 0}}) {
-      const DiffuseLight<D> light{constant(l.lv), constant(l.grazing), constant(l.grazing_lv)};
-      const DiffuseViewGrad<double> g = diffuse_towards_grad(s.nv, s.roughness, l);
-      EXPECT_NEAR(g.value, diffuse_towards(s.nv, s.roughness, l), 1e-14);
-      const auto f = [&](D nv, D r) { return diffuse_towards(nv, r, light); };
+      const DiffuseLight<D> light{D(l.lv), D(l.grazing), D(l.grazing_lv)};
+      const DiffuseViewGrad<double> g = diffuse_view_grad(s.nv, s.roughness, l);
+      EXPECT_NEAR(g.value, diffuse_view(s.nv, s.roughness, l), 1e-14);
+      const auto f = [&](D nv, D r) { return diffuse_view(nv, r, light); };
       EXPECT_NEAR(g.d_nv, along_nv(f, s), 1e-12);
       EXPECT_NEAR(g.d_roughness, along_roughness(f, s), 1e-12);
-      const auto along = [&](double value, D DiffuseLight<D>::*member) {
-        return along_nv(
-            [&](D x, D r) {
-              DiffuseLight<D> moved = light;
-              moved.*member = x;
-              return diffuse_towards(D(s.nv), r, moved);
-            },
-            Sample{value, s.roughness});
+      const auto along = [&](D DiffuseLight<D>::*member) {
+        DiffuseLight<D> moved = light;
+        moved.*member = D((light.*member).value, 1.0);
+        return derivative_of(diffuse_view(D(s.nv), D(s.roughness), moved));
       };
-      EXPECT_NEAR(g.d_light.lv, along(l.lv, &DiffuseLight<D>::lv), 1e-12);
-      EXPECT_NEAR(g.d_light.grazing, along(l.grazing, &DiffuseLight<D>::grazing), 1e-12);
-      EXPECT_NEAR(g.d_light.grazing_lv, along(l.grazing_lv, &DiffuseLight<D>::grazing_lv), 1e-12);
+      EXPECT_NEAR(g.d_light.lv, along(&DiffuseLight<D>::lv), 1e-12);
+      EXPECT_NEAR(g.d_light.grazing, along(&DiffuseLight<D>::grazing), 1e-12);
+      EXPECT_NEAR(g.d_light.grazing_lv, along(&DiffuseLight<D>::grazing_lv), 1e-12);
     }
 }
 
+TEST(Brdf, EvenLightSlopeEqualsDualNumbers) {
+  const DiffuseLight<double> d{0.3, -0.7, 0.9};
+  const DiffuseLight<D> light = even_light(D(0.4, 1.0));
+  EXPECT_NEAR(even_light_grad(d),
+              d.lv * derivative_of(light.lv) + d.grazing * derivative_of(light.grazing) +
+                  d.grazing_lv * derivative_of(light.grazing_lv),
+              1e-12);
+}
+
 // All numbers of a point, to differentiate by one of them.
-constexpr int kMembers = 13;
+constexpr int kMembers = 16;
 template <class T>
 ShadingPoint<T> point_of(const T (&x)[kMembers]) {
-  return {{x[0], x[1], x[2]}, x[3], x[4], x[5], x[6], {x[7], x[8], x[9]}, {x[10], x[11], x[12]}};
+  return {{x[0], x[1], x[2]},   x[3], x[4], x[5], x[6], {x[7], x[8], x[9]}, {x[10], x[11], x[12]},
+          {x[13], x[14], x[15]}};
 }
 void members_of(const ShadingPoint<double>& p, double (&x)[kMembers]) {
-  const double all[kMembers] = {p.albedo.x,    p.albedo.y,    p.albedo.z,     p.roughness,    p.specular,
-                                p.metalness,   p.nv,          p.irradiance.x, p.irradiance.y, p.irradiance.z,
-                                p.reflected.x, p.reflected.y, p.reflected.z};
+  const double all[kMembers] = {p.albedo.x,
+                                p.albedo.y,
+                                p.albedo.z,
+                                p.roughness,
+                                p.specular,
+                                p.metalness,
+                                p.nv,
+                                p.irradiance.x,
+                                p.irradiance.y,
+                                p.irradiance.z,
+                                p.reflected.x,
+                                p.reflected.y,
+                                p.reflected.z,
+                                p.diffuse_light.lv,
+                                p.diffuse_light.grazing,
+                                p.diffuse_light.grazing_lv};
   std::copy(all, all + kMembers, x);
 }
 
@@ -162,8 +170,10 @@ TEST(Shading, AdjointEqualsDualNumbersInEveryArgument) {
     for (int k = 0; k < kMembers; ++k) x[k] = 0.06 + 0.9 * double(Rng(11, i, uint64_t(k)).uniform());
     expect_grad_equals_duals(x);
   }
-  expect_grad_equals_duals({0.2, 0.5, 0.8, 0.02, 0.5, 0, 0.6, 1, 2, 3, 2, 1, 1});   // smoother than the table
-  expect_grad_equals_duals({0.2, 0.5, 0.8, 0.4, 0.5, 1, -0.05, 1, 2, 3, 2, 1, 1});  // seen from behind
+  expect_grad_equals_duals(
+      {0.2, 0.5, 0.8, 0.02, 0.5, 0, 0.6, 1, 2, 3, 2, 1, 1, 0.4, 0.05, 0.01});  // smoother than the table
+  expect_grad_equals_duals(
+      {0.2, 0.5, 0.8, 0.4, 0.5, 1, -0.05, 1, 2, 3, 2, 1, 1, 0.2, 0.1, 0.02});  // seen from behind
 }
 
 TEST(Shading, IncidentLightAdjointEqualsDualNumbers) {

@@ -52,7 +52,8 @@ Planes<ShadingRows::kRows> shading_points(const HitBatch& batch, std::span<const
                                     m.metalness,
                                     dot(batch.hits[i].normal, batch.hits[i].to_camera),
                                     light[i].irradiance(),
-                                    light[i].reflected()};
+                                    light[i].reflected(),
+                                    light[i].diffuse_light};
     ShadingRows::store_point(p.row(0), kBlock, int(i), point);
   }
   return p;
@@ -170,35 +171,38 @@ std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
   return radiance;
 }
 
-float Lighting::towards_viewer(const HitBatch& batch, size_t hit) const {
+DiffuseLight<float> Lighting::diffuse_light(const HitBatch& batch, size_t hit) const {
   const Hit& h = batch.hits[hit];
-  const LightDirection light = directions_.at(batch.turned.in_room(hit, h.normal));
-  return diffuse_towards(clamp(dot(h.normal, h.to_camera), 0.0f, 1.0f), batch.materials[hit].roughness,
-                         light.towards(batch.turned.in_room(hit, h.to_camera)));
+  if (!surface_) return even_light(clamp(dot(h.normal, h.to_camera), 0.0f, 1.0f));
+  return directions_.at(batch.turned.in_room(hit, h.normal)).towards(batch.turned.in_room(hit, h.to_camera));
 }
 
-Lighting::Towards Lighting::towards_viewer_grad(const HitBatch& batch, size_t hit) const {
-  if (!surface_) return {1, 0, {0, 0, 0}, {0, 0, 0}};
+void Lighting::add_diffuse_light_grad(const HitBatch& batch, size_t hit, const DiffuseLight<float>& d,
+                                      Vec3f& d_normal, Vec3f& d_view) const {
   constexpr float kStep = 0.02f;  // of differences: the table changes slowly
-  const Hit& h = batch.hits[hit];
-  const Vec3f n = batch.turned.in_room(hit, h.normal), v = batch.turned.in_room(hit, h.to_camera);
-  const float nv = clamp(dot(n, v), 0.0f, 1.0f);
-  const LightDirection light = directions_.at(n);
-  const DiffuseViewGrad<float> g = diffuse_towards_grad(nv, batch.materials[hit].roughness, light.towards(v));
-  const auto d_of = [&](const DiffuseLight<float>& change) {
-    return change.lv * g.d_light.lv + change.grazing * g.d_light.grazing +
-           change.grazing_lv * g.d_light.grazing_lv;
-  };
-  const auto slope = [&](Vec3f along) {
-    return (d_of(directions_.at(normalize(n + along * kStep)).towards(v)) -
-            d_of(directions_.at(normalize(n - along * kStep)).towards(v))) /
-           (2 * kStep);
-  };
-  const Tangents<float> t = tangents_of(n);
-  const Vec3f d_light = light.mean * g.d_light.lv + light.grazing_mean * g.d_light.grazing_lv,
-              d_n = (v - n * nv) * g.d_nv + t.x * slope(t.x) + t.y * slope(t.y),
-              d_v = (n - v * nv) * g.d_nv + d_light - v * dot(v, d_light);
-  return {g.value, g.d_roughness, batch.turned.in_object(hit, d_n), batch.turned.in_object(hit, d_v)};
+  const Vec3f n = batch.turned.in_room(hit, batch.hits[hit].normal),
+              v = batch.turned.in_room(hit, batch.hits[hit].to_camera);
+  const float nv = dot(n, v);
+  Vec3f d_n{0, 0, 0}, d_v{0, 0, 0};
+  if (surface_) {
+    const auto loss_at = [&](Vec3f normal) {
+      const DiffuseLight<float> light = directions_.at(normalize(normal)).towards(v);
+      return light.lv * d.lv + light.grazing * d.grazing + light.grazing_lv * d.grazing_lv;
+    };
+    const auto slope = [&](Vec3f along) {
+      return (loss_at(n + along * kStep) - loss_at(n - along * kStep)) / (2 * kStep);
+    };
+    const Tangents<float> t = tangents_of(n);
+    const LightDirection light = directions_.at(n);
+    d_n = t.x * slope(t.x) + t.y * slope(t.y);
+    d_v = light.mean * d.lv + light.grazing_mean * d.grazing_lv;
+    d_v += v * -dot(v, d_v);
+  } else if (nv > 0 && nv < 1) {
+    d_n = (v - n * nv) * even_light_grad(d);
+    d_v = (n - v * nv) * even_light_grad(d);
+  }
+  d_normal += batch.turned.in_object(hit, d_n);
+  d_view += batch.turned.in_object(hit, d_v);
 }
 
 IncidentLight<float> Lighting::incident_at(const HitBatch& batch, size_t hit, Vec3f sky_reflection,
@@ -209,11 +213,12 @@ IncidentLight<float> Lighting::incident_at(const HitBatch& batch, size_t hit, Ve
   const VertexLight& vertices = vertices_[batch.turned.bin(hit)];
   const Vec3f normal = hit_normals_ ? h.normal : normalize(at_corners(mesh.normals, t, h.b1, h.b2));
   return {.sky_irradiance = irradiance_.at(batch.turned.in_room(hit, normal)),
-          .visibility = at_corners(vertices.visibility, t, h.b1, h.b2) * towards_viewer(batch, hit),
+          .visibility = at_corners(vertices.visibility, t, h.b1, h.b2),
           .bounce = at_corners(vertices.bounce, t, h.b1, h.b2),
           .sky_reflection = sky_reflection,
           .mirror_visibility = seen.visibility,
-          .object_reflection = seen.radiance};
+          .object_reflection = seen.radiance,
+          .diffuse_light = diffuse_light(batch, hit)};
 }
 
 std::vector<IncidentLight<float>> Lighting::incident_light(const HitBatch& batch,
@@ -242,7 +247,8 @@ std::vector<IncidentLight<float>> Lighting::open_light(const HitBatch& batch) co
                                 .bounce = none,
                                 .sky_reflection = sky[i],
                                 .mirror_visibility = all,
-                                .object_reflection = none};
+                                .object_reflection = none,
+                                .diffuse_light = diffuse_light(part, i)};
   });
   return out;
 }
@@ -312,13 +318,9 @@ ShadingGrads Lighting::block_grad(const HitBatch& batch, std::span<const Inciden
   using Rows = ShadingRows;
   Planes<Rows::kRows> d_points = shade_grad(device_, batch, light, albedo, d_radiance);
   ShadingGrads out(batch.size());
-  std::vector<Towards> towards(batch.size());
-  std::vector<float> d_towards(batch.size());
   for (size_t i = 0; i < batch.size(); ++i) {
     const IncidentLight<float> d =
         incident_light_grad(light[i], d_points.get(Rows::kIrradiance, i), d_points.get(Rows::kReflected, i));
-    towards[i] = towards_viewer_grad(batch, i);
-    d_towards[i] = dot(d.visibility, light[i].visibility) / towards[i].value;
     out.d_albedo[i] = d_points.get(Rows::kAlbedo, i);
     out.d_sky_irradiance[i] = d.sky_irradiance;
     out.d_sky_reflection[i] = d.sky_reflection;
@@ -328,14 +330,18 @@ ShadingGrads Lighting::block_grad(const HitBatch& batch, std::span<const Inciden
     const Vec3f n = batch.hits[i].normal, v = batch.hits[i].to_camera;
     const float d_nv = d_points.row(Rows::kNv)[i], nv = dot(n, v);
     const SurfaceReflectionGrad<float>& r = reflection[i];
-    out.d_normal[i] = (v - n * nv) * d_nv + r.d_n + towards[i].d_normal * d_towards[i];
+    out.d_normal[i] = (v - n * nv) * d_nv + r.d_n;
     if (hit_normals_)
       out.d_normal[i] +=
           batch.turned.in_object(i, irradiance_.grad(batch.turned.in_room(i, n), out.d_sky_irradiance[i]));
-    out.d_view[i] = (n - v * nv) * d_nv + r.d_v + towards[i].d_view * d_towards[i];
-    out.d_material[i] = {
-        d_points.row(Rows::kRoughness)[i] + r.d_roughness + towards[i].d_roughness * d_towards[i],
-        d_points.row(Rows::kSpecular)[i] + r.d_specular, d_points.row(Rows::kMetalness)[i] + r.d_metalness};
+    out.d_view[i] = (n - v * nv) * d_nv + r.d_v;
+    add_diffuse_light_grad(batch, i,
+                           {d_points.row(Rows::kDiffuseLight)[i], d_points.row(Rows::kDiffuseLight + 1)[i],
+                            d_points.row(Rows::kDiffuseLight + 2)[i]},
+                           out.d_normal[i], out.d_view[i]);
+    out.d_material[i] = {d_points.row(Rows::kRoughness)[i] + r.d_roughness,
+                         d_points.row(Rows::kSpecular)[i] + r.d_specular,
+                         d_points.row(Rows::kMetalness)[i] + r.d_metalness};
   }
   return out;
 }

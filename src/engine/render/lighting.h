@@ -84,13 +84,10 @@ class Lighting {
                                                             std::span<const Vec3f> d_reflection) const;
   ShadingGrads block_grad(const HitBatch&, std::span<const IncidentLight<float>>,
                           std::span<const Vec3f> albedo, std::span<const Vec3f> d_radiance) const;
-  // diffuse_towards() the viewer of a hit, and its derivatives.
-  struct Towards {
-    float value, d_roughness;
-    Vec3f d_normal, d_view;
-  };
-  float towards_viewer(const HitBatch&, size_t hit) const;
-  Towards towards_viewer_grad(const HitBatch&, size_t hit) const;
+  // How a hit's light depends on its normal and the direction to the viewer.
+  DiffuseLight<float> diffuse_light(const HitBatch&, size_t hit) const;
+  void add_diffuse_light_grad(const HitBatch&, size_t hit, const DiffuseLight<float>& d, Vec3f& d_normal,
+                              Vec3f& d_view) const;
   IncidentLight<float> incident_at(const HitBatch&, size_t hit, Vec3f sky_reflection,
                                    const SelfReflection::Reflected&) const;
 

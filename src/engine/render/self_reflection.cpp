@@ -140,8 +140,8 @@ std::vector<Vec3f> SelfReflection::radiance_of(const Met& met, const TurnedHits&
   for (size_t k = 0; k < out.size(); ++k) {
     const Material& m = met.materials[k];
     const float nv = max(dot(met.hits[k].normal, met.hits[k].to_camera), kMinCosine);
-    const ShadingPoint<float> point{met.albedo[k],     m.roughness, m.specular, m.metalness, nv,
-                                    met.irradiance[k], out[k]};
+    const ShadingPoint<float> point{met.albedo[k],     m.roughness, m.specular,    m.metalness, nv,
+                                    met.irradiance[k], out[k],      even_light(nv)};
     out[k] = shading_terms(split_sum_table(), point).radiance(point.albedo);
   }
   return out;

@@ -184,7 +184,7 @@ struct SgLobesGrad {
 // The rows of a ShadingPoint, in the order of its members.
 struct ShadingRows {
   static constexpr int kAlbedo = 0, kRoughness = 3, kSpecular = 4, kMetalness = 5, kNv = 6, kIrradiance = 7,
-                       kReflected = 10, kRows = 13;
+                       kReflected = 10, kDiffuseLight = 13, kRows = 16;
   template <class T>
   static HD ShadingPoint<T> load_point(const float* p, int stride, int i) {
     const auto row = [&](int r) { return p + r * stride; };
@@ -194,7 +194,9 @@ struct ShadingRows {
             load<T>(row(kMetalness) + i),
             load<T>(row(kNv) + i),
             load_planes<T>(row(kIrradiance), stride, i),
-            load_planes<T>(row(kReflected), stride, i)};
+            load_planes<T>(row(kReflected), stride, i),
+            {load<T>(row(kDiffuseLight) + i), load<T>(row(kDiffuseLight + 1) + i),
+             load<T>(row(kDiffuseLight + 2) + i)}};
   }
   template <class T>
   static HD void store_point(float* p, int stride, int i, const ShadingPoint<T>& x) {
@@ -206,6 +208,9 @@ struct ShadingRows {
     store<T>(row(kNv) + i, x.nv);
     store_planes(row(kIrradiance), stride, i, x.irradiance);
     store_planes(row(kReflected), stride, i, x.reflected);
+    store<T>(row(kDiffuseLight) + i, x.diffuse_light.lv);
+    store<T>(row(kDiffuseLight + 1) + i, x.diffuse_light.grazing);
+    store<T>(row(kDiffuseLight + 2) + i, x.diffuse_light.grazing_lv);
   }
 };
 
