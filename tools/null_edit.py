@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-VIEWS, RADIUS = 6, 0.25  # of the turntable; of the disc, as a share of the object's width in the picture
+VIEWS, RADIUS = 3, 0.25  # of the turntable; of the disc, as a share of the object's width in the picture
 
 
 def disc_of(albedo):
