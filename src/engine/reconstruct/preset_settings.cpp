@@ -201,7 +201,7 @@ void add_joint(const Group<JointOptions>& g) {
               "Specular term: the shading model's, or one spherical Gaussian without occlusion",
               "[paper eq. 14]")
       .add("rays", &JointOptions::rays, {1, 1e6}, "rays a step",
-           "Rays that meet the object in a training step", kPaperPreset)
+           "Rays through pixels of the object in a training step", kPaperPreset)
       .add("eikonal", &JointOptions::eikonal, {0, 100}, "", "Weight of the eikonal loss, (|gradient| - 1)^2",
            kPaper)
       .add("box_points", &JointOptions::box_points, {0, 1e6}, "points a step",
