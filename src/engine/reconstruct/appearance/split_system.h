@@ -13,6 +13,7 @@
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "engine/reconstruct/appearance/split_rows.h"
 #include "engine/render/light_direction.h"
+#include "model/geometry/mesh/adjacency.h"
 
 namespace cei3d {
 
@@ -121,7 +122,7 @@ class SplitSystem {
   int views_ = 0;               // number of cameras that rows are of
   std::vector<Vec3f> weights_;  // #rows; 0 where the prediction of a clipped channel is above its color
   LinearSplitOptions options_;
-  std::vector<std::array<uint32_t, 2>> edges_;
+  std::vector<Edge> edges_;
   mutable BlurLadder blurs_;
   LightHarmonics harmonics_;
   LightDirectionMap light_directions_;
