@@ -6,7 +6,7 @@
 namespace cei3d {
 namespace {
 
-constexpr float kUsual = 0.5f;  // specular strength of a refractive index of 1.5: F0 = 0.04
+constexpr float kUsual = kUsualSpecular;
 
 // Colors of metals are published reflectances. All other values, including every roughness, are typical: real
 // surfaces of the name vary widely.

@@ -16,7 +16,6 @@ namespace {
 
 constexpr int kLevels = BlurLadder::kLevels;
 constexpr int kGrain = 1024;  // vertices per chunk
-constexpr float kSpecular = 0.5f;
 // Bounds of the reflectance of a metal while the scale of the light is uncertain.
 constexpr float kMinMetal = 0.02f, kMaxMetal = 4;
 
@@ -90,7 +89,7 @@ int LitSamples::for_samples(uint32_t vertex, float roughness, const F& visit) co
 
 // Adds the errors of the dielectric and the metal of that level. Returns the number of samples.
 int LitSamples::add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float* errors) const {
-  const Vec3f black{0, 0, 0}, white{1, 1, 1}, f0 = f0_of(black, kSpecular, 0.0f);
+  const Vec3f black{0, 0, 0}, white{1, 1, 1}, f0 = f0_of(black, kUsualSpecular, 0.0f);
   OneCoefficient dielectric, metal;
   const int count = for_samples(vertex, BlurLadder::roughness(level),
                                 [&](const SplitRow& row, Vec3f color, const RowLight& s) {
@@ -131,7 +130,7 @@ size_t place_of(Vec3f p) {
 }  // namespace
 
 std::vector<ReflectionSample> LitSamples::of_dielectric(uint32_t vertex, const Material& m) const {
-  const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kSpecular, 0.0f);
+  const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kUsualSpecular, 0.0f);
   std::vector<ReflectionSample> out;
   for_samples(vertex, m.roughness, [&](const SplitRow& row, Vec3f color, const RowLight& s) {
     out.push_back({row.weight, s.diffuse, s.base * f0 + s.fresnel, color});
