@@ -41,7 +41,8 @@ constexpr const char* kCommandFooter =
     "Options of every command: --quiet, --json, --log-level, --device, --threads (see `cei3d -h`).";
 
 std::string footer() {
-  return "A CAPTURE is a folder of posed images with object masks, or its .json or .npz:\n  " +
+  return "A CAPTURE is a folder of posed images with object masks, or the file in it that holds the cameras\n"
+         "(.json, .npz, .xml, .csv, .npy or .sfm):\n  " +
          capture_format_layouts("\n  ") + "\n" + kFooter;
 }
 

@@ -64,7 +64,8 @@ class Editor : public HttpApp, private JobListener {
   void received(const SocketPtr&, const std::string& text) override;
   void closed(const SocketPtr&) override;
 
-  // Ends the work that runs, saved, and forgets who waits for answers: before what carries them goes away.
+  // Ends the work that is running, after its state was saved, and drops all tabs and the replies that are
+  // still owed. To be called before the server is destroyed, whose connections these refer to.
   void stop();
   void wait_until_idle() { worker_->wait_until_idle(); }  // for tests
 

@@ -8,8 +8,8 @@
 
 namespace cei3d {
 
-// Of arrays and objects in each other. Nothing that is read goes deeper than 10; copying and writing a value
-// takes as many calls in each other as it is deep.
+// The most levels of arrays and objects in each other. What the program reads has at most 10; copying and
+// writing a value calls itself once for each level, which must not exhaust the stack.
 inline constexpr int kMaxJsonDepth = 64;
 bool nested_too_deep(std::string_view text);
 

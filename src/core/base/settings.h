@@ -19,7 +19,7 @@ struct SettingInfo {
   enum class Kind { whole, number, flag, choice };
 
   std::string key;     // "geometry.loss.eikonal"
-  std::string what;    // a sentence
+  std::string what;    // a phrase that needs no other: "Weight of the mask loss"
   std::string unit;    // "steps", "1 / length"; empty: none
   std::string source;  // "[Wang et al. 2021]"; empty: found by trials
   Kind kind = Kind::number;

@@ -52,13 +52,19 @@ HD T microfacet_brdf(Vec3<T> n, Vec3<T> v, Vec3<T> l, T f0, T roughness) {
   return select((dot(n, v) > T(0.0f)) & (dot(n, l) > T(0.0f)), f, T(0.0f));
 }
 
+// factor * (1 - cosine)^5, which is large only at grazing angles.
+template <class T>
+HD T times_grazing(T factor, T cosine) {
+  const T c = T(1.0f) - cosine, c2 = c * c;
+  return factor * c2 * c2 * c;
+}
+
 // Burley's diffuse term relative to a Lambertian one, for a light at cosine nl and a viewer at cosine nv; lh
 // is the cosine of light and half vector. [Burley 2012, sec. 5.3]
 template <class T>
 HD T burley_diffuse(T nl, T nv, T lh, T roughness) {
-  const T flat = T(2.0f) * roughness * lh * lh - T(0.5f), a = T(1.0f) - nl, b = T(1.0f) - nv;
-  const T a2 = a * a, b2 = b * b;
-  return (T(1.0f) + flat * a2 * a2 * a) * (T(1.0f) + flat * b2 * b2 * b);
+  const T flat = T(2.0f) * roughness * lh * lh - T(0.5f);
+  return (T(1.0f) + times_grazing(flat, nl)) * (T(1.0f) + times_grazing(flat, nv));
 }
 
 // What Burley's diffuse term depends on in the light that reaches a point: means over that light, weighted by
@@ -85,8 +91,8 @@ HD T even_light_grad(const DiffuseLight<T>& d) {
 // Burley's diffuse term, but for the product of the deviations of its two factors.
 template <class T>
 HD T diffuse_view(T nv, T roughness, const DiffuseLight<T>& light) {
-  const T half(0.5f), view = roughness * (T(1.0f) + light.lv) - half, c = T(1.0f) - nv, c2 = c * c;
-  return (T(1.0f) + view * c2 * c2 * c) *
+  const T half(0.5f), view = roughness * (T(1.0f) + light.lv) - half;
+  return (T(1.0f) + times_grazing(view, nv)) *
          (T(1.0f) + (roughness - half) * light.grazing + roughness * light.grazing_lv);
 }
 // Under even light.

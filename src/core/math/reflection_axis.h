@@ -100,8 +100,8 @@ HD LobeFrameGrad<T> lobe_frame_grad(const PartTables& tables, Vec3<T> n, Vec3<T>
 inline constexpr float kMetalF0 = 0.8f;
 template <class T>
 HD T base_share(SplitSum<T> s, T specular, T metalness) {
-  const T base = (dielectric_f0(specular, metalness) + metalness * T(kMetalF0)) * s.scale;
-  return base / max(base + s.bias, T(1e-6f));
+  const T f0 = dielectric_f0(specular, metalness) + metalness * T(kMetalF0);
+  return f0 * s.scale / max(reflectance(s, f0), T(1e-6f));
 }
 
 struct ReflectionTables {
@@ -138,8 +138,7 @@ HD SurfaceReflectionGrad<T> surface_reflection_grad(const ReflectionTables& t, V
   const LobeFrameGrad<T> base = lobe_frame_grad(t.base, n, v, roughness, d.base),
                          fresnel = lobe_frame_grad(t.fresnel, n, v, roughness, d.fresnel);
   const SplitSumGrad<T> s = split_sum_grad(t.split_sum, nv, roughness);
-  const T f0 = dielectric_f0(specular, metalness) + metalness * T(kMetalF0),
-          sum = f0 * s.value.scale + s.value.bias;
+  const T f0 = dielectric_f0(specular, metalness) + metalness * T(kMetalF0), sum = reflectance(s.value, f0);
   const T k = select(sum < T(1e-6f), zero, d.share / (max(sum, T(1e-6f)) * max(sum, T(1e-6f))));
   const T d_f0 = k * s.value.scale * s.value.bias;  // share = f0 scale / (f0 scale + bias)
   const T d_scale = k * f0 * s.value.bias, d_bias = -(k * f0 * s.value.scale);

@@ -55,7 +55,11 @@ HD Vec3<T> f0_of(Vec3<T> albedo, T specular, T metalness) {
   const T dielectric = dielectric_f0(specular, metalness);
   return albedo * metalness + Vec3<T>{dielectric, dielectric, dielectric};
 }
-// Fraction of the reflected radiance that reaches the viewer.
+// Fraction of the reflected radiance that reaches the viewer, of one channel or of three.
+template <class T>
+HD T reflectance(SplitSum<T> s, T f0) {
+  return f0 * s.scale + s.bias;
+}
 template <class T>
 HD Vec3<T> reflectance(SplitSum<T> s, Vec3<T> f0) {
   return f0 * s.scale + Vec3<T>{s.bias, s.bias, s.bias};

@@ -55,22 +55,26 @@ SettingTable<BranchOptions> make_settings() {
   SettingTable<BranchOptions> table;
   SettingGroup<BranchOptions, BranchOptions>(table, "branch.",
                                              [](BranchOptions& o) -> BranchOptions& { return o; })
-      .add("steps", &BranchOptions::steps, {1, 1e6}, "steps", "That the branch learns", "[paper sec. 5.1]")
-      .add("batch", &BranchOptions::batch, {1, 1e6}, "points a step", "Size of a batch")
-      .add("levels", &BranchOptions::levels, {1, 16}, "", "Levels of its hash grid", "[Mueller et al. 2022]")
-      .add("hidden_layers", &BranchOptions::hidden_layers, {0, 8}, "", "Its hidden layers")
-      .add("width", &BranchOptions::width, {1, 512}, "neurons", "Of a hidden layer")
-      .add("table_rate", &BranchOptions::table_rate, {0, 1}, "", "Rate of the hash tables",
+      .add("steps", &BranchOptions::steps, {1, 1e6}, "steps",
+           "Training steps of the branch; the paper has 500", "[paper sec. 5.1]")
+      .add("batch", &BranchOptions::batch, {1, 1e6}, "points a step", "Size of a training batch")
+      .add("levels", &BranchOptions::levels, {1, 16}, "", "Levels of the branch's hash grid",
+           "[Mueller et al. 2022]")
+      .add("hidden_layers", &BranchOptions::hidden_layers, {0, 8}, "", "Hidden layers of the branch")
+      .add("width", &BranchOptions::width, {1, 512}, "neurons", "Width of a hidden layer")
+      .add("table_rate", &BranchOptions::table_rate, {0, 1}, "", "Learning rate of the hash tables",
            "[Kingma and Ba 2015]")
-      .add("layer_rate", &BranchOptions::layer_rate, {0, 1}, "", "Rate of the layers", "[Kingma and Ba 2015]")
-      .add("decay", &BranchOptions::decay, {}, "", "Rates fall along half a cosine; else they are constant")
+      .add("layer_rate", &BranchOptions::layer_rate, {0, 1}, "", "Learning rate of the layers",
+           "[Kingma and Ba 2015]")
+      .add("decay", &BranchOptions::decay, {}, "",
+           "Let rates fall along half a cosine; else they are constant")
       .choice("start", &BranchOptions::start,
               {{BranchStart::small, "small"}, {BranchStart::trained, "trained"}},
               "A small new network, or a copy of the trained albedo network, which is the paper's",
               "[paper sec. 4.2]")
       .choice("loss", &BranchOptions::loss,
               {{BranchLoss::cross_entropy, "cross_entropy"}, {BranchLoss::l1, "l1"}},
-              "Of the painted colors; l1 is the paper's", "[paper eq. 17]");
+              "Loss of the painted colors; l1 is the paper's", "[paper eq. 17]");
   return table;
 }
 

@@ -21,7 +21,8 @@ struct SparsePoints {
 };
 SparsePoints sparse_points(std::span<const View> views);
 
-// On the object (1), on the ground or far away (-1), on something else that stands about (-0.5), unknown (0).
+// Where each point is believed to be, #points: 1: on the object; -1: on the plane that the object lies on or
+// hangs at, or far away; -0.5: on something else nearby; 0: not known.
 using PointBelief = std::vector<float>;
 
 // The object is what stands in the middle of what all cameras look at, above the plane that it lies on or

@@ -6,7 +6,8 @@
 
 namespace cei3d {
 
-// Notes the poses of the training cameras in the object, and takes from there what a resumed run will.
+// Stores the poses of the training cameras in the scene, and takes the cameras from there again: stored poses
+// are rounded, and a resumed run must have the same cameras.
 void keep_poses(const RunContext&, RunState& state);
 // Stores the exposures of the training pixels in the scene.
 void keep_exposures(const RunContext&, RunState&);

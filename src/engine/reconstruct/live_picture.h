@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The object while it is made, for whoever looks: now and then a small picture from one camera. Whether
-// somebody looks changes nothing of the object but what a run by time can do in the time.
+// Small pictures of the object from one camera, shown now and then while it is made. They do not change the
+// object, but a run with a time limit has less time for it.
 #pragma once
 
 #include <functional>
@@ -18,10 +18,11 @@ namespace cei3d {
 
 class LivePicture {
  public:
-  // show: empty: nobody looks. unit_camera: of the first training view.
+  // show: may be empty, then no picture is made. unit_camera: of the first training view.
   LivePicture(const Camera& unit_camera, ShowPicture show, Clock clock);
 
-  // Between steps. Where a picture is due, draw() makes it: over white, display-encoded.
+  // To be called between steps. If a picture is due, shows the one that draw() makes: over white,
+  // display-encoded.
   void offer(const std::function<Image(const Camera&)>& draw);
 
  private:
@@ -42,7 +43,7 @@ struct LitSurface {
   const LightTurns* turns;
 };
 
-// As the first training view shows it.
+// The picture of the camera, which is that of the first training view: over white, display-encoded.
 Image lit_picture(const Device&, const LitSurface&, const Camera& unit_camera);
 
 }  // namespace cei3d

@@ -28,8 +28,8 @@ struct Pixel {
 class PixelStore {
  public:
   // image: RGBA, linear, straight alpha, below 0 where unknown. Keeps known pixels with an alpha above zero
-  // within `rim` pixels. depth: of the file. Of 8 bits the display-encoded bytes are all that is kept; else
-  // the radiance, too.
+  // within `rim` pixels. depth: of the file. Files of 8 bits are kept as display-encoded bytes alone, others
+  // with their radiance, too.
   void add_view(const Camera& unit_camera, const Image& image, int rim, ImageDepth depth = ImageDepth::bits8);
 
   const std::vector<Camera>& cameras() const { return cameras_; }
@@ -53,13 +53,13 @@ class PixelStore {
  private:
   std::vector<Camera> cameras_;
   std::vector<Pixel> pixels_;
-  std::vector<std::array<uint16_t, 3>>
-      halves_;                      // of the radiance: #pixels, or empty when all files have 8 bits
+  // Radiance as half floats: #pixels, or empty when all files have 8 bits.
+  std::vector<std::array<uint16_t, 3>> halves_;
   std::vector<ImageDepth> depths_;  // of the views
   std::vector<std::vector<uint8_t>> masks_;
   std::vector<Vec3f> exposures_;
-  std::vector<std::array<std::array<float, 256>, 3>>
-      curves_;  // of the views: display-encoded colors of the bytes; empty without exposures
+  // Display-encoded colors of the bytes, by view and channel; empty without exposures.
+  std::vector<std::array<std::array<float, 256>, 3>> curves_;
 };
 
 }  // namespace cei3d

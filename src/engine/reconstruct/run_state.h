@@ -28,7 +28,7 @@ struct RunState {
 
   // Between the stages of light and appearance: LinearSplit::albedo, #V of scene.surface; else empty.
   std::vector<Vec3f> separated_albedo;
-  DescentState descent;  // of the appearance, in the middle of its stage
+  DescentState descent;  // of the appearance stage, while it is in the middle of its descent
 
   // Hits of these stages on scene.surface, and its transport. Not in checkpoints: they are recomputed.
   ObjectHits hits;

@@ -30,9 +30,8 @@ struct HitOptions {
   uint64_t subset = 0;  // index of the random subset
 };
 
-// Pixels of the same kind, of which it is not known yet where their rays meet the surface: the position of
-// each is the point of its ray nearest to the origin, the footprint is that there, and normals and triangles
-// mean nothing.
+// Pixels wholly on the object whose hits are not known yet. In place of the hit stands the point of the ray
+// that is nearest to the origin, with the footprint there; normals and triangles mean nothing.
 ObjectHits object_rays(const PixelStore&, const HitOptions&);
 
 // Error: interrupted.

@@ -12,7 +12,7 @@
 
 namespace cei3d {
 
-// More than a cell of 0.05 from its walls.
+// Whether a point is in the pit, more than a cell of 0.05 from its walls.
 inline bool amid_pit(Vec3f p) {
   return std::abs(p.x) < 0.22f && std::abs(p.y) < 0.22f && p.z > 0.16f && p.z < 0.4f;
 }
@@ -46,7 +46,7 @@ Image filtered_box_picture(const Camera& camera, const ColorAt& color_at) {
   return downscale(box_picture(finer, color_at), kSamples);
 }
 
-// On a sphere of radius 2.5 around the origin, looking at it; `size` pixels per axis.
+// A camera 2.5 from the origin, looking at it; `size` pixels per axis.
 inline Camera box_camera(double height, double turn, int size) {
   const double flat = std::sqrt(1 - height * height);
   return look_at(Vec3d{flat * std::cos(turn), flat * std::sin(turn), height} * 2.5, {0, 0, 0},
@@ -60,10 +60,11 @@ inline VisualHull hull_of(const PixelStore& pixels, int cells) {
   return visual_hull(masks, cells);
 }
 
-// How much of the pit is open, and how much of the solid is gone: shares of the hull's cells there.
+// What carving has removed from a hull.
 struct Opened {
-  double pit, solid;
-  int cells;  // of the pit
+  double pit;    // share of the pit's cells that are open
+  double solid;  // share of the solid's cells that are gone
+  int cells;     // number of the pit's cells
 };
 
 inline Opened opened_of(const VisualHull& hull, const VisualHull& carved) {

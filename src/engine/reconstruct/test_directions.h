@@ -14,7 +14,7 @@ namespace cei3d {
 // gradient: without the padding of Param.
 struct TensorDirection {
   std::vector<float> of;
-  double slope = 0;  // that the gradient promises along it
+  double slope = 0;  // derivative along the direction, by the gradient
 
   TensorDirection(std::span<const float> gradient, uint64_t seed) : of(gradient.begin(), gradient.end()) {
     double squares = 0;

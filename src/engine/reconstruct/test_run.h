@@ -155,8 +155,8 @@ class MemoryCheckpoints : public Checkpoints {
   std::optional<State> latest() override { return latest_state; }
 
   std::optional<State> latest_state;
-  std::map<std::string, State> after;  // that stage
-  std::map<std::string, int> midway;   // saved in the middle of that stage
+  std::map<std::string, State> after;  // the state after each stage
+  std::map<std::string, int> midway;   // how many states were saved in the middle of each stage
 };
 
 struct Killed : std::runtime_error {

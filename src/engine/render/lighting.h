@@ -61,8 +61,8 @@ class Lighting {
   Shading shade(const HitBatch&, std::span<const Vec3f> albedo, const VertexMaterials& seen = {}) const;
 
   std::vector<IncidentLight<float>> incident_light(const HitBatch&, const VertexMaterials& seen = {}) const;
-  // As if the object hid nothing of the environment and reflected nothing of itself, and diffuse light came
-  // evenly from everywhere: of a Lighting without a surface.
+  // incident_light() of a Lighting without a surface: as if the object hid nothing of the environment and
+  // reflected nothing of itself, and diffuse light came evenly from everywhere.
   std::vector<IncidentLight<float>> open_light(const HitBatch&) const;
   // The radiance of every hit as a linear function of its albedo.
   std::vector<ShadingTerms<float>> terms(const HitBatch&, std::span<const IncidentLight<float>>) const;
@@ -71,7 +71,8 @@ class Lighting {
   ShadingGrads grad(const HitBatch&, std::span<const IncidentLight<float>>, std::span<const Vec3f> albedo,
                     std::span<const Vec3f> d_radiance) const;
 
-  // Replaces the lobes and keeps visibility and bounces: for descent on a light, whose steps are small.
+  // Replaces the lobes, but keeps visibility, bounces and the tables of light by direction: for descent on a
+  // light, whose steps are small.
   void set_lobes(const SgMixture&);
   // From now on the sky's irradiance is taken at the hits' normals, so that it depends on them: for descent
   // on a field, which the mesh does not follow. Without this it is taken at the mesh's.
@@ -96,8 +97,8 @@ class Lighting {
   std::vector<float> lobe_planes_;
   int n_lobes_ = 0, padded_ = 0;
   IrradianceMap irradiance_;
-  DirectionMap radiance_;  // these two: of the light that visibility was found for
-  LightDirectionMap directions_;
+  DirectionMap radiance_;              // of the light that visibility was computed for; see set_lobes()
+  LightDirectionMap directions_;       // of the light that visibility was computed for; see set_lobes()
   std::vector<VertexLight> vertices_;  // by bin of the light's turns
   bool hit_normals_ = false;           // see use_hit_normals()
 };

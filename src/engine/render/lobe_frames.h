@@ -12,7 +12,7 @@ namespace cei3d {
 
 class LobeFrames {
  public:
-  // Lobes that are not put point nowhere.
+  // stride: number of lobes, in whole panels. Until it is put, a lobe has an axis of length 0.
   explicit LobeFrames(int stride)
       : stride_(stride),
         axes_(size_t(3) * stride, 0.0f),

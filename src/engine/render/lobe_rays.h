@@ -11,17 +11,19 @@
 namespace cei3d {
 
 inline constexpr int kMinLobeRays = 4;
+// Number of rays for a hit that is seen at cosine nv to its normal.
 int lobe_ray_count(const Material&, float nv);
 
 // #count points of a lobe of unit width.
 std::vector<Vec2f> lobe_points(int count);
 
-// Turned about the lobe's axis by an angle of the hit's own, so that errors of the pattern are noise between
-// hits, which the samples of a pixel average.
+// The rays of one hit. Their pattern is turned about the lobe's axis by an angle that changes from hit to
+// hit, so that its errors become noise, which the samples of a pixel average.
 class LobeRays {
  public:
   LobeRays(const Hit&, const Material&);
-  // Unit. Directions below the horizon are folded up: the split sum already holds the masking.
+  // Unit direction of the ray at a point of lobe_points(). Directions below the horizon are folded up: the
+  // split sum already holds the masking.
   Vec3f at(Vec2f point) const;
 
  private:

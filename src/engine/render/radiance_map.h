@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Table of the sky's radiance over the direction, blurred by a lobe that is narrow beside those of rough
-// surfaces: what a ray stands for that is one of a few for a whole lobe.
+// The sky's radiance by direction, as a table, blurred by a narrow lobe. A reflection lobe is sampled by a
+// few rays (lobe_rays.h), and the blurred radiance is what one of them stands for: that of a part of the
+// lobe.
 #pragma once
 
 #include "core/compute/device.h"

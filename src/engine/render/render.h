@@ -37,7 +37,7 @@ void refine_hits(const Device&, const Field& sdf, std::span<const Vec3f> directi
 // Moves hits on the mesh of the scene along their to_camera onto its surface, changes of shape included.
 void refine_hits(const Device&, const Scene&, std::vector<Hit>& hits);
 
-// The same for the scene with its changes of shape.
+// trace_rays() for the scene with its changes of shape.
 std::vector<Hit> trace_rays(const Device&, const Scene&, std::span<const Ray> rays,
                             std::vector<uint32_t>& ray_of_hit);
 
@@ -59,8 +59,8 @@ struct Frame {
 Frame shade_view(const Device&, const Scene&, const SceneLight&, const GBuffer&);
 // Frame::albedo alone. albedo: #hits, linear.
 Image filtered_albedo(const GBuffer&, std::span<const Vec3f> albedo);
-// The same bit for bit. memory: of an earlier frame of the same buffer (engine/render/hit_memory.h); what is
-// unchanged is taken over, and this frame is kept in it.
+// shade_view(), the same bit for bit. memory: of an earlier frame of the same buffer
+// (engine/render/hit_memory.h); what is unchanged is taken from it, and this frame is kept in it.
 Frame shade_view(const Device&, const Scene&, const SceneLight&, const GBuffer&, HitMemory& memory);
 Frame shade_view(const Device&, const Scene&, const GBuffer&);  // for a single view
 

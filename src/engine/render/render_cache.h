@@ -31,7 +31,7 @@ class RenderCache {
   explicit RenderCache(const Device& device, RenderCacheLimits limits = {}, VertexLightFiles = {});
 
   SceneLight light(const Scene&);  // must not outlive the cache
-  // The same, kept in a file, too, as far as the shape is the reconstructed one.
+  // light(); that on the reconstructed shape is kept in a file, too.
   SceneLight light_to_keep(const Scene&);
   // camera: unit frame. See trace_view().
   std::shared_ptr<TracedView> trace(const Scene&, const Camera& camera, int samples);

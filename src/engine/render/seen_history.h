@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Materials of the vertices of a shape version after each layer: what surface that was last edited then sees
-// in its reflections. They are kept as what each layer changes, so that many small edits take little room.
+// The materials of the vertices of a shape version after each layer. Surface that a layer was the last to
+// edit sees in its reflections the materials after that layer. Only what each layer changes is kept, so that
+// many small edits take little room.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,8 @@
 
 namespace cei3d {
 
-// Names the materials of all vertices of a shape version: equal ids, equal bits. A sum over the vertices.
+// Identifies the materials of all vertices of a shape version: equal ids mean equal bits. It is a sum of
+// hashes over the vertices, so that a change of a few costs little.
 struct SeenId {
   uint64_t a = 0, b = 0;
   bool operator==(const SeenId&) const = default;
@@ -23,9 +25,9 @@ struct SeenId {
 // What a layer changes.
 struct SeenChange {
   std::string content;             // EditLayer::content
-  std::vector<uint32_t> vertices;  // whose materials it changes
-  VertexMaterials values;          // #vertices, with the layer; one where all are the same
-  SeenId id;                       // of all vertices, with the layer
+  std::vector<uint32_t> vertices;  // vertices whose materials the layer changes
+  VertexMaterials values;          // #vertices, their materials after the layer; one if all are the same
+  SeenId id;                       // of the materials of all vertices after the layer
 
   size_t bytes() const;
 };
@@ -33,11 +35,13 @@ struct SeenChange {
 class SeenHistory {
  public:
   explicit SeenHistory(VertexMaterials as_reconstructed);
-  // Whether it has the changes of the scene's layers up to `last`. It may have those of later ones, too.
+  // Whether it has the changes of the scene's layers up to `last`. It may have those of later layers, too.
   bool reaches(const Scene& scene, int last) const { return common_layers(scene, last) == size_t(last + 1); }
-  // One that has them, which goes on from the layers that the two have in common.
+  // A history that has the changes of the scene's layers up to `last`. Those of the first layers, as far as
+  // this one has the same, are taken from here. version: the shape version.
   SeenHistory through(const Device&, const Scene&, int last, int version) const;
 
+  // Of the materials after the layer; -1: of those as reconstructed.
   SeenId id(int layer) const { return layer < 0 ? id_ : changes_[size_t(layer)]->id; }
   size_t bytes() const { return bytes_; }
 
@@ -50,14 +54,15 @@ class SeenHistory {
    private:
     const SeenHistory& history_;
     VertexMaterials now_;
-    size_t next_ = 0;  // layer
+    size_t next_ = 0;  // the first layer whose change is not in now_
   };
 
  private:
-  size_t common_layers(const Scene&, int last) const;  // of the first ones
+  // How many of the scene's first layers, up to `last`, are the first layers of this history.
+  size_t common_layers(const Scene&, int last) const;
 
-  std::shared_ptr<const VertexMaterials> rest_;
-  SeenId id_;
+  std::shared_ptr<const VertexMaterials> rest_;             // as reconstructed
+  SeenId id_;                                               // of rest_
   std::vector<std::shared_ptr<const SeenChange>> changes_;  // by layer
   size_t bytes_ = 0;
 };

@@ -29,7 +29,7 @@ inline void add_sphere(Mesh& m, Vec3f center, float radius, int n = 48) {
     }
 }
 
-// One of radius 0.5 at `lower_z` and one of radius 0.3 at 0.5 above the origin, which touch or overlap.
+// A ball of radius 0.5 at height lower_z and one of radius 0.3 at height 0.5, which touch or overlap.
 inline Mesh two_spheres(float lower_z, int n = 48) {
   Mesh mesh;
   add_sphere(mesh, {0, 0, lower_z}, 0.5f, n);

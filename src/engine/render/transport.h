@@ -25,7 +25,7 @@ class Transport {
   std::vector<Vec3f> sky(const SkyRadiance&) const;
   // Irradiance of every vertex without occlusion: #V. visible: sky() of the same radiance.
   std::vector<Vec3f> open_sky(const SkyRadiance&, std::vector<Vec3f> visible) const;
-  // The same for several skies at once, several times as fast: [sky][#V].
+  // sky() and open_sky() of several skies at once, several times as fast: [sky][#V].
   std::vector<std::vector<Vec3f>> skies(std::span<const SkyRadiance>) const;
   std::vector<std::vector<Vec3f>> open_skies(std::span<const SkyRadiance>,
                                              const std::vector<std::vector<Vec3f>>& visible) const;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the surface hides of the sky from the reflections of its vertices, and what it shows there instead:
-// polynomials of the mirror direction, fitted to the program's own values over directions of view. Closer to
-// them than what "shape" and "vertex_light" say, but of one light and of the vertices' materials, and dearer
-// to make.
+// polynomials of the mirror direction, fitted to the program's own values over directions of view. They are
+// closer to these values than what the packs "shape" and "vertex_light" (view_mesh.h) give, but they hold for
+// one light and for the materials of the vertices, and take longer to make.
 #pragma once
 
 #include <array>

@@ -9,8 +9,9 @@
 
 namespace cei3d {
 
-// distance(x): what the field learns, at points around the sphere of that radius; spread: standard deviation
-// of their distances from it (a quarter of them: seven times that).
+// distance(x): what the field learns, at points around the sphere of that radius. spread: standard deviation
+// of the distances of three quarters of the points from the sphere; that of the others is seven times as
+// large.
 template <class Distance>
 Field learned_distances(const Device& device, float radius, float spread, Distance&& distance) {
   FieldConfig c;

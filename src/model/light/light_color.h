@@ -29,8 +29,8 @@ using LightCovariance = Mat3d;
 struct LightScale {
   Vec3f factor{1, 1, 1};
   LightCovariance covariance;
-  Vec3d reflected{
-      0, 0, 0};  // mean square, within vertices, of the variation that reflections explain; display units
+  // Mean square, within vertices, of the variation that reflections explain; display units.
+  Vec3d reflected{0, 0, 0};
 };
 
 // Standard error of each channel, relative; none where the covariance is zero.

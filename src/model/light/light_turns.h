@@ -29,21 +29,22 @@ struct LightFrame {
   Vec3f axis{0, 0, 1};                  // of the turntable; unit, capture frame
   Mat3f reference = Mat3f::identity();  // rotation of that picture's camera, world_from_cam
 
-  // From directions of the object in the picture of a camera to those in the reference picture.
+  // The rotation of the light in the picture of a camera with this rotation: it takes a direction of the
+  // object to the direction in the reference picture from which the same light comes.
   Mat3f room_from_object(const Mat3d& world_from_cam) const;
 };
 
-// What rotations of the views of a capture are, as far as the light is concerned.
+// The rotations of a turning light in the views of a capture.
 struct LightTurns {
   std::vector<Mat3f> room_from_object;  // #views
-  std::vector<uint8_t> bin;             // #views, which of `bins` is nearest
-  std::vector<Mat3f>
-      bins;  // a few of them that stand for all where light arrives blurred, as on matte surfaces
+  std::vector<uint8_t> bin;             // #views, index of the nearest of `bins`
+  // A few rotations that stand for all of them where light arrives blurred, as on matte surfaces.
+  std::vector<Mat3f> bins;
 };
 constexpr size_t kMaxLightBins = 16;
 LightTurns light_turns(std::vector<Mat3f> room_from_object);
 
-// Points of a surface, each as a view shows it.
+// Which view shows each of some points of a surface, and thereby how the light is turned there.
 struct TurnedHits {
   const LightTurns* turns = nullptr;     // null: the light stands still
   std::span<const uint16_t> views = {};  // #points

@@ -8,12 +8,15 @@
 
 namespace cei3d {
 
+// Specular strength of a dielectric with a refractive index of 1.5, which is typical: F0 = 0.04.
+inline constexpr float kUsualSpecular = 0.5f;
+
 // The metallic-roughness model that glTF, Blender and Disney share; its formulas are in core/math/shading.h.
 // The albedo is a field of its own.
 struct Material {
-  float roughness = 0.3f;  // [0, 1]; alpha of GGX is its square
-  float specular = 0.5f;   // [0, 1]; of the dielectric part: F0 = 0.08 specular
-  float metalness = 0;     // [0, 1]
+  float roughness = 0.3f;           // [0, 1]; alpha of GGX is its square
+  float specular = kUsualSpecular;  // [0, 1]; of the dielectric part: F0 = 0.08 specular
+  float metalness = 0;              // [0, 1]
 
   bool operator==(const Material&) const = default;
 };

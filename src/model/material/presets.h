@@ -17,7 +17,7 @@ struct MaterialPreset {
 };
 
 std::span<const MaterialPreset> material_presets();
-// Null: no preset has that name. "aluminum" is a synonym of "aluminium".
+// Null: no preset has that name. "aluminium" is accepted for "aluminum".
 const MaterialPreset* find_material_preset(std::string_view name);
 
 }  // namespace cei3d

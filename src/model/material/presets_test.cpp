@@ -48,7 +48,7 @@ TEST(MaterialPresets, MetalsHaveTheColorsOfTheirRefractiveIndices) {
   near("gold", reflectance(0.18, 3.43), reflectance(1.38, 1.92));
   near("silver", reflectance(0.06, 4.2), reflectance(0.04, 2.65));
   near("copper", reflectance(0.25, 3.41), reflectance(1.17, 2.4));
-  near("aluminium", reflectance(1.4, 7.5), reflectance(0.62, 5.5));
+  near("aluminum", reflectance(1.4, 7.5), reflectance(0.62, 5.5));
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ struct AppearanceKey {
   int last_global = -1;          // the last layer that is not confined to its regions; -1: none
 };
 
-// appearance_at() where that of the same hits in another scene is known: evaluates only those in layers that
-// one of the two scenes has alone. The same bit for bit.
+// appearance_at(), the same bit for bit, where the appearance of the same hits in another scene is known. It
+// evaluates only hits in layers that just one of the two scenes has.
 Appearance appearance_after(const Device&, const Scene&, std::span<const Hit> hits,
                             const AppearanceKey& before_key, const Appearance& before);
 

@@ -46,8 +46,8 @@ struct EditLayer {
   // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. The material changes
   // where the weight is above kMaterialWeight.
   float weight(Vec3f position, Vec3f normal) const;
-  bool may_meet(
-      const AxisBox&) const;  // in the shape version of the region; false: the weight is 0 in the box
+  // box: in the shape version of the region. False: the weight is 0 in all of it.
+  bool may_meet(const AxisBox& box) const;
 };
 
 // Errors of loading: missing tensors or keys, sizes that disagree.
@@ -55,9 +55,8 @@ void save_layer(const EditLayer&, Tensors& tensors, Json& head);
 EditLayer load_layer(const Tensors& tensors, const Json& head,
                      const std::string& what = "The description of the edit");
 
-// The same layer, whose regions and color network may be dropped from memory where they are large: they are
-// nearly all of it.
-// name: of what read() reads the layer from.
+// The same layer, whose regions and color network, which are nearly all of it, may be dropped from memory
+// where they are large. name: of what read() reads the layer from.
 EditLayer shelved(EditLayer, const std::shared_ptr<Shelf>&, const std::string& name,
                   std::function<EditLayer()> read);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Similarity transform between the capture frame  and the unit frame, in which fields live.
+// Similarity transform between the capture frame and the unit frame, in which fields live.
 #pragma once
 
 #include "core/math/camera.h"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The correction network ("residual" in code and files): the part of the photographs that light and material
 // do not explain. A small network over features of the point, the normal and the view direction, whose output
-// is added to the shaded radiance where the surface is as photographed: not in the regions of edits, nor
-// under another light. The albedo does not depend on it. docs/method.md#correction-network
+// is added to the shaded radiance: under the reconstructed light, on surface that no edit moved or added.
+// Where an edit changed color or material, the output is scaled as the shading changed. The albedo does not
+// depend on it. docs/method.md#correction-network
 #pragma once
 
 #include <memory>
@@ -22,8 +23,8 @@ struct Residual {
   std::shared_ptr<const Field> features;
   MlpConfig network;  // 3 outputs: linear radiance
   ParamSet params;
-  Mat3f room_from_object =
-      Mat3f::identity();  // of the light, where it turns: the network sees directions in its frame
+  // Rotation of a turning light: the network gets directions in the frame of the light.
+  Mat3f room_from_object = Mat3f::identity();
 };
 
 inline constexpr int kResidualLayers = 3, kMaxResidualLayers = 8;
@@ -34,7 +35,7 @@ Residual make_residual(std::shared_ptr<const Field> features, uint64_t seed, int
 // Work memory of one chunk of hits.
 class ResidualPass {
  public:
-  static constexpr int kMaxHits = 512;  // hits
+  static constexpr int kMaxHits = 512;  // hits in a chunk, at most
   ResidualPass(const FieldConfig& features, const MlpConfig& network);
 
   // Returns the number of samples: hits rounded up to a panel. hits: in shape version 0, their directions in

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Descent on the fields of albedo and material under a fixed light, then on all three.
+// Descent on the albedo field under a fixed light, then on albedo, material and light together.
 #pragma once
 
 #include <memory>
@@ -12,18 +12,21 @@
 
 namespace cei3d {
 
-// Rates are those of the begin, of the full rates; they fall to a tenth.
+// The two parts of the descent, one after the other. Rates are shares of the full rates at the beginning of a
+// part, at whose end they are a tenth of that.
 struct DescentSchedule {
-  int albedo = 0, refine = 0;    // steps, one after the other
-  float albedo_rate = 1;         // of the albedo on its own
-  float refine_albedo_rate = 1;  // of the albedo while all descend
+  int albedo = 0;                // steps on the albedo alone
+  int refine = 0;                // steps on albedo, material and light together
+  float albedo_rate = 1;         // rate of the albedo while it descends alone
+  float refine_albedo_rate = 1;  // rate of the albedo while all descend together
   bool keep_power = false;       // see LightDescent
 };
 
 class AppearanceDescent {
  public:
-  // result: light and material to begin with; gets those that were reached. bouncing: albedo of the vertices
-  // for bounces, until all descend together and it takes its own, #V.
+  // result: holds the light and material to begin with, and gets those that the descent reaches. bouncing:
+  // #V, the albedo by which bounces are computed while the albedo descends alone. Afterwards it is the
+  // field's own.
   AppearanceDescent(const Device&, const AppearanceInput&, std::shared_ptr<const Transport>,
                     const AppearanceOptions&, Field albedo, const std::vector<Vec3f>& bouncing,
                     AppearanceResult& result, Progress&);

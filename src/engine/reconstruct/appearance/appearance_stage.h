@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light, albedo and material of a finished surface (PPD): first by the linear separation, then by descent.
+// Light, albedo and material of a finished surface: first by the linear separation, then by descent.
 // [paper sec. 4.2; docs/method.md#appearance-stage]
 #pragma once
 
@@ -29,11 +29,11 @@ enum class Effort { brief, full };  // brief: fewer samples and steps, half the 
 
 struct AppearanceOptions {
   Effort effort = Effort::full;
-  int albedo_steps = -1;     // of the albedo field under the separated light; -1: by `effort`
-  int refine_steps = -1;     // of albedo, material and light together; -1: by `effort`
-  int lobe_steps = 800;      // of the fit of lobes to the separated light
-  int material_steps = 400;  // of the fit of a field to the separated materials
-  float roughness = 0;       // > 0: known; 0: searched
+  int albedo_steps = -1;     // steps on the albedo field under the separated light; -1: by `effort`
+  int refine_steps = -1;     // steps on albedo, material and light together; -1: by `effort`
+  int lobe_steps = 800;      // steps of the fit of lobes to the separated light
+  int material_steps = 400;  // steps of the fit of a field to the separated materials
+  float roughness = 0;       // roughness of the object where it is known; 0: searched
   LightColorPrior light_color;
   uint64_t seed = 1;
   FieldConfig albedo;          // 3 outputs, sigmoid
@@ -53,16 +53,16 @@ struct AppearanceResult {
 // The linear separation, and from it lobes of light and a field of materials. The result has no albedo field.
 AppearanceResult separate_light(const Device&, const AppearanceInput&, const AppearanceOptions&, Progress&);
 
-// A descent on the appearance between two of its steps.
+// The state of a descent on the appearance between two of its steps.
 struct DescentState {
   int64_t step = 0;
-  Tensors tensors;  // none: it is not begun
+  Tensors tensors;  // empty: the descent has not begun
 };
 struct DescentStore {
-  DescentState from{};          // to go on from
-  std::function<bool()> due{};  // asked between steps; may be empty
-  std::function<void(DescentState)>
-      save{};  // called where it is due, and before an interruption; may be empty
+  DescentState from{};          // the state to continue from
+  std::function<bool()> due{};  // asked between steps whether to save; may be empty
+  // Called when `due` says so, and before an interruption; may be empty.
+  std::function<void(DescentState)> save{};
 };
 
 // Fits the albedo field under the separated light, then descends on albedo, material and light. result: light
@@ -71,7 +71,7 @@ void descend_on_appearance(const Device&, const AppearanceInput&, const Appearan
                            const std::vector<Vec3f>& vertex_albedo, AppearanceResult& result, Progress&,
                            const DescentStore& = {});
 
-// Both.
+// separate_light(), then descend_on_appearance().
 AppearanceResult fit_appearance(const Device&, AppearanceInput, const AppearanceOptions&, Progress&);
 
 std::shared_ptr<const Transport> transport_of(const AppearanceInput&, const Progress&);

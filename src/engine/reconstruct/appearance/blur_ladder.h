@@ -38,8 +38,8 @@ class BlurLadder {
 // weighted mean of three round ones in the plane of incidence, as in Gauss-Hermite quadrature.
 struct ReflectedSky {
   static constexpr int kMaxLobes = 3;
-  BlurLadder::Place lobe;  // of all of them
-  int count = 1;
+  BlurLadder::Place lobe;  // where the roughness of the round lobes lies on the ladder
+  int count = 1;           // number of round lobes
   EnvTaps taps[kMaxLobes];
   float weight[kMaxLobes] = {1, 0, 0};
   float open = 1;  // share of the lobe that meets the sky
@@ -49,7 +49,8 @@ ReflectedSky reflected_sky(const SplitRow&, ReflectionPart, float roughness, int
 // Blurs of a light by level; empty: level not in use.
 using Blurred = std::array<std::vector<Vec3f>, BlurLadder::kLevels>;
 Vec3f radiance_at(const Blurred&, const ReflectedSky&);
-// The same with what hides a part of the sky from the row.
+// The radiance that the lobe of a row collects: that of the sky where it is open, else that of the surface
+// which hides the sky.
 inline Vec3f incident_at(const Blurred& blurred, const ReflectedSky& at, const SplitRow& row) {
   return radiance_at(blurred, at) + row.far_radiance() * (1 - at.open);
 }

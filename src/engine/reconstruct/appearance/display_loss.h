@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Losses of colors. Of the appearance stage: Huber loss of display-encoded ones.
+// Losses of the color of a surface sample: the appearance stage's, which is a Huber loss of display-encoded
+// colors, and the paper's, which is L1 of linear radiance.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +26,7 @@ inline float display_loss_grad(float radiance, float photo, bool clipped = false
   return display_loss(radiance, photo, clipped).gradient;
 }
 
-// |error| of linear radiance, instead. [paper eq. 16]
+// The same for the absolute error of linear radiance. [paper eq. 16]
 inline LossValue<float> absolute_loss(float radiance, float photo, bool clipped = false) {
   if (clipped && radiance >= photo) return {0, 0};
   const float error = radiance - photo;

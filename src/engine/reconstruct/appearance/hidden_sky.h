@@ -17,7 +17,8 @@ struct HiddenSky {
   HiddenRings rings{};
   Vec3f towards{0, 0, 0};  // unit, the middle of what is hidden; 0 where nothing is
 };
-// By the visibility table at a vertex. normal, mirror: unit.
+// From the visibility table at a vertex. normal, mirror: unit. mirror_hidden: whether the mirror ray meets
+// the surface.
 HiddenSky hidden_sky(const Surface&, uint32_t vertex, Vec3f normal, Vec3f mirror, bool mirror_hidden);
 
 // Share of the energy of the round lobe of a roughness about the mirror direction within each ring.

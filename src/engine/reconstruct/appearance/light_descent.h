@@ -13,20 +13,20 @@
 namespace cei3d {
 
 // dL/d(lobes) as planes [7][lobes.padded] (axis, sharpness, color), from dL/d(the light that the environment
-// sends to each hit where nothing occludes it). Axes as if their length were free.
+// sends to each hit where nothing occludes it). Axes count as vectors of any length.
 std::vector<float> lobes_grad(const Device&, const LobePlanes& lobes, const HitBatch&,
                               std::span<const Vec3f> d_irradiance, std::span<const Vec3f> d_reflected);
 
 class LightDescent {
  public:
-  // keep_power: the total power per channel stays, so that no common factor wanders between light and albedo;
-  // the gradient is the one along that constraint.
+  // keep_power: the total power per channel stays as it is, so that no common factor moves between light and
+  // albedo; the gradient is taken along that constraint.
   LightDescent(const SgMixture& light, bool keep_power, AdamConstants adam = {.eps = 1e-12f});
 
   // One step at `rate` times the full rates. d_irradiance, d_reflected: as in lobes_grad().
   void step(const Device&, const HitBatch&, std::span<const Vec3f> d_irradiance,
             std::span<const Vec3f> d_reflected, float rate);
-  // d_lobes: as lobes_grad() has it, of the present lobes.
+  // The same step. d_lobes: what lobes_grad() returns for the present lobes.
   void step(const Device&, const std::vector<float>& d_lobes, float rate);
   SgMixture light() const;
 

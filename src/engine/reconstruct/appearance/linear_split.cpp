@@ -146,7 +146,7 @@ float bright_albedo(const std::vector<Vec3f>& color, const SplitMaterials& mater
   return largest;
 }
 
-// Reflections determine the product of light and specular reflectance; the separation assumes specular 0.5,
+// Reflections determine the product of light and specular reflectance; the separation assumes kUsualSpecular,
 // and colors of metals are free. On surfaces that reflect less, or where paint was taken for metal, the light
 // comes out too dark and colors above 1. That no color exceeds 1 raises the light and lowers the specular
 // reflectance: until it holds for most dielectrics, and costs little in the images for all that is seen.

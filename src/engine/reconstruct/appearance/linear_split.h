@@ -57,8 +57,8 @@ struct LinearSplit {
   Material material;                // mean over the surface
   std::vector<Material> materials;  // #V, metalness 0 or 1; empty: `material` everywhere
   float smoothest = 0;              // roughness of the smoothest hundredth of the surface
-  // Of the light; 0 where its strength is assumed: all is metal, or it was raised so that nothing is whiter
-  // than white.
+  // Covariance of the light; 0 where its strength is assumed: all is metal, or it was raised so that nothing
+  // is whiter than white.
   LightCovariance light_error{};
   Image light;                 // light_height rows, 2 light_height columns, RGB, linear, >= 0
   std::vector<Vec3f> albedo;   // #V, linear, [0, 1]
@@ -73,8 +73,8 @@ struct LinearSplit {
 
 LinearSplit linear_split(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&);
 
-// Residuals of the separation for one dielectric of that roughness, as LinearSplit::Trial::residual: of each
-// view that has any samples and does not take part (options.hold_out), in their order.
+// Residuals of the separation for one dielectric of that roughness (LinearSplit::Trial::residual): one for
+// each view that is held out (options.hold_out) and has samples, in the order of the views.
 std::vector<double> dielectric_residuals(const Transport&, const SurfaceSamples&, const LinearSplitOptions&,
                                          float roughness, Progress&);
 

@@ -9,13 +9,13 @@
 #include "core/math/ladder.h"
 #include "core/math/parabola.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
+#include "model/geometry/mesh/adjacency.h"
 
 namespace cei3d {
 namespace {
 
 constexpr int kLevels = BlurLadder::kLevels;
 constexpr int kGrain = 1024;  // vertices per chunk
-constexpr float kSpecular = 0.5f;
 // Bounds of the reflectance of a metal while the scale of the light is uncertain.
 constexpr float kMinMetal = 0.02f, kMaxMetal = 4;
 
@@ -89,7 +89,7 @@ int LitSamples::for_samples(uint32_t vertex, float roughness, const F& visit) co
 
 // Adds the errors of the dielectric and the metal of that level. Returns the number of samples.
 int LitSamples::add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float* errors) const {
-  const Vec3f black{0, 0, 0}, white{1, 1, 1}, f0 = f0_of(black, kSpecular, 0.0f);
+  const Vec3f black{0, 0, 0}, white{1, 1, 1}, f0 = f0_of(black, kUsualSpecular, 0.0f);
   OneCoefficient dielectric, metal;
   const int count = for_samples(vertex, BlurLadder::roughness(level),
                                 [&](const SplitRow& row, Vec3f color, const RowLight& s) {
@@ -130,7 +130,7 @@ size_t place_of(Vec3f p) {
 }  // namespace
 
 std::vector<ReflectionSample> LitSamples::of_dielectric(uint32_t vertex, const Material& m) const {
-  const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kSpecular, 0.0f);
+  const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kUsualSpecular, 0.0f);
   std::vector<ReflectionSample> out;
   for_samples(vertex, m.roughness, [&](const SplitRow& row, Vec3f color, const RowLight& s) {
     out.push_back({row.weight, s.diffuse, s.base * f0 + s.fresnel, color});
@@ -198,32 +198,17 @@ namespace {
 
 // The neighbors of every vertex and their weights in the diffusion.
 struct Neighbors {
-  std::vector<uint32_t> start, vertex;  // #V + 1; neighbors
-  std::vector<float> weight;
+  VertexLists lists;
+  std::vector<float> weight;  // #items of the lists
 
-  Neighbors(const Mesh& mesh, const std::vector<Vec3f>& colors) : start(mesh.positions.size() + 1, 0) {
-    const std::vector<std::array<uint32_t, 2>> edges = edges_of(mesh);
-    for (const auto& e : edges) ++start[e[0] + 1], ++start[e[1] + 1];
-    for (size_t v = 0; v + 1 < start.size(); ++v) start[v + 1] += start[v];
-    vertex.resize(start.back());
-    weight.resize(start.back());
-    std::vector<uint32_t> at(start.begin(), start.end() - 1);
-    for (const auto& e : edges)
-      for (int side = 0; side < 2; ++side) {
-        const uint32_t k = at[e[size_t(side)]]++;
-        vertex[k] = e[size_t(1 - side)];
-        weight[k] = likeness(srgb_from_linear(colors[e[0]]), srgb_from_linear(colors[e[1]]));
-      }
+  Neighbors(const Mesh& mesh, const std::vector<Vec3f>& colors)
+      : lists(joined_by(mesh.positions.size(), edges_of(mesh.triangles))) {
+    for (uint32_t v = 0; v < mesh.positions.size(); ++v)
+      for (const uint32_t other : lists.of(v))
+        weight.push_back(likeness(srgb_from_linear(colors[v]), srgb_from_linear(colors[other])));
   }
 
  private:
-  static std::vector<std::array<uint32_t, 2>> edges_of(const Mesh& mesh) {
-    std::vector<std::array<uint32_t, 2>> edges;
-    for (const auto& t : mesh.triangles)
-      for (int c = 0; c < 3; ++c)
-        if (t[c] < t[(c + 1) % 3]) edges.push_back({t[c], t[(c + 1) % 3]});
-    return edges;
-  }
   static float likeness(Vec3f a, Vec3f b) {
     constexpr float kContrast = 0.05f;  // of display-encoded colors: a border between materials
     return std::exp(-dot(a - b, a - b) / (2 * kContrast * kContrast));
@@ -235,10 +220,11 @@ void mean_around(const Neighbors& near, const MaterialEvidence& e, uint32_t v, M
   constexpr int kH = MaterialEvidence::kHypotheses;
   float total = 1, sum[kH], samples = e.samples[v];
   std::copy(e.of(v), e.of(v) + kH, sum);
-  for (uint32_t k = near.start[v]; k < near.start[v + 1]; ++k) {
-    const float* other = e.of(near.vertex[k]);
+  for (uint32_t k = near.lists.start[v]; k < near.lists.start[v + 1]; ++k) {
+    const uint32_t neighbor = near.lists.items[k];
+    const float* other = e.of(neighbor);
     for (int h = 0; h < kH; ++h) sum[h] += near.weight[k] * other[h];
-    samples += near.weight[k] * e.samples[near.vertex[k]];
+    samples += near.weight[k] * e.samples[neighbor];
     total += near.weight[k];
   }
   for (int h = 0; h < kH; ++h) out.error[size_t(v) * kH + h] = sum[h] / total;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Evidence of the samples under a known light: the material of each vertex, and the strength of the light.
-// The color of every vertex is free.
+// What the samples of a surface say, under a known light, about the material of each vertex and about the
+// strength of the light. The color of every vertex is free.
 #pragma once
 
 #include <vector>
@@ -32,8 +32,9 @@ class LitSamples {
   std::vector<Vec3f> fit_diffuse(const SplitMaterials&, std::vector<Vec3f> before) const;
   // Factor on the light that fits the dielectrics. positions: of the vertices, unit frame.
   LightScale light_scale(const SplitMaterials&, const std::vector<Vec3f>& positions) const;
-  // The same over the factor of plain least squares of the same samples, for a light that plain least squares
-  // determined: how much less weight changes along the color of a surface deserve.
+  // For a light that plain least squares has determined: light_scale(), divided by the factor that plain
+  // least squares of the same samples gives. It is the effect of giving less weight to changes along the
+  // color of a surface.
   LightScale light_correction(const SplitMaterials&, const std::vector<Vec3f>& positions) const;
 
  private:
@@ -42,7 +43,7 @@ class LitSamples {
   NoiseSums noise(const SplitMaterials&) const;
   LightScale light_scale(const SplitMaterials&, const std::vector<Vec3f>& positions,
                          const SampleNoise&) const;
-  // Light seen by a row if its surface has a given roughness.
+  // What a row sees of the light if its surface has a given roughness.
   struct RowLight {
     Vec3f base, fresnel;  // reflected radiance: the part scaled by F0, and the rest
     Vec3f diffuse;        // factor from D to the diffuse radiance of the row
@@ -58,7 +59,8 @@ class LitSamples {
   int light_height_;
   Blurred sky_;
   LightDirectionMap light_directions_;
-  std::vector<uint32_t> start_, order_;  // #V + 1; rows by the vertex nearest to them
+  // Rows by the vertex nearest to them: those of vertex v are order_[start_[v]] .. order_[start_[v + 1] - 1].
+  std::vector<uint32_t> start_, order_;  // #V + 1; #rows
 };
 
 // The best dielectric and the best metal of a vertex. The roughness is interpolated between levels.

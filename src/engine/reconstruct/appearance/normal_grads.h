@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the shading loss of polishing asks of a distance field: its derivatives by the field's values, which
-// the normals of hits depend on.
+// The derivatives of the shading loss of polishing by values of the distance field, on which the normals of
+// hits depend.
 #pragma once
 
 #include <vector>

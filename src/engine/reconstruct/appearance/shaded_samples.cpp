@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/appearance/shaded_samples.h"
 
+#include <algorithm>
+
 #include "core/base/cancel.h"
 #include "core/math/color.h"
+#include "core/math/psnr.h"
 #include "engine/reconstruct/appearance/pixel_points.h"
 #include "engine/render/lighting.h"
 
@@ -49,6 +52,13 @@ double display_error(Vec3f radiance, Vec3f photo) {
   for (int c = 0; c < 3; ++c)
     sum += square(srgb_from_linear(clamp(radiance[c], 0.0f, 1.0f)) - srgb_from_linear(min(photo[c], 1.0f)));
   return sum;
+}
+
+double display_psnr(const SurfaceSamples& samples, std::span<const uint32_t> which,
+                    std::span<const Vec3f> radiance) {
+  double sum = 1e-12;
+  for (size_t k = 0; k < which.size(); ++k) sum += display_error(radiance[k], samples.colors[which[k]]);
+  return psnr_of_mse(sum / (3 * double(std::max<size_t>(which.size(), 1))));
 }
 
 }  // namespace cei3d

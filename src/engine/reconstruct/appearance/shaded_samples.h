@@ -22,5 +22,8 @@ std::vector<Vec3f> radiance_of(const Device&, const Scene&, const SurfaceSamples
 // Squared error of a displayed pixel, summed over its channels. radiance, photo: linear; a display shows no
 // more than 1.
 double display_error(Vec3f radiance, Vec3f photo);
+// PSNR (dB) of some samples as they are displayed; finite for equal colors, too. which: their indices.
+// radiance: #which, linear.
+double display_psnr(const SurfaceSamples&, std::span<const uint32_t> which, std::span<const Vec3f> radiance);
 
 }  // namespace cei3d

@@ -9,8 +9,8 @@ namespace cei3d {
 // The cells of a lat-long light as an image of `height` rows, linear RGB.
 Image light_image(const std::vector<Vec3f>& light, int height);
 
-// Mean radiance of a lat-long light (EnvUp::z) around each of sky_directions(), which `room_from_object`
-// rotates to its frame.
+// Mean radiance of a lat-long light (EnvUp::z) around each of sky_directions(), after room_from_object has
+// rotated the direction to the frame of the light.
 SkyRadiance sky_radiance(const Image& light, const Mat3f& room_from_object = Mat3f::identity());
 
 // Irradiance of every vertex, from the light (of `height` rows) and by one bounce: #V. Under a turning light,
@@ -34,9 +34,9 @@ class TurningIrradiance {
   int height_;
   LightHarmonics harmonics_;
   std::vector<Harmonics> transfer_;    // #V: irradiance from the harmonics of a light
-  std::vector<HarmonicMatrix> views_;  // of each view's rotation
-  std::vector<HarmonicMatrix> bins_;
-  HarmonicMatrix mean_{};  // over the bins
+  std::vector<HarmonicMatrix> views_;  // rotation of the light in each view
+  std::vector<HarmonicMatrix> bins_;   // rotation of each bin of LightTurns
+  HarmonicMatrix mean_{};              // over the bins
 };
 
 }  // namespace cei3d

@@ -17,10 +17,10 @@ struct SplitRow {
   Vec3f normal, to_camera;           // unit, in the frame of the light
   float nv;                          // cosine of normal and to_camera
   HiddenRings hidden;                // what the surface hides of the sky about the mirror direction
-  std::array<uint32_t, 3>
-      far_vertices;  // of the triangle of the far point: in the middle of what hides the sky
+  // The far point is the one in the middle of what hides the sky.
+  std::array<uint32_t, 3> far_vertices;  // of the triangle of the far point
   std::array<float, 3> far_barycentric;  // of the far point
-  Vec3f far_color;                       // of the far point, mean of the samples, linear
+  Vec3f far_color;                       // mean color of the samples at the far point, linear
   Vec3f color;                           // linear
   Vec3f weight;                          // squared slope of the display curve, times `trust`
   float trust;                           // in (0, 1]; less where the surface hides a part of the sky

@@ -13,8 +13,6 @@
 namespace cei3d {
 namespace {
 
-constexpr float kSpecular = 0.5f;  // of a dielectric: reflections show the product of light and reflectance
-
 // Rounds of materials and light. A light that is too sharp and surfaces that are too rough explain the
 // pictures nearly as well as the truth, and each round takes off a fifth of what is wrong; but the strength
 // of the light creeps, too (docs/notebook/0022).
@@ -101,7 +99,7 @@ SplitSolution SplitSolver::finish(SplitSolution s, bool metal, float roughness) 
 
 SplitSolution SplitSolver::dielectric(float roughness) {
   const bool first = guess_.light.width == 0;
-  SplitSolution s = guess(one_material(mesh_.positions.size(), {roughness, kSpecular, 0}));
+  SplitSolution s = guess(one_material(mesh_.positions.size(), {roughness, kUsualSpecular, 0}));
   const int turns = !turning_ ? 1 : first ? kFirstTurns : kTurns;
   for (int turn = 0; turn < turns; ++turn)
     s = solved(std::move(s), turning_ ? 2 : options_.rounds, options_.steps);
@@ -110,7 +108,7 @@ SplitSolution SplitSolver::dielectric(float roughness) {
 }
 
 SplitSolution SplitSolver::metal(float roughness) {
-  SplitSolution s{uniform(), one_material(mesh_.positions.size(), {roughness, kSpecular, 1})};
+  SplitSolution s{uniform(), one_material(mesh_.positions.size(), {roughness, kUsualSpecular, 1})};
   system_.set_diffuse_light_grad({});  // metals have no diffuse light
   for (int round = 0; round < 3; ++round) s = with_fitted_metals(std::move(s), 3, 8);
   return finish(std::move(s), true, roughness);
@@ -135,7 +133,8 @@ void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, Spl
     if (evidence.samples[v] <= 0) continue;
     const BestMaterials b = best_materials(evidence.of(v));
     const bool metal = b.metal_error < kMetalBy * b.dielectric_error;
-    materials.of[v] = {metal ? b.metal_roughness : b.dielectric_roughness, kSpecular, metal ? 1.0f : 0.0f};
+    materials.of[v] = {metal ? b.metal_roughness : b.dielectric_roughness, kUsualSpecular,
+                       metal ? 1.0f : 0.0f};
   }
 }
 

@@ -38,12 +38,11 @@ class SplitSolver {
     return system_.errors_of_views(s.x);
   }
   // Materials per vertex: alternates between the best materials under the light and the light for these
-  // materials. start: initial light. max_residual: stops after the first round if it leaves a larger
-  // residual.
+  // materials. start: initial light. max_residual: stops after a round that leaves a larger residual.
   SplitSolution several(SplitSolution start, double max_residual);
   // Light and D for given materials.
   SplitSolution with_materials(const SplitMaterials&);
-  // Estimate of a factor on the light of the solution from the samples.
+  // A factor on the light of the solution, estimated from the samples (LitSamples::light_correction()).
   LightScale light_correction(const SplitSolution&);
   // Multiplies the light by `factor`, divides the color of metals by it, and refits the dielectrics.
   void scale_light(SplitSolution&, Vec3f factor);

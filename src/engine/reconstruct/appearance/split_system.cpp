@@ -26,13 +26,11 @@ SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
     : mesh_(mesh),
       rows_(rows),
       options_(options),
+      edges_(edges_of(mesh.triangles)),
       blurs_(options.light_height),
       harmonics_(options.light_height) {
   for (const SplitRow& row : rows) weights_.push_back(row.held_out ? Vec3f{0, 0, 0} : row.weight);
   for (const SplitRow& row : rows) views_ = std::max(views_, row.view + 1);
-  for (const auto& t : mesh.triangles)
-    for (int c = 0; c < 3; ++c)
-      if (t[c] < t[(c + 1) % 3]) edges_.push_back({t[c], t[(c + 1) % 3]});
 }
 
 SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {

@@ -13,6 +13,7 @@
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "engine/reconstruct/appearance/split_rows.h"
 #include "engine/render/light_direction.h"
+#include "model/geometry/mesh/adjacency.h"
 
 namespace cei3d {
 
@@ -31,8 +32,7 @@ struct SplitMaterials {
   std::vector<Material> of;  // #V
   std::vector<Vec3f> color;  // #V, albedo of the metals, linear
   bool is_metal(uint32_t v) const { return of[v].metalness > 0.5f; }
-  // Share of the vertices.
-  double metal_share() const;
+  double metal_share() const;  // share of the vertices that are metal
 };
 // With fewer dielectric or metallic vertices than this share, those few determine nothing about the light.
 inline constexpr double kFewVertices = 0.02;
@@ -52,20 +52,22 @@ class SplitSystem {
   // Metals have no D.
   void set_materials(SplitMaterials);
   const SplitMaterials& materials() const { return materials_; }
-  // The light by which the diffuse term is sent to viewers, from now on in set_materials().
+  // Sets the light whose directions Burley's diffuse term depends on. It takes effect at the next
+  // set_materials().
   void set_light(const std::vector<Vec3f>& light);
   void set_diffuse_light_grad(DiffuseLightGrad grad) { diffuse_light_grad_ = std::move(grad); }
 
   // Improves x by rounds of conjugate gradients, with light and D >= 0, and clipped channels as lower bounds.
   void solve(SplitUnknowns& x, int rounds, int steps);
-  // Sum of weight * error^2, and of the trust in the channels, of the rows of each view; of the views that do
-  // not take part, if there are any.
+  // The squared error of some rows.
   struct ViewError {
-    double sum = 0, count = 0;
+    double sum = 0;    // of weight * error^2 over rows and channels
+    double count = 0;  // channels of the rows, each counted by the trust in its row
     double mean() const { return sum / std::max(count, 1.0); }
   };
+  // One for each view, by its rows. Where rows are held out, they are of these alone.
   std::vector<ViewError> errors_of_views(const SplitUnknowns& x) const;
-  double residual(const SplitUnknowns& x) const;  // mean over all of them
+  double residual(const SplitUnknowns& x) const;  // mean over the rows of all views
   // Albedo per vertex that fits best under the light if all vertices were metal: #V. Clipped channels are
   // treated as in the last solve().
   std::vector<Vec3f> fit_metal_color(const SplitUnknowns& x);
@@ -82,9 +84,9 @@ class SplitSystem {
   struct Optics {
     ReflectedSky base, fresnel;
     SplitSum<float> split_sum;
-    Vec3f base_gain;     // factor from the light at `base` to the viewer; that at `fresnel` is split_sum.bias
-    float diffuse_view;  // factor of D towards the viewer; 0 for metals
-    Vec3f far_gain;      // factor from the radiance of the far point
+    Vec3f base_gain;     // factor of the light at `base`; that of the light at `fresnel` is split_sum.bias
+    float diffuse_view;  // factor of D, which is 0 for metals
+    Vec3f far_gain;      // factor of the radiance of the far point
     Vec3f sky_gain() const {
       const float bias = split_sum.bias * fresnel.open;
       return base_gain * base.open + Vec3f{bias, bias, bias};
@@ -98,7 +100,8 @@ class SplitSystem {
   };
   Sky sky_of(const std::vector<Vec3f>& light) const;
   Sky sky_change(const std::vector<Vec3f>& light) const;  // harmonics relative to those of the gradient
-  Vec3f predict(size_t row, const SplitUnknowns&, const Sky&) const;  // without what does not depend on them
+  // The part of the row's color that depends on the unknowns, which is all but far_reflected().
+  Vec3f predict(size_t row, const SplitUnknowns&, const Sky&) const;
   Vec3f far_reflected(size_t row) const { return optics_[row].far_gain * rows_[row].far_radiance(); }
   void smooth(const SplitUnknowns& x, SplitUnknowns& out) const;  // out += gradient of the priors
   void release_bounds(const SplitUnknowns& x);                    // sets weights_
@@ -119,7 +122,7 @@ class SplitSystem {
   int views_ = 0;               // number of cameras that rows are of
   std::vector<Vec3f> weights_;  // #rows; 0 where the prediction of a clipped channel is above its color
   LinearSplitOptions options_;
-  std::vector<std::array<uint32_t, 2>> edges_;
+  std::vector<Edge> edges_;
   mutable BlurLadder blurs_;
   LightHarmonics harmonics_;
   LightDirectionMap light_directions_;

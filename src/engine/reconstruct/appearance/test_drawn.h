@@ -39,7 +39,7 @@ inline Mesh bumpy_ball(int n = 40) {
   return m;
 }
 
-// Two of them, close to one another: much of what one mirrors is the other.
+// Two bumpy balls close to one another: much of what one mirrors is the other.
 inline Mesh two_bumpy_balls() {
   constexpr float kScale = 0.55f, kAway = 0.44f;
   const Mesh ball = bumpy_ball(28);

@@ -35,8 +35,8 @@ class GeometryObjective {
 
   // Leaves the gradients by the jets and colors of the batch in the renderer, which has rendered it.
   void backward(const RayBatch&, const RaySamples&, VolumeRenderer&, GeometryStats&) const;
-  // The loss of one of `count` points at which the start shape is held: also where no ray is sampled any
-  // more, since a surface that is gone has no samples that could bring it back.
+  // The loss at one of `count` points at which the field is held at the start shape. Rays are not sampled
+  // where the surface is gone, so only such points can bring it back.
   LossValue<float> hold(Vec3f x, float distance, int count) const;
 
  private:

@@ -28,11 +28,11 @@ struct GeometryLosses {
 struct GeometryOptions {
   FieldConfig sdf;            // outputs: distance, then the features that the radiance network reads
   int radiance_layers = 2;    // hidden layers of the radiance network
-  int radiance_width = 64;    // neurons of each
-  int rays = 2048;            // per step; a multiple of kChunkRays
+  int radiance_width = 64;    // width of its hidden layers
+  int rays = 2048;            // rays per step; a multiple of kChunkRays
   float inv_s_start = 200;    // inverse standard deviation of the opacity at the beginning, 1 / length
-  float inv_s_end = 800;      // its last value; it grows exponentially in between
-  float inv_s_until = 0.6f;   // position at which it reaches its last value
+  float inv_s_end = 800;      // inverse standard deviation at the end, to which it grows exponentially
+  float inv_s_until = 0.6f;   // position at which inv_s_end is reached
   float unlock_until = 0.3f;  // position at which all hash levels are in use, coarse to fine
   int first_levels = 5;       // hash levels in use from the beginning
   SamplingOptions sampling;
@@ -43,7 +43,7 @@ struct GeometryOptions {
   float decay_to = 0.01f;    // factor of both rates at the end
   int halving_parts = 0;     // if > 0, both rates are halved instead, see halved()
   AdamConstants adam;
-  int prefit_steps = 300;        // that fit the field to the start shape
+  int prefit_steps = 300;        // steps that fit the field to the start shape
   int refresh_every = 10;        // steps between updates of the occupancy grid
   float tight_grid_from = 0.4f;  // position from which the surface moves little and the grid is trusted more
   bool hold_start = false;       // hold every start shape, not only anchored ones, and all around its surface

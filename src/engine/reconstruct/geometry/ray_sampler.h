@@ -27,9 +27,9 @@ class RaySampler {
 
  private:
   struct RayState {
-    int first = 0, end = 0;  // its candidates
-    int known = 0;           // of them, front to back, have a distance
-    int passed = 0;          // of those have been composited
+    int first = 0, end = 0;  // its candidates are [first, end)
+    int known = 0;           // how many of them, from the front, have a distance
+    int passed = 0;          // how many of them, from the front, were composited
     Transmittance<float> light{};
   };
   void march(const GeometrySchedule&, const OccupancyGrid&, const RayBatch&, std::span<const float> jitter);
@@ -45,9 +45,9 @@ class RaySampler {
   std::vector<int> counts_;                // candidates of each ray
   std::vector<float> depths_, distances_;  // of candidates, ray after ray; not all get a distance
   std::vector<int> active_;                // rays whose next candidates need distances
-  std::vector<int> next_;                  // candidates that get a distance next, and their points
-  std::vector<Vec3f> points_;
-  std::vector<float> found_;
+  std::vector<int> next_;                  // candidates that get a distance next
+  std::vector<Vec3f> points_;              // #next_, their points
+  std::vector<float> found_;               // #next_, their distances
 };
 
 }  // namespace cei3d

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/math/psnr.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/reconstruct/appearance/pixel_points.h"
@@ -316,9 +315,7 @@ double JointDescent::held_out_psnr() {
   const std::vector<ShadingTerms<float>> terms = terms_at(batch, light_at(batch));
   std::vector<Vec3f> got(judged.size(), Vec3f{0, 0, 0});
   for (size_t i = 0; i < seen.size(); ++i) got[traced.rays()[i]] = terms[i].radiance(albedo[i]);
-  double sum = 1e-12;
-  for (size_t k = 0; k < judged.size(); ++k) sum += display_error(got[k], input_.samples.colors[judged[k]]);
-  return psnr_of_mse(sum / (3 * double(std::max<size_t>(judged.size(), 1))));
+  return display_psnr(input_.samples, judged, got);
 }
 
 void JointDescent::save(Tensors& out) const {

@@ -21,35 +21,39 @@
 
 namespace cei3d {
 
-enum class ColorLoss { display, linear };  // Huber of display-encoded colors; L1 of linear ones, the paper's
+enum class ColorLoss {
+  display,  // Huber loss of display-encoded colors
+  linear    // L1 of linear colors, as in the paper
+};
 
-// The shading model's own (core/math/shading.h), or one spherical Gaussian without occlusion or reflections
-// of the object in itself (sg_shading.h).
-enum class SpecularTerm { split_sum, single_sg };
+enum class SpecularTerm {
+  split_sum,  // that of the shading model (core/math/shading.h)
+  single_sg   // one spherical Gaussian, without occlusion or self reflection (sg_shading.h)
+};
 
 // Learning rates of Adam at the beginning. 0: held constant.
 struct JointRates {
   float sdf_tables = 1e-4f, sdf_layers = 5e-5f;
-  float albedo = 0.05f;    // times those of the appearance stage: 1e-2 of tables, 2e-3 of layers
-  float material = 1e-3f;  // of logits, see MaterialDescent
-  float light = 0.3f;      // times the rates of LightDescent: 1e-2 of logarithms, 2e-3 of axes
+  float albedo = 0.05f;    // factor of the appearance stage's rates: 1e-2 of tables, 2e-3 of layers
+  float material = 1e-3f;  // rate of logits, see MaterialDescent
+  float light = 0.3f;      // factor of LightDescent's rates: 1e-2 of logarithms, 2e-3 of axes
 };
 
 struct JointOptions {
   JointRates rates;
   RateSchedule schedule;
   AdamConstants adam;
-  bool weight_norm = false;  // of the distance field's layers; its hash tables then stay as they are
+  bool weight_norm = false;  // normalize the distance field's weights; its hash tables then stay as they are
   ColorLoss color = ColorLoss::display;
   SpecularTerm specular = SpecularTerm::split_sum;
-  int rays = 4096;             // on the object, per step
-  float eikonal = 0.1f;        // weight of (|gradient| - 1)^2 [paper eq. 16]
-  int box_points = 1024;       // random points of the object's box at which it is taken
-  int near_points = 1024;      // random hits of the step at which it is taken, too
-  int mask_rays = 1024;        // around the object, per step
+  int rays = 4096;             // rays through pixels of the object, per step
+  float eikonal = 0.1f;        // weight of the eikonal loss, (|gradient| - 1)^2 [paper eq. 16]
+  int box_points = 1024;       // random points of the object's box with the eikonal loss, per step
+  int near_points = 1024;      // random points near hits with the eikonal loss, per step
+  int mask_rays = 1024;        // rays around the object with the mask loss, per step
   float mask = 0.1f;           // weight of the mask loss, per mask_sharpness
-  float mask_sharpness = 800;  // 1 / length
-  bool keep_power = true;      // of the light, see LightDescent
+  float mask_sharpness = 800;  // sharpness of the mask loss, 1 / length
+  bool keep_power = true;      // keep the power of the light, see LightDescent
   bool learn_specular = false;
   int refresh = 100;  // steps after which visibility and bounces are recomputed
   uint64_t seed = 1;
@@ -59,11 +63,12 @@ struct JointObject {
   Field sdf, albedo;
   MaterialField material;
   SgMixture light;
-  // Of a single spherical Gaussian; none: made of `material`, which follows it as nearest_material().
+  // The material of SpecularTerm::single_sg; none: it begins as that of `material`. While it is trained,
+  // `material` is its nearest_material().
   std::optional<SgMaterial> gloss = {};
 };
 
-// Means over rays and points, weighted.
+// The losses of a step: means over its rays or points, times the weights of the losses.
 struct JointLoss {
   double color = 0, eikonal = 0, mask = 0;
   double total() const { return color + eikonal + mask; }
@@ -74,13 +79,14 @@ inline constexpr size_t kHeldOutStride = 20;
 
 class JointDescent {
  public:
-  // input: the surface, which stands for visibility and bounces throughout, and its hits; or no surface and
-  // object_rays(), which are then traced through the field alone and lit as if the object hid nothing from
-  // itself. pixels: whose empty pixels the mask loss takes. All must outlive the object.
+  // input: a surface and its hits; visibility and bounces are computed on this surface throughout. Or no
+  // surface and object_rays(): these are traced through the field alone, and hits are lit as if the object
+  // hid nothing from itself. pixels: the mask loss takes rays through those that do not show the object. All
+  // must outlive the descent.
   JointDescent(const Device&, const AppearanceInput& input, const PixelStore& pixels, JointObject start,
                const JointOptions&, const Progress&);
 
-  // rate: times all rates.
+  // rate: factor of all rates.
   JointLoss step(int step, float rate);
   const JointObject& object() const { return object_; }
   const Lighting& lighting() const { return *lighting_; }  // of the last step
@@ -88,7 +94,8 @@ class JointDescent {
   // 20,000 of them. Rays that miss the surface are black.
   double held_out_psnr();
 
-  // Object and moments. Without a surface, what goes on from them is what would have gone on.
+  // The object and the moments of its optimizers. A descent that is loaded from them continues as if it had
+  // not been interrupted; with a surface only nearly, because it computes visibility and bounces at once.
   void save(Tensors& out) const;
   void load(const Tensors& in);
 

@@ -7,7 +7,6 @@
 #include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
-#include "core/math/psnr.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
 #include "engine/render/render.h"
 
@@ -100,9 +99,7 @@ double held_out_psnr(const Device& device, const Scene& scene, const SurfaceSamp
       radiance_of(device, scene, {hits, {}, {}, footprints, {samples.turned.turns, views}}, progress);
   std::vector<Vec3f> of_judged(judged.size(), Vec3f{0, 0, 0});
   for (size_t k = 0; k < radiance.size(); ++k) of_judged[ray_of_hit[k]] = radiance[k];
-  double sum = 1e-12;
-  for (size_t k = 0; k < judged.size(); ++k) sum += display_error(of_judged[k], samples.colors[judged[k]]);
-  return psnr_of_mse(sum / (3 * double(std::max<size_t>(judged.size(), 1))));
+  return display_psnr(samples, judged, of_judged);
 }
 
 }  // namespace cei3d

@@ -19,7 +19,8 @@ struct SgMaterial {
 // 2009]
 float roughness_of_sharpness(float sharpness);
 
-// With the lobe that a material's roughness stands for.
+// The paper's material for a material of the shading model: its lobe is the one that the roughness stands
+// for.
 SgMaterial sg_material_of(const Material&);
 // The material of the shading model that comes nearest: the width of the lobe, and as much reflection along
 // the normal as a dielectric can have.

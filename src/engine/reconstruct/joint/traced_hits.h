@@ -21,8 +21,9 @@ struct ValueGrads {
 
 class TracedHits {
  public:
-  // near: each stands for the ray from its camera through it. are_near: they are hits on a mesh close to the
-  // surface; else the surface is searched along the whole ray. Their triangles are kept. sdf: not kept.
+  // near: one for each ray, which goes from its camera through its position. are_near: whether these are hits
+  // on a mesh close to the surface; else the surface is searched along the whole ray. The traced hits have
+  // their triangles. sdf: not referred to afterwards.
   TracedHits(const Device&, const Field& sdf, std::span<const Hit> near, bool are_near = true);
 
   std::span<const Hit> hits() const { return hits_; }          // of the rays that meet the surface

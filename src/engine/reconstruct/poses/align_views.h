@@ -26,12 +26,12 @@ struct AlignedViews {
   double pixels = 0;  // median over views of how far they move the object in the image, in its pixels
 };
 
-// What all cameras would have in common is taken out of their motions: the object stays where and as large as
-// it is.
+// Aligns every camera with the model by align_view(), then keep_frame(), so that the object stays where it is
+// and as large as it is.
 AlignedViews align_views(const ShownViews&, const PixelStore&);
 
-// Factors by which the photographs are brighter than the model, on top of those that the store has: its new
-// ones, of which the geometric mean is 1. A view that shows too little keeps its own.
+// New exposures for the store: its present ones, times the factors by which the photographs are brighter than
+// the model, with a geometric mean of 1. A view that shows too little of the object gets no factor.
 std::vector<Vec3f> find_exposures(const ShownViews&, const PixelStore&);
 // Root mean square of the logarithm of b over a, over views and channels. Empty: all are 1.
 double exposure_change(std::span<const Vec3f> a, std::span<const Vec3f> b);

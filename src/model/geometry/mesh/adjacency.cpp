@@ -8,6 +8,20 @@ namespace {
 
 constexpr double kMinWeight = 0.05, kMaxWeight = 5;  // an edge between equilateral triangles has 0.58
 
+// The lists of items by vertex, in the order in which for_each_item(add) calls add(vertex, item). It is
+// called twice and does the same both times.
+template <class ForEachItem>
+VertexLists lists_of(size_t vertices, const ForEachItem& for_each_item) {
+  VertexLists lists;
+  lists.start.assign(vertices + 1, 0);
+  for_each_item([&](uint32_t v, uint32_t) { ++lists.start[v + 1]; });
+  for (size_t v = 0; v < vertices; ++v) lists.start[v + 1] += lists.start[v];
+  lists.items.resize(lists.start.back());
+  std::vector<uint32_t> next(lists.start.begin(), lists.start.end() - 1);
+  for_each_item([&](uint32_t v, uint32_t item) { lists.items[next[v]++] = item; });
+  return lists;
+}
+
 // Position of v in the list of u.
 size_t slot(const VertexLists& neighbors, uint32_t u, uint32_t v) {
   const auto begin = neighbors.items.begin() + neighbors.start[u];
@@ -18,16 +32,10 @@ size_t slot(const VertexLists& neighbors, uint32_t u, uint32_t v) {
 }  // namespace
 
 VertexLists triangles_around(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles) {
-  VertexLists lists;
-  lists.start.assign(vertices + 1, 0);
-  for (const auto& t : triangles)
-    for (const uint32_t v : t) ++lists.start[v + 1];
-  for (size_t v = 0; v < vertices; ++v) lists.start[v + 1] += lists.start[v];
-  lists.items.resize(3 * triangles.size());
-  std::vector<uint32_t> next(lists.start.begin(), lists.start.end() - 1);
-  for (size_t i = 0; i < triangles.size(); ++i)
-    for (const uint32_t v : triangles[i]) lists.items[next[v]++] = uint32_t(i);
-  return lists;
+  return lists_of(vertices, [&](const auto& add) {
+    for (size_t i = 0; i < triangles.size(); ++i)
+      for (const uint32_t v : triangles[i]) add(v, uint32_t(i));
+  });
 }
 
 VertexLists neighbors_of(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles) {
@@ -45,6 +53,20 @@ VertexLists neighbors_of(size_t vertices, std::span<const std::array<uint32_t, 3
     lists.start[v + 1] = uint32_t(lists.items.size());
   }
   return lists;
+}
+
+std::vector<Edge> edges_of(std::span<const std::array<uint32_t, 3>> triangles) {
+  std::vector<Edge> edges;
+  for (const auto& t : triangles)
+    for (int c = 0; c < 3; ++c)
+      if (t[c] < t[(c + 1) % 3]) edges.push_back({t[c], t[(c + 1) % 3]});
+  return edges;
+}
+
+VertexLists joined_by(size_t vertices, std::span<const Edge> edges) {
+  return lists_of(vertices, [&](const auto& add) {
+    for (const auto& [a, b] : edges) add(a, b), add(b, a);
+  });
 }
 
 LaplaceWeights laplace_weights(std::span<const Vec3f> positions,

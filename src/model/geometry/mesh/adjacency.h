@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Neighbors of mesh vertices, and the cotangent weights of the discrete Laplacian.
+// Edges of a mesh, neighbors of its vertices, and the cotangent weights of the discrete Laplacian.
 #pragma once
 
 #include <array>
@@ -25,6 +25,13 @@ struct VertexLists {
 VertexLists triangles_around(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles);
 // Vertices that share an edge with each vertex, ascending.
 VertexLists neighbors_of(size_t vertices, std::span<const std::array<uint32_t, 3>> triangles);
+
+using Edge = std::array<uint32_t, 2>;
+// The edges (a, b), a < b, that a triangle runs through from a to b, in the order of the triangles. In a
+// closed mesh these are all edges, each once.
+std::vector<Edge> edges_of(std::span<const std::array<uint32_t, 3>> triangles);
+// Vertices that one of these edges joins to each vertex, in the order of the edges.
+VertexLists joined_by(size_t vertices, std::span<const Edge> edges);
 
 // Cotangent weights, one for each item of `neighbors` (0.5 (cot a + cot b), the same in both directions), and
 // the area of each vertex (a third of its triangles' areas). [Pinkall and Polthier 1993] Weights are clamped

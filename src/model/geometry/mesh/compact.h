@@ -6,8 +6,8 @@
 
 namespace cei3d {
 
-// The triangles without vertices that none of them uses, left by removed parts and by simplification. ids:
-// the mesh's vertex of each vertex that stays; null: not asked for.
+// The mesh of these triangles alone. Vertices that none of them uses, which removed parts and simplification
+// leave, are dropped. ids: gets the mesh's vertex of each vertex that stays; may be null.
 Mesh compact(const Mesh& mesh, std::vector<std::array<uint32_t, 3>> triangles,
              std::vector<uint32_t>* ids = nullptr);
 

@@ -8,6 +8,6 @@
 namespace cei3d {
 
 Json camera_json(const Camera&);
-Camera camera_from_json(JsonReader&);  // reads the keys of camera_json(); those without skew have none
+Camera camera_from_json(JsonReader&);  // reads the keys of camera_json(); `skew` may be missing, then it is 0
 
 }  // namespace cei3d

@@ -25,7 +25,7 @@ struct FaceGraph {
   size_t size() const { return across.size(); }
 };
 
-// The normal of a sliver is that of its neighbors.
+// Slivers get the mean normal of their neighbors, because their own is inaccurate.
 FaceGraph face_graph(std::span<const Vec3f> positions, std::span<const std::array<uint32_t, 3>> triangles);
 
 }  // namespace cei3d
