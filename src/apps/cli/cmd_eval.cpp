@@ -44,8 +44,8 @@ void add_networks(CLI::App* verb, NetworkFiles& files) {
 void add_residual_switch(CLI::App* verb, bool& on) {
   verb->add_flag_callback(
       "--no-residual", [&on] { on = false; },
-      "Light and material alone, without the correction network (which is never used in edits and under "
-      "other lights)");
+      "Light and material alone, without the correction network (which is not used under other lights "
+      "either)");
 }
 
 void add_eval(Commands& commands) {

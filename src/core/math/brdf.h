@@ -52,11 +52,11 @@ HD T microfacet_brdf(Vec3<T> n, Vec3<T> v, Vec3<T> l, T f0, T roughness) {
   return select((dot(n, v) > T(0.0f)) & (dot(n, l) > T(0.0f)), f, T(0.0f));
 }
 
-// factor * (1 - cosine)^5, which is large only at grazing angles.
+// (1 - cosine)^5, which is large only at grazing angles.
 template <class T>
-HD T times_grazing(T factor, T cosine) {
+HD T grazing(T cosine) {
   const T c = T(1.0f) - cosine, c2 = c * c;
-  return factor * c2 * c2 * c;
+  return c2 * c2 * c;
 }
 
 // Burley's diffuse term relative to a Lambertian one, for a light at cosine nl and a viewer at cosine nv; lh
@@ -64,7 +64,7 @@ HD T times_grazing(T factor, T cosine) {
 template <class T>
 HD T burley_diffuse(T nl, T nv, T lh, T roughness) {
   const T flat = T(2.0f) * roughness * lh * lh - T(0.5f);
-  return (T(1.0f) + times_grazing(flat, nl)) * (T(1.0f) + times_grazing(flat, nv));
+  return (T(1.0f) + flat * grazing(nl)) * (T(1.0f) + flat * grazing(nv));
 }
 
 // What Burley's diffuse term depends on in the light that reaches a point: means over that light, weighted by
@@ -72,7 +72,7 @@ HD T burley_diffuse(T nl, T nv, T lh, T roughness) {
 template <class T>
 struct DiffuseLight {
   T lv;          // cosine of light and viewer
-  T grazing;     // (1 - nl)^5
+  T grazing;     // grazing(nl)
   T grazing_lv;  // their product
 };
 // Of light that comes evenly from everywhere.
@@ -92,7 +92,7 @@ HD T even_light_grad(const DiffuseLight<T>& d) {
 template <class T>
 HD T diffuse_view(T nv, T roughness, const DiffuseLight<T>& light) {
   const T half(0.5f), view = roughness * (T(1.0f) + light.lv) - half;
-  return (T(1.0f) + times_grazing(view, nv)) *
+  return (T(1.0f) + view * grazing(nv)) *
          (T(1.0f) + (roughness - half) * light.grazing + roughness * light.grazing_lv);
 }
 // Under even light.
@@ -100,6 +100,7 @@ template <class T>
 HD T diffuse_view(T nv, T roughness) {
   return diffuse_view(nv, roughness, even_light(nv));
 }
+
 template <class T>
 struct DiffuseViewGrad {
   T value, d_nv, d_roughness;
@@ -107,7 +108,7 @@ struct DiffuseViewGrad {
 };
 template <class T>
 HD DiffuseViewGrad<T> diffuse_view_grad(T nv, T roughness, const DiffuseLight<T>& light) {
-  const T one(1.0f), half(0.5f), c = one - nv, c2 = c * c, c4 = c2 * c2, c5 = c4 * c;
+  const T one(1.0f), half(0.5f), c5 = grazing(nv), c2 = square(one - nv), c4 = c2 * c2;
   const T view = roughness * (one + light.lv) - half, view_factor = one + view * c5;
   const T light_factor = one + (roughness - half) * light.grazing + roughness * light.grazing_lv;
   return {view_factor * light_factor,
@@ -115,4 +116,5 @@ HD DiffuseViewGrad<T> diffuse_view_grad(T nv, T roughness, const DiffuseLight<T>
           (one + light.lv) * c5 * light_factor + view_factor * (light.grazing + light.grazing_lv),
           {roughness * c5 * light_factor, view_factor * (roughness - half), view_factor * roughness}};
 }
+
 }  // namespace cei3d

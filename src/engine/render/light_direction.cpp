@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/render/light_direction.h"
 
-#include <cmath>
-
 #include "core/base/parallel.h"
 #include "core/math/color.h"
 
@@ -21,8 +19,8 @@ LightDirectionMap light_directions(const SkyRadiance& radiance) {
     float total = 1e-12f;
     for (int k = 0; k < kSkyDirections; ++k) {
       const float cosine = max(dot(normals[size_t(i)], sky[size_t(k)]), 0.0f),
-                  weight = luminance(radiance[size_t(k)]) * cosine, grazing = std::pow(1 - cosine, 5.0f);
-      sum = sum + weight * LightDirection{sky[size_t(k)], sky[size_t(k)] * grazing, grazing};
+                  weight = luminance(radiance[size_t(k)]) * cosine, enters_flat = grazing(cosine);
+      sum = sum + weight * LightDirection{sky[size_t(k)], sky[size_t(k)] * enters_flat, enters_flat};
       total += weight;
     }
     nodes[size_t(i)] = (1 / total) * sum;
