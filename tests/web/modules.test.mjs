@@ -187,13 +187,13 @@ test('the editor asks for all its modules at once', () => {
 
 test('pictures are as fine as there is time for', () => {
   const run = (pace, costs, pictures) => { for (let i = 0; i < pictures; ++i) pace.took(costs[pace.at] + (pace.first ? 900 : 0)); return pace.at; };
-  const software = [600, 160, 90], hardware = [6, 4, 3];
+  const software = [600, 160, 90, 40], hardware = [6, 4, 3, 2];
   const slow = new Pace(false);
   assert.equal(run(slow, software, 4), 2);  // the driver prepares itself twice
   assert.equal(run(slow, software, 100), 2);
-  assert.equal(run(new Pace(true), software, 100), 2);
+  assert.equal(run(new Pace(true), software, 100), 3);
   const quick = new Pace(true);
-  assert.equal(run(quick, hardware, 10), 0);
+  assert.equal(run(quick, hardware, 15), 0);
   assert.equal(run(quick, hardware, 100), 0);
   assert.ok(run(quick, hardware.map((t) => 20 * t), 10) > 0);  // something else uses it, too
   assert.equal(run(quick, hardware, 30), 0);
