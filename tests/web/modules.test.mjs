@@ -3,6 +3,7 @@
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import test from 'node:test';
+import vm from 'node:vm';
 import { clipFromRelative, cross, dot, ofPixel, plus, resized, rotation, unit } from '../../src/web/camera.js';
 import { Orbit } from '../../src/web/orbit.js';
 import { readPack } from '../../src/web/pack.js';
@@ -181,8 +182,21 @@ test('the editor asks for all its modules at once', () => {
       files.add(new URL(to, new URL(file, web)).href.slice(web.href.length));
   const asked = [...page.matchAll(/modulepreload" href="\/app\/(.*)"/g)].map(([, file]) => file);
   files.delete('editor/main.js');
-  for (const file of ['renderer.js', 'shaders.js', 'camera.js', 'pack.js']) files.add(file);  // when an object is opened
+  for (const file of ['renderer.js', 'shaders.js', 'targets.js', 'camera.js', 'pack.js']) files.add(file);  // when an object is opened
   assert.deepEqual(asked.sort(), [...files].sort());
+});
+
+// As cmake/embed.cmake joins them.
+test('the modules of the exported page are one script', () => {
+  const root = new URL('../../', import.meta.url), read = (file) => fs.readFileSync(new URL(file, root), 'utf8');
+  const names = /set\(modules ([a-z ]*)\)/.exec(read('cmake/embed.cmake'))[1].split(' ');
+  const joined = names.map((name, at) => {
+    const text = read(`src/web/${name}.js`);
+    for (const [, from] of text.matchAll(/^import .* from '\.\/(.*)\.js';/gm)) assert.ok(names.slice(0, at).includes(from), `${name} before ${from}`);
+    return text.replaceAll(/(^|\n)import {[^}]*} from '[^']*';/g, '').replaceAll('\nexport ', '\n');
+  }).join('');
+  assert.ok(!/^(import|export) /m.test(joined));
+  new vm.Script(joined);  // names differ
 });
 
 test('pictures are as fine as there is time for', () => {
