@@ -4,6 +4,7 @@
 import { pointAt, seen } from './camera.js';
 import { complain, el, toast } from './dom.js';
 import { postJson, upload } from './api.js';
+import { Newest } from './newest.js';
 import { dashed, polygon } from './paint.js';
 
 /** @typedef {import('./camera.js').CameraJson} CameraJson */
@@ -25,8 +26,7 @@ export class DecalTool {
     /** @type {CameraJson | null} whose picture the decal is */
     this.over = null;
     this.number = 0;
-    this.locating = false;
-    this.again = false;
+    this.locations = new Newest(() => this.locateNow());
     this.pressed = false;
     this.timer = 0;
   }
@@ -72,20 +72,17 @@ export class DecalTool {
 
   decal() { return { pixel: this.place?.pixel, width: this.width * this.store.object.radius, turn: this.turn }; }
 
-  /** Asks where it lies now; one at a time, the newest place. */
-  async locate() {
-    this.again = true;
-    if (this.locating || !this.picture) return;
-    this.locating = true;
-    while (this.again && this.place) {
-      this.again = false;
-      try {
-        const { width, height } = this.picture.bitmap;
-        this.over = await postJson('decal', { camera: this.place.camera, decal: this.decal(), size: [width, height] });
-      } catch (error) { complain(error); }
-      this.stage.redraw();
-    }
-    this.locating = false;
+  locate() { return this.locations.run(); }
+
+  /** Asks where it lies. */
+  async locateNow() {
+    if (!this.place || !this.picture) return;
+    const { width, height } = this.picture.bitmap;
+    try {
+      const over = await postJson('decal', { camera: this.place.camera, decal: this.decal(), size: [width, height] });
+      if (this.place) this.over = over;
+    } catch (error) { complain(error); }
+    this.stage.redraw();
   }
 
   params() { return { strokes: [{ camera: this.place?.camera, scribble: this.picture?.id, decal: this.decal() }] }; }
