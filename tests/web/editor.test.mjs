@@ -5,12 +5,20 @@ import test from 'node:test';
 
 const standIns = {
   location: { hash: '', host: '', protocol: 'http:', search: '' }, sessionStorage: { getItem: () => null }, WebSocket: class {},
-  window: { addEventListener() {} }, document: { getElementById: () => ({ append() {}, children: [] }), createElement: () => ({ append() {}, remove() {} }) },
+  window: { addEventListener() {} }, document: { getElementById: (id) => (id === 'toasts' ? { append() {}, children: [] } : null), createElement: () => ({ append() {} }) },
 };
+const timer = globalThis.setTimeout;
+standIns.setTimeout = (work, wait) => (wait > 100 ? 0 : timer(work, wait));  // messages do not go away
 for (const [name, value] of Object.entries(standIns)) Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
+const { Newest } = await import('../../src/web/editor/newest.js');
+const { PartTool } = await import('../../src/web/editor/select.js');
 const { Store } = await import('../../src/web/editor/store.js');
 
-const soon = () => new Promise((resolve) => { setTimeout(resolve, 0); });
+const soon = () => new Promise((resolve) => { timer(resolve, 0); });
+async function until(is) {
+  for (let i = 0; i < 10000 && !is(); ++i) await soon();
+  assert.ok(is());
+}
 
 // A program, and what befalls the edits that it is sent: 'lost': the answer, 'unheard': the edit, 'late': another window was quicker.
 function programWith(fates) {
@@ -42,4 +50,90 @@ test('an edit of another window never counts as the one that was refused', async
   assert.equal((await paint('second')).of, 'second');
   await assert.rejects(paint('third'), { status: 409 });
   assert.deepEqual(history.map((e) => e.of), ['first', 'second', 'another window']);
+});
+
+test('of what is asked for while something runs only the last is done', async () => {
+  const done = [];
+  let wanted = 0, finish = () => {};
+  const newest = new Newest(() => { done.push(wanted); return new Promise((resolve) => { finish = resolve; }); });
+  const ask = (value) => { wanted = value; return newest.run(); };
+  const all = [1, 2, 3, 4].map(ask);
+  assert.deepEqual(done, [1]);
+  finish();
+  await until(() => done.length > 1);
+  finish();
+  await Promise.all(all);
+  assert.deepEqual(done, [1, 4]);
+  ask(5);
+  assert.deepEqual(done, [1, 4, 5]);
+});
+
+test('work that failed does not keep later work from being done', async () => {
+  let times = 0;
+  const newest = new Newest(async () => { if (++times === 1) throw new Error('first'); });
+  await assert.rejects(newest.run());
+  await newest.run();
+  assert.equal(times, 2);
+});
+
+// A tool for parts, previews that wait for their answers, and the tokens that were kept.
+function partTool() {
+  const asked = [], kept = [];
+  globalThis.fetch = (path, { body }) => new Promise((resolve) => {
+    const answer = (token) => resolve(token ? Response.json({ token, part: 'part', report: { share: 0.1 } }) : Response.json({ error: 'nothing is there' }, { status: 400 }));
+    asked.push({ path, answer, clicks: JSON.parse(body).params.positive?.length });
+  });
+  const stage = { json: () => ({}), redraw() {}, addEventListener() {} };
+  const store = { part: null, select() {}, change: async (route, { token }) => { kept.push(token); return { part: 'part' }; } };
+  const tool = new PartTool(stage, store, { show: async () => {} });
+  const click = (x) => tool.click({ x, y: 0, onObject: true, alt: false });
+  return { tool, asked, kept, click };
+}
+
+test('quick clicks are previewed one at a time, the newest ones', async () => {
+  const { asked, click, tool } = partTool();
+  for (const x of [1, 2, 3]) click(x);
+  await until(() => asked.length > 0);
+  await soon();
+  assert.equal(asked.length, 1);
+  asked[0].answer('first');
+  await until(() => asked.length > 1);
+  assert.equal(tool.token, null);
+  asked[1].answer('all');
+  await tool.previews.running;
+  assert.deepEqual(asked.map((a) => a.clicks), [1, 3]);
+  assert.equal(tool.token, 'all');
+});
+
+test('a part is kept as it was clicked last, or not at all', async () => {
+  const { asked, kept, click, tool } = partTool();
+  const answer = async (count, token) => { await until(() => asked.length === count); asked[count - 1].answer(token); };
+  click(1);
+  await answer(1, 'first');
+  await tool.previews.running;
+  click(2);
+  const keeping = tool.keep();
+  await answer(2, 'second');
+  await answer(3, null);
+  await keeping;
+  assert.deepEqual(kept, []);
+  const twice = [tool.keep(), tool.keep()];
+  await answer(4, 'both');
+  await answer(5, 'again');
+  await Promise.all(twice);
+  assert.deepEqual(kept, ['again']);
+});
+
+test('what is discarded while it is being kept is not kept, nor what is clicked then', async () => {
+  const { asked, kept, click, tool } = partTool();
+  click(1);
+  const keeping = tool.keep();
+  await until(() => asked.length === 1);
+  tool.drop();
+  click(2);
+  asked[0].answer('first');
+  await until(() => asked.length === 2);
+  asked[1].answer('other');
+  await keeping;
+  assert.deepEqual(kept, []);
 });
