@@ -10,6 +10,7 @@ const standIns = {
 const timer = globalThis.setTimeout;
 standIns.setTimeout = (work, wait) => (wait > 100 ? 0 : timer(work, wait));  // messages do not go away
 for (const [name, value] of Object.entries(standIns)) Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
+const { Input } = await import('../../src/web/editor/input.js');
 const { Newest } = await import('../../src/web/editor/newest.js');
 const { PartTool } = await import('../../src/web/editor/select.js');
 const { Store } = await import('../../src/web/editor/store.js');
@@ -136,4 +137,54 @@ test('what is discarded while it is being kept is not kept, nor what is clicked 
   asked[1].answer('other');
   await keeping;
   assert.deepEqual(kept, []);
+});
+
+// The view's pointers, and what the tool and the camera are told.
+function pointers() {
+  const heard = [], listeners = {}, say = (word) => () => { heard.push(word); };
+  const view = { addEventListener: (type, listener) => { listeners[type] = listener; }, focus() {}, setPointerCapture() {}, getBoundingClientRect: () => ({ left: 0, top: 0 }) };
+  const camera = { orbit: say('orbit'), pan: say('pan'), zoom: say('zoom') };
+  const stage = { view, camera, photo: null, size: () => ({ scale: 1, width: 100, height: 100 }), onObject: () => true, moved() {} };
+  const tool = { down: say('down'), move: say('move'), up: say('up'), cancel: say('cancel'), hover: say('hover') };
+  new Input(stage, () => tool, { undo: say('undo'), redo: say('redo') });
+  const send = (type, pointerType, timeStamp, pointerId = pointerType === 'pen' ? 1 : 2) => listeners[`pointer${type}`](
+    { type: `pointer${type}`, pointerType, pointerId, timeStamp, clientX: timeStamp / 10, clientY: 0, buttons: 1, button: 0, target: { closest: () => null }, preventDefault() {} });
+  const words = () => heard.splice(0).join(' ');
+  return { send, words };
+}
+
+test('the hand that holds a pen does not disturb its stroke', () => {
+  const { send, words } = pointers();
+  send('down', 'pen', 0);
+  send('down', 'touch', 10);
+  send('move', 'touch', 20);
+  send('move', 'pen', 30);
+  send('up', 'pen', 1000);
+  send('move', 'touch', 1010);
+  send('up', 'touch', 1020);
+  send('down', 'touch', 1300);
+  send('up', 'touch', 1310);
+  assert.equal(words(), 'down move up');
+  send('down', 'touch', 1600);  // a finger
+  send('up', 'touch', 1610);
+  assert.equal(words(), 'down up');
+});
+
+test('a hand that comes before its pen gives way', () => {
+  const { send, words } = pointers();
+  send('down', 'touch', 0);
+  send('down', 'pen', 50);
+  send('move', 'touch', 60);
+  send('move', 'pen', 70);
+  send('up', 'touch', 80);
+  send('up', 'pen', 90);
+  assert.equal(words(), 'down cancel down move up');
+});
+
+test('two fingers still move and zoom', () => {
+  const { send, words } = pointers();
+  send('down', 'touch', 0, 3);
+  send('down', 'touch', 0, 4);
+  send('move', 'touch', 90, 4);
+  assert.equal(words(), 'down cancel pan zoom');
 });
