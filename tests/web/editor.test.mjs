@@ -3,15 +3,19 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 
+const drawn = [];  // pictures on canvases, and how opaque
+const context = { globalAlpha: 1, drawImage(picture) { drawn.push([picture, this.globalAlpha]); }, transform(...map) { this.map = map; } };
+for (const name of ['arc', 'beginPath', 'clearRect', 'fill', 'restore', 'save', 'stroke']) context[name] = () => {};
 const standIns = {
   location: { hash: '', host: '', protocol: 'http:', search: '' }, sessionStorage: { getItem: () => null }, WebSocket: class {},
-  window: { addEventListener() {} }, document: { getElementById: (id) => (id === 'toasts' ? { append() {}, children: [] } : null), createElement: () => ({ append() {} }) },
+  window: { addEventListener() {}, setTimeout: () => 0 }, document: { getElementById: (id) => (id === 'toasts' ? { append() {}, children: [] } : null), createElement: () => ({ append() {}, getContext: () => context }) },
 };
 const timer = globalThis.setTimeout;
 standIns.setTimeout = (work, wait) => (wait > 100 ? 0 : timer(work, wait));  // messages do not go away
 for (const [name, value] of Object.entries(standIns)) Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
 const { Input } = await import('../../src/web/editor/input.js');
 const { Newest } = await import('../../src/web/editor/newest.js');
+const { brush, PaintTool } = await import('../../src/web/editor/paint.js');
 const { PartTool } = await import('../../src/web/editor/select.js');
 const { Store } = await import('../../src/web/editor/store.js');
 
@@ -187,4 +191,28 @@ test('two fingers still move and zoom', () => {
   send('down', 'touch', 0, 4);
   send('move', 'touch', 90, 4);
   assert.equal(words(), 'down cancel pan zoom');
+});
+
+function paintTool() {
+  const camera = { width: 40, height: 30, fx: 40, fy: 40, cx: 20, cy: 15, skew: 0, world_from_cam: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], center: [0, 0, -4] };
+  const stage = Object.assign(new EventTarget(), { picture: { width: 40, height: 30, style: { opacity: '0' } }, size: () => ({ scale: 1 }), json: () => camera, redraw() {} });
+  const store = { emit() {}, object: { center: [0, 0, 0], radius: 1 } }, tool = new PaintTool(stage, store, false);
+  const stroke = (opacity) => {
+    Object.assign(brush, { opacity, hardness: 1 });
+    tool.down({ x: 1, y: 1, pressure: 1 });
+    tool.up();
+  };
+  return { stage, store, tool, stroke };
+}
+
+test('a stroke keeps the opacity that it was drawn with', () => {
+  const { tool, stroke } = paintTool();
+  stroke(0.3);
+  stroke(0.8);
+  brush.opacity = 1;
+  drawn.length = 0;
+  tool.flatten();
+  assert.deepEqual(drawn.map(([, opacity]) => opacity), [0.3, 0.8]);
+  tool.undo();
+  assert.equal(drawn.at(-1)[1], 0.3);
 });

@@ -12,6 +12,11 @@ const kIdle = 900;  // milliseconds after the last stroke until they are kept
 /** What the brush is; shared by paint and eraser. */
 export const brush = { size: 26, hardness: 0.8, opacity: 1, color: '#d8342c', other: '#f2f2f2', target: 'albedo', material: '', pen: 'size' };
 
+/** @typedef {{canvas: HTMLCanvasElement, opacity: number}} Stroke opacity: of the brush when it was drawn */
+
+/** @param {number} width @param {number} height */
+const blank = (width, height) => Object.assign(document.createElement('canvas'), { width, height });
+
 export class PaintTool {
   /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store @param {boolean} erase */
   constructor(stage, store, erase) {
@@ -22,11 +27,11 @@ export class PaintTool {
     this.label = erase ? 'Erase' : 'Paint';
     this.hint = erase ? 'Drag on the object: its own color and material come back.'
       : 'Drag on the object. [ ] size, I takes a color, Shift and a click: a straight line. Beside the object, drag to turn it.';
-    /** @type {{camera: any, canvas: HTMLCanvasElement, strokes: HTMLCanvasElement[]} | null} what is not kept yet */
+    /** @type {{camera: any, canvas: HTMLCanvasElement, strokes: Stroke[]} | null} what is not kept yet */
     this.pending = null;
     /** @type {HTMLCanvasElement[]} what is being kept */
     this.saving = [];
-    /** @type {HTMLCanvasElement | null} */
+    /** @type {Stroke | null} */
     this.stroke = null;
     /** @type {any} */
     this.last = null;
@@ -107,9 +112,7 @@ export class PaintTool {
     }
     clearTimeout(this.timer);
     const from = p.shift && this.last ? this.last : p;
-    this.stroke = document.createElement('canvas');
-    this.stroke.width = this.stage.picture.width;
-    this.stroke.height = this.stage.picture.height;
+    this.stroke = { canvas: blank(this.stage.picture.width, this.stage.picture.height), opacity: this.erase ? 1 : brush.opacity };
     this.left = 0;
     this.last = from;
     this.dab(p);
@@ -132,7 +135,7 @@ export class PaintTool {
 
   /** @param {any} p */
   dab(p) {
-    const c = /** @type {CanvasRenderingContext2D} */ (this.stroke?.getContext('2d')), r = this.radius(p);
+    const c = /** @type {CanvasRenderingContext2D} */ (this.stroke?.canvas.getContext('2d')), r = this.radius(p);
     const color = this.erase ? '#ffffff' : brush.color;
     if (brush.hardness >= 0.98) c.fillStyle = color;
     else {
@@ -154,12 +157,8 @@ export class PaintTool {
 
   up() {
     if (!this.stroke) return;
-    if (!this.pending) {
-      const canvas = document.createElement('canvas');
-      canvas.width = this.stroke.width;
-      canvas.height = this.stroke.height;
-      this.pending = { camera: this.stage.json(), canvas, strokes: [] };
-    }
+    const { width, height } = this.stroke.canvas;
+    this.pending ??= { camera: this.stage.json(), canvas: blank(width, height), strokes: [] };
     this.pending.strokes.push(this.stroke);
     this.stroke = null;
     this.flatten();
@@ -172,8 +171,10 @@ export class PaintTool {
     const pending = this.pending, c = pending?.canvas.getContext('2d');
     if (!pending || !c) return;
     c.clearRect(0, 0, pending.canvas.width, pending.canvas.height);
-    c.globalAlpha = this.erase ? 1 : brush.opacity;
-    for (const s of pending.strokes) c.drawImage(s, 0, 0);
+    for (const { canvas, opacity } of pending.strokes) {
+      c.globalAlpha = opacity;
+      c.drawImage(canvas, 0, 0);
+    }
     this.stage.redraw();
   }
 
@@ -220,8 +221,8 @@ export class PaintTool {
     for (const s of this.saving) c.drawImage(s, 0, 0);
     if (this.pending) c.drawImage(this.pending.canvas, 0, 0);
     if (this.stroke) {
-      c.globalAlpha = this.erase ? 0.6 : brush.opacity;
-      c.drawImage(this.stroke, 0, 0);
+      c.globalAlpha = this.erase ? 0.6 : this.stroke.opacity;
+      c.drawImage(this.stroke.canvas, 0, 0);
     }
     // Only the object can be painted.
     if (this.stage.picture.style.opacity !== '0') {
