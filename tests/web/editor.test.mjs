@@ -8,7 +8,7 @@ const context = { globalAlpha: 1, drawImage(picture) { drawn.push([picture, this
 for (const name of ['arc', 'beginPath', 'clearRect', 'fill', 'restore', 'save', 'stroke']) context[name] = () => {};
 const standIns = {
   location: { hash: '', host: '', protocol: 'http:', search: '' }, sessionStorage: { getItem: () => null }, WebSocket: class {},
-  window: { addEventListener() {}, setTimeout: () => 0 }, document: { getElementById: (id) => (id === 'toasts' ? { append() {}, children: [] } : null), createElement: () => ({ append() {}, getContext: () => context }) },
+  window: { addEventListener() {}, setTimeout: () => 0 }, document: { getElementById: (id) => (id === 'toasts' ? { append() {}, children: [] } : null), createElement: () => ({ append() {}, getContext: () => context, toBlob: (take) => take('png') }) },
 };
 const timer = globalThis.setTimeout;
 standIns.setTimeout = (work, wait) => (wait > 100 ? 0 : timer(work, wait));  // messages do not go away
@@ -215,4 +215,26 @@ test('a stroke keeps the opacity that it was drawn with', () => {
   assert.deepEqual(drawn.map(([, opacity]) => opacity), [0.3, 0.8]);
   tool.undo();
   assert.equal(drawn.at(-1)[1], 0.3);
+});
+
+test('a stroke that is being kept is seen until a picture has it, wherever the camera goes', async () => {
+  const { stage, store, tool, stroke } = paintTool(), answers = [];
+  store.change = () => new Promise((resolve) => { answers.push(resolve); });
+  const shown = () => { drawn.length = 0; tool.draw(context); return drawn.length; };
+  const tell = (...types) => types.forEach((type) => stage.dispatchEvent(new Event(type)));
+  stroke(1);
+  tell('moved', 'drawn', 'moved');
+  assert.equal(shown(), 1);
+  assert.deepEqual(context.map, [1, 0, 0, 1, 0, 0]);
+  stroke(1);
+  tell('moved');
+  await until(() => answers.length === 2);
+  answers[0]('made');
+  await soon();
+  assert.equal(shown(), 2);  // its picture is on its way
+  tell('drawn');
+  assert.equal(shown(), 1);
+  answers[1](undefined);
+  await soon();
+  assert.equal(shown(), 0);  // refused
 });

@@ -8,7 +8,7 @@ import { clipFromRelative, cross, dot, ofPixel, plus, resized, rotation, unit } 
 import { Orbit } from '../../src/web/orbit.js';
 import { readPack } from '../../src/web/pack.js';
 import { mirrored, placeOnBall, radianceOf } from '../../src/web/editor/ball.js';
-import { pointAt, seen } from '../../src/web/editor/camera.js';
+import { cornersOf, ontoCorners, pointAt, seen } from '../../src/web/editor/camera.js';
 import { actionOf, gestures, keyTable } from '../../src/web/editor/keys.js';
 import { Pace, steps } from '../../src/web/editor/pace.js';
 import { lookText, partLooks, swatch } from '../../src/web/editor/looks.js';
@@ -127,6 +127,19 @@ test('the editor sees a point where the pinhole equation has it, and finds it ag
     near(at.y, y);
     near(at.depth, depth);
     pointAt(camera, at.x, at.y, at.depth).forEach((v, k) => near(v, p[k]));
+  }
+});
+
+test('a picture across the view lies where another camera sees what it shows', () => {
+  const camera = someCamera(), other = {...camera, fx: 300, center: plus(camera.center, [0.5, -0.2, 0.7]), world_from_cam: rotation([0, 0, 1], 0.1).map((row) => [0, 1, 2].map((k) => dot(row, camera.world_from_cam.map((r) => r[k]))))};
+  const at = ([a, b, c, d, e, f], x, y) => [a * x + c * y + e, b * x + d * y + f];
+  for (const [to, points] of [[camera, [[0, 0], [300, 200], [120, 70]]], [other, [[0, 0], [300, 0], [0, 200]]]]) {
+    const map = ontoCorners(cornersOf(camera, 5, to), 300, 200);
+    for (const [x, y] of points) {
+      const want = pixelOf(to, pointAt(camera, x, y, 5)), got = at(map, x, y);
+      near(got[0], want[0]);
+      near(got[1], want[1]);
+    }
   }
 });
 

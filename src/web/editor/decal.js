@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** A picture that lies on the object: moved, turned, scaled, and then pressed into its color. */
-import { pointAt, seen } from './camera.js';
+import { cornersOf, ontoCorners } from './camera.js';
 import { complain, el, toast } from './dom.js';
 import { postJson, upload } from './api.js';
 import { Newest } from './newest.js';
@@ -154,22 +154,19 @@ export class DecalTool {
     this.timer = window.setTimeout(() => this.preview(), 250);
   }
 
-  /** Its corners in the picture: left above, right above, right below, left below. @param {CameraJson} over */
-  corners(over) {
-    const far = over.fx * this.width * this.store.object.radius / over.width, camera = this.stage.json();
-    return [[0, 0], [over.width, 0], [over.width, over.height], [0, over.height]].map(([x, y]) => seen(camera, pointAt(over, x, y, far)));
-  }
+  /** @param {CameraJson} over */
+  corners(over) { return cornersOf(over, over.fx * this.width * this.store.object.radius / over.width, this.stage.json()); }
 
   /** @param {CanvasRenderingContext2D} c */
   draw(c) {
     if (!this.over || !this.picture) return;
-    const [a, b, , d] = this.corners(this.over), { width, height } = this.picture.bitmap;
+    const corners = this.corners(this.over), { width, height } = this.picture.bitmap;
     c.save();
-    c.transform((b.x - a.x) / width, (b.y - a.y) / width, (d.x - a.x) / height, (d.y - a.y) / height, a.x, a.y);
+    c.transform(...ontoCorners(corners, width, height));
     c.globalAlpha = 0.85;
     if (this.pressed || !this.stage.preview) c.drawImage(this.picture.bitmap, 0, 0);
     c.restore();
-    dashed(c, polygon(this.corners(this.over)));
+    dashed(c, polygon(corners));
   }
 }
 

@@ -4,6 +4,7 @@
  * Paint and erase. Strokes are dabs in the plane of the picture; the program projects them onto what the camera sees.
  * Strokes that follow each other closely become one edit; until then each is undone by itself.
  */
+import { cornersOf, ontoCorners, seen } from './camera.js';
 import { complain, el } from './dom.js';
 import { postJson, upload } from './api.js';
 
@@ -29,7 +30,7 @@ export class PaintTool {
       : 'Drag on the object. [ ] size, I takes a color, Shift and a click: a straight line. Beside the object, drag to turn it.';
     /** @type {{camera: any, canvas: HTMLCanvasElement, strokes: Stroke[]} | null} what is not kept yet */
     this.pending = null;
-    /** @type {HTMLCanvasElement[]} what is being kept */
+    /** @type {{canvas: HTMLCanvasElement, camera: any, kept: boolean}[]} what is being kept, or is and is in no picture yet */
     this.saving = [];
     /** @type {Stroke | null} */
     this.stroke = null;
@@ -39,8 +40,8 @@ export class PaintTool {
     this.at = null;
     this.timer = 0;
     this.picking = false;  // the next click takes a color
-    stage.addEventListener('moved', () => { this.at = null; this.keep(); this.saving = []; });
-    stage.addEventListener('exact', () => { if (!this.busy) { this.saving = []; stage.redraw(); } });
+    stage.addEventListener('moved', () => { this.at = null; this.keep(); });
+    stage.addEventListener('drawn', () => { this.saving = this.saving.filter((s) => !s.kept); });
     this.busy = 0;
   }
 
@@ -195,17 +196,20 @@ export class PaintTool {
     clearTimeout(this.timer);
     const pending = this.pending;
     if (!pending) return;
+    const { canvas, camera } = pending, saved = { canvas, camera, kept: false };
+    const forget = () => { this.saving = this.saving.filter((s) => s !== saved); };
     this.pending = null;
-    this.saving.push(pending.canvas);
+    this.saving.push(saved);
     const look = this.erase ? { erase: true } : { target: brush.target, ...(brush.material ? { material: brush.material } : {}) };
     ++this.busy;
     try {
-      const png = await new Promise((resolve) => pending.canvas.toBlob(resolve, 'image/png'));
+      const png = await new Promise((resolve) => canvas.toBlob(resolve, 'image/png'));
       const done = await this.store.change('edit', async () => (
-        { op: 'paint', params: { strokes: [{ camera: pending.camera, scribble: await upload(png, 'scribble.png') }], ...look } }));
-      if (!done) this.saving = this.saving.filter((s) => s !== pending.canvas);
+        { op: 'paint', params: { strokes: [{ camera, scribble: await upload(png, 'scribble.png') }], ...look } }));
+      saved.kept = true;
+      if (!done) forget();
     } catch (error) {
-      this.saving = this.saving.filter((s) => s !== pending.canvas);
+      forget();
       complain(error);
     } finally {
       --this.busy;
@@ -215,10 +219,25 @@ export class PaintTool {
 
   unsaved() { return this.pending !== null || this.stroke !== null || this.busy > 0; }
 
+  /**
+   * Strokes go along when the object turns, as if they lay across the view in which they were drawn, in front of its middle.
+   * @param {CanvasRenderingContext2D} c @param {HTMLCanvasElement} canvas @param {import('./camera.js').CameraJson} camera
+   */
+  drawSaved(c, canvas, camera) {
+    const { center, radius } = this.store.object, { width, height } = canvas;
+    const corners = cornersOf(camera, Math.max(seen(camera, center).depth - radius / 2, radius / 20), this.stage.json());
+    const map = ontoCorners(corners, width, height), behind = map[0] * map[3] <= map[1] * map[2] || corners.some((p) => p.depth <= 0);
+    if (behind) return;
+    c.save();
+    c.transform(...map);
+    c.drawImage(canvas, 0, 0);
+    c.restore();
+  }
+
   /** @param {CanvasRenderingContext2D} c */
   draw(c) {
     c.save();
-    for (const s of this.saving) c.drawImage(s, 0, 0);
+    for (const { canvas, camera } of this.saving) this.drawSaved(c, canvas, camera);
     if (this.pending) c.drawImage(this.pending.canvas, 0, 0);
     if (this.stroke) {
       c.globalAlpha = this.erase ? 0.6 : this.stroke.opacity;
