@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the editor's modules do, with stand-ins for the browser and the program: node --test tests/web
 import assert from 'node:assert/strict';
+import fs from 'node:fs';
 import test from 'node:test';
 
 const drawn = [];  // pictures on canvases, and how opaque
@@ -13,6 +14,7 @@ const standIns = {
 const timer = globalThis.setTimeout;
 standIns.setTimeout = (work, wait) => (wait > 100 ? 0 : timer(work, wait));  // messages do not go away
 for (const [name, value] of Object.entries(standIns)) Object.defineProperty(globalThis, name, { value, configurable: true, writable: true });
+const { chosen, formats } = await import('../../src/web/editor/dialogs.js');
 const { Input } = await import('../../src/web/editor/input.js');
 const { Newest } = await import('../../src/web/editor/newest.js');
 const { brush, PaintTool } = await import('../../src/web/editor/paint.js');
@@ -237,4 +239,23 @@ test('a stroke that is being kept is seen until a picture has it, wherever the c
   answers[1](undefined);
   await soon();
   assert.equal(shown(), 0);  // refused
+});
+
+test('the dialog offers all that the program exports', () => {
+  const source = (file) => fs.readFileSync(new URL(`../../src/${file}`, import.meta.url), 'utf8');
+  const words = (text, pattern) => new Set([...text.matchAll(pattern)].map(([, word]) => word));
+  const endings = words(source('engine/session/session_export.cpp'), /"(\.\w+)"/g);
+  assert.deepEqual(new Set(formats.map((f) => /\.\w+$/.exec(f.ending)[0])), endings);
+  assert.equal(new Set(formats.map((f) => f.ending.replace(/\.(gltf|obj)$/, ''))).size, formats.length);  // other files are beside these
+  const [reader] = /^ExportRequest export_request\(.*?^}/ms.exec(source('apps/server/edit_json.cpp'));
+  const keys = words(reader.replaceAll(/"(input|base)"/g, ''), /"(\w+)"/g);
+  assert.deepEqual(new Set(['file', ...formats.flatMap((f) => [...f.options, ...Object.keys(f.more ?? {})])]), keys);
+});
+
+test('what is chosen for an export is sent as the program reads it', () => {
+  const fields = { 'export-faces': '400', 'export-unit_scale': '0.5', 'export-light': 'fit', 'export-texture': '0', 'export-for': '', 'export-image': 'png' };
+  const { getElementById } = document;
+  document.getElementById = (id) => ({ value: fields[id] });
+  assert.deepEqual(chosen(['faces', 'unit_scale', 'light', 'texture', 'for', 'image']), { faces: 400, unit_scale: 0.5, light: true, texture: 0, image: 'png' });
+  document.getElementById = getElementById;
 });
