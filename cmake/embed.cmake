@@ -2,7 +2,7 @@
 # The files of src/web as a C++ source: cmake -D SOURCE_DIR=src/web -D OUT=x.cpp -P embed.cmake. Besides every file as it
 # is, the modules of the page that `export` writes, joined into one script: browsers load no module from a file:// page.
 # Joining leaves out imports and the word `export`, so top-level names must differ between these modules.
-set(modules pack camera orbit controls shaders renderer page)  # each after those that it imports
+set(modules pack camera orbit controls shaders targets renderer page)  # each after those that it imports
 
 function(embed name content)
   if(content MATCHES "\\)page\"")

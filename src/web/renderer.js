@@ -4,6 +4,7 @@
 // at any time.
 import { clipFromRelative, dot, ofPixel, plus } from './camera.js';
 import { filterShader, litShader, partShader, plainShader, screenShader, vertexShader } from './shaders.js';
+import { makeTarget, Targets } from './targets.js';
 
 /** @typedef {import('./camera.js').Camera} Camera */
 /** @typedef {import('./pack.js').Pack} Pack */
@@ -20,11 +21,10 @@ import { filterShader, litShader, partShader, plainShader, screenShader, vertexS
  * @property {number} highlight index of a part, 0 for none
  * @property {number[]} [hidden] indices of parts that are not drawn
  */
-/** @typedef {{frame: WebGLFramebuffer, width: number, height: number, parts: (WebGLRenderbuffer | WebGLTexture)[]}} Target */
+/** @typedef {import('./targets.js').Target} Target */
 
 export const channels = ['lit', 'albedo', 'normal', 'roughness', 'metalness'];
 const kEncoded = new Set(['lit', 'albedo']);  // channels that are colors
-const kMultisamples = 4;
 const kHighlight = [1.0, 0.55, 0.1];
 const kUnits = ['uIrradiance', 'uReflection', 'uSurface', 'uBase', 'uFresnel', 'uLobe'];
 export const noTurn = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
@@ -75,9 +75,6 @@ export class Renderer {
     if (!gl) throw new Error('This browser has no WebGL 2.');
     this.canvas = canvas;
     this.gl = gl;
-    // Light is averaged before it is cut off, as far as the hardware can.
-    const float = gl.getExtension('EXT_color_buffer_half_float') || gl.getExtension('EXT_color_buffer_float');
-    this.sampleFormat = float ? gl.RGBA16F : gl.SRGB8_ALPHA8;
     const names = gl.getExtension('WEBGL_debug_renderer_info');
     /** Whether a processor draws that is made for other things. */
     this.software = /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
@@ -96,8 +93,7 @@ export class Renderer {
     this.heads = new Map();
     /** Numbers of corners of the triangles and of the coarse ones. */
     this.corners = {triangles: 0, coarse: 0};
-    /** @type {{samples: Target | null, mean: Target} | null} samples: none of a rough picture */
-    this.targets = null;
+    this.targets = new Targets(gl);
     /** @type {Target | null} */
     this.pixel = null;
     gl.vertexAttribI4ui(5, 0, 0, 0, 0);  // the bounce where there is none
@@ -236,7 +232,7 @@ export class Renderer {
       this.canvas.width = width;
       this.canvas.height = height;
     }
-    const {samples, mean} = this.targetsOf(width * view.samples, height * view.samples, Boolean(view.rough));
+    const {samples, mean} = this.targets.of(width * view.samples, height * view.samples, Boolean(view.rough));
     this.drawSurface(view, (samples ?? mean).frame, mean.width, mean.height);
     if (samples) {
       gl.bindFramebuffer(gl.READ_FRAMEBUFFER, samples.frame);
@@ -349,57 +345,11 @@ export class Renderer {
   partAt(camera, x, y, hidden) {
     const {gl} = this;
     if (!this.hasSurface || gl.isContextLost()) return -1;
-    this.pixel ??= this.makeTarget(1, 1, gl.RGBA8, 0);
+    this.pixel ??= makeTarget(gl, 1, 1, gl.RGBA8, 0);
     this.begin(this.part, ofPixel(camera, x, y), this.pixel.frame, 1, 1, hidden);
     this.drawTriangles('triangles');
     const out = new Uint8Array(4);
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, out);
     return out[3] > 0 ? out[0] : -1;
-  }
-
-  /** @param {number} width @param {number} height @param {boolean} rough */
-  targetsOf(width, height, rough) {
-    const now = this.targets;
-    if (now && (now.mean.width !== width || now.mean.height !== height || (now.samples === null) !== rough)) {
-      for (const target of [now.samples, now.mean]) if (target) this.dropTarget(target);
-      this.targets = null;
-    }
-    this.targets ??= {samples: rough ? null : this.makeTarget(width, height, this.sampleFormat, kMultisamples),
-      mean: this.makeTarget(width, height, this.sampleFormat, 0)};
-    return this.targets;
-  }
-
-  /** A picture to draw into: multisampled, or a texture. @param {number} width @param {number} height @param {number} format @param {number} multisamples @returns {Target} */
-  makeTarget(width, height, format, multisamples) {
-    const {gl} = this;
-    const frame = gl.createFramebuffer(), depth = gl.createRenderbuffer();
-    gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
-    gl.bindRenderbuffer(gl.RENDERBUFFER, depth);
-    gl.renderbufferStorageMultisample(gl.RENDERBUFFER, multisamples, gl.DEPTH_COMPONENT24, width, height);
-    gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.RENDERBUFFER, depth);
-    if (multisamples > 0) {
-      const color = gl.createRenderbuffer();
-      gl.bindRenderbuffer(gl.RENDERBUFFER, color);
-      gl.renderbufferStorageMultisample(gl.RENDERBUFFER, multisamples, format, width, height);
-      gl.framebufferRenderbuffer(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.RENDERBUFFER, color);
-      return {frame, width, height, parts: [color, depth]};
-    }
-    const color = gl.createTexture();
-    gl.bindTexture(gl.TEXTURE_2D, color);
-    gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
-    for (const size of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, size, gl.LINEAR);
-    for (const side of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, side, gl.CLAMP_TO_EDGE);
-    gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, color, 0);
-    return {frame, width, height, parts: [color, depth]};
-  }
-
-  /** @param {Target} target */
-  dropTarget(target) {
-    const {gl} = this;
-    gl.deleteFramebuffer(target.frame);
-    for (const part of target.parts) {
-      if (part instanceof WebGLTexture) gl.deleteTexture(part);
-      else gl.deleteRenderbuffer(part);
-    }
   }
 }

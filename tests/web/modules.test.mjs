@@ -3,11 +3,12 @@
 import assert from 'node:assert/strict';
 import fs from 'node:fs';
 import test from 'node:test';
+import vm from 'node:vm';
 import { clipFromRelative, cross, dot, ofPixel, plus, resized, rotation, unit } from '../../src/web/camera.js';
 import { Orbit } from '../../src/web/orbit.js';
 import { readPack } from '../../src/web/pack.js';
 import { mirrored, placeOnBall, radianceOf } from '../../src/web/editor/ball.js';
-import { pointAt, seen } from '../../src/web/editor/camera.js';
+import { cornersOf, ontoCorners, pointAt, seen } from '../../src/web/editor/camera.js';
 import { actionOf, gestures, keyTable } from '../../src/web/editor/keys.js';
 import { Pace, steps } from '../../src/web/editor/pace.js';
 import { lookText, partLooks, swatch } from '../../src/web/editor/looks.js';
@@ -129,6 +130,19 @@ test('the editor sees a point where the pinhole equation has it, and finds it ag
   }
 });
 
+test('a picture across the view lies where another camera sees what it shows', () => {
+  const camera = someCamera(), other = {...camera, fx: 300, center: plus(camera.center, [0.5, -0.2, 0.7]), world_from_cam: rotation([0, 0, 1], 0.1).map((row) => [0, 1, 2].map((k) => dot(row, camera.world_from_cam.map((r) => r[k]))))};
+  const at = ([a, b, c, d, e, f], x, y) => [a * x + c * y + e, b * x + d * y + f];
+  for (const [to, points] of [[camera, [[0, 0], [300, 200], [120, 70]]], [other, [[0, 0], [300, 0], [0, 200]]]]) {
+    const map = ontoCorners(cornersOf(camera, 5, to), 300, 200);
+    for (const [x, y] of points) {
+      const want = pixelOf(to, pointAt(camera, x, y, 5)), got = at(map, x, y);
+      near(got[0], want[0]);
+      near(got[1], want[1]);
+    }
+  }
+});
+
 test('light is seen on the ball where a mirror shows it', () => {
   const r = someCamera().world_from_cam, axes = [0, 1, 2].map((k) => r.map((row) => row[k]));
   for (const [x, y] of [[0, 0], [0.3, -0.5], [-0.6, 0.2]]) {
@@ -181,19 +195,32 @@ test('the editor asks for all its modules at once', () => {
       files.add(new URL(to, new URL(file, web)).href.slice(web.href.length));
   const asked = [...page.matchAll(/modulepreload" href="\/app\/(.*)"/g)].map(([, file]) => file);
   files.delete('editor/main.js');
-  for (const file of ['renderer.js', 'shaders.js', 'camera.js', 'pack.js']) files.add(file);  // when an object is opened
+  for (const file of ['renderer.js', 'shaders.js', 'targets.js', 'camera.js', 'pack.js']) files.add(file);  // when an object is opened
   assert.deepEqual(asked.sort(), [...files].sort());
+});
+
+// As cmake/embed.cmake joins them.
+test('the modules of the exported page are one script', () => {
+  const root = new URL('../../', import.meta.url), read = (file) => fs.readFileSync(new URL(file, root), 'utf8');
+  const names = /set\(modules ([a-z ]*)\)/.exec(read('cmake/embed.cmake'))[1].split(' ');
+  const joined = names.map((name, at) => {
+    const text = read(`src/web/${name}.js`);
+    for (const [, from] of text.matchAll(/^import .* from '\.\/(.*)\.js';/gm)) assert.ok(names.slice(0, at).includes(from), `${name} before ${from}`);
+    return text.replaceAll(/(^|\n)import {[^}]*} from '[^']*';/g, '').replaceAll('\nexport ', '\n');
+  }).join('');
+  assert.ok(!/^(import|export) /m.test(joined));
+  new vm.Script(joined);  // names differ
 });
 
 test('pictures are as fine as there is time for', () => {
   const run = (pace, costs, pictures) => { for (let i = 0; i < pictures; ++i) pace.took(costs[pace.at] + (pace.first ? 900 : 0)); return pace.at; };
-  const software = [600, 160, 90], hardware = [6, 4, 3];
+  const software = [600, 160, 90, 40], hardware = [6, 4, 3, 2];
   const slow = new Pace(false);
   assert.equal(run(slow, software, 4), 2);  // the driver prepares itself twice
   assert.equal(run(slow, software, 100), 2);
-  assert.equal(run(new Pace(true), software, 100), 2);
+  assert.equal(run(new Pace(true), software, 100), 3);
   const quick = new Pace(true);
-  assert.equal(run(quick, hardware, 10), 0);
+  assert.equal(run(quick, hardware, 15), 0);
   assert.equal(run(quick, hardware, 100), 0);
   assert.ok(run(quick, hardware.map((t) => 20 * t), 10) > 0);  // something else uses it, too
   assert.equal(run(quick, hardware, 30), 0);

@@ -4,6 +4,7 @@
 import { add, dot, mul, pointAt, seen, sub, length } from './camera.js';
 import { complain, el, toast } from './dom.js';
 import { postJson } from './api.js';
+import { Newest } from './newest.js';
 import { ring } from './paint.js';
 
 /** @typedef {import('./camera.js').Vec} Vec */
@@ -27,8 +28,7 @@ export class BendTool {
     this.selected = null;
     this.dragging = false;
     this.number = 0;
-    this.waiting = false;
-    this.again = false;
+    this.previews = new Newest(() => this.previewNow());
   }
 
   /** Whether there is something to keep or discard. */
@@ -133,20 +133,15 @@ export class BendTool {
       radius: this.reach * this.store.object.radius, ...(this.store.part ? { part: this.store.part } : {}) };
   }
 
-  /** One at a time: the newest positions when the program is ready for them. */
-  async preview() {
-    this.again = true;
-    if (this.waiting) return;
-    this.waiting = true;
-    for (const number = this.number; this.again && number === this.number && this.changes();) {
-      this.again = false;
-      try {
-        const made = await postJson('preview', { op: 'deform', params: this.params() });
-        if (number === this.number) await this.stage.tryEdit(made.token);
-      } catch (error) { if (number === this.number) complain(error); }
-    }
-    this.waiting = false;
-    if (this.again && this.changes()) this.preview();
+  preview() { return this.previews.run(); }
+
+  async previewNow() {
+    if (!this.changes()) return;
+    const number = this.number;
+    try {
+      const made = await postJson('preview', { op: 'deform', params: this.params() });
+      if (number === this.number) await this.stage.tryEdit(made.token);
+    } catch (error) { if (number === this.number) complain(error); }
   }
 
   async keep() {
@@ -165,7 +160,7 @@ export class BendTool {
 
   forget() {
     ++this.number;
-    this.again = this.dragging = false;
+    this.dragging = false;
     this.points = [];
     this.select(null);
   }

@@ -134,3 +134,12 @@ export function pointAt(c, x, y, depth) {
   const r = c.world_from_cam;
   return /** @type {Vec} */ ([0, 1, 2].map((k) => c.center[k] + depth * (r[k][0] * u + r[k][1] * v + r[k][2])));
 }
+
+/** Corners of a camera's picture that lies across its view at a depth, as another one sees them: left above, right above, right below, left below. @param {CameraJson} over @param {number} depth @param {CameraJson} camera */
+export const cornersOf = (over, depth, camera) => [[0, 0], [over.width, 0], [over.width, over.height], [0, over.height]].map(([x, y]) => seen(camera, pointAt(over, x, y, depth)));
+
+/**
+ * Pixels of a picture onto its corners, as a canvas transforms them: exact at three.
+ * @param {{x: number, y: number}[]} corners @param {number} width @param {number} height @returns {[number, number, number, number, number, number]}
+ */
+export const ontoCorners = ([a, b, , d], width, height) => [(b.x - a.x) / width, (b.y - a.y) / width, (d.x - a.x) / height, (d.y - a.y) / height, a.x, a.y];

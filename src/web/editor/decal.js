@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** A picture that lies on the object: moved, turned, scaled, and then pressed into its color. */
-import { pointAt, seen } from './camera.js';
+import { cornersOf, ontoCorners } from './camera.js';
 import { complain, el, toast } from './dom.js';
 import { postJson, upload } from './api.js';
+import { Newest } from './newest.js';
 import { dashed, polygon } from './paint.js';
 
 /** @typedef {import('./camera.js').CameraJson} CameraJson */
@@ -25,8 +26,7 @@ export class DecalTool {
     /** @type {CameraJson | null} whose picture the decal is */
     this.over = null;
     this.number = 0;
-    this.locating = false;
-    this.again = false;
+    this.locations = new Newest(() => this.locateNow());
     this.pressed = false;
     this.timer = 0;
   }
@@ -72,20 +72,17 @@ export class DecalTool {
 
   decal() { return { pixel: this.place?.pixel, width: this.width * this.store.object.radius, turn: this.turn }; }
 
-  /** Asks where it lies now; one at a time, the newest place. */
-  async locate() {
-    this.again = true;
-    if (this.locating || !this.picture) return;
-    this.locating = true;
-    while (this.again && this.place) {
-      this.again = false;
-      try {
-        const { width, height } = this.picture.bitmap;
-        this.over = await postJson('decal', { camera: this.place.camera, decal: this.decal(), size: [width, height] });
-      } catch (error) { complain(error); }
-      this.stage.redraw();
-    }
-    this.locating = false;
+  locate() { return this.locations.run(); }
+
+  /** Asks where it lies. */
+  async locateNow() {
+    if (!this.place || !this.picture) return;
+    const { width, height } = this.picture.bitmap;
+    try {
+      const over = await postJson('decal', { camera: this.place.camera, decal: this.decal(), size: [width, height] });
+      if (this.place) this.over = over;
+    } catch (error) { complain(error); }
+    this.stage.redraw();
   }
 
   params() { return { strokes: [{ camera: this.place?.camera, scribble: this.picture?.id, decal: this.decal() }] }; }
@@ -157,22 +154,19 @@ export class DecalTool {
     this.timer = window.setTimeout(() => this.preview(), 250);
   }
 
-  /** Its corners in the picture: left above, right above, right below, left below. @param {CameraJson} over */
-  corners(over) {
-    const far = over.fx * this.width * this.store.object.radius / over.width, camera = this.stage.json();
-    return [[0, 0], [over.width, 0], [over.width, over.height], [0, over.height]].map(([x, y]) => seen(camera, pointAt(over, x, y, far)));
-  }
+  /** @param {CameraJson} over */
+  corners(over) { return cornersOf(over, over.fx * this.width * this.store.object.radius / over.width, this.stage.json()); }
 
   /** @param {CanvasRenderingContext2D} c */
   draw(c) {
     if (!this.over || !this.picture) return;
-    const [a, b, , d] = this.corners(this.over), { width, height } = this.picture.bitmap;
+    const corners = this.corners(this.over), { width, height } = this.picture.bitmap;
     c.save();
-    c.transform((b.x - a.x) / width, (b.y - a.y) / width, (d.x - a.x) / height, (d.y - a.y) / height, a.x, a.y);
+    c.transform(...ontoCorners(corners, width, height));
     c.globalAlpha = 0.85;
     if (this.pressed || !this.stage.preview) c.drawImage(this.picture.bitmap, 0, 0);
     c.restore();
-    dashed(c, polygon(this.corners(this.over)));
+    dashed(c, polygon(corners));
   }
 }
 

@@ -22,20 +22,26 @@ const purposes = [
   ['dcc', 'Modeling programs: 200,000 faces, 4096 texels'],
 ];
 
+const kTextured = ['for', 'faces', 'texture', 'image', 'origin', 'size', 'unit_scale', 'light'];
+
 /**
  * One format. ending: of the name, distinct where files would overwrite each other. options: those of the fields below that it has.
- * @typedef {{title: string, text: string, ending: string, options: string[]}} Format
+ * more: what else is asked for.
+ * @typedef {{title: string, text: string, ending: string, options: string[], more?: object}} Format
  * @type {Format[]}
  */
-const formats = [
-  { title: 'GLB', text: 'Web, games, most programs; one file with textures', ending: '.glb', options: ['for', 'faces', 'texture', 'image', 'origin', 'size'] },
-  { title: 'glTF and files', text: 'The same as text, with its pictures beside it', ending: '-gltf.gltf', options: ['for', 'faces', 'texture', 'image', 'origin', 'size'] },
-  { title: 'USDZ', text: 'iPhone, iPad, Vision, USD programs', ending: '.usdz', options: ['for', 'faces', 'texture', 'image', 'origin', 'size'] },
-  { title: 'OBJ', text: 'Old programs; with .mtl and pictures', ending: '.obj', options: ['for', 'faces', 'texture', 'image', 'origin', 'size'] },
-  { title: 'PLY', text: 'Mesh with colors at its vertices', ending: '.ply', options: ['faces'] },
+export const formats = [
+  { title: 'GLB', text: 'Web, games, most programs; one file with textures', ending: '.glb', options: kTextured },
+  { title: 'glTF and files', text: 'The same as text, with its pictures beside it', ending: '-gltf.gltf', options: kTextured },
+  { title: 'USDZ', text: 'iPhone, iPad, Vision, USD programs', ending: '.usdz', options: kTextured },
+  { title: 'OBJ', text: 'Old programs; with .mtl and pictures', ending: '.obj', options: kTextured },
+  { title: 'PLY', text: 'Mesh with colors at its vertices', ending: '.ply', options: ['faces', 'light'] },
+  { title: 'Points', text: 'Handler points with normals, colors and parts, as PLY', ending: '-points.ply', options: ['light'], more: { points: true } },
   { title: 'Page', text: 'Share it as one HTML file that any browser shows', ending: '.html', options: ['for', 'faces'] },
   { title: 'Light, HDR', text: 'The environment as a picture for other renderers', ending: '-light.hdr', options: [] },
   { title: 'Light, EXR', text: 'The same as OpenEXR', ending: '-light.exr', options: [] },
+  { title: 'Light, JSON', text: 'Its lobes: axis, sharpness and radiance, as text', ending: '-light.json', options: [] },
+  { title: 'Light, NPY', text: 'The same as an array for NumPy', ending: '-light.npy', options: [] },
 ];
 const kTurntableSide = 1024;  // pixels
 
@@ -49,20 +55,22 @@ const number = (key, label, attributes) => el('label', { class: 'field wide' }, 
 function exportFields() {
   return [choose('for', 'For', purposes), el('details', {}, el('summary', {}, 'More'), el('div', { class: 'two' },
     number('faces', 'Faces', { min: '4', step: '1', placeholder: 'as many as fit the use' }),
-    choose('texture', 'Texels', [['', 'as fits the use'], ...['512', '1024', '2048', '4096', '8192'].map((n) => /** @type {[string, string]} */ ([n, `${n} × ${n}`]))]),
+    choose('texture', 'Texels', [['', 'as fits the use'], ['0', 'none: colors at the vertices (GLB)'], ...['512', '1024', '2048', '4096', '8192'].map((n) => /** @type {[string, string]} */ ([n, `${n} × ${n}`]))]),
     choose('image', 'Pictures', [['', 'as fits the use'], ['png', 'PNG'], ['jpeg', 'JPEG'], ['webp', 'WebP (GLB and glTF)']]),
     choose('origin', 'Origin', [['', 'as fits the use'], ['input', 'that of the photographs'], ['base', 'below the object, upright']]),
     number('size', 'Longest side', { min: '0', step: 'any', placeholder: 'meters; as captured' }),
+    number('unit_scale', 'Or scale', { min: '0', step: 'any', placeholder: 'meters per unit; 1', title: 'Meters per unit of the capture, instead of the longest side' }),
+    choose('light', 'Light', [['', 'not with the object'], ['fit', 'beside it, as an HDR picture']]),
     number('turntable', 'Turntable', { min: '1', step: '1', value: '36', title: 'How many frames' })))];
 }
 
 /** What the fields say. @param {string[]} keys @returns {Record<string, any>} */
-function chosen(keys) {
+export function chosen(keys) {
   /** @type {Record<string, any>} */
   const out = {};
   for (const key of keys) {
     const text = byId(`export-${key}`).value;
-    if (text !== '') out[key] = ['faces', 'texture', 'size', 'turntable'].includes(key) ? Number(text) : text;
+    if (text !== '') out[key] = ['faces', 'texture', 'size', 'unit_scale', 'turntable'].includes(key) ? Number(text) : key === 'light' ? true : text;
   }
   return out;
 }
@@ -93,7 +101,7 @@ export function exportDialog(store, stage) {
   };
   const format = (/** @type {Format} */ f) => choice(f.title, f.text, () => {
     const options = chosen(f.options);
-    return write('export', { file: `${name}${options.for ? `-${options.for}` : ''}${f.ending}`, ...options });
+    return write('export', { file: `${name}${options.for ? `-${options.for}` : ''}${f.ending}`, ...options, ...f.more });
   });
   const turntable = () => write('turntable', { file: `${name}-turntable.zip`, size: turntableSize(store), turntable: 36, ...chosen(['turntable']) });
   const picture = async () => {

@@ -3,6 +3,7 @@
 /** Grab and bend: a point of the surface is dragged in the plane of the picture, its surroundings follow. */
 import { complain, el } from './dom.js';
 import { postJson } from './api.js';
+import { Newest } from './newest.js';
 import { ring } from './paint.js';
 
 export class GrabTool {
@@ -19,7 +20,7 @@ export class GrabTool {
     /** @type {any} */
     this.at = null;
     this.number = 0;
-    this.waiting = false;
+    this.previews = new Newest(() => this.previewNow());
   }
 
   options() {
@@ -55,25 +56,15 @@ export class GrabTool {
       radius: this.reach * this.store.object.radius, ...(this.store.part ? { part: this.store.part } : {}) };
   }
 
-  /** One at a time: the newest position when the program is ready for it. */
-  async preview() {
-    if (this.waiting) {
-      this.again = true;
-      return;
-    }
-    this.waiting = true;
-    this.again = false;
+  preview() { return this.previews.run(); }
+
+  async previewNow() {
+    if (!this.start) return;
     const number = this.number;
     try {
       const made = await postJson('preview', { op: 'deform', params: this.params() });
-      if (number === this.number && this.start) {
-        await this.stage.tryEdit(made.token);
-      }
-    } catch (error) {
-      if (number === this.number) complain(error);
-    }
-    this.waiting = false;
-    if (this.again && this.start) this.preview();
+      if (number === this.number) await this.stage.tryEdit(made.token);
+    } catch (error) { if (number === this.number) complain(error); }
   }
 
   /** @param {any} p */

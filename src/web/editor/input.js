@@ -9,6 +9,7 @@
 
 const kTap = 6;  // pixels that a click may move
 const kTurn = 0.0065;  // radians a pixel
+const kPalm = 500;  // milliseconds after a pen in which a touch is of the hand that holds it
 
 export class Input {
   /** @param {import('./stage.js').Stage} stage @param {(p?: Point) => any} tool that a point is for @param {{undo: () => void, redo: () => void, turnLight: (degrees: number, done: boolean) => void, size: (factor: number) => void}} actions */
@@ -26,6 +27,9 @@ export class Input {
     /** @type {{x: number, y: number} | null} pointer by keys, pixels of the frame */
     this.reticle = null;
     this.touches = { most: 0, moved: 0 };
+    /** @type {number | null} pointer of the pen that is down */
+    this.pen = null;
+    this.penLifted = -Infinity;  // when, in milliseconds
     const view = stage.view;
     view.addEventListener('pointerdown', (/** @type {PointerEvent} */ e) => this.press(e));
     view.addEventListener('pointermove', (/** @type {PointerEvent} */ e) => this.move(e));
@@ -52,6 +56,8 @@ export class Input {
   press(e) {
     if (/** @type {Element} */ (e.target).closest('input, button, select, label, .options')) return;
     e.preventDefault();
+    if (this.isPalm(e)) return;
+    if (e.pointerType === 'pen') this.takePen(e);
     this.stage.view.focus({ preventScroll: true });
     this.stage.view.setPointerCapture(e.pointerId);
     this.down.set(e.pointerId, { x: e.clientX, y: e.clientY });
@@ -69,6 +75,17 @@ export class Input {
     if (this.doing === 'tool') this.used.down?.(p);
   }
 
+  /** @param {PointerEvent} e */
+  isPalm(e) { return e.pointerType === 'touch' && (this.pen !== null || e.timeStamp - this.penLifted < kPalm); }
+
+  /** What is down already is the hand that comes with the pen. @param {PointerEvent} e */
+  takePen(e) {
+    if (this.doing === 'tool') this.used.cancel?.();
+    this.doing = null;
+    this.down.clear();
+    this.pen = e.pointerId;
+  }
+
   /** @param {PointerEvent} e @param {Point} p */
   choose(e, p) {
     if (e.button === 1) return e.shiftKey ? 'pan' : 'orbit';
@@ -81,7 +98,7 @@ export class Input {
   move(e) {
     const last = this.down.get(e.pointerId);
     if (!last) {
-      this.tool().hover?.(this.point(e));
+      if (e.pointerType !== 'touch') this.tool().hover?.(this.point(e));
       return;
     }
     const dx = e.clientX - last.x, dy = e.clientY - last.y;
@@ -121,6 +138,10 @@ export class Input {
   /** @param {PointerEvent} e */
   release(e) {
     if (!this.down.delete(e.pointerId)) return;
+    if (e.pointerId === this.pen) {
+      this.pen = null;
+      this.penLifted = e.timeStamp;
+    }
     const doing = this.doing, p = this.point(e);
     if (this.down.size > 0) return;
     this.doing = null;

@@ -4,6 +4,7 @@
  * Paint and erase. Strokes are dabs in the plane of the picture; the program projects them onto what the camera sees.
  * Strokes that follow each other closely become one edit; until then each is undone by itself.
  */
+import { cornersOf, ontoCorners, seen } from './camera.js';
 import { complain, el } from './dom.js';
 import { postJson, upload } from './api.js';
 
@@ -11,6 +12,11 @@ const kIdle = 900;  // milliseconds after the last stroke until they are kept
 
 /** What the brush is; shared by paint and eraser. */
 export const brush = { size: 26, hardness: 0.8, opacity: 1, color: '#d8342c', other: '#f2f2f2', target: 'albedo', material: '', pen: 'size' };
+
+/** @typedef {{canvas: HTMLCanvasElement, opacity: number}} Stroke opacity: of the brush when it was drawn */
+
+/** @param {number} width @param {number} height */
+const blank = (width, height) => Object.assign(document.createElement('canvas'), { width, height });
 
 export class PaintTool {
   /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store @param {boolean} erase */
@@ -22,11 +28,11 @@ export class PaintTool {
     this.label = erase ? 'Erase' : 'Paint';
     this.hint = erase ? 'Drag on the object: its own color and material come back.'
       : 'Drag on the object. [ ] size, I takes a color, Shift and a click: a straight line. Beside the object, drag to turn it.';
-    /** @type {{camera: any, canvas: HTMLCanvasElement, strokes: HTMLCanvasElement[]} | null} what is not kept yet */
+    /** @type {{camera: any, canvas: HTMLCanvasElement, strokes: Stroke[]} | null} what is not kept yet */
     this.pending = null;
-    /** @type {HTMLCanvasElement[]} what is being kept */
+    /** @type {{canvas: HTMLCanvasElement, camera: any, kept: boolean}[]} what is being kept, or is and is in no picture yet */
     this.saving = [];
-    /** @type {HTMLCanvasElement | null} */
+    /** @type {Stroke | null} */
     this.stroke = null;
     /** @type {any} */
     this.last = null;
@@ -34,8 +40,8 @@ export class PaintTool {
     this.at = null;
     this.timer = 0;
     this.picking = false;  // the next click takes a color
-    stage.addEventListener('moved', () => { this.at = null; this.keep(); this.saving = []; });
-    stage.addEventListener('exact', () => { if (!this.busy) { this.saving = []; stage.redraw(); } });
+    stage.addEventListener('moved', () => { this.at = null; this.keep(); });
+    stage.addEventListener('drawn', () => { this.saving = this.saving.filter((s) => !s.kept); });
     this.busy = 0;
   }
 
@@ -107,9 +113,7 @@ export class PaintTool {
     }
     clearTimeout(this.timer);
     const from = p.shift && this.last ? this.last : p;
-    this.stroke = document.createElement('canvas');
-    this.stroke.width = this.stage.picture.width;
-    this.stroke.height = this.stage.picture.height;
+    this.stroke = { canvas: blank(this.stage.picture.width, this.stage.picture.height), opacity: this.erase ? 1 : brush.opacity };
     this.left = 0;
     this.last = from;
     this.dab(p);
@@ -132,7 +136,7 @@ export class PaintTool {
 
   /** @param {any} p */
   dab(p) {
-    const c = /** @type {CanvasRenderingContext2D} */ (this.stroke?.getContext('2d')), r = this.radius(p);
+    const c = /** @type {CanvasRenderingContext2D} */ (this.stroke?.canvas.getContext('2d')), r = this.radius(p);
     const color = this.erase ? '#ffffff' : brush.color;
     if (brush.hardness >= 0.98) c.fillStyle = color;
     else {
@@ -154,12 +158,8 @@ export class PaintTool {
 
   up() {
     if (!this.stroke) return;
-    if (!this.pending) {
-      const canvas = document.createElement('canvas');
-      canvas.width = this.stroke.width;
-      canvas.height = this.stroke.height;
-      this.pending = { camera: this.stage.json(), canvas, strokes: [] };
-    }
+    const { width, height } = this.stroke.canvas;
+    this.pending ??= { camera: this.stage.json(), canvas: blank(width, height), strokes: [] };
     this.pending.strokes.push(this.stroke);
     this.stroke = null;
     this.flatten();
@@ -172,8 +172,10 @@ export class PaintTool {
     const pending = this.pending, c = pending?.canvas.getContext('2d');
     if (!pending || !c) return;
     c.clearRect(0, 0, pending.canvas.width, pending.canvas.height);
-    c.globalAlpha = this.erase ? 1 : brush.opacity;
-    for (const s of pending.strokes) c.drawImage(s, 0, 0);
+    for (const { canvas, opacity } of pending.strokes) {
+      c.globalAlpha = opacity;
+      c.drawImage(canvas, 0, 0);
+    }
     this.stage.redraw();
   }
 
@@ -194,17 +196,20 @@ export class PaintTool {
     clearTimeout(this.timer);
     const pending = this.pending;
     if (!pending) return;
+    const { canvas, camera } = pending, saved = { canvas, camera, kept: false };
+    const forget = () => { this.saving = this.saving.filter((s) => s !== saved); };
     this.pending = null;
-    this.saving.push(pending.canvas);
+    this.saving.push(saved);
     const look = this.erase ? { erase: true } : { target: brush.target, ...(brush.material ? { material: brush.material } : {}) };
     ++this.busy;
     try {
-      const png = await new Promise((resolve) => pending.canvas.toBlob(resolve, 'image/png'));
+      const png = await new Promise((resolve) => canvas.toBlob(resolve, 'image/png'));
       const done = await this.store.change('edit', async () => (
-        { op: 'paint', params: { strokes: [{ camera: pending.camera, scribble: await upload(png, 'scribble.png') }], ...look } }));
-      if (!done) this.saving = this.saving.filter((s) => s !== pending.canvas);
+        { op: 'paint', params: { strokes: [{ camera, scribble: await upload(png, 'scribble.png') }], ...look } }));
+      saved.kept = true;
+      if (!done) forget();
     } catch (error) {
-      this.saving = this.saving.filter((s) => s !== pending.canvas);
+      forget();
       complain(error);
     } finally {
       --this.busy;
@@ -214,14 +219,29 @@ export class PaintTool {
 
   unsaved() { return this.pending !== null || this.stroke !== null || this.busy > 0; }
 
+  /**
+   * Strokes go along when the object turns, as if they lay across the view in which they were drawn, in front of its middle.
+   * @param {CanvasRenderingContext2D} c @param {HTMLCanvasElement} canvas @param {import('./camera.js').CameraJson} camera
+   */
+  drawSaved(c, canvas, camera) {
+    const { center, radius } = this.store.object, { width, height } = canvas;
+    const corners = cornersOf(camera, Math.max(seen(camera, center).depth - radius / 2, radius / 20), this.stage.json());
+    const map = ontoCorners(corners, width, height), behind = map[0] * map[3] <= map[1] * map[2] || corners.some((p) => p.depth <= 0);
+    if (behind) return;
+    c.save();
+    c.transform(...map);
+    c.drawImage(canvas, 0, 0);
+    c.restore();
+  }
+
   /** @param {CanvasRenderingContext2D} c */
   draw(c) {
     c.save();
-    for (const s of this.saving) c.drawImage(s, 0, 0);
+    for (const { canvas, camera } of this.saving) this.drawSaved(c, canvas, camera);
     if (this.pending) c.drawImage(this.pending.canvas, 0, 0);
     if (this.stroke) {
-      c.globalAlpha = this.erase ? 0.6 : brush.opacity;
-      c.drawImage(this.stroke, 0, 0);
+      c.globalAlpha = this.erase ? 0.6 : this.stroke.opacity;
+      c.drawImage(this.stroke.canvas, 0, 0);
     }
     // Only the object can be painted.
     if (this.stage.picture.style.opacity !== '0') {

@@ -3,6 +3,7 @@
 /** Material: a tool whose controls are in the panel. What is tried is shown at once; letting go keeps it. */
 import { complain, el } from './dom.js';
 import { postJson } from './api.js';
+import { Newest } from './newest.js';
 
 /** @type {[string, string, string][]} key, label, what it means */
 const sliders = [
@@ -20,7 +21,9 @@ export class MaterialTool {
     this.label = 'Material';
     this.hint = 'Move a slider: the picture follows. Letting go keeps it, as one step. Double-click a slider: as it was.';
     this.number = 0;
-    this.waiting = false;
+    /** @type {object | null} the change that is to be tried */
+    this.wanted = null;
+    this.previews = new Newest(() => this.previewNow());
   }
 
   /** The last edit, if it is one of the material of what is selected now. */
@@ -72,21 +75,19 @@ export class MaterialTool {
   }
 
   /** @param {object} change */
-  async try(change) {
+  try(change) {
     this.wanted = change;
-    if (this.waiting) return;
-    this.waiting = true;
-    const number = this.number;
-    while (this.wanted && number === this.number) {
-      const params = this.params(this.wanted);
-      this.wanted = null;
-      try {
-        const made = await postJson('preview', { op: 'material', params, amend: this.own() !== null });
-        if (number !== this.number) break;
-        await this.stage.tryEdit(made.token, true);
-      } catch (error) { complain(error); }
-    }
-    this.waiting = false;
+    return this.previews.run();
+  }
+
+  async previewNow() {
+    if (!this.wanted) return;
+    const number = this.number, params = this.params(this.wanted);
+    this.wanted = null;
+    try {
+      const made = await postJson('preview', { op: 'material', params, amend: this.own() !== null });
+      if (number === this.number) await this.stage.tryEdit(made.token, true);
+    } catch (error) { complain(error); }
   }
 
   /** @param {object} change @param {boolean} [fresh] */
@@ -100,6 +101,7 @@ export class MaterialTool {
 
   leave() {
     ++this.number;
+    this.wanted = null;
     if (this.stage.preview) this.stage.tryEdit(null);
   }
 }

@@ -3,6 +3,7 @@
 /** Parts by clicks, and the overlay that shows a part. */
 import { complain, el, toast } from './dom.js';
 import { postForBlob, postJson, upload } from './api.js';
+import { Newest } from './newest.js';
 import { dashed, polygon, ring } from './paint.js';
 
 /** Colors of parts, by their place in the list; names and outlines tell them apart, too. */
@@ -91,11 +92,13 @@ export class PartTool {
     this.outline = [];
     this.drawing = false;
     this.number = 0;
+    this.quick = true;  // first the network's answer for the view of the clicks alone
+    this.previews = new Newest(() => this.previewNow());
     /** @type {{x: number, y: number, out: boolean}[]} */
     this.clicks = [];
     /** @type {any} camera of the clicks */
     this.camera = null;
-    /** @type {string | null} */
+    /** @type {string | null} of the preview of these clicks, once it is there */
     this.token = null;
     /** @type {any} */
     this.report = null;
@@ -221,37 +224,49 @@ export class PartTool {
     return true;
   }
 
-  /** @param {boolean} [quick] first the network's answer for the view of the clicks alone */
-  async preview(quick = true) {
-    const number = ++this.number;
-    if (!this.outline.length && !this.clicks.some((c) => !c.out)) return;
+  /** What is selected, as an edit. @returns {Promise<any>} */
+  async params() {
+    const camera = this.camera, part = this.store.part, combine = this.how !== 'new' && part ? { [this.how]: part } : {};
     const of = (/** @type {boolean} */ out) => this.clicks.filter((c) => c.out === out).map((c) => [c.x, c.y]);
-    const part = this.store.part, combine = this.how !== 'new' && part ? { [this.how]: part } : {};
     const name = /** @type {HTMLInputElement | null} */ (document.getElementById('part-name'))?.value.trim() ?? '';
+    const what = this.outline.length ? { mask: await upload(await this.maskPicture(), 'mask.png'), in_view: !this.through }
+      : { positive: of(false), negative: of(true), segmenter: this.segmenter };
+    return { camera, ...what, ...combine, ...(name ? { name } : {}) };
+  }
+
+  /** @param {boolean} [quick] */
+  preview(quick = true) {
+    this.quick = quick;
+    this.token = null;
+    return this.previews.run();
+  }
+
+  async previewNow() {
+    if (!this.outline.length && !this.clicks.some((c) => !c.out)) return;
+    const number = this.number, late = () => number !== this.number || this.previews.again;
+    const ask = (/** @type {any} */ params) => postJson('preview', { op: 'part', params });
     try {
-      const what = this.outline.length ? { mask: await upload(await this.maskPicture(), 'mask.png'), in_view: !this.through }
-        : { positive: of(false), negative: of(true), segmenter: this.segmenter };
-      const ask = (/** @type {any} */ more) => postJson('preview', { op: 'part', params: { camera: this.camera, ...what, ...combine, ...(name ? { name } : {}), ...more } });
-      if (quick && what.segmenter === 'sam') {
-        const seen = await ask({ views: 1 });
-        if (number !== this.number) return;
+      const params = await this.params();
+      if (this.quick && params.segmenter === 'sam') {
+        const seen = await ask({ ...params, views: 1 });
+        if (late()) return;
         this.overlay.show(seen.token);
       }
-      const made = await ask({});
-      if (number !== this.number) return;
+      const made = await ask(params);
+      if (late()) return;
       this.token = made.token;
       this.report = made.report;
       await this.overlay.show(made.token);
       toast(`${made.part}: ${(100 * made.report.share).toFixed(1)} % of the surface. Enter keeps it.`);
-    } catch (error) {
-      if (number === this.number) complain(error);
-    }
+    } catch (error) { if (!late()) complain(error); }
   }
 
   async keep() {
     if (!this.clicks.length && !this.outline.length) return;
+    const number = this.number;
     await this.preview(false);  // with the name as it is now
-    const token = this.token;
+    const token = number === this.number ? this.token : null;
+    this.token = null;
     if (!token) return;
     const done = await this.store.change('commit', { token });
     if (!done) return;

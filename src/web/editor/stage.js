@@ -119,7 +119,14 @@ export class Stage extends EventTarget {
     await this.live.drawSoon(this.json(), this.channel, this.light);
     byId('cover').classList.add('done');
     if (!this.exact && (first || this.isLive())) this.picture.style.opacity = '0';  // it is of the object before
+    this.liveDrawn();
     if (this.isLive() && (this.asked?.kind === 'quick' || (!this.asked && !this.exact))) this.moved();
+  }
+
+  /** The page has drawn, the object as it is now if it has all of that. */
+  liveDrawn() {
+    if (this.isLive()) this.emit('drawn');
+    this.redraw();
   }
 
   /** Shows an edit that is not kept, or none. @param {string | null} token @param {boolean} [look] whether it changes nothing but the look */
@@ -145,7 +152,7 @@ export class Stage extends EventTarget {
       this.waiting = requestAnimationFrame(() => {
         this.live.drawSoon(this.json(), this.channel, this.light);
         byId('cover').classList.add('done');
-        this.redraw();
+        this.liveDrawn();
       });
     } else {
       if (this.asked?.kind === 'quick') this.asked.stale = true;
@@ -224,6 +231,7 @@ export class Stage extends EventTarget {
     context?.drawImage(this.back, 0, 0, width, height);
     this.picture.style.opacity = '1';
     byId('cover').classList.add('done');
+    this.emit('drawn');
     this.redraw();
     if (asked.kind === 'quick') {
       if (asked.stale) this.ask('quick', 1);

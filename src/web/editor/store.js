@@ -102,11 +102,12 @@ export class Store extends EventTarget {
   /** @param {string} route @param {any} make @returns {Promise<any>} */
   async send(route, make) {
     const before = this.state;
-    for (;;) {
+    for (let tries = 0; ;) {
       /** @type {any} */
       let body = {};
       try {
         body = typeof make === 'function' ? await make() : make;
+        ++tries;
         const answer = await postJson(route, body, before.revision);
         await this.take(answer.state);
         return answer.result;
@@ -114,13 +115,12 @@ export class Store extends EventTarget {
         if (!(error instanceof ApiError)) throw error;
         if (error.status === 409) {
           await this.refresh();
-          // It arrived before the connection was lost: the history has grown by it.
-          const last = this.done().at(-1);
-          if (route === 'edit' && this.retried && last?.op === body.op && this.state.done === before.done + 1) return last;
+          // The first try arrived before the connection was lost: the history has grown by it.
+          const last = this.last();
+          if (route === 'edit' && tries > 1 && last?.op === body.op && this.state.done === before.done + 1) return last;
           throw error;
         }
         if (error.status !== 0) throw error;
-        this.retried = true;
         this.setLost(true);
         await new Promise((resolve) => this.line.addEventListener('welcome', resolve, { once: true }));
       }
