@@ -364,29 +364,5 @@ TEST_F(EditorTest, AWindowWithoutTheKeyIsClosed) {
   }
 }
 
-TEST(EditorLibrary, ListsProjectsAndCapturesAndExplainsAnEmptyFolder) {
-  TempFolder temp;
-  EditorOptions options;
-  options.path = temp.path();
-  options.device = "cpu";
-  const auto entries = [&] {
-    Editor editor(options, Guard(kTestToken));
-    editor.wait_until_idle();
-    HttpRequest r;
-    r.method = "GET";
-    r.path = "/api/state";
-    std::promise<HttpResponse> promise;
-    editor.answer(r, [&](HttpResponse response) { promise.set_value(std::move(response)); });
-    const Json state = Json::parse(promise.get_future().get().body);
-    EXPECT_EQ(state["mode"], "library");
-    return state["entries"];
-  };
-  EXPECT_TRUE(entries().empty());
-  Project::create(temp.path() / "ball", {}, three_views(), false).save_base(sphere_with_handlers());
-  std::filesystem::create_directory(temp.path() / "other");
-  ASSERT_EQ(entries().size(), 1u);
-  EXPECT_EQ(entries()[0]["id"], "ball");
-}
-
 }  // namespace
 }  // namespace cei3d

@@ -198,6 +198,17 @@ Capture load_capture(const fs::path& path, const CaptureOptions& options) {
   }
 }
 
+bool is_capture(const fs::path& path) {
+  try {
+    const auto& formats = capture_formats();
+    return std::any_of(formats.begin(), formats.end(), [&](const auto& f) { return f.detect(path); });
+  } catch (const fs::filesystem_error&) {
+    return false;  // a folder that may not be looked into
+  } catch (const Error&) {
+    return true;  // files that a format looks into and cannot read
+  }
+}
+
 const View& find_view(const Capture& capture, const std::string& name) {
   const std::string wanted = normalized(name);
   const View* by_stem = nullptr;

@@ -26,6 +26,8 @@ struct CaptureOptions {
 // folder, or its file of cameras. Views whose images are missing are left out, with a warning. Errors:
 // unknown format, malformed cameras, no views.
 Capture load_capture(const std::filesystem::path& path, const CaptureOptions& options = {});
+// Whether the files of a known format are there, damaged or not: then load_capture() says what is wrong.
+bool is_capture(const std::filesystem::path& path);
 
 // "nerf-synthetic, physg, ...": the formats that load_capture() reads.
 std::string capture_format_names();
