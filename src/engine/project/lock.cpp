@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/project/lock.h"
 
-#include "core/base/error.h"
-
 namespace cei3d {
 
 ProjectLock::ProjectLock(const std::filesystem::path& folder) : lock_(FileLock::take(folder / ".lock")) {
   if (!lock_)
-    fail("Project {} is in use by another cei3d that changes it; wait until that is done, or stop it.",
-         folder.string());
+    throw InUseError(fmt::format(
+        "Project {} is in use by another cei3d that changes it; wait until that is done, or stop it.",
+        folder.string()));
 }
 
 }  // namespace cei3d

@@ -147,6 +147,7 @@ TEST_F(ProjectTest, RefusesTheSecondWriterButNotReaders) {
   const Project first = make_with_base();
   EXPECT_THAT(message_of([&] { Project::open(folder(), Project::Mode::write); }),
               HasSubstr("in use by another"));
+  EXPECT_THROW(Project::open(folder(), Project::Mode::write), InUseError);
   EXPECT_NO_THROW(Project::open(folder(), Project::Mode::read).scene());
 }
 
