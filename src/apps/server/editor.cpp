@@ -62,6 +62,10 @@ Editor::Editor(const EditorOptions& options, Guard guard) : options_(options), g
 
 Editor::~Editor() { stop(); }
 
+void Editor::say_address(const std::string& address) {
+  worker_->edit("open", [address](Session& session, Progress&) { session.say_address(address); });
+}
+
 void Editor::stop() {
   worker_.reset();
   const std::lock_guard lock(mutex_);

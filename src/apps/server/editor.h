@@ -64,6 +64,8 @@ class Editor : public HttpApp, private JobListener {
   void received(const SocketPtr&, const std::string& text) override;
   void closed(const SocketPtr&) override;
 
+  // Where it is found, without the key: who else wants to change the project is told.
+  void say_address(const std::string& address);
   // Ends the work that runs, saved, and forgets who waits for answers: before what carries them goes away.
   void stop();
   void wait_until_idle() { worker_->wait_until_idle(); }  // for tests

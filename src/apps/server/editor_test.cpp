@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "apps/server/test_editor.h"
+#include "core/base/error_of.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "engine/io/png_file.h"
@@ -277,7 +278,11 @@ TEST_F(EditorTest, AProjectThatAnotherProgramChangesIsOpenedForLooking) {
 }
 
 TEST_F(EditorTest, HoldsTheLockWhileItIsOpen) {
-  EXPECT_THROW(Project::open(folder(), Project::Mode::write), Error);
+  EXPECT_THROW(Project::open(folder(), Project::Mode::write), InUseError);
+  editor_->say_address("http://127.0.0.1:7861");
+  editor_->wait_until_idle();
+  EXPECT_THAT(message([&] { Project::open(folder(), Project::Mode::write); }),
+              HasSubstr("the editor at http://127.0.0.1:7861"));
   editor_.reset();
   EXPECT_NO_THROW(Project::open(folder(), Project::Mode::write));
 }

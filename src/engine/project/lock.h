@@ -21,6 +21,8 @@ class ProjectLock {
   ProjectLock() = default;                                    // holds nothing
   explicit ProjectLock(const std::filesystem::path& folder);  // InUseError
   bool held() const { return lock_.has_value(); }
+  // Where the editor that holds it is found: InUseError says it to others. Nothing where it is not held.
+  void say_address(const std::string& address) const;
 
  private:
   std::optional<FileLock> lock_;
