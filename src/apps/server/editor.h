@@ -113,7 +113,7 @@ class Editor : public HttpApp, private JobListener {
   };
   // Has them written and lets them be downloaded; usage error: read-only.
   void write_exports(Reply, std::function<Exports(Session&, Progress&, const std::filesystem::path& folder)>);
-  // Runs the work on the worker; errors become responses.
+  // Runs the work on the worker; errors become responses. Refused when too much waits.
   void on_worker(const std::string& job, Reply, Work);
   // A change of the history: refused when read-only or at another revision; the answer has the new state.
   void change(const HttpRequest&, Reply, std::function<Json(Session&, Progress&)>);
