@@ -139,6 +139,7 @@ def silent_socket(client, upgrade):
     s = socket.create_connection(('127.0.0.1', client.port), timeout=60)
     lines = [f'GET /socket HTTP/1.1\r\nHost: 127.0.0.1:{client.port}'] + [f'{k}: {v}' for k, v in upgrade.items()]
     s.sendall('\r\n'.join(lines + ['', '']).encode())
+    asked = time.monotonic()
     try:
         check('a silent socket opens', s.recv(1 << 16).split()[1], b'101')
         while s.recv(1 << 16):
@@ -147,6 +148,7 @@ def silent_socket(client, upgrade):
         pass
     except TimeoutError:
         raise SystemExit('FAILED: a silent socket stays open')
+    check('a silent socket is closed soon', time.monotonic() - asked < 4.5, True)  # after 2 s
 
 
 def main(program, object_folder, folder):
