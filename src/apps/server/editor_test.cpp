@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "apps/server/edit_json.h"
 #include "apps/server/test_editor.h"
 #include "core/base/error_of.h"
 #include "core/base/file.h"
@@ -252,6 +253,18 @@ TEST_F(EditorTest, BadRequestsAreSentencesAndChangeNothing) {
         "/app/../editor.h", "/app/%2e%2e/x", "/etc/passwd", "/api/photo/%zz"})
     EXPECT_GE(get(path).status, 400) << path;
   EXPECT_EQ(files_of(folder()), before);
+}
+
+TEST_F(EditorTest, PicturesToPaintWithAreLimited) {
+  Uploads uploads;
+  const std::string id = uploads.add("scribble.png", "a picture");
+  const Json paint = paint_params(camera(0), id);
+  const Json part = {{"camera", camera(0)}, {"mask", id}, {"name", "cap"}};
+  std::filesystem::resize_file(uploads.path(id), 64 << 20);
+  EXPECT_NO_THROW(edit_command("paint", paint, uploads));
+  std::filesystem::resize_file(uploads.path(id), (64 << 20) + 1);
+  for (const auto& [op, params] : {std::pair("paint", paint), std::pair("part", part)})
+    EXPECT_THAT(message([&] { edit_command(op, params, uploads); }), HasSubstr("at most 64 MiB")) << op;
 }
 
 TEST_F(EditorTest, ExportsGoToTheProjectAndCanBeFetched) {
