@@ -220,7 +220,6 @@ class Exporter {
     report.vertices = mesh.positions.size();
     report.triangles = mesh.triangles.size();
     if (kind == ".ply") return {{report.out, encode_ply(mesh)}};
-    if (mesh.positions.empty()) fail("There is no surface to export: the mesh is empty.");
     return {{report.out, encode_glb(mesh, materials, placement_of(mesh.positions, scene_.up, placement()))}};
   }
 
