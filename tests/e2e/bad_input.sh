@@ -88,6 +88,9 @@ refused 2 'faces' export "$project" -o "$out/spot.glb" --faces 0
 refused 2 'size' export "$project" -o "$out/spot.glb" --size 3km
 refused 2 'glb|ply' export "$project" -o "$out/spot.obj" --texture 0
 refused 2 'texture' export "$project" -o "$out/spot.html" --texture 512
+refused 2 'no place for size' export "$project" -o "$out/spot.html" --size 30cm
+refused 2 'holds it already' export "$project" -o "$out/spot.html" --light fit
+refused 2 'unit scale' export "$project" -o "$out/spot.glb" --unit-scale 1e300
 refused 2 'webp' export "$project" -o "$out/spot.usdz" --image webp
 refused 1 'not a folder' export "$project" -o "$out/truncated.png/spot.glb"
 absent "$out/spot.glb"
