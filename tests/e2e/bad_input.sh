@@ -29,6 +29,7 @@ absent "$out/project"
 refused 2 'geometry.loss.eikonal' reconstruct "$sample" -o "$out/project" --set geometry.loss.eikonol=0.1
 refused 2 '0 to 100' reconstruct "$sample" -o "$out/project" --set geometry.loss.eikonal=-1
 refused 2 'random:0.1' reconstruct "$sample" -o "$out/project" --split half
+refused 2 'split of its own' reconstruct "$sample" -o "$out/project" --split random:0.1
 absent "$out/project"
 cei3d reconstruct --list-settings --preset paper | grep '^geometry.sdf.hidden_layers = 8' >/dev/null || fail "the settings of a preset"
 fresh; rm "$out/capture/train/r_011.png"

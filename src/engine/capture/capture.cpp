@@ -96,6 +96,10 @@ void hold_out(Capture& capture, const CaptureOptions& o) {
                every);
   const bool has_split = std::any_of(capture.views.begin(), capture.views.end(),
                                      [](const View& v) { return v.split != Split::train; });
+  if (has_split && o.test_share > 0)
+    fail_usage(
+        "The capture {} has a split of its own into training and other views; leave the random split out.",
+        capture.root.string());
   if (has_split) return;
   if (o.test_share > 0) return hold_out_random(capture, o.test_share, o.seed);
   for (size_t i = 0; every > 0 && i < capture.views.size(); i += size_t(every))
