@@ -50,12 +50,12 @@ class Client:
 
 
 def contents(folder):
-    """Files and their bytes, without those of cache/, which the program may write at any time."""
+    """Files and their bytes, without those of cache/ and the lock file, which the program may write at any time."""
     found = {}
     for root, folders, files in os.walk(folder):
         if root == folder and 'cache' in folders:
             folders.remove('cache')
-        for f in files:
+        for f in set(files) - {'.lock'}:
             path = os.path.join(root, f)
             found[path] = open(path, 'rb').read()
     return found
@@ -139,6 +139,7 @@ def silent_socket(client, upgrade):
     s = socket.create_connection(('127.0.0.1', client.port), timeout=60)
     lines = [f'GET /socket HTTP/1.1\r\nHost: 127.0.0.1:{client.port}'] + [f'{k}: {v}' for k, v in upgrade.items()]
     s.sendall('\r\n'.join(lines + ['', '']).encode())
+    asked = time.monotonic()
     try:
         check('a silent socket opens', s.recv(1 << 16).split()[1], b'101')
         while s.recv(1 << 16):
@@ -147,6 +148,7 @@ def silent_socket(client, upgrade):
         pass
     except TimeoutError:
         raise SystemExit('FAILED: a silent socket stays open')
+    check('a silent socket is closed soon', time.monotonic() - asked < 4.5, True)  # after 2 s
 
 
 def main(program, object_folder, folder):
@@ -171,7 +173,8 @@ def main(program, object_folder, folder):
         assert contents(project) == before, 'something was changed'
         second = subprocess.run([program, 'undo', project], capture_output=True, text=True)
         check('a second writer', second.returncode, 1)
-        assert 'in use by another' in second.stderr
+        assert 'in use by another' in second.stderr and f'http://127.0.0.1:{port};' in second.stderr
+        assert token not in second.stderr
         refusal = subprocess.run([program, 'open', project, '--host', '0.0.0.0'], capture_output=True, text=True)
         check('an open address', refusal.returncode, 2)
         process.send_signal(signal.SIGINT)

@@ -29,6 +29,7 @@ absent "$out/project"
 refused 2 'geometry.loss.eikonal' reconstruct "$sample" -o "$out/project" --set geometry.loss.eikonol=0.1
 refused 2 '0 to 100' reconstruct "$sample" -o "$out/project" --set geometry.loss.eikonal=-1
 refused 2 'random:0.1' reconstruct "$sample" -o "$out/project" --split half
+refused 2 'split of its own' reconstruct "$sample" -o "$out/project" --split random:0.1
 absent "$out/project"
 cei3d reconstruct --list-settings --preset paper | grep '^geometry.sdf.hidden_layers = 8' >/dev/null || fail "the settings of a preset"
 fresh; rm "$out/capture/train/r_011.png"
@@ -88,6 +89,9 @@ refused 2 'faces' export "$project" -o "$out/spot.glb" --faces 0
 refused 2 'size' export "$project" -o "$out/spot.glb" --size 3km
 refused 2 'glb|ply' export "$project" -o "$out/spot.obj" --texture 0
 refused 2 'texture' export "$project" -o "$out/spot.html" --texture 512
+refused 2 'no place for size' export "$project" -o "$out/spot.html" --size 30cm
+refused 2 'holds it already' export "$project" -o "$out/spot.html" --light fit
+refused 2 'unit scale' export "$project" -o "$out/spot.glb" --unit-scale 1e300
 refused 2 'webp' export "$project" -o "$out/spot.usdz" --image webp
 refused 1 'not a folder' export "$project" -o "$out/truncated.png/spot.glb"
 absent "$out/spot.glb"

@@ -65,7 +65,15 @@ std::vector<Vec2<double>> pixels_from(JsonReader& j, const char* key) {
   return pixels;
 }
 
-InputFile sent_file(const Uploads& uploads, const std::string& id) {
+// A scribble or mask. Skies may be larger: /api/upload, which cannot tell them apart, has the limit for
+// those.
+InputFile sent_picture(const Uploads& uploads, const std::string& id) {
+  constexpr uintmax_t kMiB = 1 << 20, kMaxMiB = 64;
+  const uintmax_t bytes = std::filesystem::file_size(uploads.path(id));
+  if (bytes > kMaxMiB * kMiB)
+    fail_usage(
+        "A picture to paint with or to select by has at most {} MiB, not {} bytes; send a smaller one.",
+        kMaxMiB, bytes);
   InputFile file;
   file.bytes = uploads.bytes(id);
   return file;
@@ -77,7 +85,7 @@ PaintCommand paint_from(JsonReader& j, const Uploads& uploads) {
     JsonReader reader(s, "A stroke");
     PaintStroke stroke;
     read_place(reader, stroke.view, stroke.camera);
-    stroke.scribble = sent_file(uploads, reader.require<std::string>("scribble"));
+    stroke.scribble = sent_picture(uploads, reader.require<std::string>("scribble"));
     if (reader.has("decal")) stroke.decal = decal_place(reader);
     reader.finish();
     c.strokes.push_back(std::move(stroke));
@@ -135,7 +143,7 @@ PartCommand part_from(JsonReader& j, const Uploads& uploads) {
   c.positive = pixels_from(j, "positive");
   c.negative = pixels_from(j, "negative");
   if (const auto mask = j.optional<std::string>("mask")) {
-    c.mask = sent_file(uploads, *mask);
+    c.mask = sent_picture(uploads, *mask);
     c.mask.path = "mask.png";
   }
   if (j.has("like")) c.like = pixel_from(j, "like");

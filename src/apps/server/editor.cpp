@@ -62,6 +62,10 @@ Editor::Editor(const EditorOptions& options, Guard guard) : options_(options), g
 
 Editor::~Editor() { stop(); }
 
+void Editor::say_address(const std::string& address) {
+  worker_->edit("open", [address](Session& session, Progress&) { session.say_address(address); });
+}
+
 void Editor::stop() {
   worker_.reset();
   const std::lock_guard lock(mutex_);
@@ -98,6 +102,10 @@ void Editor::answer(HttpRequest request, Reply reply) {
 }
 
 void Editor::on_worker(const std::string& job, Reply reply, Work work) {
+  constexpr size_t kMaxWaiting = 16;    // each may hold files that were sent
+  constexpr size_t kMaxWithPacks = 32;  // windows that load while changes wait get what they draw
+  if (worker_->edits_waiting() >= (job == "pack" ? kMaxWithPacks : kMaxWaiting))
+    return reply(error_response(503, "Too many requests wait; try again when some are done."));
   worker_->edit(job,
                 [reply = std::move(reply), work = std::move(work)](Session& session, Progress& progress) {
                   reply(guarded_response([&] { return work(session, progress); }));
@@ -105,12 +113,9 @@ void Editor::on_worker(const std::string& job, Reply reply, Work work) {
 }
 
 void Editor::change(const HttpRequest& request, Reply reply, std::function<Json(Session&, Progress&)> make) {
-  constexpr size_t kMaxWaiting = 16;
   if (read_only_)
     return reply(error_response(403, "This object is open for looking only.",
                                 "Open it without --read-only, once no other program changes it."));
-  if (worker_->edits_waiting() >= kMaxWaiting)
-    return reply(error_response(503, "Too many changes wait; try again when some are done."));
   on_worker(
       "edit", std::move(reply),
       [this, wanted = request.if_match, make = std::move(make)](Session& session, Progress& progress) {

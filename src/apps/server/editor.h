@@ -64,6 +64,8 @@ class Editor : public HttpApp, private JobListener {
   void received(const SocketPtr&, const std::string& text) override;
   void closed(const SocketPtr&) override;
 
+  // Where it is found, without the key: who else wants to change the project is told.
+  void say_address(const std::string& address);
   // Ends the work that is running, after its state was saved, and drops all tabs and the replies that are
   // still owed. To be called before the server is destroyed, whose connections these refer to.
   void stop();
@@ -112,7 +114,7 @@ class Editor : public HttpApp, private JobListener {
   };
   // Has them written and lets them be downloaded; usage error: read-only.
   void write_exports(Reply, std::function<Exports(Session&, Progress&, const std::filesystem::path& folder)>);
-  // Runs the work on the worker; errors become responses.
+  // Runs the work on the worker; errors become responses. Refused when too much waits.
   void on_worker(const std::string& job, Reply, Work);
   // A change of the history: refused when read-only or at another revision; the answer has the new state.
   void change(const HttpRequest&, Reply, std::function<Json(Session&, Progress&)>);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 
+#include "apps/server/edit_json.h"
 #include "apps/server/test_editor.h"
+#include "core/base/error_of.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "engine/io/png_file.h"
@@ -253,6 +255,18 @@ TEST_F(EditorTest, BadRequestsAreSentencesAndChangeNothing) {
   EXPECT_EQ(files_of(folder()), before);
 }
 
+TEST_F(EditorTest, PicturesToPaintWithAreLimited) {
+  Uploads uploads;
+  const std::string id = uploads.add("scribble.png", "a picture");
+  const Json paint = paint_params(camera(0), id);
+  const Json part = {{"camera", camera(0)}, {"mask", id}, {"name", "cap"}};
+  std::filesystem::resize_file(uploads.path(id), 64 << 20);
+  EXPECT_NO_THROW(edit_command("paint", paint, uploads));
+  std::filesystem::resize_file(uploads.path(id), (64 << 20) + 1);
+  for (const auto& [op, params] : {std::pair("paint", paint), std::pair("part", part)})
+    EXPECT_THAT(message([&] { edit_command(op, params, uploads); }), HasSubstr("at most 64 MiB")) << op;
+}
+
 TEST_F(EditorTest, ExportsGoToTheProjectAndCanBeFetched) {
   const HttpResponse r = post("/api/export", {{"file", "../ball.ply"}});
   ASSERT_EQ(r.status, 200) << r.body;
@@ -277,7 +291,11 @@ TEST_F(EditorTest, AProjectThatAnotherProgramChangesIsOpenedForLooking) {
 }
 
 TEST_F(EditorTest, HoldsTheLockWhileItIsOpen) {
-  EXPECT_THROW(Project::open(folder(), Project::Mode::write), Error);
+  EXPECT_THROW(Project::open(folder(), Project::Mode::write), InUseError);
+  editor_->say_address("http://127.0.0.1:7861");
+  editor_->wait_until_idle();
+  EXPECT_THAT(message([&] { Project::open(folder(), Project::Mode::write); }),
+              HasSubstr("the editor at http://127.0.0.1:7861"));
   editor_.reset();
   EXPECT_NO_THROW(Project::open(folder(), Project::Mode::write));
 }
@@ -362,30 +380,6 @@ TEST_F(EditorTest, AWindowWithoutTheKeyIsClosed) {
     EXPECT_TRUE(socket->closed) << first;
     editor_->closed(socket);
   }
-}
-
-TEST(EditorLibrary, ListsProjectsAndCapturesAndExplainsAnEmptyFolder) {
-  TempFolder temp;
-  EditorOptions options;
-  options.path = temp.path();
-  options.device = "cpu";
-  const auto entries = [&] {
-    Editor editor(options, Guard(kTestToken));
-    editor.wait_until_idle();
-    HttpRequest r;
-    r.method = "GET";
-    r.path = "/api/state";
-    std::promise<HttpResponse> promise;
-    editor.answer(r, [&](HttpResponse response) { promise.set_value(std::move(response)); });
-    const Json state = Json::parse(promise.get_future().get().body);
-    EXPECT_EQ(state["mode"], "library");
-    return state["entries"];
-  };
-  EXPECT_TRUE(entries().empty());
-  Project::create(temp.path() / "ball", {}, three_views(), false).save_base(sphere_with_handlers());
-  std::filesystem::create_directory(temp.path() / "other");
-  ASSERT_EQ(entries().size(), 1u);
-  EXPECT_EQ(entries()[0]["id"], "ball");
 }
 
 }  // namespace

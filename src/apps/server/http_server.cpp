@@ -36,7 +36,7 @@ constexpr int kMaxConnections = 64;
 constexpr size_t kMaxHeader = size_t(16) << 10;    // bytes
 constexpr size_t kMaxMessage = size_t(256) << 10;  // bytes, from a WebSocket
 constexpr Seconds kIdle{60}, kBodyTime{300}, kLinger{2};
-constexpr Seconds kFirstMessage{5};  // a WebSocket that says nothing for so long is closed
+constexpr Seconds kFirstMessage{2};  // a WebSocket that says nothing for so long is closed
 
 std::string text_of(beast::string_view v) { return {v.data(), v.size()}; }
 

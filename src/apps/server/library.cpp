@@ -16,7 +16,8 @@ Json LibraryEntry::json() const {
   return {{"id", name},
           {"name", name},
           {"kind", kind == Kind::project ? "project" : "capture"},
-          {"finished", finished}};
+          {"finished", finished},
+          {"problem", problem}};
 }
 
 std::optional<LibraryEntry> entry_at(const fs::path& path) {
@@ -26,12 +27,14 @@ std::optional<LibraryEntry> entry_at(const fs::path& path) {
   const std::string name = whole.filename().string();
   if (Project::is_project(path))
     return LibraryEntry{Kind::project, path, name, fs::exists(path / "base/scene.json", error)};
+  if (!is_capture(path)) return std::nullopt;
+  LibraryEntry entry{Kind::capture, path, name};
   try {
     load_capture(path);
-    return LibraryEntry{Kind::capture, path, name, true};
-  } catch (const Error&) {
-    return std::nullopt;
+  } catch (const Error& e) {
+    entry.problem = e.what();
   }
+  return entry;
 }
 
 std::vector<LibraryEntry> entries_below(const fs::path& folder) {

@@ -15,11 +15,12 @@ struct LibraryEntry {
   enum class Kind { project, capture } kind = Kind::project;
   std::filesystem::path path;
   std::string name;
-  bool finished = true;  // of a project
-  Json json() const;     // id: its name
+  bool finished = true;      // of a project
+  std::string problem = {};  // why a capture cannot be loaded; empty: it can
+  Json json() const;         // id: its name
 };
 
-// None: neither a project nor a capture.
+// None: neither a project nor a capture. A damaged capture is one, with its problem.
 std::optional<LibraryEntry> entry_at(const std::filesystem::path&);
 // Those directly below a folder, by name; symbolic links that lead out of it are left out.
 std::vector<LibraryEntry> entries_below(const std::filesystem::path&);

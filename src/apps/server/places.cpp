@@ -7,6 +7,7 @@
 #include "core/base/json.h"
 #include "engine/capture/normalize.h"
 #include "engine/io/png_file.h"
+#include "engine/project/lock.h"
 #include "engine/project/project.h"
 #include "engine/segment/sam.h"
 #include "engine/session/version.h"
@@ -65,8 +66,6 @@ Json object_json(const Session& session) {
           {"segment", fs::exists(installed_sam() / "encoder.onnx")}};
 }
 
-bool in_use(const Error& e) { return std::string(e.what()).find("in use by another") != std::string::npos; }
-
 }  // namespace
 
 void Editor::open_path(Session& session, const fs::path& path) {
@@ -85,8 +84,7 @@ void Editor::open_project(Session& session, const fs::path& path) {
   read_only_ = options_.read_only;
   try {
     session.open(path, read_only_ ? Session::Access::read : Session::Access::write);
-  } catch (const Error& e) {
-    if (!in_use(e)) throw;
+  } catch (const InUseError&) {
     session.open(path, Session::Access::read);
     read_only_ = true;
     note = "Another cei3d is changing this object, so it is open for looking only.";

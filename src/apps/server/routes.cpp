@@ -281,6 +281,7 @@ void Editor::open(JsonReader& j, const HttpRequest&, Reply reply) {
     }
     for (const LibraryEntry& e : home_.empty() ? std::vector<LibraryEntry>() : entries_below(home_))
       if (e.name == id) {
+        if (!e.problem.empty()) fail("{}", e.problem);  // the list stays, which says it, too
         open_path(session, e.path);
         return json_response(state());
       }

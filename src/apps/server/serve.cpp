@@ -31,8 +31,10 @@ void serve(const ServeOptions& options, const std::function<void(const Address&)
   const std::string token = guard.token();
   Editor editor(options.editor, std::move(guard));
   HttpServer server(editor, options.http);
+  const std::string address = fmt::format("http://{}:{}", host_of_url(options), server.port());
+  editor.say_address(address);
   announce(
-      {fmt::format("http://{}:{}/#k={}", host_of_url(options), server.port(), token),
+      {fmt::format("{}/#k={}", address, token),
        fmt::format("ssh -L {0}:{1}:{0} {2}", server.port(), loopback_of(options.http.host), machine_name())});
   server.run(stop);
   editor.stop();

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one exception type of the program. Thrown anywhere, caught only at the boundary (apps, worker threads).
+// The one exception type of the program and its kinds. Thrown anywhere. The apps and the workers of catalogs
+// make of it what users see; on the way there it is caught to add to what it says, to save or clean up what
+// was begun, and where the work goes on without what failed.
 #pragma once
 
 #include <fmt/format.h>

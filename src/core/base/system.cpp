@@ -104,6 +104,11 @@ std::optional<FileLock> FileLock::take(const fs::path& file) {
   fail("Cannot lock {}: {}.", file.string(), std::strerror(errno));
 }
 
+bool FileLock::write(const std::string& text) const {
+  return ::ftruncate(descriptor_, 0) == 0 &&
+         ::pwrite(descriptor_, text.data(), text.size(), 0) == ssize_t(text.size());
+}
+
 FileLock::~FileLock() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }

@@ -38,6 +38,9 @@ class FileLock {
   FileLock(FileLock&&) noexcept;
   FileLock& operator=(FileLock&&) noexcept;
 
+  // What the file says from now on, for those who cannot have the lock. False: it cannot be written.
+  bool write(const std::string& text) const;
+
  private:
   explicit FileLock(int descriptor) : descriptor_(descriptor) {}
   int descriptor_;

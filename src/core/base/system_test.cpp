@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/bytes.h"
+#include "core/base/file.h"
 #include "core/base/temp_folder.h"
 
 namespace cei3d {
@@ -28,6 +29,17 @@ TEST(FileLock, HasOneOwner) {
   }
   EXPECT_TRUE(FileLock::take(file));
   EXPECT_THROW(FileLock::take(temp.path() / "missing" / ".lock"), Error);
+}
+
+TEST(FileLock, SaysWhatItsOwnerWrote) {
+  const TempFolder temp;
+  const std::filesystem::path file = temp.path() / ".lock";
+  const std::optional<FileLock> lock = FileLock::take(file);
+  ASSERT_TRUE(lock);
+  for (const char* text : {"here, for long", "there", ""}) {
+    EXPECT_TRUE(lock->write(text));
+    EXPECT_EQ(read_file(file), text);
+  }
 }
 
 TEST(System, SaysWhatTheMachineIs) {

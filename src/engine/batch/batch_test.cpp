@@ -129,6 +129,7 @@ TEST(BatchManifest, RefusesWhatItDoesNotUnderstand) {
   EXPECT_THAT(said({{"id", "../a"}, {"capture", "c"}}), HasSubstr("cannot be an id"));
   EXPECT_THAT(said({{"id", "a"}, {"capture", "c"}, {"steps", {"exprot"}}}), HasSubstr("'export'"));
   EXPECT_THAT(said({{"id", "a"}}), HasSubstr("no 'capture'"));
+  EXPECT_THAT(said({{"id", "a"}, {"capture", "c"}, {"unit_scale", 1e300}}), HasSubstr("'unit_scale'"));
   EXPECT_THAT(message([] { BatchManifest::of({{{"id", "a"}}, {{"id", "a"}}}); }), HasSubstr("twice"));
 }
 

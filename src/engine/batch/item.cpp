@@ -89,7 +89,8 @@ void read_asset(JsonReader& r, BatchItem& item) {
   if (!item.purpose.empty() && !export_for_from_name(item.purpose))
     fail("{}: 'for' is web, ar or dcc.", r.what());
   item.unit_scale = r.optional("unit_scale", 1.0);
-  if (!(item.unit_scale > 0)) fail("{}: 'unit_scale' is meters per unit, more than 0.", r.what());
+  if (!(item.unit_scale >= kMinExportLength && item.unit_scale <= kMaxExportLength))
+    fail("{}: 'unit_scale' is meters per unit, {} to {}.", r.what(), kMinExportLength, kMaxExportLength);
   item.frames = count_of(r, "frames", item.frames, 1, 1000);
   item.asset = {{"export", item.exports}, {"for", item.purpose}, {"unit_scale", item.unit_scale}};
 }

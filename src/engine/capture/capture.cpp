@@ -96,6 +96,10 @@ void hold_out(Capture& capture, const CaptureOptions& o) {
                every);
   const bool has_split = std::any_of(capture.views.begin(), capture.views.end(),
                                      [](const View& v) { return v.split != Split::train; });
+  if (has_split && o.test_share > 0)
+    fail_usage(
+        "The capture {} has a split of its own into training and other views; leave the random split out.",
+        capture.root.string());
   if (has_split) return;
   if (o.test_share > 0) return hold_out_random(capture, o.test_share, o.seed);
   for (size_t i = 0; every > 0 && i < capture.views.size(); i += size_t(every))
@@ -195,6 +199,17 @@ Capture load_capture(const fs::path& path, const CaptureOptions& options) {
   } catch (const fs::filesystem_error& e) {  // names that are longer than any file's
     fail("{} names a file that cannot be looked for: {}. {}", path.string(), e.code().message(),
          shortened(e.path1().string()));
+  }
+}
+
+bool is_capture(const fs::path& path) {
+  try {
+    const auto& formats = capture_formats();
+    return std::any_of(formats.begin(), formats.end(), [&](const auto& f) { return f.detect(path); });
+  } catch (const fs::filesystem_error&) {
+    return false;  // a folder that may not be looked into
+  } catch (const Error&) {
+    return true;  // files that a format looks into and cannot read
   }
 }
 

@@ -17,7 +17,8 @@ struct CaptureOptions {
   int test_every = 0;   // every Nth training view becomes a test view when the capture has none; 0: never
   int views = 0;        // number of training views to use, by keep_training_views(); 0: all
   bool strict = false;  // keep views whose images are missing; check() then reports them as errors
-  // Instead of every Nth: this share of the training views, chosen at random by the seed; 0: none.
+  // Instead of every Nth: this share of the training views, chosen at random by the seed; 0: none. Usage
+  // error: the capture has a split of its own.
   double test_share = 0;
   uint64_t seed = 1;
 };
@@ -26,6 +27,8 @@ struct CaptureOptions {
 // folder, or its file of cameras. Views whose images are missing are left out, with a warning. Errors:
 // unknown format, malformed cameras, no views.
 Capture load_capture(const std::filesystem::path& path, const CaptureOptions& options = {});
+// Whether the files of a known format are there, damaged or not: then load_capture() says what is wrong.
+bool is_capture(const std::filesystem::path& path);
 
 // "nerf-synthetic, physg, ...": the formats that load_capture() reads.
 std::string capture_format_names();

@@ -152,6 +152,19 @@ TEST(Capture, TestEveryHoldsViewsOut) {
   EXPECT_THROW(load_capture(temp.path(), {"", 1}), Error);
 }
 
+TEST(Capture, ARandomSplitInPlaceOfItsOwnIsRefused) {
+  const TempFolder temp;
+  const TestBall ball;
+  write_nerf_split(temp.path(), "train", ball, test_views(ball, 10));
+  CaptureOptions random;
+  random.test_share = 0.3;
+  EXPECT_EQ(views_of(load_capture(temp.path(), random), Split::test).size(), 3u);
+  write_nerf_split(temp.path(), "test", ball, test_views(ball, 3));
+  const Error e = error_of([&] { load_capture(temp.path(), random); });
+  EXPECT_EQ(e.code(), ErrorCode::usage);
+  EXPECT_THAT(e.what(), HasSubstr("a split of its own"));
+}
+
 TEST(Capture, PhysgFallsBackToOrderAndSaysSo) {
   const TempFolder temp;
   const TestBall ball;

@@ -49,6 +49,7 @@ MeshMaterials mesh_materials(const Mesh& mesh, const std::vector<Material>& of_v
 ColoredMesh colored_mesh(const Device& device, const Scene& scene, size_t faces) {
   if (!scene.surface || !scene.albedo) fail("The object has no surface to export; reconstruct it again.");
   Mesh mesh = scene.surface->mesh();
+  if (mesh.triangles.empty()) fail("There is no surface to export: the mesh is empty.");
   Appearance look = appearance_at(device, scene, vertex_hits(mesh));
   mesh.colors = std::move(look.albedo);
   if (scene.material.varying()) look.material = rounded(std::move(look.material));

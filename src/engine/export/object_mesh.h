@@ -15,7 +15,7 @@ struct ColoredMesh {
 };
 
 // The edited surface; vertex colors are linear albedo (glTF: base color). faces: at most; 0: all there are.
-// Error: the scene has no surface.
+// Errors: the scene has no surface, or an empty one.
 ColoredMesh colored_mesh(const Device&, const Scene&, size_t faces = 0);
 
 // The handler points with all that is known of them. Error: the scene has none.

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <set>
 
-#include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "engine/export/test_ball.h"
 #include "engine/io/ply.h"
 #include "model/scene/appearance.h"
@@ -179,6 +179,10 @@ TEST(ObjectMesh, AnObjectWithoutSurfaceOrHandlersIsAnError) {
   const Scene nothing;
   EXPECT_THROW(colored_mesh(make_device(), nothing), Error);
   EXPECT_THROW(handler_cloud(make_device(), nothing), Error);
+  Scene empty = ball();
+  empty.surface = std::make_shared<Surface>(Mesh(), std::vector<uint8_t>());
+  EXPECT_EQ(message([&] { colored_mesh(make_device(), empty); }),
+            "There is no surface to export: the mesh is empty.");
 }
 
 }  // namespace

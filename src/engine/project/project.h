@@ -79,6 +79,9 @@ class Project {
   // nothing.
   static Project open(const std::filesystem::path& folder, Mode);
 
+  // Where the editor that has it open for writing is found, for the error of another writer.
+  void say_address(const std::string& address) const { lock_.say_address(address); }
+
   // Removes a project without object and training state, which a reconstruction leaves that failed early.
   void discard_if_empty();
 

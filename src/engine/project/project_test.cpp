@@ -147,7 +147,24 @@ TEST_F(ProjectTest, RefusesTheSecondWriterButNotReaders) {
   const Project first = make_with_base();
   EXPECT_THAT(message_of([&] { Project::open(folder(), Project::Mode::write); }),
               HasSubstr("in use by another"));
+  EXPECT_THROW(Project::open(folder(), Project::Mode::write), InUseError);
   EXPECT_NO_THROW(Project::open(folder(), Project::Mode::read).scene());
+}
+
+TEST_F(ProjectTest, SaysWhereTheEditorIsThatHasIt) {
+  make_with_base();
+  const auto refusal = [&] { return message_of([&] { Project::open(folder(), Project::Mode::write); }); };
+  {
+    const Project editor = Project::open(folder(), Project::Mode::write);
+    editor.say_address("http://127.0.0.1:7861");
+    EXPECT_THAT(refusal(), HasSubstr("in use by another cei3d that changes it, the editor at "
+                                     "http://127.0.0.1:7861;"));
+    editor.say_address("no address\n");
+    EXPECT_THAT(refusal(), HasSubstr("changes it; wait"));
+    editor.say_address("http://127.0.0.1:7861");
+  }
+  const Project command = Project::open(folder(), Project::Mode::write);
+  EXPECT_THAT(refusal(), HasSubstr("changes it; wait"));  // the editor has ended
 }
 
 TEST_F(ProjectTest, NewerFormatIsRefusedAndUntouched) {

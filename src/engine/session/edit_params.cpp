@@ -18,7 +18,7 @@ namespace {
 
 void put_share(const std::optional<double>& value, const char* name, Json& params) {
   if (!value) return;
-  if (!(*value >= 0 && *value <= 1)) fail_usage("--{} {} is not in the range from 0 to 1.", name, *value);
+  if (!(*value >= 0 && *value <= 1)) fail_usage("The {} {} is not in the range from 0 to 1.", name, *value);
   params[name] = *value;
 }
 

@@ -24,7 +24,7 @@ struct Effects {
 // The other keys override the preset's values. Error: an unknown preset.
 Effects effects_from_params(JsonReader& params);
 // Writes the keys that the command sets. Usage errors: no such preset, values out of range, no color,
-// --replace without a color, --blend alone, both roughness and roughness scale.
+// "replace" without a color, "blend" alone, both roughness and roughness scale.
 void put_effects(const MaterialEffects&, Json& params);
 
 // Where an edit was made: a view of the capture, or a camera of its own. Key "view", a name, or "camera", as

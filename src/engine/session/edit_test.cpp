@@ -17,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 TEST_F(EditTest, MaterialOfTheWholeObject) {
   MaterialCommand c;
@@ -206,6 +207,7 @@ TEST_F(EditTest, WrongMaterialsChangeNothing) {
   for (const float r : {-0.1f, 1.1f, NAN, INFINITY}) {
     c.effects.roughness = r;
     EXPECT_EQ(message(c).code(), ErrorCode::usage) << r;
+    EXPECT_THAT(message(c).what(), StartsWith("The roughness ")) << r;  // the editor says it, too
   }
   c.effects.roughness = 0.5f;
   c.effects.roughness_scale = 2;

@@ -228,6 +228,11 @@ Json PartInfo::json() const { return {{"name", name}, {"edit", edit}, {"points",
 
 Json PartMasksReport::json() const { return {{"views", views}, {"shown", shown}, {"seconds", seconds}}; }
 
+bool holds_placed_object(const std::filesystem::path& file) {
+  const std::string kind = file.extension().string();
+  return kind == ".glb" || kind == ".gltf" || kind == ".obj" || kind == ".usdz" || kind == ".ply";
+}
+
 std::optional<ExportFor> export_for_from_name(const std::string& name) {
   if (name == "web") return ExportFor::web;
   if (name == "ar") return ExportFor::ar;

@@ -213,10 +213,15 @@ std::optional<ExportFor> export_for_from_name(const std::string&);  // "web", "a
 enum class ExportImage { png, jpeg, webp };
 std::optional<ExportImage> export_image_from_name(const std::string&);  // "png", "jpeg", "webp"
 
+// Meters. Far beyond what is photographed, and far within what the numbers of a file can hold.
+inline constexpr double kMinExportLength = 1e-9, kMaxExportLength = 1e9;
+// Whether a file of this name holds the object with a place and a size: .glb .gltf .obj .usdz .ply.
+bool holds_placed_object(const std::filesystem::path&);
+
 struct ExportRequest {
   // One or more files, all or none of which are written; textures are made once, their names are those of the
   // first textured file. The suffix says what is written: .glb .gltf .obj .usdz .ply (the object), .html (a
-  // page that shows it), .hdr .exr .npy .json (the light).
+  // page that shows it), .hdr .exr .npy .json (the light). Usage error: a wish that none of them can hold.
   std::vector<std::filesystem::path> out;
   bool points = false;  // .ply: the handler points instead of the mesh
   ExportFor purpose = ExportFor::any;

@@ -107,10 +107,16 @@ void Session::open(const fs::path& folder, Access access) {
   close();  // releases the lock first: it may be the same project
   const auto mode = access == Access::write ? Project::Mode::write : Project::Mode::read;
   project_ = std::make_unique<Project>(Project::open(folder, mode));
+  say_address(address_);
   if (project_->has_base())
     frames_ = std::make_unique<RenderCache>(
         *device_, RenderCacheLimits(),
         VertexLightFiles(folder / "cache", project_->base_key(), access == Access::write));
+}
+
+void Session::say_address(const std::string& address) {
+  address_ = address;
+  if (project_) project_->say_address(address_);
 }
 
 void Session::close() {

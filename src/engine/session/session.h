@@ -55,6 +55,8 @@ class Session {
   enum class Access { read, write };
   void open(const std::filesystem::path& project, Access);
   void close();  // releases the project and its lock
+  // Where the editor that uses this session is found: others that want to change its project are told.
+  void say_address(const std::string& address);
   ProjectInfo info() const;
   std::vector<LogEntry> log() const;
   Scene scene() const;  // the present object: base and active edits
@@ -129,6 +131,7 @@ class Session {
   std::unique_ptr<Device> device_;
   std::unique_ptr<Threads> threads_;
   std::unique_ptr<Project> project_;
+  std::string address_;                  // of the editor; empty: there is none
   std::unique_ptr<RenderCache> frames_;  // of the open project
   std::unique_ptr<SamMemory> sam_;
   struct VertexLook;

@@ -70,6 +70,8 @@ bool has(const std::string& kind, std::initializer_list<const char*> kinds) {
   return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
 }
 
+bool is_length(double meters) { return meters >= kMinExportLength && meters <= kMaxExportLength; }
+
 void check_sizes(const ExportRequest& r) {
   constexpr int kMinTexture = 64, kMaxTexture = 8192, kMinFaces = 4, kMaxFaces = 20'000'000;
   if (r.texture && *r.texture != 0 && (*r.texture < kMinTexture || *r.texture > kMaxTexture))
@@ -77,9 +79,26 @@ void check_sizes(const ExportRequest& r) {
                kMinTexture, kMaxTexture);
   if (r.faces && (*r.faces < kMinFaces || *r.faces > kMaxFaces))
     fail_usage("Faces {}: a mesh has {} to {} faces.", *r.faces, kMinFaces, kMaxFaces);
-  if (!(r.unit_scale > 0) || !std::isfinite(r.unit_scale))
-    fail_usage("Unit scale {}: meters per unit of the capture, more than 0.", r.unit_scale);
-  if (!(r.size >= 0) || !std::isfinite(r.size)) fail_usage("Size {}: meters, more than 0.", r.size);
+  if (!is_length(r.unit_scale))
+    fail_usage("Unit scale {}: meters per unit of the capture, {} to {}.", r.unit_scale, kMinExportLength,
+               kMaxExportLength);
+  if (r.size != 0 && !is_length(r.size))
+    fail_usage("Size {}: meters, {} to {}.", r.size, kMinExportLength, kMaxExportLength);
+}
+
+// What no file of the request can hold is refused; of several files, those get it that can.
+void check_use(const ExportRequest& r) {
+  const bool placed = r.at_base.value_or(false) || r.unit_scale != 1 || r.size != 0;
+  if (placed && r.points)
+    fail_usage("Points stay in the frame and unit of the capture; leave size, unit scale and origin out.");
+  if (r.out.empty() || std::any_of(r.out.begin(), r.out.end(), holds_placed_object)) return;
+  const std::string kind = r.out.front().extension().string();
+  if (placed)
+    fail_usage("A {} has no place for size, unit scale or origin; write .glb, .gltf, .obj, .usdz or .ply.",
+               kind);
+  if (r.light)
+    fail_usage("The light is written beside a .glb, .gltf, .obj, .usdz or .ply; a {} holds it already.",
+               kind);
 }
 
 void check_request(const ExportRequest& r, const fs::path& out) {
@@ -118,6 +137,11 @@ std::string light_json(const SgMixture& light) {
        "axes point to the light, in the frame of the capture"},
       {"lobes", lobes}}
       .dump(1);
+}
+
+void place(Mesh& mesh, const Placement& placement) {
+  for (Vec3f& p : mesh.positions) p = to_float(placement(to_double(p)));
+  for (Vec3f& n : mesh.normals) n = to_float(placement.turned(to_double(n)));
 }
 
 std::vector<FileBytes> asset_files(const MadeAsset& made, const fs::path& out, const std::string& kind,
@@ -215,13 +239,14 @@ class Exporter {
   // Colors at the vertices.
   std::vector<FileBytes> plain(ExportReport& report, const std::string& kind) const {
     if (request_.points) return handlers(report);
-    const auto [mesh, materials, error] = colored_mesh(device_, scene_, size_t(request_.faces.value_or(0)));
+    auto [mesh, materials, error] = colored_mesh(device_, scene_, size_t(request_.faces.value_or(0)));
     if (request_.faces) report.simplification_error = error;
     report.vertices = mesh.positions.size();
     report.triangles = mesh.triangles.size();
-    if (kind == ".ply") return {{report.out, encode_ply(mesh)}};
-    if (mesh.positions.empty()) fail("There is no surface to export: the mesh is empty.");
-    return {{report.out, encode_glb(mesh, materials, placement_of(mesh.positions, scene_.up, placement()))}};
+    const Placement there = placement_of(mesh.positions, scene_.up, placement());
+    if (kind != ".ply") return {{report.out, encode_glb(mesh, materials, there)}};
+    if (!placement_is_input()) place(mesh, there);
+    return {{report.out, encode_ply(mesh)}};
   }
 
   std::vector<FileBytes> textured(ExportReport& report, const std::string& kind) {
@@ -268,6 +293,7 @@ std::vector<ExportReport> Session::export_to(const ExportRequest& request, Progr
   return threads_->run([&]() -> std::vector<ExportReport> {
     for (const fs::path& out : request.out) check_request(request, out);
     check_sizes(request);
+    check_use(request);
     const Scene scene = project().scene();
     const std::vector<View>& views = project().capture().views;
     const Vec3d seen_from = views.empty()

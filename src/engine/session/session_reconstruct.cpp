@@ -154,6 +154,7 @@ ReconstructReport Session::run_reconstruction(const ReconstructRequest& request,
     const CheckReport checked = check({request.capture, loading, {}});
     project_.reset();
     project_ = std::make_unique<Project>(create_project(request, checked));
+    say_address(address_);
   }
   try {
     const ReconstructOptions options = options_from_json(project().head().options);

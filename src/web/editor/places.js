@@ -50,6 +50,7 @@ export class Places {
   /** @param {any} state */
   library(state) {
     const open = (/** @type {string} */ id) => async () => { try { await this.store.take(await postJson('open', { id })); } catch (error) { complain(error); } };
+    const again = () => el('button', { class: 'big', onclick: async () => { try { await this.store.take(await postJson('close')); } catch (error) { complain(error); } } }, 'Look again');
     const sample = state.sample ? el('button', { class: 'big primary', onclick: open('sample') }, 'Try the sample') : null;
     if (state.entries.length === 0)
       return [el('h2', {}, 'Nothing here yet'),
@@ -58,11 +59,13 @@ export class Places {
         el('p', {}, 'A capture is a folder in one of these forms:'), el('pre', {}, state.formats),
         el('p', {}, 'Of bare photographs this command makes one; PHOTOS is their folder, and COLMAP finds the cameras. Then come back to this page.'),
         copied(`cei3d capture PHOTOS -o ${quoted(`${state.folder}/capture`)}`),
-        el('div', { class: 'inline' }, sample, el('button', { class: 'big', onclick: async () => { try { await this.store.take(await postJson('close')); } catch (error) { complain(error); } } }, 'Look again'))];
-    const card = (/** @type {any} */ e) => el('button', { class: 'card', onclick: open(e.id) }, el('b', {}, e.name),
+        el('div', { class: 'inline' }, sample, again())];
+    const damaged = (/** @type {any} */ e) => el('div', { class: 'card error' }, el('b', {}, e.name), el('span', { class: 'kind' }, 'photographs that cannot be read'), el('small', {}, e.problem));
+    const card = (/** @type {any} */ e) => e.problem ? damaged(e) : el('button', { class: 'card', onclick: open(e.id) }, el('b', {}, e.name),
       el('span', { class: 'kind' }, e.kind === 'capture' ? 'photographs' : e.finished ? 'object' : 'object, not finished'),
       el('small', {}, e.kind === 'capture' ? 'Check it and make an object of it' : e.finished ? 'Edit it' : 'Go on with it'));
-    return [el('h2', {}, 'Objects and captures'), el('p', {}, state.folder), el('div', { class: 'cards' }, ...state.entries.map(card)), sample];
+    return [el('h2', {}, 'Objects and captures'), el('p', {}, state.folder), el('div', { class: 'cards' }, ...state.entries.map(card)),
+      el('div', { class: 'inline' }, sample, state.entries.some((/** @type {any} */ e) => e.problem) ? again() : null)];
   }
 
   /** @param {any} state */
