@@ -196,11 +196,6 @@ TEST_F(Colmap, BrokenFilesAreErrorsThatNameThem) {
     }
     write_file_atomic(folder_ / name, bytes);
   }
-  std::string cameras = read_file(folder_ / "cameras.bin");
-  cameras[12] = 7;  // the model's id
-  write_file_atomic(folder_ / "cameras.bin", cameras);
-  EXPECT_THAT(message([&] { load_capture(folder_); }),
-              AllOf(HasSubstr("FOV"), HasSubstr("image_undistorter")));
   fs::remove(folder_ / "cameras.bin");
   fs::remove(folder_ / "images.bin");
   write_colmap_txt(folder_, ball_, views_);
@@ -208,6 +203,29 @@ TEST_F(Colmap, BrokenFilesAreErrorsThatNameThem) {
   EXPECT_THAT(message([&] { load_capture(folder_); }), HasSubstr("names camera 2"));
   write_file_atomic(folder_ / "cameras.txt", "1 PINHOLE 64 48 80 8x 32 24\n");
   EXPECT_THAT(message([&] { load_capture(folder_); }), AllOf(HasSubstr("Line 1"), HasSubstr("8x")));
+}
+
+// Models that are not read are named, with what to do, also those that a later COLMAP may have.
+TEST_F(Colmap, CameraModelsThatAreNotReadAreNamed) {
+  write_images(folder_ / "images", ball_, views_);
+  write_colmap_bin(folder_, ball_, views_);
+  std::string cameras = read_file(folder_ / "cameras.bin");
+  const std::pair<char, const char*> models[] = {
+      {7, "model FOV"}, {16, "model EUCM"}, {17, "model EQUIRECTANGULAR"}, {99, "model 99"}};
+  for (const auto& [id, name] : models) {
+    cameras[12] = id;
+    write_file_atomic(folder_ / "cameras.bin", cameras);
+    EXPECT_THAT(message([&] { load_capture(folder_); }),
+                AllOf(HasSubstr("Camera 6"), HasSubstr(name), HasSubstr("colmap image_undistorter")));
+  }
+  fs::remove(folder_ / "cameras.bin");
+  fs::remove(folder_ / "images.bin");
+  write_colmap_txt(folder_, ball_, views_);
+  for (const std::string name : {"EUCM", "LATER_MODEL"}) {
+    write_file_atomic(folder_ / "cameras.txt", "1 " + name + " 64 48 80 80 32 24\n");
+    EXPECT_THAT(message([&] { load_capture(folder_); }),
+                AllOf(HasSubstr("Line 1"), HasSubstr(name), HasSubstr("colmap image_undistorter")));
+  }
 }
 
 }  // namespace
