@@ -20,6 +20,15 @@ inline std::string with_segment(const std::string& jpeg, uint8_t marker, const s
          jpeg.substr(2);
 }
 
+// The header of a JPEG of 8 x 6 pixels and four inks, without pixels. transform: 0 CMYK, 2 YCCK. first:
+// sampling of the first ink, 0x11 that of the others.
+inline std::string ink_jpeg(char transform, char first) {
+  const std::string frame{8, 0, 6, 0, 8, 4, 1, first, 0, 2, 0x11, 0, 3, 0x11, 0, 4, 0x11, 0},
+      scan{4, 1, 0, 2, 0, 3, 0, 4, 0, 0, 63, 0};
+  const std::string adobe = std::string("Adobe\0\x64\0\0\0\0", 11) + transform;
+  return with_segment(with_segment(with_segment("\xff\xd8", 0xda, scan), 0xc0, frame), 0xee, adobe);
+}
+
 // EXIF: orientation, exposure time 1/50 s, f-number 4, ISO 200.
 inline std::string with_exif(const std::string& jpeg, uint16_t orientation) {
   std::string tiff = "II";
