@@ -10,6 +10,7 @@
 #include "core/base/temp_folder.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/test_capture.h"
+#include "engine/io/test_jpeg.h"
 
 namespace cei3d {
 namespace {
@@ -155,6 +156,26 @@ TEST_F(Check, CutObjectAndCameraThatLooksAwayAreWarnings) {
   for (const Finding& f : report.findings) all += f.what;
   EXPECT_THAT(all, AllOf(HasSubstr("cut by the frame border: train/r_001"),
                          HasSubstr("look away from the object: test/away")));
+}
+
+TEST_F(Check, ColorProfilesThatCannotBeUsedAreNamed) {
+  const std::pair<int, std::string> stored[] = {
+      {3, "no color profile"}, {7, p3_profile().replace(16, 4, "CMYK")}, {9, p3_profile()}};
+  for (const auto& [i, profile] : stored) {
+    const Image rgba = ball_image(ball_, views_[size_t(i)].camera);
+    Image rgb(rgba.width, rgba.height, 3), mask(rgba.width, rgba.height, 1);
+    for (size_t k = 0; k < mask.data.size(); ++k) {
+      std::copy_n(&rgba.data[4 * k], 3, &rgb.data[3 * k]);
+      mask.data[k] = rgba.data[4 * k + 3];
+    }
+    write_file_atomic(picture(i), with_profile(encode_jpeg(rgb, 95), profile));
+    write_png(folder() / "train" / (views_[size_t(i)].stem + "_mask.png"), mask);
+  }
+  std::string all;
+  for (const Finding& f : check(load_capture(folder())).findings) all += f.what;
+  EXPECT_THAT(all,
+              HasSubstr("2 of 20 images have a color profile that is damaged or not of RGB, and are taken "
+                        "for sRGB: train/r_003, train/r_007."));
 }
 
 TEST_F(Check, DrawsCameras) {

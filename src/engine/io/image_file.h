@@ -21,6 +21,8 @@ Image read_image(const std::filesystem::path& path);
 Image read_linear_image(const std::filesystem::path& path);
 ImageSize read_image_size(const std::filesystem::path& path);  // without decoding pixels, as stored
 ExifNotes read_image_exif(const std::filesystem::path& path);  // defaults for a file without
+// Whether the image has a color profile that is damaged or not one of RGB: it is read as if it had none.
+bool has_unusable_profile(const std::filesystem::path& path);
 // Bits of a channel: 8 or 16 of display-encoded values up to 1; 32: linear values without an upper limit
 // (EXR, HDR).
 int read_image_bits(const std::filesystem::path& path);

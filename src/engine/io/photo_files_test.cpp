@@ -10,6 +10,7 @@
 #include "core/math/color.h"
 #include "engine/io/color_profile.h"
 #include "engine/io/image_file.h"
+#include "engine/io/png_file.h"
 #include "engine/io/test_jpeg.h"
 #include "engine/io/tiff_file.h"
 
@@ -51,8 +52,7 @@ TEST(ColorProfile, ColorsOfOtherPrimariesBecomeSrgbs) {
   for (int y = 0; y < 16; ++y)
     for (int x = 0; x < 16; ++x) image.at(x, y)[0] = 0.8f, image.at(x, y)[1] = 0.3f, image.at(x, y)[2] = 0.1f;
   const std::string jpeg = encode_jpeg(image, 100), profile = swapped_profile();
-  EXPECT_FALSE(is_srgb_profile(profile));
-  EXPECT_TRUE(is_srgb_profile("nonsense"));
+  EXPECT_EQ(profile_kind(profile), ProfileKind::other);
   EXPECT_EQ(jpeg_profile(with_profile(jpeg, profile)), profile);
   EXPECT_EQ(jpeg_profile(jpeg), "");
   write_file_atomic(temp.path() / "a.jpg", with_profile(jpeg, profile));
@@ -60,6 +60,32 @@ TEST(ColorProfile, ColorsOfOtherPrimariesBecomeSrgbs) {
   EXPECT_NEAR(linear.at(5, 5)[0], 0.3f, 0.01f);
   EXPECT_NEAR(linear.at(5, 5)[1], 0.8f, 0.01f);
   EXPECT_NEAR(linear.at(5, 5)[2], 0.1f, 0.01f);
+}
+
+// Damaged profiles, and those of printing inks: the image counts as sRGB, and that can be told.
+TEST(ColorProfile, ThatCannotBeUsedIsPassedOver) {
+  const TempFolder temp;
+  const std::string jpeg = encode_jpeg(Image(16, 16, 3, 0.5f), 100), p3 = p3_profile();
+  const auto path = temp.path() / "a.jpg";
+  const std::string unusable[] = {"no color profile", p3.substr(0, 200),
+                                  std::string(p3).replace(16, 4, "CMYK")};
+  for (const std::string& profile : unusable) {
+    EXPECT_EQ(profile_kind(profile), ProfileKind::unusable);
+    write_file_atomic(path, with_profile(jpeg, profile));
+    EXPECT_TRUE(has_unusable_profile(path));
+    EXPECT_NEAR(read_linear_image(path).at(5, 5)[1], linear_from_srgb(0.5f), 0.005f);
+  }
+  for (const std::string& usable : {jpeg, with_profile(jpeg, p3)}) {
+    write_file_atomic(path, usable);
+    EXPECT_FALSE(has_unusable_profile(path));
+  }
+  std::string png = encode_png(Image(4, 4, 3, 0.5f), 8);
+  write_file_atomic(path, png);
+  EXPECT_FALSE(has_unusable_profile(path));
+  png.insert(33, std::string("\0\0\0\2iCCPxx\0\0\0\0", 14));  // behind the header; its sum is wrong, too
+  write_file_atomic(path, png);
+  EXPECT_TRUE(has_unusable_profile(path));
+  EXPECT_FLOAT_EQ(read_linear_image(path).at(1, 1)[0], linear_from_srgb(128.0f / 255));
 }
 
 TEST(Tiff, SixteenBitsAreReadExactly) {

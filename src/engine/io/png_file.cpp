@@ -193,6 +193,15 @@ std::string png_profile(const std::string& bytes, const std::string& name) {
   return Reader(bytes, name).profile();
 }
 
+bool png_has_profile(const std::string& bytes) {
+  for (size_t at = 8; at + 8 <= bytes.size();) {
+    const std::string kind = bytes.substr(at + 4, 4);
+    if (kind == "iCCP" || kind == "IDAT") return kind == "iCCP";  // it stands before the pixels
+    at += 12 + size_t(png_get_uint_32(reinterpret_cast<png_const_bytep>(bytes.data() + at)));
+  }
+  return false;
+}
+
 std::string encode_png(const Image& image, int bits) {
   if (image.empty() || (image.channels != 1 && image.channels != 3 && image.channels != 4))
     fail("Cannot write a PNG of {} x {} pixels with {} channels.", image.width, image.height, image.channels);
