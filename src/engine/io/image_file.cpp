@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <optional>
@@ -72,18 +73,20 @@ Image decode(const std::string& bytes, const std::string& name, ImageFormat form
 struct Stored {
   Image image;
   bool linear = false;
-  std::string profile;  // ICC; empty: none
+  std::string profile;          // ICC; empty: none
+  std::optional<double> gamma;  // png_gamma(), without a profile
 };
 
 Stored decode_with_profile(const std::string& bytes, const std::string& name, ImageFormat format) {
   if (format == ImageFormat::tiff) {
     TiffImage tiff = decode_tiff(bytes, name);
-    return {std::move(tiff.image), tiff.linear, std::move(tiff.profile)};
+    return {std::move(tiff.image), tiff.linear, std::move(tiff.profile), {}};
   }
   const bool linear = format == ImageFormat::exr || format == ImageFormat::hdr;
-  Stored stored{decode(bytes, name, format), linear, {}};
+  Stored stored{decode(bytes, name, format), linear, {}, {}};
   if (format == ImageFormat::jpeg) stored.profile = jpeg_profile(bytes);
   if (format == ImageFormat::png) stored.profile = png_profile(bytes, name);
+  if (format == ImageFormat::png && stored.profile.empty()) stored.gamma = png_gamma(bytes, name);
   return stored;
 }
 
@@ -147,6 +150,9 @@ Image read_linear_image(const std::filesystem::path& path) {
   if (stored.image.channels >= 3 && !stored.profile.empty() &&
       profile_kind(stored.profile) == ProfileKind::other)
     return linear_by_profile(std::move(stored.image), stored.profile);
+  if (stored.gamma)
+    return map_colors(std::move(stored.image),
+                      [g = float(1 / *stored.gamma)](float v) { return std::pow(v, g); });
   return map_colors(std::move(stored.image), linear_of_stored);
 }
 

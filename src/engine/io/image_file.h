@@ -16,8 +16,8 @@ enum class ImageFormat { png, jpeg, tiff, exr, hdr };
 // Values as stored, /255 or /65535: display-encoded for PNG, JPEG and TIFF, linear for EXR and HDR. 1, 3 or 4
 // channels. Errors name the file: missing, truncated, corrupt, unknown format.
 Image read_image(const std::filesystem::path& path);
-// Linear, sRGB primaries, alpha kept: by the image's color profile, else from sRGB. EXR, HDR and TIFF of
-// floating-point numbers are linear as stored.
+// Linear, sRGB primaries, alpha kept: by the image's color profile, else by the exponent that a PNG states,
+// else from sRGB. EXR, HDR and TIFF of floating-point numbers are linear as stored.
 Image read_linear_image(const std::filesystem::path& path);
 ImageSize read_image_size(const std::filesystem::path& path);  // without decoding pixels, as stored
 ExifNotes read_image_exif(const std::filesystem::path& path);  // defaults for a file without

@@ -88,6 +88,25 @@ TEST(ColorProfile, ThatCannotBeUsedIsPassedOver) {
   EXPECT_FLOAT_EQ(read_linear_image(path).at(1, 1)[0], linear_from_srgb(128.0f / 255));
 }
 
+// gAMA of 1, of 0.55, and of 1 / 2.2, which stands for sRGB; also beside a chunk that says sRGB.
+TEST(Png, StoredExponentsAreUndone) {
+  const TempFolder temp;
+  const std::string png = encode_png(Image(3, 2, 4, 51.0f / 255), 8);
+  const auto read = [&](const std::string& chunks) {
+    write_file_atomic(temp.path() / "a.png", std::string(png).insert(33, chunks));  // behind the header
+    const Image linear = read_linear_image(temp.path() / "a.png");
+    EXPECT_FLOAT_EQ(linear.at(1, 1)[3], 0.2f);
+    return linear.at(1, 1)[0];
+  };
+  const std::string one("\0\0\0\4gAMA\0\1\x86\xa0\x31\xe8\x96\x5f", 16),
+      other("\0\0\0\4gAMA\0\0\xd6\xd8\xd4\x4f\x58\x32", 16),
+      usual("\0\0\0\4gAMA\0\0\xb1\x8f\x0b\xfc\x61\x05", 16), srgb("\0\0\0\1sRGB\0\xae\xce\x1c\xe9", 13);
+  EXPECT_FLOAT_EQ(read(one), 0.2f);
+  EXPECT_NEAR(read(other), std::pow(0.2, 1 / 0.55), 1e-6);
+  for (const std::string& chunks : {std::string(), usual, srgb, srgb + usual})
+    EXPECT_FLOAT_EQ(read(chunks), linear_from_srgb(0.2f));
+}
+
 TEST(Tiff, SixteenBitsAreReadExactly) {
   const TempFolder temp;
   for (const int channels : {1, 3, 4}) {
