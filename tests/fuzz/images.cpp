@@ -18,12 +18,14 @@ void decode(const std::string& bytes) {
   using cei3d::ImageFormat;
   switch (cei3d::image_format(bytes, "input")) {
     case ImageFormat::png:
-      cei3d::png_profile(bytes, "input");
+      cei3d::png_has_profile(bytes);
+      cei3d::png_gamma(bytes, "input");
+      cei3d::profile_kind(cei3d::png_profile(bytes, "input"));
       cei3d::decode_png(bytes, "input");
       break;
     case ImageFormat::jpeg:
       cei3d::read_exif(bytes);
-      cei3d::jpeg_profile(bytes);
+      cei3d::profile_kind(cei3d::jpeg_profile(bytes));
       cei3d::decode_jpeg(bytes, "input");
       break;
     case ImageFormat::tiff:
