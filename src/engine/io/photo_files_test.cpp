@@ -36,6 +36,11 @@ TEST(Exif, IsReadFromAJpeg) {
   EXPECT_EQ(read_exif(with_exif(jpeg, 9)).orientation, 1);
   EXPECT_EQ(read_exif(jpeg).orientation, 1);
   EXPECT_FALSE(read_exif(jpeg).exposure);
+  EXPECT_FALSE(notes.auto_white);
+  EXPECT_EQ(read_exif(with_exif(jpeg, 1, 0)).auto_white, true);
+  EXPECT_EQ(read_exif(with_exif(jpeg, 1, 1)).auto_white, false);
+  EXPECT_FALSE(read_exif(with_exif(jpeg, 1, 7)).auto_white);
+  EXPECT_NEAR(read_exif(with_exif(jpeg, 1, 1)).exposure.value_or(0), 200.0 / 50 / 16, 1e-12);
   const std::string bytes = with_exif(jpeg, 3);
   for (size_t n = 0; n < bytes.size(); ++n) read_exif(bytes.substr(0, n));
   std::mt19937 random(1);
