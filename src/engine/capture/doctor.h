@@ -47,7 +47,7 @@ struct PhotoLook {
   bool seen = false;
   double brightness = 0;  // mean logarithm of the object's luminance
   double sharpness = 0;   // mean second difference of the object's luminance, relative to the luminance
-  Image small;            // RGB, linear, of the size of the small masks
+  Image small;            // RGB, linear, by reduction_of() of its size
   std::vector<float> thumbnail;     // [kThumbnail][kThumbnail][3], linear
   std::vector<uint8_t> background;  // [kThumbnail][kThumbnail], 1: nothing of the object
   ExifNotes notes;                  // of the camera
