@@ -19,7 +19,7 @@ namespace {
 void use_profile(cei3d::Image image, const std::string& profile) {
   constexpr size_t kMaxPixels = size_t(1) << 12;
   if (size_t(image.width) * size_t(image.height) > kMaxPixels || image.channels < 3) return;
-  if (!profile.empty() && !cei3d::is_srgb_profile(profile))
+  if (!profile.empty() && cei3d::profile_kind(profile) == cei3d::ProfileKind::other)
     cei3d::linear_by_profile(std::move(image), profile);
 }
 
@@ -27,6 +27,8 @@ void decode(const std::string& bytes) {
   using cei3d::ImageFormat;
   switch (cei3d::image_format(bytes, "input")) {
     case ImageFormat::png: {
+      cei3d::png_has_profile(bytes);
+      cei3d::png_gamma(bytes, "input");
       const std::string profile = cei3d::png_profile(bytes, "input");
       use_profile(cei3d::decode_png(bytes, "input"), profile);
       break;

@@ -143,7 +143,8 @@ std::string shortened(const std::string& text) {
 
 Capture loaded(const fs::path& path, const CaptureOptions& options) {
   if (!fs::exists(path)) fail("There is no capture at {}; check the path.", path.string());
-  Capture capture = format_of(path, options.format).load(path);
+  const CaptureFormat& format = format_of(path, options.format);
+  Capture capture = format.load(path);
   if (capture.views.empty()) fail("{} lists no views.", path.string());
   fit_to_photographs(capture, options.strict);
   hold_out(capture, options);
@@ -151,7 +152,8 @@ Capture loaded(const fs::path& path, const CaptureOptions& options) {
   std::stable_sort(capture.views.begin(), capture.views.end(),
                    [](const View& a, const View& b) { return a.split < b.split; });
   make_names_unique(capture);
-  capture.up = up_axis(capture);
+  const std::optional<Vec3d> stated = format.stated_up ? format.stated_up(path) : std::nullopt;
+  capture.up = stated ? *stated : up_axis(capture);
   return capture;
 }
 

@@ -45,7 +45,7 @@ const std::vector<CaptureFormat>& capture_formats() {
   constexpr Vec3d kY{0, 1, 0}, kZ{0, 0, 1};
   static const std::vector<CaptureFormat> formats{
       {"nerf-synthetic", "NeRF-synthetic, nerfstudio, instant-ngp",
-       "transforms_{train,val,test}.json or transforms.json", kZ, detect_nerf, load_nerf},
+       "transforms_{train,val,test}.json or transforms.json", kZ, detect_nerf, load_nerf, nerf_up},
       {"physg", "PhySG", "cam_dict_norm.json, image/, mask/", kY, detect_physg, load_physg},
       {"idr", "IDR, NeuS", "cameras_sphere.npz or cameras.npz, image/, mask/", {}, detect_idr, load_idr},
       {"colmap",

@@ -20,15 +20,20 @@ struct CaptureFormat {
   std::optional<Vec3d> up;                            // none: the world frame is arbitrary
   bool (*detect)(const std::filesystem::path& path);  // path: folder or file
   Capture (*load)(const std::filesystem::path& path);
+  // The axis that the files of this capture say points up; none, or null: they do not say so.
+  std::optional<Vec3d> (*stated_up)(const std::filesystem::path& path) = nullptr;
 };
 const std::vector<CaptureFormat>& capture_formats();
 
 // NeRF-synthetic, nerfstudio, instant-ngp: transforms_{train,val,test}.json or one transforms.json (all
 // training views), OpenGL camera-to-world. A frame's own fl_x, fl_y, cx, cy, w, h and lens override the
 // file's; mask_path and nerfstudio's lists train_filenames, val_filenames, test_filenames are read. Lenses:
-// OPENCV and what it contains (k1, k2, k3, k4, p1, p2, or distortion_params) and OPENCV_FISHEYE.
+// OPENCV and what it contains (k1, k2, k3, k4, p1, p2, or distortion_params) and OPENCV_FISHEYE. The capture
+// frame is that of the file: applied_transform and applied_scale, which say how the frame was made from
+// COLMAP's, change nothing. nerf_up(): z where orientation_override says that the frame is upright.
 bool detect_nerf(const std::filesystem::path& path);
 Capture load_nerf(const std::filesystem::path& path);
+std::optional<Vec3d> nerf_up(const std::filesystem::path& path);
 
 // PhySG: cam_dict_norm.json, image/, mask/, in the folder itself or in its train/ and test/. OpenCV
 // world-to-camera, integer pixel centers.

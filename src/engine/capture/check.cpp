@@ -13,12 +13,13 @@
 #include "engine/capture/coverage.h"
 #include "engine/capture/doctor.h"
 #include "engine/capture/normalize.h"
+#include "engine/io/image_file.h"
 
 namespace cei3d {
 namespace {
 
 // Problems of a single view, in the order of reporting.
-enum Problem { kNoFile, kBroken, kBadPose, kEmptyMask, kNoMask, kFullMask, kCut, kAway, kProblems };
+enum Problem { kNoFile, kBroken, kBadPose, kEmptyMask, kNoMask, kFullMask, kCut, kAway, kProfile, kProblems };
 
 struct ProblemText {
   Severity severity;
@@ -38,6 +39,8 @@ constexpr std::array<ProblemText, kProblems> kTexts{{
     {Severity::warning, "views show the object cut by the frame border",
      "Step back or widen the frame; what is never seen whole is guessed."},
     {Severity::warning, "cameras look away from the object", "Check the poses of these views."},
+    {Severity::warning, "images have a color profile that is damaged or not of RGB, and are taken for sRGB",
+     "Convert them to sRGB in a program that shows their colors as they should be."},
 }};
 
 struct ViewResult {
@@ -73,6 +76,7 @@ int border_pixels(const Mask& m) {
 
 void look_at_picture(const View& view, ViewResult& out) {
   out.look = look_at_photo(view, load_linear_rgba(view));  // decodes the whole file and rejects NaN
+  out.has[kProfile] = has_unusable_profile(view.image_path);
   out.mask = load_mask(view);
   const auto& object = out.mask.object;
   const bool full = std::count(object.begin(), object.end(), kBackground) == 0;

@@ -10,12 +10,14 @@
 #include "core/base/temp_folder.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/test_capture.h"
+#include "engine/io/test_jpeg.h"
 
 namespace cei3d {
 namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class Check : public testing::Test {
  protected:
@@ -40,6 +42,22 @@ class Check : public testing::Test {
       return e.what();
     }
     return "usable";
+  }
+  // Stores an image as a JPEG, whatever its name says, with its mask in a file.
+  void store_as_jpeg(size_t i, const std::function<std::string(const std::string&)>& with_notes) const {
+    const Image rgba = ball_image(ball_, views_[i].camera);
+    Image rgb(rgba.width, rgba.height, 3), mask(rgba.width, rgba.height, 1);
+    for (size_t k = 0; k < mask.data.size(); ++k) {
+      std::copy_n(&rgba.data[4 * k], 3, &rgb.data[3 * k]);
+      mask.data[k] = rgba.data[4 * k + 3];
+    }
+    write_file_atomic(picture(int(i)), with_notes(encode_jpeg(rgb, 95)));
+    write_png(folder() / "train" / (views_[i].stem + "_mask.png"), mask);
+  }
+  std::string all_findings() const {
+    std::string all;
+    for (const Finding& f : check(load_capture(folder())).findings) all += f.what;
+    return all;
   }
   const TempFolder temp_;
   const TestBall ball_{};
@@ -155,6 +173,26 @@ TEST_F(Check, CutObjectAndCameraThatLooksAwayAreWarnings) {
   for (const Finding& f : report.findings) all += f.what;
   EXPECT_THAT(all, AllOf(HasSubstr("cut by the frame border: train/r_001"),
                          HasSubstr("look away from the object: test/away")));
+}
+
+TEST_F(Check, ColorProfilesThatCannotBeUsedAreNamed) {
+  store_as_jpeg(3, [](const std::string& jpeg) { return with_profile(jpeg, "no color profile"); });
+  store_as_jpeg(
+      7, [](const std::string& jpeg) { return with_profile(jpeg, p3_profile().replace(16, 4, "CMYK")); });
+  store_as_jpeg(9, [](const std::string& jpeg) { return with_profile(jpeg, p3_profile()); });
+  EXPECT_THAT(all_findings(),
+              HasSubstr("2 of 20 images have a color profile that is damaged or not of RGB, and "
+                        "are taken for sRGB: train/r_003, train/r_007."));
+}
+
+TEST_F(Check, WhiteBalanceLeftToTheCameraIsNamed) {
+  store_as_jpeg(5, [](const std::string& jpeg) { return with_exif(jpeg, 1, 1); });
+  EXPECT_THAT(all_findings(), Not(HasSubstr("white balance")));
+  for (const int i : {3, 8}) store_as_jpeg(i, [](const std::string& jpeg) { return with_exif(jpeg, 1, 0); });
+  EXPECT_THAT(
+      all_findings(),
+      HasSubstr("it chose the white balance of 2 of 20 photographs itself, so their colors may differ: "
+                "train/r_003, train/r_008."));
 }
 
 TEST_F(Check, DrawsCameras) {

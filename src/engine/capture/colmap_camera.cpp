@@ -26,15 +26,21 @@ constexpr ColmapCameraModel kModels[] = {
     {13, "DIVISION", 0},
     {14, "SIMPLE_FISHEYE", 3},
     {15, "FISHEYE", 4},
+    {16, "EUCM", 0},
+    {17, "EQUIRECTANGULAR", 0},
 };
+constexpr char kUndistort[] =
+    "Undistort the images with `colmap image_undistorter` and use the folder that it writes.";
 
 const ColmapCameraModel& supported(const ColmapCameraModel& model, const std::string& where) {
   if (model.params == 0)
-    fail(
-        "{} has the camera model {}, which is not supported. Undistort with `colmap image_undistorter` and "
-        "use the folder that it writes.",
-        where, model.name);
+    fail("{} has the camera model {}, which is not supported. {}", where, model.name, kUndistort);
   return model;
+}
+
+[[noreturn]] void fail_unknown(const std::string& model, const std::string& where) {
+  fail("{} has the camera model '{}', which is not known: the file is damaged, or of a newer COLMAP. {}", where,
+       model, kUndistort);
 }
 
 bool has_two_focal_lengths(int id) { return id == 1 || id == 4 || id == 5 || id == 6 || id == 15; }
@@ -57,13 +63,13 @@ LensDistortion lens_of(int id, std::span<const double> rest) {
 const ColmapCameraModel& colmap_camera_model(int id, const std::string& where) {
   for (const ColmapCameraModel& m : kModels)
     if (m.id == id) return supported(m, where);
-  fail("{} has the camera model {}, which is not known.", where, id);
+  fail_unknown(std::to_string(id), where);
 }
 
 const ColmapCameraModel& colmap_camera_model(const std::string& name, const std::string& where) {
   for (const ColmapCameraModel& m : kModels)
     if (m.name == name) return supported(m, where);
-  fail("{} has the camera model '{}', which is not known.", where, name);
+  fail_unknown(name.substr(0, 40), where);
 }
 
 ColmapModel::Camera colmap_camera(const ColmapCameraModel& model, double width, double height,

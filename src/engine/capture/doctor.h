@@ -12,6 +12,7 @@
 #include "core/image/image.h"
 #include "engine/capture/check.h"
 #include "engine/capture/mask_votes.h"
+#include "engine/io/exif.h"
 #include "model/scene/view.h"
 
 namespace cei3d {
@@ -46,10 +47,10 @@ struct PhotoLook {
   bool seen = false;
   double brightness = 0;  // mean logarithm of the object's luminance
   double sharpness = 0;   // mean second difference of the object's luminance, relative to the luminance
-  Image small;            // RGB, linear, of the size of the small masks
+  Image small;            // RGB, linear, by reduction_of() of its size
   std::vector<float> thumbnail;     // [kThumbnail][kThumbnail][3], linear
   std::vector<uint8_t> background;  // [kThumbnail][kThumbnail], 1: nothing of the object
-  std::optional<double> exposure;   // by the camera's notes (ExifNotes)
+  ExifNotes notes;                  // of the camera
 };
 inline constexpr int kThumbnail = 24;
 // rgba: load_linear_rgba() of the view.
@@ -59,8 +60,8 @@ struct JudgedPhoto {
   const View* view = nullptr;
   const PhotoLook* look = nullptr;
 };
-// Jumps of exposure, blur, the same photograph twice, a background that does not move with the cameras.
-// center: of the object, capture frame.
+// Jumps of exposure, white balance left to the camera, blur, the same photograph twice, a background that
+// does not move with the cameras. center: of the object, capture frame.
 void check_photographs(std::span<const JudgedPhoto> photos, Vec3d center, std::vector<Finding>& findings);
 
 }  // namespace cei3d

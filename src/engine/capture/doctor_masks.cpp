@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "core/base/error.h"
+#include "core/image/resample.h"
 #include "core/math/quantile.h"
 #include "engine/capture/doctor.h"
 #include "engine/capture/normalize.h"
@@ -187,6 +188,12 @@ bool shows_background(const Image& picture, const std::vector<uint8_t>& mask, co
   return 2 * alike > all;
 }
 
+// The picture at the size of the small mask: the mask may be reduced more.
+Image of_mask_size(const Image& picture, const MaskDoubt& doubt) {
+  const bool same = picture.width == doubt.width && picture.height == doubt.height;
+  return same ? picture : scaled_to(picture, doubt.width, doubt.height);
+}
+
 // The votes that the photographs do not contradict. A view with an explanation is wrong as a whole, so its
 // photograph does not count.
 void believe_pictures(std::span<const JudgedMask> masks, const SmallMasks& small,
@@ -194,10 +201,9 @@ void believe_pictures(std::span<const JudgedMask> masks, const SmallMasks& small
   for (size_t i = 0; i < doubts.size(); ++i) {
     const Image* picture = masks[i].picture;
     MaskDoubt& d = doubts[i];
-    if (!d.stands_out || !explanations[i].empty() || !picture || picture->width != d.width ||
-        picture->height != d.height)
+    if (!d.stands_out || !explanations[i].empty() || !picture || picture->empty()) continue;
+    if (pixels_in(d.missing_area) == 0 || !shows_background(of_mask_size(*picture, d), small.masks[i], d))
       continue;
-    if (pixels_in(d.missing_area) == 0 || !shows_background(*picture, small.masks[i], d)) continue;
     for (size_t k = 0; k < d.doubtful.size(); ++k) d.doubtful[k] = d.doubtful[k] && !d.missing_area[k];
     d.missing = 0;
     d.stands_out = d.extra > kStandsOut;

@@ -116,7 +116,7 @@ void check_exposures(std::span<const JudgedPhoto> photos, Vec3d center, std::vec
          "Lock exposure and white balance, or remove these views."});
   std::vector<double> stated;
   for (const JudgedPhoto& p : photos)
-    if (p.look->exposure) stated.push_back(*p.look->exposure);
+    if (p.look->notes.exposure) stated.push_back(*p.look->notes.exposure);
   if (stated.size() < 2) return;
   const auto [smallest, largest] = std::minmax_element(stated.begin(), stated.end());
   if (*largest > kExposures * *smallest)
@@ -125,6 +125,20 @@ void check_exposures(std::span<const JudgedPhoto> photos, Vec3d center, std::vec
          fmt::format("By the camera's own notes (EXIF) exposures differ by a factor of {:.2g}.",
                      *largest / *smallest),
          "Lock exposure and white balance; light and albedo are estimated from all photographs together."});
+}
+
+// What a camera chooses for one photograph need not be what it chooses for the next.
+void check_white_balance(std::span<const JudgedPhoto> photos, std::vector<Finding>& findings) {
+  std::vector<std::string> names;
+  for (const JudgedPhoto& p : photos)
+    if (p.look->notes.auto_white == true) names.push_back(p.view->name);
+  if (names.empty()) return;
+  findings.push_back(
+      {Severity::warning,
+       fmt::format("By the camera's own notes (EXIF) it chose the white balance of {} of {} photographs "
+                   "itself, so their colors may differ: {}.",
+                   names.size(), photos.size(), some_names(names)),
+       "Lock the white balance; `reconstruct` makes up for constant factors of the channels."});
 }
 
 void check_blur(std::span<const JudgedPhoto> photos, std::vector<Finding>& findings) {
@@ -230,7 +244,7 @@ PhotoLook look_at_photo(const View& view, const Image& rgba) {
   look.seen = true;
   look.brightness = brightness_of(rgba);
   look.sharpness = sharpness_of(rgba);
-  look.exposure = read_image_exif(view.image_path).exposure;
+  look.notes = read_image_exif(view.image_path);
   look.small = small_picture(rgba);
   fill_thumbnail(rgba, look);
   return look;
@@ -239,6 +253,7 @@ PhotoLook look_at_photo(const View& view, const Image& rgba) {
 void check_photographs(std::span<const JudgedPhoto> photos, Vec3d center, std::vector<Finding>& findings) {
   if (photos.size() < 4) return;
   check_exposures(photos, center, findings);
+  check_white_balance(photos, findings);
   check_blur(photos, findings);
   check_duplicates(photos, findings);
   check_background(photos, center, findings);

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <iostream>
 #include <regex>
+#include <set>
 
 #include "core/base/error.h"
 #include "core/base/temp_folder.h"
@@ -106,6 +107,21 @@ TEST(Doctor, NamesTheMistakesOfColmapModels) {
   const TempFolder temp;
   write_some_views("samples/spot", 24, temp.path() / "good");
   EXPECT_EQ(not_named_of_colmap(temp.path() / "good", temp.path() / "colmap"), 0);
+}
+
+// Its views are cropped to the object, to sizes that differ: of the masks of spot some are reduced by two,
+// some by one.
+TEST(Doctor, FindsNothingInACleanColmapModel) {
+  const TempFolder temp;
+  const fs::path good = temp.path() / "good", model = temp.path() / "colmap";
+  write_some_views("samples/spot", 24, good);
+  const Capture capture = load_capture(good);
+  const ColmapCopy copy(capture, object_of(capture), model);
+  std::set<int> factors;
+  for (const View& v : load_capture(model).views)
+    factors.insert(reduction_of(v.camera.width, v.camera.height));
+  EXPECT_GT(factors.size(), 1u);
+  EXPECT_EQ(what_check_says(model), "");
 }
 
 // The image as a telephone stores it: a JPEG in Display P3, with its mask in a file.

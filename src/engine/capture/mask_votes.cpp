@@ -21,6 +21,8 @@ constexpr int kOpening = 2;           // pixels: doubts about the outline alone 
 constexpr double kShare = 0.01,
                  kOutlier = 3;  // stands out: share of doubtful pixels > kShare + kOutlier x median
 
+constexpr double kAlike = 0.1;  // focal lengths of one camera differ by less
+
 enum class Seen { nothing, background, object };
 
 Seen look(const HullMask& view, Vec3d p) {
@@ -164,6 +166,20 @@ uint8_t block_of(const HullMask& m, int x0, int y0, int n) {
   return 2 * object > n * n ? kObject : kBackground;
 }
 
+// The median of the views of about the same focal length, or more where a larger view needs it.
+std::vector<int> reductions_of(std::span<const HullMask> masks, int max_side) {
+  std::vector<int> own, out;
+  for (const HullMask& m : masks) own.push_back(reduction_of(m.camera.width, m.camera.height, max_side));
+  for (size_t i = 0; i < masks.size(); ++i) {
+    const Camera& c = masks[i].camera;
+    std::vector<int> alike{own[i]};
+    for (size_t k = 0; k < masks.size(); ++k)
+      if (k != i && std::abs(masks[k].camera.fx / c.fx - 1) < kAlike) alike.push_back(own[k]);
+    out.push_back(std::max(own[i], std::min({median(alike), c.width, c.height})));
+  }
+  return out;
+}
+
 void mark_outliers(std::vector<MaskDoubt>& doubts) {
   std::vector<double> missing, extra;
   for (const MaskDoubt& d : doubts) missing.push_back(d.missing), extra.push_back(d.extra);
@@ -189,9 +205,10 @@ SmallMasks small_masks(std::span<const HullMask> masks, const Normalization& nor
   SmallMasks out;
   out.cameras.resize(masks.size());
   out.masks.resize(masks.size());
+  const std::vector<int> reductions = reductions_of(masks, max_side);
   parallel_for(int(masks.size()), [&](int i) {
     const HullMask& m = masks[size_t(i)];
-    const int n = reduction_of(m.camera.width, m.camera.height, max_side);
+    const int n = reductions[size_t(i)];
     const Camera small = scaled(normalization.unit_from_capture(m.camera), n);
     for (int y = 0; y < small.height; ++y)
       for (int x = 0; x < small.width; ++x) out.masks[size_t(i)].push_back(block_of(m, x * n, y * n, n));

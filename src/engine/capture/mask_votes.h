@@ -19,9 +19,11 @@ struct SmallMasks {
   std::vector<HullMask> views() const;
 };
 inline constexpr int kSmallMask = 160;  // pixels of the longer side, at most
-// By how much a mask of this size is reduced.
+// By how much an image of this size is reduced.
 int reduction_of(int width, int height, int max_side = kSmallMask);
-// masks: cameras in the capture frame.
+// masks: cameras in the capture frame. Views of about one focal length are reduced by the same factor,
+// however they were cropped to the object: of an outline that is drawn more finely than others more stays in
+// doubt.
 SmallMasks small_masks(std::span<const HullMask> masks, const Normalization&, int max_side = kSmallMask);
 
 struct MaskDoubt {

@@ -81,5 +81,25 @@ TEST(SmallMasks, KeepWhatIsUnknown) {
   EXPECT_EQ(small.masks[0], (std::vector<uint8_t>{kUnknown, 1, 1, 1, 1, 1, 1, 1}));
 }
 
+// Of three views of one camera two are large; a view of another camera is judged at its own size.
+TEST(SmallMasks, OfOneCameraHaveOneScaleHoweverTheyAreCropped) {
+  const int sides[] = {8, 8, 4, 4};
+  const double focal[] = {8, 8, 8, 4};
+  std::vector<std::vector<uint8_t>> pixels;
+  std::vector<HullMask> masks;
+  pixels.reserve(4);
+  for (size_t i = 0; i < 4; ++i) {
+    Camera c;
+    c.width = c.height = sides[i], c.fx = c.fy = focal[i], c.cx = c.cy = sides[i] / 2.0;
+    pixels.emplace_back(size_t(sides[i] * sides[i]), kObject);
+    masks.push_back({c, pixels.back()});
+  }
+  const SmallMasks small = small_masks(masks, Normalization(), 4);
+  for (size_t i = 0; i < 3; ++i) EXPECT_EQ(small.cameras[i].fx, 4) << i;
+  EXPECT_EQ(small.cameras[2].width, 2);
+  EXPECT_EQ(small.masks[2].size(), 4u);
+  EXPECT_EQ(small.cameras[3].width, 4);
+}
+
 }  // namespace
 }  // namespace cei3d

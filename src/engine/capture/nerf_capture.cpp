@@ -211,4 +211,13 @@ Capture load_nerf(const fs::path& path) {
   return capture;
 }
 
+std::optional<Vec3d> nerf_up(const fs::path& path) {
+  for (const CameraFile& file : camera_files(path)) {
+    const Json j = read_json_file(file.path);
+    // "none": nerfstudio need not turn the frame to set it upright.
+    if (j.contains("orientation_override") && j["orientation_override"] == "none") return Vec3d{0, 0, 1};
+  }
+  return std::nullopt;
+}
+
 }  // namespace cei3d

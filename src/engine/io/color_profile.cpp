@@ -20,6 +20,7 @@ using Profile = std::unique_ptr<void, Close>;
 struct DeleteTransform {
   void operator()(void* transform) const { cmsDeleteTransform(transform); }
 };
+using Transform = std::unique_ptr<void, DeleteTransform>;
 
 Profile opened(const std::string& bytes) {
   return Profile(cmsOpenProfileFromMem(bytes.data(), cmsUInt32Number(bytes.size())));
@@ -34,6 +35,13 @@ Profile linear_srgb() {
   Profile profile(cmsCreateRGBProfile(&white, &primaries, curves));
   cmsFreeToneCurve(line);
   return profile;
+}
+
+// Null: the profile lacks what it takes.
+Transform to_linear_srgb(const Profile& from) {
+  const Profile to = linear_srgb();
+  return Transform(cmsCreateTransform(from.get(), TYPE_RGB_FLT, to.get(), TYPE_RGB_FLT,
+                                      INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE));
 }
 
 }  // namespace
@@ -54,18 +62,18 @@ std::string jpeg_profile(const std::string& bytes) {
   return profile;
 }
 
-bool is_srgb_profile(const std::string& bytes) {
+ProfileKind profile_kind(const std::string& bytes) {
   const Profile profile = opened(bytes);
-  if (!profile || cmsGetColorSpace(profile.get()) != cmsSigRgbData) return true;
+  if (!profile || cmsGetColorSpace(profile.get()) != cmsSigRgbData) return ProfileKind::unusable;
   char text[256] = {};
   cmsGetProfileInfoASCII(profile.get(), cmsInfoDescription, "en", "US", text, sizeof(text) - 1);
-  return std::string(text).find("sRGB") != std::string::npos;
+  if (std::string(text).find("sRGB") != std::string::npos) return ProfileKind::srgb;
+  return to_linear_srgb(profile) ? ProfileKind::other : ProfileKind::unusable;
 }
 
 Image linear_by_profile(Image image, const std::string& bytes) {
-  const Profile from = opened(bytes), to = linear_srgb();
-  const std::unique_ptr<void, DeleteTransform> transform(cmsCreateTransform(
-      from.get(), TYPE_RGB_FLT, to.get(), TYPE_RGB_FLT, INTENT_RELATIVE_COLORIMETRIC, cmsFLAGS_NOCACHE));
+  const Profile from = opened(bytes);
+  const Transform transform = to_linear_srgb(from);
   if (!transform) fail("A color profile cannot be used; convert the images to sRGB.");
   const auto stride = size_t(image.channels);
   std::vector<float> row(3 * size_t(image.width));

@@ -11,11 +11,15 @@ namespace cei3d {
 // The ICC profile in a JPEG; empty if there is none.
 std::string jpeg_profile(const std::string& bytes);
 
-// Whether the profile is that of sRGB, by its description, or cannot be used for an RGB image.
-bool is_srgb_profile(const std::string& profile);
+enum class ProfileKind {
+  srgb,     // by its description
+  other,    // of RGB images
+  unusable  // damaged, or of other images
+};
+ProfileKind profile_kind(const std::string& profile);
 
 // Linear, with sRGB primaries. image: 3 or 4 channels as stored, [0, 1]; alpha is kept. Colors that sRGB does
-// not have keep values below 0 as 0. profile: not sRGB.
+// not have keep values below 0 as 0. profile: of the kind `other`.
 Image linear_by_profile(Image image, const std::string& profile);
 
 }  // namespace cei3d

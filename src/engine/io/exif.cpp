@@ -44,6 +44,8 @@ ExifNotes read_exif(const std::string& bytes) {
   const auto iso = short_of(data.get(), EXIF_IFD_EXIF, EXIF_TAG_ISO_SPEED_RATINGS);
   if (time && aperture && iso && *iso > 0) notes.exposure = *time * *iso / (*aperture * *aperture);
   notes.focal_length = ratio(data.get(), EXIF_TAG_FOCAL_LENGTH);
+  const auto white = short_of(data.get(), EXIF_IFD_EXIF, EXIF_TAG_WHITE_BALANCE);
+  if (white && (*white == 0 || *white == 1)) notes.auto_white = *white == 0;
   return notes;
 }
 

@@ -12,6 +12,7 @@ struct ExifNotes {
   std::optional<double>
       exposure;  // relative light that reached the sensor and its gain: time * ISO / f-number^2
   std::optional<double> focal_length;  // millimeters
+  std::optional<bool> auto_white;      // whether the camera chose the white balance of this photograph itself
 };
 
 // bytes: the file, or a beginning of it that holds the notes. Whatever is missing or broken keeps its

@@ -3,8 +3,10 @@
 
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <optional>
 
 #include "core/base/error.h"
 #include "core/base/file.h"
@@ -71,19 +73,31 @@ Image decode(const std::string& bytes, const std::string& name, ImageFormat form
 struct Stored {
   Image image;
   bool linear = false;
-  std::string profile;  // ICC; empty: none
+  std::string profile;          // ICC; empty: none
+  std::optional<double> gamma;  // png_gamma(), without a profile
 };
 
 Stored decode_with_profile(const std::string& bytes, const std::string& name, ImageFormat format) {
   if (format == ImageFormat::tiff) {
     TiffImage tiff = decode_tiff(bytes, name);
-    return {std::move(tiff.image), tiff.linear, std::move(tiff.profile)};
+    return {std::move(tiff.image), tiff.linear, std::move(tiff.profile), {}};
   }
   const bool linear = format == ImageFormat::exr || format == ImageFormat::hdr;
-  Stored stored{decode(bytes, name, format), linear, {}};
+  Stored stored{decode(bytes, name, format), linear, {}, {}};
   if (format == ImageFormat::jpeg) stored.profile = jpeg_profile(bytes);
   if (format == ImageFormat::png) stored.profile = png_profile(bytes, name);
+  if (format == ImageFormat::png && stored.profile.empty()) stored.gamma = png_gamma(bytes, name);
   return stored;
+}
+
+// The profile as stored, which may be damaged; none: the file has none.
+std::optional<std::string> stored_profile(const std::string& bytes, const std::string& name) {
+  const ImageFormat format = image_format(bytes, name);
+  if (format == ImageFormat::png && png_has_profile(bytes)) return png_profile(bytes, name);
+  std::string profile;
+  if (format == ImageFormat::jpeg) profile = jpeg_profile(bytes);
+  if (format == ImageFormat::tiff) profile = tiff_profile(bytes, name);
+  return profile.empty() ? std::nullopt : std::optional(std::move(profile));
 }
 
 std::string start_of(const std::filesystem::path& path) {
@@ -133,8 +147,12 @@ Image read_linear_image(const std::filesystem::path& path) {
   const ImageFormat format = image_format(bytes, path.string());
   Stored stored = decode_with_profile(bytes, path.string(), format);
   if (stored.linear) return stored.image;
-  if (stored.image.channels >= 3 && !stored.profile.empty() && !is_srgb_profile(stored.profile))
+  if (stored.image.channels >= 3 && !stored.profile.empty() &&
+      profile_kind(stored.profile) == ProfileKind::other)
     return linear_by_profile(std::move(stored.image), stored.profile);
+  if (stored.gamma)
+    return map_colors(std::move(stored.image),
+                      [g = float(1 / *stored.gamma)](float v) { return std::pow(v, g); });
   return map_colors(std::move(stored.image), linear_of_stored);
 }
 
@@ -152,6 +170,11 @@ ImageSize read_image_size(const std::filesystem::path& path) {
 ExifNotes read_image_exif(const std::filesystem::path& path) {
   const std::string start = start_of(path);
   return start.rfind("\xff\xd8", 0) == 0 ? read_exif(start) : ExifNotes();
+}
+
+bool has_unusable_profile(const std::filesystem::path& path) {
+  const std::optional<std::string> profile = stored_profile(read_file(path), path.string());
+  return profile && profile_kind(*profile) == ProfileKind::unusable;
 }
 
 int read_image_bits(const std::filesystem::path& path) {

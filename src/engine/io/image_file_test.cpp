@@ -8,6 +8,7 @@
 #include <random>
 
 #include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/file.h"
 #include "core/base/temp_folder.h"
 #include "core/math/color.h"
@@ -15,6 +16,7 @@
 #include "engine/io/hdr_file.h"
 #include "engine/io/jpeg_file.h"
 #include "engine/io/png_file.h"
+#include "engine/io/test_jpeg.h"
 
 namespace cei3d {
 namespace {
@@ -101,6 +103,15 @@ TEST(Jpeg, DecodesWhatItEncodes) {
   ASSERT_EQ(back.data.size(), image.data.size());
   for (size_t i = 0; i < image.data.size(); ++i) EXPECT_NEAR(back.data[i], image.data[i], 0.03);
   abuse(bytes, decode_jpeg, true);
+}
+
+TEST(Jpeg, OfPrintingInksSaysSo) {
+  for (const auto& [transform, sampling] : {std::pair<char, char>{0, 0x11}, {2, 0x11}, {2, 0x22}}) {
+    const std::string bytes = ink_jpeg(transform, sampling);
+    const auto says = testing::AllOf(HasSubstr("ink.jpg"), HasSubstr("CMYK"), HasSubstr("as RGB"));
+    EXPECT_THAT(message([&] { decode_jpeg(bytes, "ink.jpg"); }), says);
+    EXPECT_THAT(message([&] { jpeg_size(bytes, "ink.jpg"); }), says);
+  }
 }
 
 TEST(Exr, RoundTripIsExact) {

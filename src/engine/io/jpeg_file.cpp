@@ -30,10 +30,12 @@ const unsigned char* data_of(const std::string& bytes) {
 
 ImageSize read_header(void* handle, const std::string& bytes, const std::string& name) {
   ImageSize size;
-  int subsampling = 0, space = 0;
-  if (tjDecompressHeader3(handle, data_of(bytes), bytes.size(), &size.width, &size.height, &subsampling,
-                          &space) != 0 ||
-      size.width < 1 || size.height < 1)  // a file cut before its frame header is no error to the library
+  int subsampling = 0, space = TJCS_YCbCr;
+  const int status = tjDecompressHeader3(handle, data_of(bytes), bytes.size(), &size.width, &size.height,
+                                         &subsampling, &space);
+  if (space == TJCS_CMYK || space == TJCS_YCCK)  // known even where the library refuses the file
+    fail("{} is a JPEG of printing inks (CMYK). Export the photograph as RGB (sRGB) instead.", name);
+  if (status != 0 || size.width < 1 || size.height < 1)  // cut before its frame header is no error to it
     broken(name, handle);
   return readable_size(size.width, size.height, bytes.size(), name);
 }

@@ -5,6 +5,7 @@
 
 #include <png.h>
 
+#include <cmath>
 #include <csetjmp>
 #include <cstdint>
 #include <cstring>
@@ -80,6 +81,12 @@ void read_profile(png_structp png, png_infop info, Profile* out) {
   png_get_iCCP(png, info, &name, &compression, &out->data, &out->size);
 }
 
+void read_gamma(png_structp png, png_infop info, double* out) {
+  png_set_user_limits(png, kMaxImageSide, kMaxImageSide);
+  png_read_info(png, info);
+  if (!png_get_valid(png, info, PNG_INFO_sRGB)) png_get_gAMA(png, info, out);
+}
+
 void read_rows(png_structp png, png_infop, png_bytepp rows) {
   png_read_image(png, rows);
   png_read_end(png, nullptr);
@@ -110,6 +117,10 @@ class Reader {
     Profile p{};
     if (!guarded(png_, info_, read_profile, &p) || !p.data) return "";
     return {reinterpret_cast<const char*>(p.data), p.size};
+  }
+  double gamma() {  // 0: not stated
+    double value = 0;
+    return guarded(png_, info_, read_gamma, &value) ? value : 0;
   }
   void rows(png_bytepp rows) { require(guarded(png_, info_, read_rows, rows)); }
   void require(bool ok) {
@@ -191,6 +202,22 @@ Image decode_png(const std::string& bytes, const std::string& name) {
 
 std::string png_profile(const std::string& bytes, const std::string& name) {
   return Reader(bytes, name).profile();
+}
+
+bool png_has_profile(const std::string& bytes) {
+  for (size_t at = 8; at + 8 <= bytes.size();) {
+    const std::string kind = bytes.substr(at + 4, 4);
+    if (kind == "iCCP" || kind == "IDAT") return kind == "iCCP";  // it stands before the pixels
+    at += 12 + size_t(png_get_uint_32(reinterpret_cast<png_const_bytep>(bytes.data() + at)));
+  }
+  return false;
+}
+
+std::optional<double> png_gamma(const std::string& bytes, const std::string& name) {
+  constexpr double kSrgb = 1 / 2.2, kAbout = 0.05;
+  const double gamma = Reader(bytes, name).gamma();
+  if (!(gamma > 0) || std::abs(gamma / kSrgb - 1) < kAbout) return std::nullopt;
+  return gamma;
 }
 
 std::string encode_png(const Image& image, int bits) {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/base/bytes.h"
@@ -20,8 +21,20 @@ inline std::string with_segment(const std::string& jpeg, uint8_t marker, const s
          jpeg.substr(2);
 }
 
-// EXIF: orientation, exposure time 1/50 s, f-number 4, ISO 200.
-inline std::string with_exif(const std::string& jpeg, uint16_t orientation) {
+// The header of a JPEG of 8 x 6 pixels and four inks, without pixels. transform: 0 CMYK, 2 YCCK. first:
+// sampling of the first ink, 0x11 that of the others.
+inline std::string ink_jpeg(char transform, char first) {
+  const std::string frame{8, 0, 6, 0, 8, 4, 1, first, 0, 2, 0x11, 0, 3, 0x11, 0, 4, 0x11, 0},
+      scan{4, 1, 0, 2, 0, 3, 0, 4, 0, 0, 63, 0};
+  const std::string adobe = std::string("Adobe\0\x64\0\0\0\0", 11) + transform;
+  return with_segment(with_segment(with_segment("\xff\xd8", 0xda, scan), 0xc0, frame), 0xee, adobe);
+}
+
+// EXIF: orientation, exposure time 1/50 s, f-number 4, ISO 200. white: 0 balanced by the camera, 1 set by
+// hand, none: not noted.
+inline std::string with_exif(const std::string& jpeg, uint16_t orientation,
+                             std::optional<uint16_t> white = {}) {
+  const uint32_t entries = white ? 4 : 3, behind = 38 + 2 + 12 * entries + 4;
   std::string tiff = "II";
   append_bytes(tiff, uint16_t(42));
   append_bytes(tiff, uint32_t(8));
@@ -33,10 +46,11 @@ inline std::string with_exif(const std::string& jpeg, uint16_t orientation) {
   entry(0x0112, 3, orientation);
   entry(0x8769, 4, 38);
   append_bytes(tiff, uint32_t(0));
-  append_bytes(tiff, uint16_t(3));
-  entry(0x829a, 5, 80);
-  entry(0x829d, 5, 88);
+  append_bytes(tiff, uint16_t(entries));
+  entry(0x829a, 5, behind);
+  entry(0x829d, 5, behind + 8);
   entry(0x8827, 3, 200);
+  if (white) entry(0xa403, 3, *white);
   append_bytes(tiff, uint32_t(0));
   append_bytes(tiff, std::array<uint32_t, 4>{1, 50, 4, 1});
   return with_segment(jpeg, 0xe1, std::string("Exif\0\0", 6) + tiff);

@@ -108,12 +108,23 @@ float sample(const uint8_t* row, size_t i, const Layout& l) {
   return float(v) / 65535.0f;
 }
 
+std::string profile_of(const Reader& reader) {
+  uint32_t length = 0;
+  void* profile = nullptr;
+  if (!TIFFGetField(reader.get(), TIFFTAG_ICCPROFILE, &length, &profile)) return "";
+  return {static_cast<const char*>(profile), length};
+}
+
 }  // namespace
 
 ImageSize tiff_size(const std::string& bytes, const std::string& name) { return Reader(bytes, name).size(); }
 
 int tiff_bits(const std::string& bytes, const std::string& name) {
   return layout_of(Reader(bytes, name), name).bits;
+}
+
+std::string tiff_profile(const std::string& bytes, const std::string& name) {
+  return profile_of(Reader(bytes, name));
 }
 
 TiffImage decode_tiff(const std::string& bytes, const std::string& name) {
@@ -133,10 +144,7 @@ TiffImage decode_tiff(const std::string& bytes, const std::string& name) {
     for (size_t i = 0; i < out.image.data.size(); i += 4)
       for (size_t c = 0; c < 3 && out.image.data[i + 3] > 0; ++c)
         out.image.data[i + c] /= out.image.data[i + 3];
-  uint32_t length = 0;
-  void* profile = nullptr;
-  if (TIFFGetField(reader.get(), TIFFTAG_ICCPROFILE, &length, &profile))
-    out.profile.assign(static_cast<const char*>(profile), length);
+  out.profile = profile_of(reader);
   return out;
 }
 
