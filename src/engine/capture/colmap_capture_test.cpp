@@ -268,7 +268,7 @@ TEST_F(Colmap, CameraModelsThatAreNotReadAreNamed) {
   write_colmap_bin(folder_, ball_, views_);
   std::string cameras = read_file(folder_ / "cameras.bin");
   const std::pair<char, const char*> models[] = {
-      {7, "model FOV"}, {16, "model EUCM"}, {17, "model EQUIRECTANGULAR"}, {99, "model 99"}};
+      {7, "model FOV"}, {16, "model EUCM"}, {17, "model EQUIRECTANGULAR"}, {99, "model '99'"}};
   for (const auto& [id, name] : models) {
     cameras[12] = id;
     write_file_atomic(folder_ / "cameras.bin", cameras);
