@@ -134,7 +134,7 @@ void check_white_balance(std::span<const JudgedPhoto> photos, std::vector<Findin
     if (p.look->notes.auto_white == true) names.push_back(p.view->name);
   if (names.empty()) return;
   findings.push_back(
-      {Severity::warning,
+      {Severity::note,
        fmt::format("By the camera's own notes (EXIF) it chose the white balance of {} of {} photographs "
                    "itself, so their colors may differ: {}.",
                    names.size(), photos.size(), some_names(names)),
