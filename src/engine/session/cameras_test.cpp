@@ -10,10 +10,14 @@
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "core/base/temp_folder.h"
+#include "engine/capture/capture.h"
+#include "engine/capture/test_capture.h"
 #include "model/geometry/shape/camera_json.h"
 
 namespace cei3d {
 namespace {
+
+namespace fs = std::filesystem;
 
 Camera camera_at(Vec3d center) {
   Camera c;
@@ -130,6 +134,23 @@ TEST_F(CamerasTest, DamagedCameraFilesAreRefused) {
     write_file_atomic(file, text);
     EXPECT_THROW(choose_cameras(p, CameraFile{file}, 0, 0), Error) << text;
   }
+}
+
+// What a reconstruction found out about masks holds for the capture however it is named.
+TEST_F(CamerasTest, ViewsOfTheObjectsCaptureKeepWhatIsDoubtful) {
+  const fs::path photos = temp_.path() / "photos", doubtful = temp_.path() / "p/doubtful/r_001.png";
+  const TestBall ball;
+  write_nerf_split(photos, "train", ball, test_views(ball, 3));
+  Capture known = load_capture(photos);
+  known.views[1].doubtful_path = doubtful;
+  const Project p = make(known);
+  for (const fs::path& named : {fs::path(), photos}) {
+    const std::vector<View> views = choose_views(p, named, std::nullopt);
+    EXPECT_EQ(views.at(0).doubtful_path, "");
+    EXPECT_EQ(views.at(1).doubtful_path, doubtful);
+  }
+  write_nerf_split(photos, "train", ball, test_views(ball, 4));  // another capture
+  EXPECT_EQ(choose_views(p, photos, std::nullopt).at(1).doubtful_path, "");
 }
 
 }  // namespace
