@@ -47,6 +47,22 @@ async function onlyLooks({ page, server }) {
   await accessible(page, 'looking only, export');
 }
 
+/** As when the program tells that the object is made, without waiting for one. */
+async function startsWithPaint({ page, server }) {
+  const chosen = () => page.getAttribute('#tools [aria-checked="true"]', 'data-tool');
+  const after = (mode) => page.evaluate((m) => { const { store } = globalThis.cei3d; store.state = { ...store.state, mode: m }; return store.refresh(); }, mode);
+  await page.goto(server.url);
+  await settled(page);
+  check('an object that is opened is looked at', (await chosen()) === 'look');
+  await after('reconstructing');
+  check('one that was just made can be painted at once', (await chosen()) === 'paint');
+  check('and what to do is said', (await page.textContent('#toasts')).includes('Drag on the object to paint'));
+  await settled(page);
+  await accessible(page, 'an object that was just made');
+  await after('library');
+  check('later it is looked at, too', (await chosen()) === 'look');
+}
+
 /** The program's frames alone. */
 async function hasNoWebGl({ page, server }) {
   await page.goto(server.url.replace('/#', '/?frames#'));
@@ -77,5 +93,6 @@ async function hasNoWebGl({ page, server }) {
   await opened('empty', [], explainsItself);
   await opened('broken', [], saysWhatFailed);
   await opened('object', ['--read-only'], onlyLooks);
+  await opened('object', [], startsWithPaint);
   await opened('object', [], hasNoWebGl);
 })().catch((error) => { console.error(error.message); process.exit(1); });

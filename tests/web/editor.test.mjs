@@ -59,6 +59,18 @@ test('an edit of another window never counts as the one that was refused', async
   assert.deepEqual(history.map((e) => e.of), ['first', 'second', 'another window']);
 });
 
+test('an object counts as made once, in the page that saw it being made', async () => {
+  programWith([]);
+  const store = new Store(), seen = [];
+  store.on('mode', () => seen.push(store.made));
+  await store.refresh();
+  for (const mode of ['reconstructing', 'library', 'capture']) {
+    store.state = { ...store.state, mode };
+    await store.refresh();
+  }
+  assert.deepEqual(seen, [false, true, false, false]);
+});
+
 test('of what is asked for while something runs only the last is done', async () => {
   const done = [];
   let wanted = 0, finish = () => {};

@@ -248,7 +248,13 @@ store.on('state', (state) => {
   drawTools();
   drawProperties();
 });
-store.on('mode', (state) => { if (state.mode === 'project') { choose('look'); if (state.note) toast(state.note, { bad: true }); } });
+store.on('mode', (state) => {
+  if (state.mode !== 'project') return;
+  const first = store.made && !state.read_only;  // who has just made an object wants to try it
+  choose(first ? 'paint' : 'look');
+  if (first) toast(`Drag on the object to paint; ${keyOf('undo')} takes anything back.`);
+  if (state.note) toast(state.note, { bad: true });
+});
 store.on('part', () => { drawOptions(); drawProperties(); });
 if (!hasKey()) {
   byId('place').replaceChildren(el('div', { class: 'column' }, el('h2', {}, 'The key is missing'), el('p', {}, 'Open the whole address that cei3d printed, with what follows the #.')));
