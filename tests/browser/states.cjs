@@ -47,20 +47,45 @@ async function onlyLooks({ page, server }) {
   await accessible(page, 'looking only, export');
 }
 
+const chosen = (page) => page.getAttribute('#tools [aria-checked="true"]', 'data-tool');
+
+/** Keys that type do nothing where they are switched off, but on the view they do. */
+async function hasNoSingleKeys({ page, server }) {
+  const press = async (focus, key) => {
+    await page.focus(focus);
+    await page.keyboard.press(key);
+    return chosen(page);
+  };
+  const put = async (on) => {
+    await page.click('#help');
+    await page.setChecked('#single-keys', on);
+    await page.keyboard.press('Escape');
+  };
+  await page.goto(server.url);
+  await settled(page);
+  await put(false);
+  check('a single key is off beside the view', (await press('#export', 'b')) === 'look');
+  check('and acts on it', (await press('#view', 'b')) === 'paint');
+  await page.reload();
+  await settled(page);
+  check('after a reload it is still off', (await press('#export', 'b')) === 'look');
+  await put(true);
+  check('switched on it acts everywhere', (await press('#export', 'b')) === 'paint');
+}
+
 /** As when the program tells that the object is made, without waiting for one. */
 async function startsWithPaint({ page, server }) {
-  const chosen = () => page.getAttribute('#tools [aria-checked="true"]', 'data-tool');
   const after = (mode) => page.evaluate((m) => { const { store } = globalThis.cei3d; store.state = { ...store.state, mode: m }; return store.refresh(); }, mode);
   await page.goto(server.url);
   await settled(page);
-  check('an object that is opened is looked at', (await chosen()) === 'look');
+  check('an object that is opened is looked at', (await chosen(page)) === 'look');
   await after('reconstructing');
-  check('one that was just made can be painted at once', (await chosen()) === 'paint');
+  check('one that was just made can be painted at once', (await chosen(page)) === 'paint');
   check('and what to do is said', (await page.textContent('#toasts')).includes('Drag on the object to paint'));
   await settled(page);
   await accessible(page, 'an object that was just made');
   await after('library');
-  check('later it is looked at, too', (await chosen()) === 'look');
+  check('later it is looked at, too', (await chosen(page)) === 'look');
 }
 
 /** The program's frames alone. */
@@ -94,5 +119,6 @@ async function hasNoWebGl({ page, server }) {
   await opened('broken', [], saysWhatFailed);
   await opened('object', ['--read-only'], onlyLooks);
   await opened('object', [], startsWithPaint);
+  await opened('object', [], hasNoSingleKeys);
   await opened('object', [], hasNoWebGl);
 })().catch((error) => { console.error(error.message); process.exit(1); });

@@ -9,7 +9,7 @@ import { Orbit } from '../../src/web/orbit.js';
 import { readPack } from '../../src/web/pack.js';
 import { mirrored, placeOnBall, radianceOf } from '../../src/web/editor/ball.js';
 import { cornersOf, ontoCorners, pointAt, seen } from '../../src/web/editor/camera.js';
-import { actionOf, gestures, keyTable } from '../../src/web/editor/keys.js';
+import { actionOf, gestures, isSingle, keyTable } from '../../src/web/editor/keys.js';
 import { Pace, steps } from '../../src/web/editor/pace.js';
 import { lookText, partLooks, swatch } from '../../src/web/editor/looks.js';
 
@@ -170,6 +170,32 @@ test('no two tools have the same key', () => {
   assert.equal(key('h'), 'hide');
   assert.equal(key('7'), 'opacity');
   assert.ok(gestures.length > 5);
+});
+
+test('a key that types is single, one with Ctrl or without a character is not', () => {
+  const single = (key, more = {}) => isSingle({key, shiftKey: false, ctrlKey: false, metaKey: false, altKey: false, ...more});
+  for (const key of ['b', '?', '.', ' ', '7']) assert.ok(single(key), key);
+  assert.ok(single('H', {shiftKey: true}));
+  for (const key of ['Enter', 'Escape', 'Delete', 'Home', 'ArrowLeft']) assert.ok(!single(key), key);
+  assert.ok(!single('z', {ctrlKey: true}) && !single('z', {metaKey: true}));
+});
+
+test('the setting of single keys outlives the page, and a browser that keeps nothing', async () => {
+  const stored = new Map(), fresh = (n) => import(`../../src/web/editor/settings.js?${n}`);
+  const before = Object.getOwnPropertyDescriptor(globalThis, 'localStorage');
+  const storage = (value) => Object.defineProperty(globalThis, 'localStorage', {configurable: true, ...value});
+  storage({value: {getItem: (k) => stored.get(k) ?? null, setItem: (k, v) => stored.set(k, v)}});
+  const first = await fresh(1);
+  assert.equal(first.singleKeys(), true);
+  first.setSingleKeys(false);
+  assert.equal((await fresh(2)).singleKeys(), false);
+  storage({get() { throw new Error('forbidden'); }});
+  const third = await fresh(3);
+  assert.equal(third.singleKeys(), true);
+  third.setSingleKeys(false);
+  assert.equal(third.singleKeys(), false);
+  if (before) Object.defineProperty(globalThis, 'localStorage', before);
+  else delete globalThis.localStorage;
 });
 
 test('a part looks as its vertices do on average', () => {

@@ -50,7 +50,7 @@ export const keyTable = [
     { keys: ['.'], action: 'reticle', text: 'Pointer by keys: arrows move it, Space clicks' },
     { keys: ['U'], action: 'bare', text: 'Hide or show the panels' },
     { keys: ['Mod+S'], action: 'export', text: 'Export' },
-    { keys: ['?'], action: 'help', text: 'This help' },
+    { keys: ['?'], action: 'help', text: 'This help; keys without Ctrl can be switched off here' },
   ] },
 ];
 
@@ -88,6 +88,9 @@ export function actionOf(e) {
     for (const k of group.keys) if (k.keys.includes(name) || (k.action === 'arrows' && k.keys.includes(plain))) return k.action;
   return undefined;
 }
+
+/** Whether a key types a character: dictated words and slips of the hand press such keys, too. @param {KeyboardEvent} e */
+export const isSingle = (e) => e.key.length === 1 && !e.ctrlKey && !e.metaKey;
 
 /** @param {string} action @returns {string} its first key, as written */
 export function keyOf(action) {

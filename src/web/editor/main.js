@@ -8,13 +8,14 @@ import { BendTool } from './bend.js';
 import { DecalTool } from './decal.js';
 import { GrabTool } from './grab.js';
 import { Input } from './input.js';
-import { actionOf, keyOf } from './keys.js';
+import { actionOf, isSingle, keyOf } from './keys.js';
 import { LightTool } from './light.js';
 import { PaintTool } from './paint.js';
 import { HistoryPanel, PartsPanel, PhotoStrip } from './panels.js';
 import { Places } from './places.js';
 import { MaterialTool, objectPanel } from './properties.js';
 import { PartOverlay, PartTool } from './select.js';
+import { singleKeys } from './settings.js';
 import { channels, Stage } from './stage.js';
 import { Store } from './store.js';
 
@@ -190,7 +191,7 @@ const actions = {
 
 window.addEventListener('keydown', (e) => {
   const target = /** @type {HTMLElement} */ (e.target), onView = target === stage.view || target === document.body;
-  if (byId('dialog').open) return;
+  if (byId('dialog').open || (isSingle(e) && !singleKeys() && target !== stage.view)) return;
   if (e.key === ' ' && onView) {
     e.preventDefault();
     if (!input.clickReticle(e.altKey)) input.space = true;
