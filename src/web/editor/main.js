@@ -35,6 +35,7 @@ let tool = look;
 function choose(name) {
   const next = tools.find((t) => t.name === name);
   if (!next || (store.state.read_only && !['look', 'light'].includes(name))) return;
+  input.cancelReticle();
   if (next !== tool) tool.leave?.();
   tool = next;
   if (tool.down) stage.hide([]);  // the program works on the whole object
@@ -167,6 +168,16 @@ function drawSaved() {
     : 'The program does not answer; trying again. What you do meanwhile is kept here.';
 }
 
+/** @param {KeyboardEvent} e */
+function hold(e) {
+  if (e.repeat) return;
+  stage.view.focus({ preventScroll: true });  // the arrows are for it
+  input.holdReticle();
+}
+
+/** What keys do while one drags by them: others could change the view or the tool below it. */
+const whileHeld = ['arrows', 'keep', 'drop', 'hold', 'reticle', 'smaller', 'larger', 'help'];
+
 /** @type {Record<string, (e: KeyboardEvent) => void>} */
 const actions = {
   undo, redo, remove, compare,
@@ -178,14 +189,15 @@ const actions = {
   smaller: () => tool.size?.(1 / 1.15), larger: () => tool.size?.(1.15),
   opacity: (e) => tool.opacity?.((Number(e.key) || 10) / 10),
   softer: () => tool.hardness?.(-0.1), harder: () => tool.hardness?.(0.1),
-  keep: () => (tool.keep ?? (() => {})).call(tool), drop: () => tool.drop ? tool.drop() : tool.cancel?.(),
+  keep: () => { if (!input.releaseReticle()) tool.keep?.(); },
+  drop: () => { if (!input.cancelReticle()) tool.drop ? tool.drop() : tool.cancel?.(); },
   frame: () => { stage.camera.frame(store.object.center, store.object.radius); input.leavePhoto(); stage.moved(); },
   home: () => { stage.camera.goHome(); input.leavePhoto(); stage.moved(); },
   arrows: (e) => input.arrows(e),
   zoom: (e) => { const { width, height } = stage.size(); stage.camera.zoom(e.key === '-' ? 1.1 : 1 / 1.1, width / 2, height / 2, width, height); input.leavePhoto(); stage.moved(); },
   'next-photo': () => strip.next(1), 'previous-photo': () => strip.next(-1),
   'hold-photo': () => { if (!stage.photo && strip.views.length) strip.next(1); holding = true; drawPhoto(); },
-  channel: nextChannel, reticle: () => input.toggleReticle(), bare: () => { document.body.classList.toggle('bare'); },
+  channel: nextChannel, reticle: () => input.toggleReticle(), hold, bare: () => { document.body.classList.toggle('bare'); },
   export: () => exportDialog(store, stage), help: helpDialog,
 };
 
@@ -194,7 +206,7 @@ window.addEventListener('keydown', (e) => {
   if (byId('dialog').open || (isSingle(e) && !singleKeys() && target !== stage.view)) return;
   if (e.key === ' ' && onView) {
     e.preventDefault();
-    if (!input.clickReticle(e.altKey)) input.space = true;
+    if (!input.clickReticle({ alt: e.altKey, shift: e.shiftKey })) input.space = true;
     return;
   }
   const action = actionOf(e);
@@ -203,6 +215,7 @@ window.addEventListener('keydown', (e) => {
   if (typing || (!onView && ['arrows', 'keep', 'home', 'zoom'].includes(action))) return;
   if (store.state.mode !== 'project' && action !== 'help') return;
   e.preventDefault();
+  if (input.held && !whileHeld.includes(action)) return;
   if (action.startsWith('tool:')) choose(action.slice(5));
   else actions[action]?.(e);
 });
