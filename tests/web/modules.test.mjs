@@ -11,7 +11,7 @@ import { mirrored, placeOnBall, radianceOf } from '../../src/web/editor/ball.js'
 import { cornersOf, ontoCorners, pointAt, seen } from '../../src/web/editor/camera.js';
 import { actionOf, gestures, isSingle, keyTable } from '../../src/web/editor/keys.js';
 import { Pace, steps } from '../../src/web/editor/pace.js';
-import { lookText, partLooks, swatch } from '../../src/web/editor/looks.js';
+import { lookText, partBall, partLooks, swatch } from '../../src/web/editor/looks.js';
 
 const near = (a, b, most = 1e-5) => assert.ok(Math.abs(a - b) < most, `${a} is not ${b}`);
 
@@ -211,6 +211,19 @@ test('a part looks as its vertices do on average', () => {
   near(ear.metalness, 1);
   assert.equal(lookText(ear), 'roughness 0.40, metalness 1.00');
   assert.ok(swatch(ear).includes('rgb(124 124 0)'));
+});
+
+test('a part is where its vertices are', () => {
+  const box = { min: [-1, 2, 0], size: [4, 2, 8] };
+  // Three corners of the box, of which the last is of no part, and a vertex on its edge.
+  const at = [[0, 0, 0], [65535, 0, 0], [65535, 65535, 65535], [13107, 0, 0]], parts = [1, 1, 0, 2];
+  const shape = { head: box, arrays: { positions: new Uint16Array(at.flatMap((p) => [...p, 0])) } };
+  const look = { head: { parts: ['', 'edge', 'dot', 'covered'] }, arrays: { material: new Uint8Array(parts.flatMap((i) => [0, 0, 0, i])) } };
+  assert.deepEqual(partBall(shape, look, 'edge'), { center: [1, 2, 0], radius: 2 });
+  const dot = partBall(shape, look, 'dot');
+  near(dot.center[0], -0.2);
+  near(dot.radius, 0);
+  for (const name of ['covered', 'unknown', '']) assert.equal(partBall(shape, look, name), null);
 });
 
 test('the editor asks for all its modules at once', () => {

@@ -38,7 +38,7 @@ export const keyTable = [
   { title: 'View', keys: [
     { keys: ['H'], action: 'hide', text: 'Hide or show the selected part' },
     { keys: ['Shift+H'], action: 'show-all', text: 'Show all parts' },
-    { keys: ['F'], action: 'frame', text: 'Show the whole object' },
+    { keys: ['F'], action: 'frame', text: 'Show the selected part, or the whole object' },
     { keys: ['Home'], action: 'home', text: 'Start view' },
     { keys: ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'], action: 'arrows', text: 'Turn by 5°; with Shift, move' },
     { keys: ['+', '-'], action: 'zoom', text: 'Nearer, farther' },

@@ -168,6 +168,14 @@ function drawSaved() {
     : 'The program does not answer; trying again. What you do meanwhile is kept here.';
 }
 
+/** Shows the selected part, or all; a small part with what is around it. */
+function frame() {
+  const { center, radius } = store.object, ball = store.part ? stage.live.ballOf(store.part) : null;
+  stage.camera.frame(ball?.center ?? center, ball ? Math.max(ball.radius, radius / 10) : radius);
+  input.leavePhoto();
+  stage.moved();
+}
+
 /** @param {KeyboardEvent} e */
 function hold(e) {
   if (e.repeat) return;
@@ -191,7 +199,7 @@ const actions = {
   softer: () => tool.hardness?.(-0.1), harder: () => tool.hardness?.(0.1),
   keep: () => { if (!input.releaseReticle()) tool.keep?.(); },
   drop: () => { if (!input.cancelReticle()) tool.drop ? tool.drop() : tool.cancel?.(); },
-  frame: () => { stage.camera.frame(store.object.center, store.object.radius); input.leavePhoto(); stage.moved(); },
+  frame,
   home: () => { stage.camera.goHome(); input.leavePhoto(); stage.moved(); },
   arrows: (e) => input.arrows(e),
   zoom: (e) => { const { width, height } = stage.size(); stage.camera.zoom(e.key === '-' ? 1.1 : 1 / 1.1, width / 2, height / 2, width, height); input.leavePhoto(); stage.moved(); },
