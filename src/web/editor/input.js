@@ -240,7 +240,7 @@ export class Input {
     return tool !== null;
   }
 
-  /** Ends what is dragged by keys as if it had not begun. @returns {boolean} whether something was */
+  /** Ends what is dragged by keys as the tool does when a second finger comes. @returns {boolean} whether something was */
   cancelReticle() {
     const tool = this.held;
     if (!tool) return false;

@@ -163,7 +163,7 @@ function drawSaved() {
   const editing = store.state.mode === 'project';
   node.className = `saved ${store.lost ? 'lost' : unsaved ? 'busy' : ''}`;
   node.textContent = !editing ? '' : store.lost ? 'Not connected' : store.state.read_only ? 'Looking only' : unsaved ? 'Saving…' : 'All changes saved';
-  byId('banner').hidden = !store.lost;
+  byId('banner').hidden = !store.lost || !hasKey();  // without a key the page itself says what to do
   byId('banner').textContent = store.stranger ? 'The program was started anew: paste the address that it printed into this window. What you did meanwhile is kept here.'
     : 'The program does not answer; trying again. What you do meanwhile is kept here.';
 }
