@@ -291,12 +291,16 @@ async function keyboardOnly(page) {
     check(`${key} is an opacity of ${share}`, (await page.inputValue('#brush-opacity')) === share);
   }
   await keyboard.press('.');
-  await keyboard.press('ArrowUp');
-  await keyboard.press(' ');
+  for (const key of ['ArrowUp', ',', 'ArrowRight', 'ArrowLeft', 'Enter']) await keyboard.press(key);
   await settled(page);
   check('painting by keys alone', (await state(page)).done === done + 1);
   await keyboard.press('Control+z');
   await settled(page);
+  for (const key of ['g', ',', 'ArrowRight', 'ArrowLeft', 'ArrowLeft']) await keyboard.press(key);
+  await page.waitForFunction(() => globalThis.cei3d.stage.preview !== null, null, { timeout: 30000 });
+  for (const key of ['Escape', 'ArrowRight']) await keyboard.press(key);
+  await settled(page);
+  check('grabbing by keys alone, and canceled', (await state(page)).done === done && await page.evaluate(() => globalThis.cei3d.stage.preview === null));
   await keyboard.press('p');
   const walk = async (keys) => { for (const [key, times] of Object.entries(keys)) for (let i = 0; i < times; ++i) await keyboard.press(key); };
   await walk({ ArrowLeft: 9, ArrowDown: 4 });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // making.cjs PROGRAM CAPTURE PICTURES CHROMIUM: an object is made in the editor, seen on the way, stopped, and gone on with.
 const fs = require('node:fs');
-const { check, state, picturesIn, accessible, tidy, withPage } = require('./page.cjs');
+const { check, state, picturesIn, accessible, tidy, zoomed, withPage } = require('./page.cjs');
 
 const [program, project, pictures, executablePath] = process.argv.slice(2);
 fs.mkdirSync(pictures, { recursive: true });
@@ -34,6 +34,7 @@ withPage({ program, project, executablePath, picture }, async ({ page, server })
   await picture(page, '1-making');
   await tidy(page, 'making');
   await accessible(page, 'making');
+  await zoomed(page, 'making');
   await page.click('#stop');
   await mode(page, 'capture');
   check('stopped: what is done is kept', (await state(page)).resume === true && (await page.textContent('#make')) === 'Go on where it stopped');

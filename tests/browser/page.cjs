@@ -46,6 +46,15 @@ async function tidy(page, name) {
   check(`the page is tidy: ${name} ${problems}`, problems.length === 0);
 }
 
+/** At 200 %: half as many of the page's pixels in the same window. */
+async function zoomed(page, name) {
+  const size = page.viewportSize();
+  await page.setViewportSize({ width: size.width / 2, height: size.height / 2 });
+  await tidy(page, `${name}, 200 %`);
+  await accessible(page, `${name}, 200 %`);
+  await page.setViewportSize(size);
+}
+
 /** Pixels of the picture: object or not, and colors. */
 const pixels = (page, list) => page.evaluate((at) => {
   const c = document.getElementById('picture').getContext('2d');
@@ -119,4 +128,4 @@ async function withPage({ program, project, executablePath, picture, flags }, te
   });
 }
 
-module.exports = { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, put, likeness, withPage };
+module.exports = { say, check, state, picturesIn, accessible, tidy, zoomed, pixels, middle, drag, put, likeness, withPage };

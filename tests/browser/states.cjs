@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // states.cjs PROGRAM FOLDER PICTURES CHROMIUM: what the editor shows where there is nothing to edit: of the folders empty, broken (an
-// object) and object; the last one for looking only, and in a browser without WebGL 2.
+// object) and object; the last one for looking only, in a browser without WebGL 2, and when its program goes away; then the folder itself.
 const fs = require('node:fs');
 const path = require('node:path');
 const { settled } = require('./serve.cjs');
-const { check, state, picturesIn, accessible, tidy, middle, pixels, withPage } = require('./page.cjs');
+const { check, state, picturesIn, accessible, tidy, zoomed, middle, pixels, withPage } = require('./page.cjs');
 
 const [program, folder, pictures, executablePath] = process.argv.slice(2);
 fs.mkdirSync(pictures, { recursive: true });
@@ -24,6 +24,48 @@ async function explainsItself({ page, context, server }) {
   await picture(page, 'empty');
   await tidy(page, 'empty');
   await accessible(page, 'an empty folder');
+  await zoomed(page, 'an empty folder');
+}
+
+async function offersWhatThereIs({ page, server }) {
+  await page.goto(server.url);
+  await mode(page, 'library');
+  const cards = await page.locator('.card b').allTextContents();
+  check(`a folder's objects can be chosen: ${cards}`, cards.join() === 'broken,object');
+  await picture(page, 'library');
+  await tidy(page, 'library');
+  await accessible(page, 'a folder');
+  await zoomed(page, 'a folder');
+  await page.getByRole('button', { name: 'Try the sample' }).click();
+  await mode(page, 'capture');
+  check('what the check found is shown', (await page.locator('.card').count()) >= 3);
+  await picture(page, 'check');
+  await accessible(page, 'what the check found');
+  await zoomed(page, 'what the check found');
+}
+
+async function missesItsKey({ page, server }) {
+  await page.goto(server.url.replace(/#.*/, ''));
+  await page.getByRole('heading', { name: 'The key is missing' }).waitFor();
+  await page.waitForFunction(() => globalThis.cei3d?.store.lost, null, { timeout: 30000 });
+  check('without a key the page says one thing only', await page.isHidden('#banner'));
+  await picture(page, 'without-key');
+  await accessible(page, 'a missing key');
+  await zoomed(page, 'a missing key');
+}
+
+async function losesItsProgram({ page, server, restart }) {
+  const says = (text) => page.waitForFunction((t) => document.getElementById('banner').innerText.includes(t), text, { timeout: 30000 });
+  await page.goto(server.url);
+  await settled(page);
+  await server.kill();
+  await says('does not answer');
+  await accessible(page, 'a lost connection');
+  await restart();
+  await says('started anew');
+  check('another program at the same address has another key', true);
+  await picture(page, 'started-anew');
+  await accessible(page, 'a program that was started anew');
 }
 
 async function saysWhatFailed({ page, server }) {
@@ -45,6 +87,49 @@ async function onlyLooks({ page, server }) {
   await page.click('#export');
   check('nothing but the picture can be saved', (await page.locator('[data-export]').evaluateAll((list) => list.map((b) => b.dataset.export))).join() === 'Picture');
   await accessible(page, 'looking only, export');
+}
+
+const chosen = (page) => page.getAttribute('#tools [aria-checked="true"]', 'data-tool');
+
+/** Keys that type do nothing where they are switched off, but on the view they do. */
+async function hasNoSingleKeys({ page, server }) {
+  const press = async (focus, key) => {
+    await page.focus(focus);
+    await page.keyboard.press(key);
+    return chosen(page);
+  };
+  const put = async (on) => {
+    await page.click('#help');
+    await page.setChecked('#single-keys', on);
+    await page.keyboard.press('Escape');
+  };
+  await page.goto(server.url);
+  await settled(page);
+  await put(false);
+  check('a single key is off beside the view', (await press('#export', 'b')) === 'look');
+  check('and acts on it', (await press('#view', 'b')) === 'paint');
+  await page.reload();
+  await settled(page);
+  check('after a reload it is still off', (await press('#export', 'b')) === 'look');
+  await put(true);
+  check('switched on it acts everywhere', (await press('#export', 'b')) === 'paint');
+}
+
+/** As when the program tells that the object is made, without waiting for one. */
+async function startsWithPaint({ page, server }) {
+  const after = (mode) => page.evaluate((m) => { const { store } = globalThis.cei3d; store.state = { ...store.state, mode: m }; return store.refresh(); }, mode);
+  await page.goto(server.url);
+  await settled(page);
+  check('an object that is opened is looked at', (await chosen(page)) === 'look');
+  await after('reconstructing');
+  check('one that was just made can be painted at once', (await chosen(page)) === 'paint');
+  check('and what to do is said', (await page.textContent('#toasts')).includes('Drag on the object to paint'));
+  await settled(page);
+  await accessible(page, 'an object that was just made');
+  await zoomed(page, 'painting');
+  await settled(page);
+  await after('library');
+  check('later it is looked at, too', (await chosen(page)) === 'look');
 }
 
 /** The program's frames alone. */
@@ -77,5 +162,10 @@ async function hasNoWebGl({ page, server }) {
   await opened('empty', [], explainsItself);
   await opened('broken', [], saysWhatFailed);
   await opened('object', ['--read-only'], onlyLooks);
+  await opened('object', [], startsWithPaint);
+  await opened('object', [], hasNoSingleKeys);
   await opened('object', [], hasNoWebGl);
+  await opened('object', [], losesItsProgram);
+  await opened('object', [], missesItsKey);
+  await opened('.', [], offersWhatThereIs);
 })().catch((error) => { console.error(error.message); process.exit(1); });

@@ -94,6 +94,23 @@ async function savesWhatIsSeen(page) {
   check(`a saved picture is what is seen, on white: ${inside} pixels, ${worst} levels, ${ground}`, inside > 200 && worst <= 2 && ground.every((v) => v === 255));
 }
 
+/** F comes nearer to the part that is selected. */
+async function framesPart(page) {
+  const distance = () => page.evaluate(() => globalThis.cei3d.stage.camera.distance());
+  await settled(page);
+  await page.focus('#view');
+  await page.keyboard.press('f');
+  const near = await distance();
+  const part = await page.evaluate(() => globalThis.cei3d.store.part);
+  await page.evaluate(() => globalThis.cei3d.store.select(null));
+  await page.keyboard.press('f');
+  const far = await distance();
+  check(`the part ${part} is framed from ${near.toFixed(2)}, the object from ${far.toFixed(2)}`, part !== null && near < 0.9 * far);
+  await page.evaluate((name) => globalThis.cei3d.store.select(name), part);
+  await page.keyboard.press('Home');
+  await settled(page);
+}
+
 async function hides(page) {
   const at = await middle(page);
   await page.keyboard.press('v');
@@ -232,6 +249,7 @@ withPage({ program, project, executablePath, picture }, async ({ page, server })
   await settled(page);
   await lassos(page);
   await names(page);
+  await framesPart(page);
   await hides(page);
   await shines(page);
   await lays(page);

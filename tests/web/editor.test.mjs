@@ -59,6 +59,18 @@ test('an edit of another window never counts as the one that was refused', async
   assert.deepEqual(history.map((e) => e.of), ['first', 'second', 'another window']);
 });
 
+test('an object counts as made once, in the page that saw it being made', async () => {
+  programWith([]);
+  const store = new Store(), seen = [];
+  store.on('mode', () => seen.push(store.made));
+  await store.refresh();
+  for (const mode of ['reconstructing', 'library', 'capture']) {
+    store.state = { ...store.state, mode };
+    await store.refresh();
+  }
+  assert.deepEqual(seen, [false, true, false, false]);
+});
+
 test('of what is asked for while something runs only the last is done', async () => {
   const done = [];
   let wanted = 0, finish = () => {};
@@ -150,13 +162,13 @@ function pointers() {
   const heard = [], listeners = {}, say = (word) => () => { heard.push(word); };
   const view = { addEventListener: (type, listener) => { listeners[type] = listener; }, focus() {}, setPointerCapture() {}, getBoundingClientRect: () => ({ left: 0, top: 0 }) };
   const camera = { orbit: say('orbit'), pan: say('pan'), zoom: say('zoom') };
-  const stage = { view, camera, photo: null, size: () => ({ scale: 1, width: 100, height: 100 }), onObject: () => true, moved() {} };
+  const stage = { view, camera, photo: null, size: () => ({ scale: 1, width: 100, height: 100 }), onObject: () => true, moved() {}, redraw() {} };
   const tool = { down: say('down'), move: say('move'), up: say('up'), cancel: say('cancel'), hover: say('hover') };
-  new Input(stage, () => tool, { undo: say('undo'), redo: say('redo') });
+  const input = new Input(stage, () => tool, { undo: say('undo'), redo: say('redo') });
   const send = (type, pointerType, timeStamp, pointerId = pointerType === 'pen' ? 1 : 2) => listeners[`pointer${type}`](
     { type: `pointer${type}`, pointerType, pointerId, timeStamp, clientX: timeStamp / 10, clientY: 0, buttons: 1, button: 0, target: { closest: () => null }, preventDefault() {} });
   const words = () => heard.splice(0).join(' ');
-  return { send, words };
+  return { heard, input, send, stage, tool, words };
 }
 
 test('the hand that holds a pen does not disturb its stroke', () => {
@@ -193,6 +205,53 @@ test('two fingers still move and zoom', () => {
   send('down', 'touch', 0, 4);
   send('move', 'touch', 90, 4);
   assert.equal(words(), 'down cancel pan zoom');
+});
+
+// The pointer by keys, in the middle of the view, and what the tool is told, with places.
+function keyPointer() {
+  const { heard, input, send, stage, tool, words } = pointers();
+  stage.onObject = (x) => x < 90;
+  for (const word of ['down', 'move', 'up']) tool[word] = (p) => { heard.push(`${word} ${p.x},${p.y}${p.shift ? ' shift' : ''}`); };
+  input.toggleReticle();
+  return { arrow: (key) => input.arrows({ key, shiftKey: false }), input, send, words };
+}
+
+test('keys alone press, drag and let go', () => {
+  const { arrow, input, words } = keyPointer();
+  arrow('ArrowLeft');
+  assert.equal(words(), 'hover');
+  input.holdReticle();
+  arrow('ArrowRight');
+  arrow('ArrowDown');
+  assert.ok(input.releaseReticle());
+  assert.equal(words(), 'down 38,50 move 50,50 move 50,62 up 50,62');
+  assert.ok(!input.releaseReticle());
+  assert.equal(words(), '');
+});
+
+test('a click by keys is one place, with the keys that are held', () => {
+  const { arrow, input, words } = keyPointer();
+  input.clickReticle({ alt: false, shift: true });
+  assert.equal(words(), 'down 50,50 shift up 50,50 shift');
+  input.holdReticle();
+  arrow('ArrowUp');
+  input.clickReticle({ alt: false, shift: false });  // lets go
+  assert.equal(words(), 'down 50,50 move 50,38 up 50,38');
+});
+
+test('what is dragged by keys is canceled by itself or by a mouse, and begins on the object', () => {
+  const { arrow, input, send, words } = keyPointer();
+  input.holdReticle();
+  assert.ok(input.cancelReticle() && !input.cancelReticle());
+  assert.equal(words(), 'down 50,50 cancel');
+  input.holdReticle();
+  send('down', 'mouse', 0);
+  assert.equal(words(), 'down 50,50 cancel down 0,0');
+  for (let i = 0; i < 4; ++i) arrow('ArrowRight');
+  words();
+  input.holdReticle();  // beside it
+  assert.ok(!input.held);
+  assert.equal(words(), '');
 });
 
 function paintTool() {

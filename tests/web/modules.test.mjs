@@ -9,9 +9,9 @@ import { Orbit } from '../../src/web/orbit.js';
 import { readPack } from '../../src/web/pack.js';
 import { mirrored, placeOnBall, radianceOf } from '../../src/web/editor/ball.js';
 import { cornersOf, ontoCorners, pointAt, seen } from '../../src/web/editor/camera.js';
-import { actionOf, gestures, keyTable } from '../../src/web/editor/keys.js';
+import { actionOf, gestures, isSingle, keyTable } from '../../src/web/editor/keys.js';
 import { Pace, steps } from '../../src/web/editor/pace.js';
-import { lookText, partLooks, swatch } from '../../src/web/editor/looks.js';
+import { lookText, partBall, partLooks, swatch } from '../../src/web/editor/looks.js';
 
 const near = (a, b, most = 1e-5) => assert.ok(Math.abs(a - b) < most, `${a} is not ${b}`);
 
@@ -172,6 +172,32 @@ test('no two tools have the same key', () => {
   assert.ok(gestures.length > 5);
 });
 
+test('a key that types is single, one with Ctrl or without a character is not', () => {
+  const single = (key, more = {}) => isSingle({key, shiftKey: false, ctrlKey: false, metaKey: false, altKey: false, ...more});
+  for (const key of ['b', '?', '.', ' ', '7']) assert.ok(single(key), key);
+  assert.ok(single('H', {shiftKey: true}));
+  for (const key of ['Enter', 'Escape', 'Delete', 'Home', 'ArrowLeft']) assert.ok(!single(key), key);
+  assert.ok(!single('z', {ctrlKey: true}) && !single('z', {metaKey: true}));
+});
+
+test('the setting of single keys outlives the page, and a browser that keeps nothing', async () => {
+  const stored = new Map(), fresh = (n) => import(`../../src/web/editor/settings.js?${n}`);
+  const before = Object.getOwnPropertyDescriptor(globalThis, 'localStorage');
+  const storage = (value) => Object.defineProperty(globalThis, 'localStorage', {configurable: true, ...value});
+  storage({value: {getItem: (k) => stored.get(k) ?? null, setItem: (k, v) => stored.set(k, v)}});
+  const first = await fresh(1);
+  assert.equal(first.singleKeys(), true);
+  first.setSingleKeys(false);
+  assert.equal((await fresh(2)).singleKeys(), false);
+  storage({get() { throw new Error('forbidden'); }});
+  const third = await fresh(3);
+  assert.equal(third.singleKeys(), true);
+  third.setSingleKeys(false);
+  assert.equal(third.singleKeys(), false);
+  if (before) Object.defineProperty(globalThis, 'localStorage', before);
+  else delete globalThis.localStorage;
+});
+
 test('a part looks as its vertices do on average', () => {
   const root = (v) => Math.round(65535 * Math.sqrt(v));
   // Two vertices of the part, linear 0.1 and 0.3, and one beside it; nothing is left of a part that another one covers.
@@ -185,6 +211,19 @@ test('a part looks as its vertices do on average', () => {
   near(ear.metalness, 1);
   assert.equal(lookText(ear), 'roughness 0.40, metalness 1.00');
   assert.ok(swatch(ear).includes('rgb(124 124 0)'));
+});
+
+test('a part is where its vertices are', () => {
+  const box = { min: [-1, 2, 0], size: [4, 2, 8] };
+  // Three corners of the box, of which the last is of no part, and a vertex on its edge.
+  const at = [[0, 0, 0], [65535, 0, 0], [65535, 65535, 65535], [13107, 0, 0]], parts = [1, 1, 0, 2];
+  const shape = { head: box, arrays: { positions: new Uint16Array(at.flatMap((p) => [...p, 0])) } };
+  const look = { head: { parts: ['', 'edge', 'dot', 'covered'] }, arrays: { material: new Uint8Array(parts.flatMap((i) => [0, 0, 0, i])) } };
+  assert.deepEqual(partBall(shape, look, 'edge'), { center: [1, 2, 0], radius: 2 });
+  const dot = partBall(shape, look, 'dot');
+  near(dot.center[0], -0.2);
+  near(dot.radius, 0);
+  for (const name of ['covered', 'unknown', '']) assert.equal(partBall(shape, look, name), null);
 });
 
 test('the editor asks for all its modules at once', () => {

@@ -4,6 +4,7 @@
 import { byId, el, openDialog } from './dom.js';
 import { getBlob, postJson } from './api.js';
 import { gestures, keyTable, written } from './keys.js';
+import { setSingleKeys, singleKeys } from './settings.js';
 
 /** @param {Blob} blob @param {string} name */
 export function save(blob, name) {
@@ -115,10 +116,16 @@ export function exportDialog(store, stage) {
     note, el('div', { class: 'buttons' }, el('button', { onclick: () => byId('dialog').close() }, 'Close')));
 }
 
+function singleKeysField() {
+  return el('p', {}, el('label', {}, el('input', { type: 'checkbox', id: 'single-keys', checked: singleKeys(), 'aria-describedby': 'single-keys-note',
+    onchange: (/** @type {any} */ e) => setSingleKeys(e.target.checked) }), ' Single-key shortcuts'),
+  el('small', { id: 'single-keys-note' }, ` Off: keys without ${written('Mod')} act only while the view of the object has the focus.`));
+}
+
 export function helpDialog() {
   const line = (/** @type {Node[]} */ left, /** @type {string} */ right) => el('div', {}, el('span', {}, right), el('span', {}, ...left));
-  openDialog('Keys and gestures',
+  openDialog('Keys and gestures', singleKeysField(),
     ...keyTable.flatMap((group) => [el('h3', {}, group.title), el('div', { class: 'keys' }, ...group.keys.map((k) => line(k.keys.map((key) => el('kbd', {}, written(key))), k.text)))]),
     el('h3', {}, 'Mouse, pen and fingers'), el('div', { class: 'keys' }, ...gestures.map(([how, what]) => line([document.createTextNode(what)], how))),
-    el('div', { class: 'buttons' }, el('button', { class: 'primary', onclick: () => byId('dialog').close() }, 'Close')));
+    el('div', { class: 'buttons' }, el('button', { class: 'primary', autofocus: true, onclick: () => byId('dialog').close() }, 'Close')));
 }

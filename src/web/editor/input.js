@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Pointers on the view: navigation here, the rest to the tool. */
+import { toast } from './dom.js';
 
 /**
  * @typedef {{x: number, y: number, pressure: number, shift: boolean, alt: boolean, ctrl: boolean, onObject: boolean, erase: boolean}} Point
@@ -26,6 +27,8 @@ export class Input {
     this.used = null;
     /** @type {{x: number, y: number} | null} pointer by keys, pixels of the frame */
     this.reticle = null;
+    /** @type {any} the tool of the pointer by keys while its button is held */
+    this.held = null;
     this.touches = { most: 0, moved: 0 };
     /** @type {number | null} pointer of the pen that is down */
     this.pen = null;
@@ -57,6 +60,7 @@ export class Input {
     if (/** @type {Element} */ (e.target).closest('input, button, select, label, .options')) return;
     e.preventDefault();
     if (this.isPalm(e)) return;
+    this.cancelReticle();
     if (e.pointerType === 'pen') this.takePen(e);
     this.stage.view.focus({ preventScroll: true });
     this.stage.view.setPointerCapture(e.pointerId);
@@ -177,7 +181,9 @@ export class Input {
     if (this.reticle) {
       const step = e.shiftKey ? 2 : 12;
       this.reticle = { x: Math.max(0, Math.min(width - 1, this.reticle.x + step * dx)), y: Math.max(0, Math.min(height - 1, this.reticle.y + step * dy)) };
-      this.tool().hover?.(this.keyPoint(false));
+      const p = this.keyPoint();
+      if (this.held) this.held.move?.(p);
+      else this.tool().hover?.(p);
       this.stage.redraw();
       return;
     }
@@ -187,26 +193,60 @@ export class Input {
     this.stage.moved();
   }
 
-  /** @param {boolean} alt @returns {Point} */
-  keyPoint(alt) {
+  /** @param {{alt?: boolean, shift?: boolean}} [keys] @returns {Point} */
+  keyPoint({ alt = false, shift = false } = {}) {
     const { x, y } = this.reticle ?? { x: 0, y: 0 };
-    return { x, y, pressure: 1, shift: false, alt, ctrl: false, onObject: this.stage.onObject(x, y), erase: false };
+    return { x, y, pressure: 1, shift, alt, ctrl: false, onObject: this.stage.onObject(x, y), erase: false };
   }
 
   toggleReticle() {
+    this.cancelReticle();
     const { width, height } = this.stage.size();
     this.reticle = this.reticle ? null : { x: width / 2, y: height / 2 };
     this.stage.redraw();
   }
 
-  /** A click of the pointer by keys. @param {boolean} alt */
-  clickReticle(alt) {
+  /** A click of the pointer by keys; lets go of its button if that is held. @param {{alt: boolean, shift: boolean}} keys */
+  clickReticle(keys) {
     if (!this.reticle) return false;
-    const p = this.keyPoint(alt), tool = this.tool();
+    if (this.releaseReticle()) return true;
+    const p = this.keyPoint(keys), tool = this.tool();
     if (tool.down && p.onObject) {
       tool.down(p);
       tool.up?.(p);
     } else tool.click?.(p);
+    return true;
+  }
+
+  /** Holds the button of the pointer by keys, so that arrows drag, or lets go of it. Where there is no pointer, one appears. */
+  holdReticle() {
+    if (!this.reticle) this.toggleReticle();
+    if (this.releaseReticle()) return;
+    const p = this.keyPoint(), tool = this.tool();
+    if (!tool.down) return toast('This tool drags nothing; choose another one.');
+    if (!p.onObject && !tool.takes?.(p)) return toast('Move the pointer onto the object first: the arrows do.');
+    this.held = tool;
+    tool.down(p);
+    toast('Held: the arrows drag, Enter lets go, Esc cancels.');
+    this.stage.redraw();
+  }
+
+  /** @returns {boolean} whether the button was held */
+  releaseReticle() {
+    const tool = this.held;
+    this.held = null;
+    tool?.up?.(this.keyPoint());
+    this.stage.redraw();
+    return tool !== null;
+  }
+
+  /** Ends what is dragged by keys as the tool does when a second finger comes. @returns {boolean} whether something was */
+  cancelReticle() {
+    const tool = this.held;
+    if (!tool) return false;
+    this.held = null;
+    tool.cancel?.();
+    this.stage.redraw();
     return true;
   }
 
@@ -221,6 +261,10 @@ export class Input {
       for (const [a, b] of [[-14, -4], [4, 14]]) {
         c.moveTo(x + a, y); c.lineTo(x + b, y);
         c.moveTo(x, y + a); c.lineTo(x, y + b);
+      }
+      if (this.held) {
+        c.moveTo(x + 9, y);
+        c.arc(x, y, 9, 0, 2 * Math.PI);
       }
       c.stroke();
     }

@@ -38,7 +38,7 @@ export const keyTable = [
   { title: 'View', keys: [
     { keys: ['H'], action: 'hide', text: 'Hide or show the selected part' },
     { keys: ['Shift+H'], action: 'show-all', text: 'Show all parts' },
-    { keys: ['F'], action: 'frame', text: 'Show the whole object' },
+    { keys: ['F'], action: 'frame', text: 'Show the selected part, or the whole object' },
     { keys: ['Home'], action: 'home', text: 'Start view' },
     { keys: ['ArrowLeft', 'ArrowRight', 'ArrowUp', 'ArrowDown'], action: 'arrows', text: 'Turn by 5°; with Shift, move' },
     { keys: ['+', '-'], action: 'zoom', text: 'Nearer, farther' },
@@ -47,10 +47,11 @@ export const keyTable = [
     { keys: ['\\'], action: 'hold-photo', text: 'Show the photograph while held' },
     { keys: ['C'], action: 'compare', text: 'Compare with the photograph' },
     { keys: ['T'], action: 'channel', text: 'Next channel: lit, albedo, diffuse, shine, normals, roughness' },
-    { keys: ['.'], action: 'reticle', text: 'Pointer by keys: arrows move it, Space clicks' },
+    { keys: ['.'], action: 'reticle', text: 'Pointer by keys: arrows move it, Space clicks, with Alt or Shift as by mouse' },
+    { keys: [','], action: 'hold', text: 'Hold its button: arrows drag, Enter lets go, Esc cancels' },
     { keys: ['U'], action: 'bare', text: 'Hide or show the panels' },
     { keys: ['Mod+S'], action: 'export', text: 'Export' },
-    { keys: ['?'], action: 'help', text: 'This help' },
+    { keys: ['?'], action: 'help', text: 'This help; keys without Ctrl can be switched off here' },
   ] },
 ];
 
@@ -88,6 +89,9 @@ export function actionOf(e) {
     for (const k of group.keys) if (k.keys.includes(name) || (k.action === 'arrows' && k.keys.includes(plain))) return k.action;
   return undefined;
 }
+
+/** Whether a key types a character: dictated words and slips of the hand press such keys, too. @param {KeyboardEvent} e */
+export const isSingle = (e) => e.key.length === 1 && !e.ctrlKey && !e.metaKey;
 
 /** @param {string} action @returns {string} its first key, as written */
 export function keyOf(action) {

@@ -2,7 +2,7 @@
 // @ts-check
 /** The object drawn in the page, with the program's own shading. Without WebGL 2 it shows nothing, and the program's frames do. */
 import { getBytes } from './api.js';
-import { partLooks } from './looks.js';
+import { partBall, partLooks } from './looks.js';
 import { Pace, steps } from './pace.js';
 
 /** @typedef {import('./light.js').Light} Light */
@@ -29,6 +29,8 @@ export class Live {
     this.hidden = new Set();
     /** @type {import('../pack.js').Pack | null} maps of the light */
     this.light = null;
+    /** @type {Record<string, import('../pack.js').Pack>} those that say where parts are, by kind */
+    this.surface = {};
     /** @type {Map<string, import('./looks.js').Look>} how parts look, by name */
     this.looks = new Map();
     /** @type {string | null} the preview whose look the renderer has */
@@ -48,6 +50,7 @@ export class Live {
 
   async begin() {
     this.have = {};
+    this.surface = {};
     this.previewed = null;
     this.hidden.clear();
     if (this.off) return;
@@ -116,6 +119,7 @@ export class Live {
     const pack = this.modules[1].readPack(bytes, kind);
     this.renderer.set(pack);
     if (kind === 'light') this.light = pack;
+    if (kSurface.includes(kind)) this.surface[kind] = pack;
     if (kind === 'look') this.looks = partLooks(pack);
     if (kind === 'shape') delete this.have[kCoarse];
     this.have[kind] = key;
@@ -186,6 +190,12 @@ export class Live {
   hiddenIndices() {
     const names = this.renderer?.heads.get('look')?.parts ?? [];
     return [...this.hidden].map((name) => names.indexOf(name)).filter((index) => index > 0);
+  }
+
+  /** Where a part is, if the page knows. @param {string} name */
+  ballOf(name) {
+    const { shape, look } = this.surface;
+    return this.has(kSurface) ? partBall(shape, look, name) : null;
   }
 
   /** Whether the object is at a pixel. @param {any} camera @param {number} x @param {number} y */

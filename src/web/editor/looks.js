@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** How parts look: the mean color and material of their vertices, for the swatches of the list. */
+/** How parts look, the mean color and material of their vertices, for the swatches of the list; and where they are. */
 
 /** @typedef {{color: string, roughness: number, metalness: number}} Look color: as CSS has it */
 
@@ -24,6 +24,27 @@ export function partLooks({ head, arrays }) {
     if (i > 0 && n > 0) looks.set(names[i], { color: `rgb(${rgb.map((s) => byteOf(s / n)).join(' ')})`, roughness: roughness / n, metalness: metalness / n });
   });
   return looks;
+}
+
+/**
+ * A ball around a part, about the middle of its box, in the capture's frame. null: nothing is seen of the part.
+ * @param {import('../pack.js').Pack} shape @param {import('../pack.js').Pack} look @param {string} name
+ * @returns {{center: [number, number, number], radius: number} | null}
+ */
+export function partBall(shape, look, name) {
+  const { positions } = shape.arrays, { material } = look.arrays, index = look.head.parts.indexOf(name);
+  const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity];
+  const of = (/** @type {number} */ v, /** @type {number} */ k) => shape.head.min[k] + shape.head.size[k] * positions[4 * v + k] / 65535;
+  const each = (/** @type {(v: number) => void} */ work) => { for (let v = 0; v < material.length / 4; ++v) if (material[4 * v + 3] === index) work(v); };
+  each((v) => [0, 1, 2].forEach((k) => {
+    min[k] = Math.min(min[k], of(v, k));
+    max[k] = Math.max(max[k], of(v, k));
+  }));
+  if (index <= 0 || min[0] > max[0]) return null;
+  const center = /** @type {[number, number, number]} */ (min.map((m, k) => (m + max[k]) / 2));
+  let radius = 0;
+  each((v) => { radius = Math.max(radius, Math.hypot(...center.map((c, k) => of(v, k) - c))); });
+  return { center, radius };
 }
 
 /** A small ball: the highlight is as wide as the surface is rough, and of a metal it has the metal's color. @param {Look} look @returns {string} CSS */

@@ -8,13 +8,14 @@ import { BendTool } from './bend.js';
 import { DecalTool } from './decal.js';
 import { GrabTool } from './grab.js';
 import { Input } from './input.js';
-import { actionOf, keyOf } from './keys.js';
+import { actionOf, isSingle, keyOf } from './keys.js';
 import { LightTool } from './light.js';
 import { PaintTool } from './paint.js';
 import { HistoryPanel, PartsPanel, PhotoStrip } from './panels.js';
 import { Places } from './places.js';
 import { MaterialTool, objectPanel } from './properties.js';
 import { PartOverlay, PartTool } from './select.js';
+import { singleKeys } from './settings.js';
 import { channels, Stage } from './stage.js';
 import { Store } from './store.js';
 
@@ -34,6 +35,7 @@ let tool = look;
 function choose(name) {
   const next = tools.find((t) => t.name === name);
   if (!next || (store.state.read_only && !['look', 'light'].includes(name))) return;
+  input.cancelReticle();
   if (next !== tool) tool.leave?.();
   tool = next;
   if (tool.down) stage.hide([]);  // the program works on the whole object
@@ -161,10 +163,28 @@ function drawSaved() {
   const editing = store.state.mode === 'project';
   node.className = `saved ${store.lost ? 'lost' : unsaved ? 'busy' : ''}`;
   node.textContent = !editing ? '' : store.lost ? 'Not connected' : store.state.read_only ? 'Looking only' : unsaved ? 'Saving…' : 'All changes saved';
-  byId('banner').hidden = !store.lost;
+  byId('banner').hidden = !store.lost || !hasKey();  // without a key the page itself says what to do
   byId('banner').textContent = store.stranger ? 'The program was started anew: paste the address that it printed into this window. What you did meanwhile is kept here.'
     : 'The program does not answer; trying again. What you do meanwhile is kept here.';
 }
+
+/** Shows the selected part, or all; a small part with what is around it. */
+function frame() {
+  const { center, radius } = store.object, ball = store.part ? stage.live.ballOf(store.part) : null;
+  stage.camera.frame(ball?.center ?? center, ball ? Math.max(ball.radius, radius / 10) : radius);
+  input.leavePhoto();
+  stage.moved();
+}
+
+/** @param {KeyboardEvent} e */
+function hold(e) {
+  if (e.repeat) return;
+  stage.view.focus({ preventScroll: true });  // the arrows are for it
+  input.holdReticle();
+}
+
+/** What keys do while one drags by them: others could change the view or the tool below it. */
+const whileHeld = ['arrows', 'keep', 'drop', 'hold', 'reticle', 'smaller', 'larger', 'help'];
 
 /** @type {Record<string, (e: KeyboardEvent) => void>} */
 const actions = {
@@ -177,23 +197,24 @@ const actions = {
   smaller: () => tool.size?.(1 / 1.15), larger: () => tool.size?.(1.15),
   opacity: (e) => tool.opacity?.((Number(e.key) || 10) / 10),
   softer: () => tool.hardness?.(-0.1), harder: () => tool.hardness?.(0.1),
-  keep: () => (tool.keep ?? (() => {})).call(tool), drop: () => tool.drop ? tool.drop() : tool.cancel?.(),
-  frame: () => { stage.camera.frame(store.object.center, store.object.radius); input.leavePhoto(); stage.moved(); },
+  keep: () => { if (!input.releaseReticle()) tool.keep?.(); },
+  drop: () => { if (!input.cancelReticle()) tool.drop ? tool.drop() : tool.cancel?.(); },
+  frame,
   home: () => { stage.camera.goHome(); input.leavePhoto(); stage.moved(); },
   arrows: (e) => input.arrows(e),
   zoom: (e) => { const { width, height } = stage.size(); stage.camera.zoom(e.key === '-' ? 1.1 : 1 / 1.1, width / 2, height / 2, width, height); input.leavePhoto(); stage.moved(); },
   'next-photo': () => strip.next(1), 'previous-photo': () => strip.next(-1),
   'hold-photo': () => { if (!stage.photo && strip.views.length) strip.next(1); holding = true; drawPhoto(); },
-  channel: nextChannel, reticle: () => input.toggleReticle(), bare: () => { document.body.classList.toggle('bare'); },
+  channel: nextChannel, reticle: () => input.toggleReticle(), hold, bare: () => { document.body.classList.toggle('bare'); },
   export: () => exportDialog(store, stage), help: helpDialog,
 };
 
 window.addEventListener('keydown', (e) => {
   const target = /** @type {HTMLElement} */ (e.target), onView = target === stage.view || target === document.body;
-  if (byId('dialog').open) return;
+  if (byId('dialog').open || (isSingle(e) && !singleKeys() && target !== stage.view)) return;
   if (e.key === ' ' && onView) {
     e.preventDefault();
-    if (!input.clickReticle(e.altKey)) input.space = true;
+    if (!input.clickReticle({ alt: e.altKey, shift: e.shiftKey })) input.space = true;
     return;
   }
   const action = actionOf(e);
@@ -202,6 +223,7 @@ window.addEventListener('keydown', (e) => {
   if (typing || (!onView && ['arrows', 'keep', 'home', 'zoom'].includes(action))) return;
   if (store.state.mode !== 'project' && action !== 'help') return;
   e.preventDefault();
+  if (input.held && !whileHeld.includes(action)) return;
   if (action.startsWith('tool:')) choose(action.slice(5));
   else actions[action]?.(e);
 });
@@ -248,7 +270,13 @@ store.on('state', (state) => {
   drawTools();
   drawProperties();
 });
-store.on('mode', (state) => { if (state.mode === 'project') { choose('look'); if (state.note) toast(state.note, { bad: true }); } });
+store.on('mode', (state) => {
+  if (state.mode !== 'project') return;
+  const first = store.made && !state.read_only;  // who has just made an object wants to try it
+  choose(first ? 'paint' : 'look');
+  if (first) toast(`Drag on the object to paint; ${keyOf('undo')} takes anything back.`);
+  if (state.note) toast(state.note, { bad: true });
+});
 store.on('part', () => { drawOptions(); drawProperties(); });
 if (!hasKey()) {
   byId('place').replaceChildren(el('div', { class: 'column' }, el('h2', {}, 'The key is missing'), el('p', {}, 'Open the whole address that cei3d printed, with what follows the #.')));

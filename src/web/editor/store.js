@@ -18,6 +18,7 @@ export class Store extends EventTarget {
     this.object = /** @type {any} */ (null);
     /** @type {string | null} name of the selected part */
     this.part = null;
+    this.made = false;  // the object that is open was made while this page looked on
     this.saving = 0;
     this.lost = false;
     this.line = new Line();
@@ -70,6 +71,7 @@ export class Store extends EventTarget {
     state.parts ??= [];
     if (JSON.stringify(state.packs) === JSON.stringify(before.packs)) state.packs = before.packs;  // the same object: nothing is new
     this.state = state;
+    if (before.mode !== state.mode) this.made = before.mode === 'reconstructing' && state.mode === 'project';
     if (this.part && !state.parts.some((/** @type {Part} */ p) => p.name === this.part)) this.part = null;
     if (before.mode !== state.mode || before.folder !== state.folder) this.emit('mode', state);
     this.emit('state', state);
