@@ -95,7 +95,8 @@ Preset paper() {
   p.appearance.materials = p.appearance.albedo;
   p.appearance.materials.width = 128;
   p.appearance.materials.outputs = MaterialField::kOutputs;
-  p.meshing.resolution = p.finer_meshing.resolution = 128;
+  p.meshing.resolution = 128;
+  p.finer_meshing.resolution = 256;
   p.iterations = 200000;
   p.brief_hits = 200000;
   return p;
