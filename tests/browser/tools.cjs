@@ -42,7 +42,7 @@ async function lassos(page) {
   check(`a lasso makes a part: ${(100 * first.share).toFixed(1)} %`, first.name === 'patch' && first.share > 0.001 && first.share < 0.5);
   await picture(page, '1-lasso');
   await accessible(page, 'lasso');
-  await keptLasso(page, at.x + 40, at.y, 20, 'Shift');
+  await keptLasso(page, at.x + 60, at.y, 30, 'Shift');
   const more = (await state(page)).parts[0];
   check('with Shift it adds to the part', more.share > first.share && (await last(page)).params.add === 'patch');
   await keptLasso(page, at.x + 40, at.y, 20, 'Control');
