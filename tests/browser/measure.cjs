@@ -13,19 +13,15 @@ const [program, original, executablePath] = process.argv.slice(2);
 const row = (what, value) => console.log(`| ${what} | ${value} |`);
 const ms = (t) => `${Math.round(t)} ms`;
 
+/** What the editor's page loads: itself and what it names. */
 function bundle() {
+  const web = path.join(__dirname, '../../src/web'), page = fs.readFileSync(path.join(web, 'editor/index.html'));
+  const named = new Set([...page.toString().matchAll(/(?:href|src)="\/app\/([^"]+)"/g)].map((m) => m[1]));
   let raw = 0, packed = 0;
-  const visit = (at) => {
-    for (const e of fs.readdirSync(at, { withFileTypes: true })) {
-      if (e.isDirectory()) visit(path.join(at, e.name));
-      else if (/\.(js|css|html|svg)$/.test(e.name)) {
-        const bytes = fs.readFileSync(path.join(at, e.name));
-        raw += bytes.length;
-        packed += zlib.gzipSync(bytes).length;
-      }
-    }
-  };
-  visit(path.join(__dirname, '../../src/web'));
+  for (const bytes of [page, ...[...named].map((name) => fs.readFileSync(path.join(web, name)))]) {
+    raw += bytes.length;
+    packed += zlib.gzipSync(bytes).length;
+  }
   row('size of the page, raw and gzipped', `${Math.round(raw / 1000)} kB, ${Math.round(packed / 1000)} kB`);
 }
 

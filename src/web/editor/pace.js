@@ -5,7 +5,8 @@
 /** @typedef {{scale: number, rough: boolean, coarse: boolean}} Step share of the pixels of a side; whether edges are left as they are; whether triangles are few */
 
 /**
- * Where a driver draws in software the second takes a third of the time of the first, and most of that goes into the triangles.
+ * Where a driver draws in software the second takes a third of the time of the first, the third half of that, because most of it goes into
+ * the triangles, and the last half again.
  * @type {Step[]}
  */
 export const steps = [{ scale: 1, rough: false, coarse: false }, { scale: 1, rough: true, coarse: false },
@@ -17,7 +18,7 @@ const kOften = 4;  // pictures that must be quick
 export class Pace {
   /** @param {boolean} software whether the driver draws without a graphics processor */
   constructor(software) {
-    this.at = software ? steps.length - 1 : 0;
+    this.at = software ? steps.length - 2 : 0;
     this.quick = 0;  // how many were, one after the other
     this.first = true;  // picture of this step, for which the driver prepares itself
   }
