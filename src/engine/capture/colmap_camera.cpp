@@ -39,8 +39,8 @@ const ColmapCameraModel& supported(const ColmapCameraModel& model, const std::st
 }
 
 [[noreturn]] void fail_unknown(const std::string& model, const std::string& where) {
-  fail("{} has the camera model '{}', which is not known: the file is damaged, or of a newer COLMAP. {}", where,
-       model, kUndistort);
+  fail("{} has the camera model '{}', which is not known: the file is damaged, or of a newer COLMAP. {}",
+       where, model, kUndistort);
 }
 
 bool has_two_focal_lengths(int id) { return id == 1 || id == 4 || id == 5 || id == 6 || id == 15; }
