@@ -43,3 +43,16 @@ same_pictures "$out/painted" "$out/undone"
 cei3d redo "$project"
 views "$out/redone"
 same_pictures "$out/deformed" "$out/redone"
+
+# The field can follow instead of the mesh, with the paint; a part of it is removed and comes back.
+cei3d undo "$project"
+cei3d edit "$project" part --view train/r_055 --positive 96,96 --name patch
+cei3d edit "$project" deform "${seen[@]}" --drag 12,-8 --geometry field
+views "$out/field"
+differ "$out/painted" "$out/field"
+cei3d edit "$project" remove --part patch
+views "$out/removed"
+differ "$out/field" "$out/removed"
+cei3d undo "$project"
+views "$out/put_back"
+same_pictures "$out/field" "$out/put_back"
