@@ -30,6 +30,8 @@ constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
 // A light that was raised by more than this, so that nothing is whiter than white, is one of assumed
 // strength.
 constexpr float kAssumed = 1.1f;
+// And by more than this, one that the diffuse term has taken the place of: it is sought again without that.
+constexpr float kFaded = 10;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
 constexpr double kSharedError = 0.1;
@@ -298,6 +300,35 @@ float smoothest_of(const std::vector<Material>& materials) {
   return quantile(std::move(roughness), 0.01);
 }
 
+// gain: by how much the light was raised in the end.
+LinearSplit separate(const Transport& transport, const SurfaceSamples& samples,
+                     const LinearSplitOptions& options, Progress& progress, float& gain) {
+  LinearSplit result;
+  auto [s, light_error] = solve(transport, samples, options, progress, result.trials);
+  result.light_error = light_error;
+  const auto& of = s.materials.of;
+  const LightTurns* turns = samples.turned.turns;
+  s.x.diffuse = clamped(std::move(s.x.diffuse), 1e6f);
+  if (all_metal(s))
+    make_light_gray(s, options.light_height);
+  else
+    gain = brighten_light(transport, seen_vertices(transport.surface().mesh(), samples), s,
+                          options.light_height, turns, progress);
+  if (gain > kAssumed) result.light_error = {};
+  result.material = mean_of(of);
+  if (std::any_of(of.begin(), of.end(), [&](const Material& m) { return !(m == of.front()); }))
+    result.materials = of;
+  else
+    result.material = of.front();
+  result.smoothest = smoothest_of(of);
+  result.light = light_image(s.x.light, options.light_height);
+  result.diffuse = std::move(s.x.diffuse);
+  result.albedo = clamped(
+      vertex_albedo(transport, {{result.diffuse, s.x.light}, s.materials, 0}, options.light_height, turns),
+      1);
+  return result;
+}
+
 }  // namespace
 
 std::vector<double> dielectric_residuals(const Transport& transport, const SurfaceSamples& samples,
@@ -312,29 +343,13 @@ std::vector<double> dielectric_residuals(const Transport& transport, const Surfa
 
 LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples,
                          const LinearSplitOptions& options, Progress& progress) {
-  LinearSplit result;
-  auto [s, light_error] = solve(transport, samples, options, progress, result.trials);
-  result.light_error = light_error;
-  const auto& of = s.materials.of;
-  const LightTurns* turns = samples.turned.turns;
-  s.x.diffuse = clamped(std::move(s.x.diffuse), 1e6f);
-  if (all_metal(s))
-    make_light_gray(s, options.light_height);
-  else if (brighten_light(transport, seen_vertices(transport.surface().mesh(), samples), s,
-                          options.light_height, turns, progress) > kAssumed)
-    result.light_error = {};
-  result.material = mean_of(of);
-  if (std::any_of(of.begin(), of.end(), [&](const Material& m) { return !(m == of.front()); }))
-    result.materials = of;
-  else
-    result.material = of.front();
-  result.smoothest = smoothest_of(of);
-  result.light = light_image(s.x.light, options.light_height);
-  result.diffuse = std::move(s.x.diffuse);
-  result.albedo = clamped(
-      vertex_albedo(transport, {{result.diffuse, s.x.light}, s.materials, 0}, options.light_height, turns),
-      1);
-  return result;
+  float gain = 1;
+  LinearSplit result = separate(transport, samples, options, progress, gain);
+  if (gain < kFaded || options.even_diffuse) return result;
+  progress.log(Json{{"stage", "light faded"}, {"gain", gain}}.dump());
+  LinearSplitOptions even = options;
+  even.even_diffuse = true;
+  return separate(transport, samples, even, progress, gain);
 }
 
 }  // namespace cei3d
