@@ -30,7 +30,9 @@ constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
 // A light that was raised by more than this, so that nothing is whiter than white, is one of assumed
 // strength.
 constexpr float kAssumed = 1.1f;
-// And by more than this, one that the diffuse term has taken the place of: it is sought again without that.
+// And by more than this, one that has faded: reflections of wide lobes say nothing. It is sought again with a
+// usual roughness.
+constexpr float kFadedRoughness = 0.3f;
 constexpr float kFaded = 10;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
@@ -345,11 +347,11 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
                          const LinearSplitOptions& options, Progress& progress) {
   float gain = 1;
   LinearSplit result = separate(transport, samples, options, progress, gain);
-  if (gain < kFaded || options.even_diffuse) return result;
+  if (gain < kFaded || options.fixed_roughness > 0) return result;
   progress.log(Json{{"stage", "light faded"}, {"gain", gain}}.dump());
-  LinearSplitOptions even = options;
-  even.even_diffuse = true;
-  return separate(transport, samples, even, progress, gain);
+  LinearSplitOptions usual = options;
+  usual.fixed_roughness = kFadedRoughness;
+  return separate(transport, samples, usual, progress, gain);
 }
 
 }  // namespace cei3d

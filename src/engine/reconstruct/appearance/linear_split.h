@@ -51,9 +51,6 @@ struct LinearSplitOptions {
   // Every n-th view does not take part, and residuals are of those views alone; 0: all take part. Needs
   // SurfaceSamples::turned.views.
   int hold_out = 0;
-  // The diffuse term takes the light to come evenly from everywhere. Else rough surface lit from one side can
-  // explain what changes with the view by that term alone, and the light fades.
-  bool even_diffuse = false;
 };
 
 struct LinearSplit {

@@ -56,12 +56,8 @@ void minimum(const float* e, float& roughness, float& error) {
 }  // namespace
 
 LitSamples::LitSamples(size_t vertices, const std::vector<SplitRow>& rows, std::vector<Vec3f> colors,
-                       BlurLadder& blurs, const std::vector<Vec3f>& light, bool even_diffuse)
-    : even_diffuse_(even_diffuse),
-      rows_(rows),
-      colors_(std::move(colors)),
-      light_height_(blurs.height()),
-      start_(vertices + 1, 0) {
+                       BlurLadder& blurs, const std::vector<Vec3f>& light)
+    : rows_(rows), colors_(std::move(colors)), light_height_(blurs.height()), start_(vertices + 1, 0) {
   light_directions_ = light_directions(sky_radiance(light_image(light, light_height_)));
   for (int level = 0; level < kLevels; ++level) blurs.level(level).apply(light, sky_[size_t(level)]);
   for (const SplitRow& r : rows) ++start_[nearest_vertex(r) + 1];
@@ -78,9 +74,7 @@ LitSamples::RowLight LitSamples::light_of(const SplitRow& row, float roughness) 
   };
   return {incident(ReflectionPart::base) * s.scale, incident(ReflectionPart::fresnel) * s.bias,
           row.diffuse_light * diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
-                                           even_diffuse_
-                                               ? even_light(max(row.nv, 0.0f))
-                                               : light_directions_.at(row.normal).towards(row.to_camera))};
+                                           light_directions_.at(row.normal).towards(row.to_camera))};
 }
 
 // Calls visit(row, its color, RowLight) for the vertex' samples. Returns their number.

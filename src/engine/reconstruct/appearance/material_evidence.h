@@ -24,7 +24,7 @@ class LitSamples {
  public:
   // colors: #rows, SplitSystem::targets(). The rows must outlive the object.
   LitSamples(size_t vertices, const std::vector<SplitRow>& rows, std::vector<Vec3f> colors, BlurLadder&,
-             const std::vector<Vec3f>& light, bool even_diffuse = false);
+             const std::vector<Vec3f>& light);
 
   // max_diffuse: #V, diffuse radiance of a white dielectric: the upper bound of D.
   MaterialEvidence evidence(const std::vector<Vec3f>& max_diffuse) const;
@@ -54,7 +54,6 @@ class LitSamples {
   template <class F>
   int for_samples(uint32_t vertex, float roughness, const F& visit) const;
 
-  bool even_diffuse_;  // LinearSplitOptions::even_diffuse
   const std::vector<SplitRow>& rows_;
   std::vector<Vec3f> colors_;
   int light_height_;

@@ -121,8 +121,7 @@ std::vector<Vec3f> SplitSolver::white_radiance(const SplitSolution& s, float alb
 }
 
 LitSamples SplitSolver::lit_samples(const SplitUnknowns& x) {
-  return LitSamples(mesh_.positions.size(), rows_, system_.targets(x), system_.blurs(), x.light,
-                    options_.even_diffuse);
+  return LitSamples(mesh_.positions.size(), rows_, system_.targets(x), system_.blurs(), x.light);
 }
 
 // A vertex far from all samples keeps its material.

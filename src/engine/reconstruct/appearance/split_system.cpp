@@ -50,10 +50,8 @@ SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {
   o.base_gain = f0 * o.split_sum.scale;
   const float bias = o.split_sum.bias * (1 - o.fresnel.open);
   o.far_gain = o.base_gain * (1 - o.base.open) + Vec3f{bias, bias, bias};
-  o.diffuse_view =
-      diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
-                   options_.even_diffuse ? even_light(max(row.nv, 0.0f))
-                                         : light_directions_.at(row.normal).towards(row.to_camera));
+  o.diffuse_view = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
+                                light_directions_.at(row.normal).towards(row.to_camera));
   return o;
 }
 
