@@ -30,10 +30,11 @@ constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
 // A light that was raised by more than this, so that nothing is whiter than white, is one of assumed
 // strength.
 constexpr float kAssumed = 1.1f;
-// And by more than this, one that has faded: reflections of wide lobes say nothing. It is sought again with a
-// usual roughness.
-constexpr float kFadedRoughness = 0.3f;
+// A light that was raised by more than this has faded in the separation: reflections in wide lobes said
+// nothing about it.
 constexpr float kFaded = 10;
+// Roughness with which a light that has faded is sought again.
+constexpr float kFadedRoughness = 0.3f;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
 constexpr double kSharedError = 0.1;
