@@ -4,9 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
+#include <typeinfo>
 #include <vector>
 
 #include "core/compute/device.h"
@@ -30,19 +33,61 @@ struct Case {
   std::function<std::vector<float>(const Device&)> run;
 };
 
-// Every device of this machine gives the numbers of the scalar one.
-inline void expect_parity(const Case& c) {
-  const std::vector<Device> devices = all_devices();
-  const std::vector<float> want = c.run(devices[0]);
+// Every device of this machine gives the numbers of the scalar one, up to `tolerance` of the largest.
+inline void expect_parity(const Case& c, double tolerance = 1e-5) {
+  const std::vector<float> want = c.run(make_device("cpu/scalar"));
   double scale = 1e-6;
-  for (float v : want) scale = std::max(scale, double(std::abs(v)));
-  for (const Device& device : devices) {
+  for (const float v : want) scale = std::max(scale, double(std::abs(v)));
+  for (const Device& device : all_devices()) {
     const std::vector<float> got = c.run(device);
-    double worst = 0;
-    for (size_t i = 0; i < want.size(); ++i) worst = std::max(worst, double(std::abs(got[i] - want[i])));
-    EXPECT_LT(worst / scale, 1e-5) << c.name << " on " << device.name();
+    ASSERT_EQ(got.size(), want.size());
+    const auto error_at = [&](size_t i) {
+      const double error = std::abs(double(got[i]) - want[i]) / scale;
+      return std::isnan(error) ? std::numeric_limits<double>::infinity() : error;
+    };
+    size_t worst = 0;
+    for (size_t i = 0; i < want.size(); ++i)
+      if (error_at(i) > error_at(worst)) worst = i;
+    EXPECT_LT(error_at(worst), tolerance) << c.name << " on " << device.name() << ": number " << worst
+                                          << " is " << got[worst] << " instead of " << want[worst];
+    testing::Test::RecordProperty(c.name + " on " + device.name(),
+                                  std::to_string(1e6 * error_at(worst)) + " millionths");
   }
 }
+
+namespace scalar {
+extern const LaunchTable table;
+}
+template <class K>
+inline int launches_of = 0;  // by a device of CountedEntries
+template <class K>
+void launch_counted(const void* args, int n) {
+  ++launches_of<K>;
+  scalar::table.kernels[kernel_index<K>()](args, n);
+}
+template <class List>
+struct CountedEntries;
+template <class... K>
+struct CountedEntries<KernelList<K...>> {
+  static constexpr void (*entries[])(const void*, int) = {&launch_counted<K>...};
+};
+
+// The names of those kernels that the cases do not launch.
+template <class... K>
+std::string never_launched(KernelList<K...>, const std::vector<Case>& cases) {
+  LaunchTable counting = scalar::table;
+  counting.kernels = CountedEntries<AllKernels>::entries;
+  ((launches_of<K> = 0), ...);
+  for (const Case& c : cases) c.run(Device(counting));
+  std::string names;
+  ((launches_of<K> > 0 ? names : names.append(typeid(K).name()).append(" ")), ...);
+  return names;
+}
+
+// Kernels whose cases are in shade_kernels_test.cpp.
+using ShadeKernels =
+    KernelList<SgFitResidual, SgFitGather, SgIrradiance, SgReflection, SgReflectionGrad, ReflectionLobes,
+               SgLobesGrad, Shade, ShadeGrad, SgMirror, SgMirrorGrad, SgMirrorLobesGrad>;
 
 // Another one for each sample.
 inline Mat3f sample_rotation(int i) {
