@@ -67,6 +67,10 @@ template <class T>
 HD Index<T> to_index(T a) {  // a >= 0
   return Index<T>(value_of(a));
 }
+template <>
+HD uint32_t to_index<float>(float a) {  // without double precision, which is slow on a GPU
+  return uint32_t(a);
+}
 
 // Loads and stores. Item i is one sample for a scalar T and the first of W consecutive samples for Lanes<W>.
 template <class T>
@@ -81,11 +85,17 @@ template <class T>
 HD T gather(const float* p, uint32_t i) {
   return T(p[i]);
 }
-// Two neighboring floats p[2 i], p[2 i + 1].
+// Two neighboring floats p[2 i], p[2 i + 1]; on a GPU, which loads both at once, p is aligned to 8 bytes.
 template <class T>
 HD void gather2(const float* p, uint32_t i, T& a, T& b) {
+#ifdef __CUDA_ARCH__
+  const float2 pair = reinterpret_cast<const float2*>(p)[i];
+  a = T(pair.x);
+  b = T(pair.y);
+#else
   a = T(p[2 * i]);
   b = T(p[2 * i + 1]);
+#endif
 }
 // Adds (a, b) to the pair p[2 i], p[2 i + 1]; on a GPU other threads may add to it at the same time.
 HD void scatter_add2(float* p, uint32_t i, float a, float b) {
