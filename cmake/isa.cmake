@@ -26,13 +26,4 @@ function(cei3d_instruction_sets path)
     target_compile_definitions(${target}_${isa} PRIVATE CEI3D_ISA=${isa} CEI3D_WIDTH=${width_${isa}})
     target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_${isa}>)
   endforeach()
-  find_program(NVCC nvcc HINTS /usr/local/cuda/bin)
-  if(CEI3D_CUDA AND NVCC AND EXISTS ${CMAKE_SOURCE_DIR}/src/${path}/cuda/run.cu)
-    file(GLOB kernels CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/${path}/kernels/*.h ${CMAKE_SOURCE_DIR}/src/core/math/*.h)
-    add_custom_command(OUTPUT ${CMAKE_BINARY_DIR}/cuda_run.o
-      COMMAND ${NVCC} -std=c++20 -O2 -arch=sm_90 --expt-relaxed-constexpr -I${CMAKE_SOURCE_DIR}/src -c
-              ${CMAKE_SOURCE_DIR}/src/${path}/cuda/run.cu -o ${CMAKE_BINARY_DIR}/cuda_run.o
-      DEPENDS ${CMAKE_SOURCE_DIR}/src/${path}/cuda/run.cu ${kernels} COMMENT "nvcc: the same kernels for CUDA")
-    add_custom_target(cuda_kernels ALL DEPENDS ${CMAKE_BINARY_DIR}/cuda_run.o)
-  endif()
 endfunction()

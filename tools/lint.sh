@@ -68,7 +68,7 @@ all_sources() { git ls-files 'src/*.cpp'; }
 
 check_tidy() { # changed|all
   local -a files
-  mapfile -t files < <("$1_sources" | grep -v '^src/core/compute/cpu/')
+  mapfile -t files < <("$1_sources" | grep -vE '^src/core/compute/(cpu|cuda)/')
   echo "${#files[@]} files"
   ((${#files[@]} == 0)) || printf '%s\n' "${files[@]}" |
     xargs -n 4 -P "$(nproc)" clang-tidy -p build/release --quiet --warnings-as-errors='*' 2>/dev/null

@@ -2,6 +2,9 @@
 #include "core/compute/device.h"
 
 #include "core/base/error.h"
+#ifdef CEI3D_CUDA_DEVICE
+#include "core/compute/cuda/device.h"
+#endif
 
 namespace cei3d {
 
@@ -19,7 +22,9 @@ extern const LaunchTable table;
 }
 #endif
 
-std::vector<Device> all_devices() {
+namespace {
+
+std::vector<Device> cpu_devices() {
   std::vector<Device> devices{Device(scalar::table)};
 #ifdef CEI3D_AVX2
   if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")) devices.emplace_back(avx2::table);
@@ -32,9 +37,19 @@ std::vector<Device> all_devices() {
   return devices;
 }
 
+}  // namespace
+
+std::vector<Device> all_devices() {
+  std::vector<Device> devices = cpu_devices();
+#ifdef CEI3D_CUDA_DEVICE
+  if (cuda::reason_for_no_card().empty()) devices.emplace_back(cuda::table);
+#endif
+  return devices;
+}
+
 Device make_device(std::string_view spec) {
+  if (spec == "auto" || spec == "cpu") return cpu_devices().back();
   const std::vector<Device> devices = all_devices();
-  if (spec == "auto" || spec == "cpu") return devices.back();
   for (const Device& d : devices)
     if (d.name() == spec) return d;
   std::string known;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The machine that kernels run on. A CPU device runs a launch on the calling thread; threads come from
-// cutting work into chunks with parallel_for. Devices have no state and can be shared by threads.
+// cutting work into chunks with parallel_for. A CUDA device (core/compute/cuda/device.h), which only the
+// programs of cmake/cuda.cmake have, runs it on the card and returns when it is done. Devices have no state
+// and can be shared by threads.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +20,10 @@ namespace cei3d {
 template <class K>
 constexpr int kernel_index();
 
-// What one instruction set offers: compiled from cpu/run.cpp.
+// What one instruction set offers: compiled from cpu/run.cpp, or from cuda/run.cu.
 struct LaunchTable {
-  const char* isa;  // "scalar", "avx2", "avx512"
-  int width;        // samples per register
+  const char* name;  // "cpu/scalar", "cpu/avx2", "cpu/avx512", "cuda"
+  int width;         // samples per register
   void (*const* kernels)(const void* args, int n);
   void (*linear)(const LinearArgs&);
   void (*linear_weight_grad)(const LinearWeightGradArgs&);
@@ -33,7 +35,7 @@ struct LaunchTable {
 
 class Device {
  public:
-  explicit Device(const LaunchTable& table) : table_(table), name_(std::string("cpu/") + table.isa) {}
+  explicit Device(const LaunchTable& table) : table_(table), name_(table.name) {}
   const std::string& name() const { return name_; }
   int width() const { return table_.width; }
 
@@ -55,10 +57,12 @@ class Device {
 };
 
 // spec: "auto" or "cpu" (the widest instruction set this processor has), "cpu/scalar", "cpu/avx2",
-// "cpu/avx512". Errors: usage error for anything else, or for an instruction set this processor lacks.
+// "cpu/avx512", or the name of another of all_devices(). Errors: usage error for anything else, or for an
+// instruction set this processor lacks.
 Device make_device(std::string_view spec = "auto");
 
-// Every CPU device this processor can run; the scalar one, the reference of parity tests, first.
+// Every CPU device this processor can run; the scalar one, the reference of parity tests, first. Last, in
+// programs that are built with CUDA and where there is a card, the CUDA device.
 std::vector<Device> all_devices();
 
 }  // namespace cei3d

@@ -126,8 +126,13 @@ double scatter_peak(float* pairs, uint32_t mask) {
 }  // namespace
 
 extern const LaunchTable table;
-const LaunchTable table{
-    CEI3D_TEXT(CEI3D_ISA), CEI3D_WIDTH, Table<AllKernels>::entries, linear, linear_weight_grad, fma_peak,
-    gather_peak,           scatter_peak};
+const LaunchTable table{"cpu/" CEI3D_TEXT(CEI3D_ISA),
+                        CEI3D_WIDTH,
+                        Table<AllKernels>::entries,
+                        linear,
+                        linear_weight_grad,
+                        fma_peak,
+                        gather_peak,
+                        scatter_peak};
 
 }  // namespace cei3d::CEI3D_ISA
