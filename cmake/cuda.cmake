@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-# The kernels on NVIDIA cards, in cei3d_cuda_test: the tests of core/compute with the card among the devices. Nothing else
-# links CUDA. It runs on other Linux machines of the same kind of processor: what it needs besides the C library is linked
-# statically.
+# The kernels on NVIDIA cards, in two programs: cei3d_cuda_test, the tests of core/compute with the card among the
+# devices, and cei3d_cuda_bench. Nothing else links CUDA. Both run on other Linux machines of the same kind of processor:
+# what they need besides the C library is linked statically, but oneTBB, which they look for beside themselves, too.
 
 # cei3d_cu(source object): compiled for cards of capability 9.0, and as PTX for all others from 7.5 on.
 function(cei3d_cu source object)
@@ -53,6 +53,12 @@ function(cei3d_cuda path)
   endif()
   set(folder ${CMAKE_SOURCE_DIR}/src/${path}/cuda)
   cei3d_cuda_library(${path} ${folder})
+
+  cei3d_cu(${folder}/bench.cu ${CMAKE_BINARY_DIR}/cuda_bench.o)
+  set(threads ${CMAKE_SOURCE_DIR}/src/core/base/parallel.cpp ${CMAKE_SOURCE_DIR}/src/core/base/parallel_for.cpp)
+  add_executable(cei3d_cuda_bench EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/cuda_bench.o ${folder}/bench_report.cpp ${threads})
+  cei3d_cuda_program(cei3d_cuda_bench)
+  target_link_libraries(cei3d_cuda_bench PRIVATE TBB::tbb)
 
   if(CEI3D_TESTS)
     file(GLOB tests CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/${path}/*_test.cpp)
