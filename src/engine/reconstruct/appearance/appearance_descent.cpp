@@ -5,8 +5,8 @@
 
 #include "core/base/cancel.h"
 #include "core/math/rng.h"
-#include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/reconstruct/appearance/pixel_points.h"
+#include "engine/reconstruct/appearance/sample_grad.h"
 #include "model/geometry/shape/vec_tensors.h"
 #include "model/scene/stored.h"
 

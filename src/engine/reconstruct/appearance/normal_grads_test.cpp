@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/math/loss.h"
 #include "core/math/rng.h"
-#include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/render/render.h"
 #include "engine/render/sphere_scene.h"
 #include "model/geometry/shape/sdf_normals.h"

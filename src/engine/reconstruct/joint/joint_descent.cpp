@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/math/loss.h"
 #include "core/math/rng.h"
-#include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/reconstruct/appearance/pixel_points.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
 #include "model/geometry/shape/trace_field.h"
@@ -178,7 +178,7 @@ double JointDescent::color_loss(uint32_t sample, Vec3f radiance, Vec3f& d_radian
     const bool clipped = input_.samples.is_clipped(sample, c);
     const LossValue<float> loss = options_.color == ColorLoss::display
                                       ? display_loss(radiance[c], photo, clipped)
-                                      : absolute_loss(radiance[c], photo, clipped);
+                                      : linear_loss(radiance[c], photo, clipped);
     sum += double(weight) * loss.value;
     d_radiance[c] = weight * loss.gradient;
   }
