@@ -126,7 +126,7 @@ template <class T>
 HD ReflectionGains<T> reflection_gains(SplitSum<T> s, Vec3<T> f0) {
   return {f0 * s.scale, s.bias};
 }
-// The same as a function of F0, for given radiance along the lobes.
+// The reflection of a point as a function of F0, for given radiance along the lobes.
 template <class T>
 struct ReflectedParts {
   Vec3<T> base;     // per unit of F0

@@ -138,7 +138,7 @@ Chunk read_chunk(const pugi::xml_node& node, const std::string& file) {
   return chunk;
 }
 
-// Those that are switched on; cameras may stand in groups.
+// Finds the cameras that are switched on; they may stand in groups.
 void collect_cameras(const pugi::xml_node& node, std::vector<pugi::xml_node>& out) {
   for (const pugi::xml_node c : node.children())
     if (std::string_view(c.name()) == "group")
