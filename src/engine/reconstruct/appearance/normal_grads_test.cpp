@@ -70,7 +70,7 @@ class NormalGradsTest : public testing::Test {
     const Shading s = lighting_->shade({hits, materials}, albedo);
     double sum = 0;
     for (size_t i = 0; i < hits.size(); ++i)
-      for (int c = 0; c < 3; ++c) sum += display_loss(s.diffuse[i][c] + s.specular[i][c], 2).value;
+      for (int c = 0; c < 3; ++c) sum += display_loss(s.diffuse[i][c] + s.specular[i][c], 2.0f).value;
     return kWeight * sum / double(hits.size());
   }
 
