@@ -41,6 +41,12 @@ void add_networks(CLI::App* verb, NetworkFiles& files) {
       ->check(CLI::ExistingFile);
 }
 
+void add_samples(CLI::App* verb, int& samples) {
+  verb->add_option("--samples", samples, "Samples per pixel and axis; twice as many at the silhouette")
+      ->check(CLI::Range(1, 16))
+      ->capture_default_str();
+}
+
 void add_residual_switch(CLI::App* verb, bool& on) {
   verb->add_flag_callback(
       "--no-residual", [&on] { on = false; },
@@ -65,10 +71,7 @@ void add_eval(Commands& commands) {
           },
           "Write the scores as JSON to this file, or print them when no file is given")
       ->expected(0, 1);
-  verb->add_option("--samples", o->request.samples,
-                   "Samples per pixel and axis; twice as many at the silhouette")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
+  add_samples(verb, o->request.samples);
   add_residual_switch(verb, o->request.residual);
   verb->add_option(
       "--edit", o->request.edit,

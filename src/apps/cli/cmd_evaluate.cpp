@@ -220,10 +220,7 @@ void add_evaluate(Commands& commands) {
   verb->add_flag("--boards", o->boards,
                  "Also write boards for a user study: the painted object by each method, in an order that "
                  "boards/key.json tells");
-  verb->add_option("--samples", o->request.samples,
-                   "Samples per pixel and axis; twice as many at the silhouette")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
+  add_samples(verb, o->request.samples);
   add_networks(verb, o->request.networks);
   commands.on(verb, o, evaluate);
 }

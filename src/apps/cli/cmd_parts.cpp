@@ -46,9 +46,7 @@ void add_parts(Commands& commands) {
   CLI::Option* out = verb->add_option(
       "-o,--output", o->out, "Folder for the masks: DIR/VIEW.png, gray, coverage of each pixel by the part");
   CLI::Option* part = verb->add_option("--part", o->part, "Name of the part");
-  verb->add_option("--samples", o->samples, "Samples per pixel and axis; twice as many at the silhouette")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
+  add_samples(verb, o->samples);
   masks_option->needs(out)->needs(part);
   out->needs(masks_option);
   commands.on(verb, o, [](const Options& options, Session& session, Console& console) {

@@ -68,9 +68,7 @@ void add_render(Commands& commands) {
   verb->add_option(
       "--size", o->size,
       "Image size, WxH pixels; the horizontal field of view is kept (default: that of the cameras)");
-  verb->add_option("--samples", o->samples, "Samples per pixel and axis; twice as many at the silhouette")
-      ->check(CLI::Range(1, 16))
-      ->capture_default_str();
+  add_samples(verb, o->samples);
   CLI::Option* env =
       verb->add_option(
               "--env", o->env,

@@ -60,6 +60,7 @@ class Commands {
 
 void add_networks(CLI::App* verb, NetworkFiles&);    // --lpips-model, --fid-model
 void add_residual_switch(CLI::App* verb, bool& on);  // --no-residual
+void add_samples(CLI::App* verb, int& samples);      // --samples
 
 void add_check(Commands&);
 void add_capture(Commands&);

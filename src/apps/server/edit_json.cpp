@@ -5,6 +5,7 @@
 
 #include "core/base/json.h"
 #include "model/geometry/shape/camera_json.h"
+#include "model/geometry/shape/vec_json.h"
 
 namespace cei3d {
 namespace {
@@ -47,11 +48,6 @@ Enum named(JsonReader& j, const char* key, std::optional<Enum> (*from_name)(cons
 Vec2<double> pixel_from(JsonReader& j, const char* key) {
   const auto [x, y] = j.numbers<2>(key);
   return {x, y};
-}
-
-Vec3d point_from(JsonReader& j, const char* key) {
-  const auto [x, y, z] = j.numbers<3>(key);
-  return {x, y, z};
 }
 
 std::vector<Vec2<double>> pixels_from(JsonReader& j, const char* key) {
@@ -100,8 +96,8 @@ PaintCommand paint_from(JsonReader& j, const Uploads& uploads) {
 }
 
 PointDrag drag_from(JsonReader& j) {
-  PointDrag d{point_from(j, "from"), point_from(j, "to")};
-  if (j.has("turn")) d.turn = point_from(j, "turn");
+  PointDrag d{vector_from(j, "from"), vector_from(j, "to")};
+  if (j.has("turn")) d.turn = vector_from(j, "turn");
   return d;
 }
 
@@ -116,7 +112,7 @@ void read_more_points(JsonReader& j, DeformCommand& c) {
   for (const Json& pin : j.array("pins")) {
     const Json named = {{"at", pin}};
     JsonReader reader(named, "A pin");
-    c.pins.push_back(point_from(reader, "at"));
+    c.pins.push_back(vector_from(reader, "at"));
   }
 }
 
@@ -205,7 +201,7 @@ LightChoice light_choice(JsonReader& j, const Uploads& uploads) {
     c.convention = named(j, "env_convention", env_convention_from_name, name->c_str());
   if (!j.has("sun")) return c;
   JsonReader sun = j.object("sun");
-  c.sun = Sun{point_from(sun, "direction"), sun.optional("strength", 1.0)};
+  c.sun = Sun{vector_from(sun, "direction"), sun.optional("strength", 1.0)};
   sun.finish();
   return c;
 }

@@ -22,7 +22,7 @@ struct LibraryEntry {
 
 // None: neither a project nor a capture. A damaged capture is one, with its problem.
 std::optional<LibraryEntry> entry_at(const std::filesystem::path&);
-// Those directly below a folder, by name; symbolic links that lead out of it are left out.
+// The entries directly below a folder, by name; symbolic links that lead out of it are left out.
 std::vector<LibraryEntry> entries_below(const std::filesystem::path&);
 // The sample capture that comes with the program; none: it is not there.
 std::optional<std::filesystem::path> sample_capture();

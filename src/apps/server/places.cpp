@@ -12,14 +12,13 @@
 #include "engine/segment/sam.h"
 #include "engine/session/version.h"
 #include "model/geometry/shape/camera_json.h"
+#include "model/geometry/shape/vec_json.h"
 #include "model/material/presets.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
-
-Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
 // As the page shows it: without the pictures and cameras of strokes.
 Json entry_json(const LogEntry& e) {

@@ -38,7 +38,7 @@ std::string range_text(const SettingInfo&);  // "1 to 100, a multiple of 4", "tr
 // {"set": {"key": value, ...}}. Usage errors: another form, an unknown key (the nearest one is named), a
 // value that its setting does not allow. Errors: a file that cannot be read, that has another key than "set".
 void add_setting(std::span<const SettingInfo> known, const std::string& written, Json& values);
-// The same checks of values that were stored.
+// Checks stored values as add_setting() checks written ones.
 void check_settings(std::span<const SettingInfo> known, const Json& values);
 
 // The settings in a struct Target.

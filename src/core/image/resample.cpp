@@ -57,6 +57,13 @@ Image scaled_to(const Image& image, int width, int height) {
   return out;
 }
 
+Image cropped(const Image& image, const PixelBox& box) {
+  Image out(box.width, box.height, image.channels);
+  for (int y = 0; y < box.height; ++y)
+    std::copy_n(image.at(box.x0, box.y0 + y), size_t(box.width) * image.channels, out.at(0, y));
+  return out;
+}
+
 Image turned(Image image, int orientation) {
   if (orientation < 5 || orientation > 8) return image;
   const int w = image.width, h = image.height;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Downscaling of images.
+// Images scaled, cropped and turned.
 #pragma once
 
 #include "core/image/image.h"
+#include "core/math/pixel_box.h"
 
 namespace cei3d {
 
@@ -13,6 +14,9 @@ Image downscale(const Image& image, int n);
 
 // Bilinear, at the centers of the new pixels.
 Image scaled_to(const Image& image, int width, int height);
+
+// The part of the image in a box within it.
+Image cropped(const Image& image, const PixelBox& box);
 
 // The image as it should be shown by its EXIF orientation, 5 to 8, which swaps its sides; others: as it is.
 Image turned(Image image, int orientation);

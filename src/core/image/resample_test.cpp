@@ -44,6 +44,15 @@ TEST(ScaledTo, KeepsARamp) {
   for (int x = 1; x < 15; ++x) EXPECT_FLOAT_EQ(*large.at(x, 3), (float(x) + 0.5f) / 2);
 }
 
+TEST(Cropped, HasThePixelsOfTheBox) {
+  Image image(3, 2, 2);
+  for (size_t i = 0; i < image.data.size(); ++i) image.data[i] = float(i);  // 01 23 45 / 67 89 1011
+  const Image part = cropped(image, {1, 1, 2, 1});
+  EXPECT_EQ(part.width, 2);
+  EXPECT_EQ(part.height, 1);
+  EXPECT_EQ(part.data, (std::vector<float>{8, 9, 10, 11}));
+}
+
 // Each orientation by where it moves the corners.
 TEST(Turned, MovesCornersAsExifSays) {
   Image image(3, 2, 1);

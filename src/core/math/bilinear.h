@@ -16,7 +16,7 @@ template <class T, class V = T>
 HD V bilinear(const SquareCorners<V>& v, T x, T y) {
   return (T(1) - y) * ((T(1) - x) * v.a + x * v.b) + y * ((T(1) - x) * v.c + x * v.d);
 }
-// Its derivatives by x and y.
+// The derivatives of bilinear() by x and y.
 template <class T>
 HD T bilinear_d_x(const SquareCorners<T>& v, T y) {
   return (T(1) - y) * (v.b - v.a) + y * (v.d - v.c);

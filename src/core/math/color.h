@@ -6,12 +6,15 @@
 
 namespace cei3d {
 
-inline float srgb_from_linear(float c) {
-  return c <= 0.0031308f ? 12.92f * c : 1.055f * ::powf(c, 1 / 2.4f) - 0.055f;
+// The display curve, for scalars and dual numbers.
+template <class T>
+HD T srgb_from_linear(T c) {
+  return select(c <= T(0.0031308f), T(12.92f) * c, T(1.055f) * pow(c, 1 / 2.4f) - T(0.055f));
 }
 // d srgb / d linear.
-inline float srgb_derivative(float linear) {
-  return linear <= 0.0031308f ? 12.92f : 1.055f / 2.4f * ::powf(linear, 1 / 2.4f - 1);
+template <class T>
+HD T srgb_derivative(T linear) {
+  return select(linear <= T(0.0031308f), T(12.92f), T(1.055f / 2.4f) * pow(linear, 1 / 2.4f - 1));
 }
 inline float linear_from_srgb(float c) {
   return c <= 0.04045f ? c / 12.92f : ::powf((c + 0.055f) / 1.055f, 2.4f);

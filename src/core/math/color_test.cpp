@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "core/math/dual.h"
+
 namespace cei3d {
 namespace {
 
@@ -13,6 +15,14 @@ TEST(Color, TheSlopeOfTheDisplayCurveEqualsItsDifferences) {
     const float h = 0.01f * c;
     const double slope = double(srgb_from_linear(c + h) - srgb_from_linear(c - h)) / (2 * double(h));
     EXPECT_NEAR(srgb_derivative(c), slope, 0.005 * slope) << c;
+  }
+}
+
+TEST(Color, TheSlopeOfTheDisplayCurveEqualsDualNumbers) {
+  using D = Dual<double>;
+  for (const double c : {0.001, 0.01, 0.1, 0.5, 0.9, 2.0}) {
+    const double slope = srgb_from_linear(D(c, 1)).derivative;
+    EXPECT_NEAR(srgb_derivative(c), slope, 1e-6 * slope) << c;
   }
 }
 

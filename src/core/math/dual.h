@@ -77,6 +77,10 @@ Dual<T> log1p(Dual<T> a) {
   return {log1p(a.value), a.derivative / (T(1.0f) + a.value)};
 }
 template <class T>
+Dual<T> pow(Dual<T> a, float exponent) {
+  return {pow(a.value, exponent), a.derivative * T(exponent) * pow(a.value, exponent - 1)};
+}
+template <class T>
 Dual<T> sin(Dual<T> a) {
   return {sin(a.value), a.derivative * cos(a.value)};
 }

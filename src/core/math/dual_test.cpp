@@ -15,6 +15,7 @@ TEST(Dual, FirstDerivativesAreThoseOfTheTextbook) {
   EXPECT_NEAR(derivative_of(sqrt(x) / log(x + D(1.0))),
               0.5 / std::sqrt(0.7) / std::log(1.7) - std::sqrt(0.7) / (1.7 * std::log(1.7) * std::log(1.7)),
               1e-14);
+  EXPECT_NEAR(derivative_of(pow(x, 2.5f)), 2.5 * std::pow(0.7, 1.5), 1e-14);
   EXPECT_DOUBLE_EQ(derivative_of(abs(D(-2.0, 1.0))), -1);
   EXPECT_DOUBLE_EQ(derivative_of(max(x, D(1.0))), 0);
   EXPECT_DOUBLE_EQ(derivative_of(floor(x)), 0);

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/math/dual.h"
 
 namespace cei3d {
@@ -36,6 +38,69 @@ TEST(Huber, OfAColorIsTheSumOverItsChannels) {
     expect_gradient(error, [](auto v) { return huber(v, decltype(v.x)(0.05)); });
     EXPECT_DOUBLE_EQ(huber(error, 0.05).value,
                      huber(e, 0.05).value + huber(0.02, 0.05).value + huber(-0.3, 0.05).value);
+  }
+}
+
+TEST(Huber, WeightIsTheGradientOverTheError) {
+  for (double e : kErrors) EXPECT_NEAR(huber_weight(e, 0.05) * e / 0.05, huber(e, 0.05).gradient, 1e-12);
+  EXPECT_EQ(huber_weight(0.0, 0.05), 1);
+}
+
+TEST(Absolute, GradientEqualsDualNumbersAndIsZeroAtZero) {
+  for (double e : kErrors) EXPECT_EQ(absolute(e).gradient, absolute(D(e, 1)).value.derivative);
+  EXPECT_EQ(absolute(0.0).gradient, 0);
+}
+
+// Expects the gradient of loss(T radiance, T photo, bool clipped) to equal that of dual numbers, and a
+// clipped channel to pull up only.
+template <class Loss>
+void expect_loss_of_radiance(const Loss& loss) {
+  for (double radiance : {0.005, 0.02, 0.18, 0.21, 0.7, 1.4})
+    for (double photo : {0.001, 0.2, 0.9}) {
+      const LossValue<D> dual = loss(D(radiance, 1), D(photo), false);
+      const double slope = dual.value.derivative;
+      EXPECT_NEAR(loss(radiance, photo, false).gradient, slope, 1e-6 * (1 + std::abs(slope)))
+          << radiance << ' ' << photo;
+      EXPECT_EQ(loss(radiance, photo, false).value, dual.value.value);
+    }
+  EXPECT_EQ(loss(1.3, 1.0, true).value, 0);
+  EXPECT_EQ(loss(1.3, 1.0, true).gradient, 0);
+  EXPECT_GT(loss(1.3, 1.0, false).gradient, 0);
+  EXPECT_LT(loss(0.6, 1.0, true).gradient, 0);
+}
+
+TEST(DisplayLoss, GradientEqualsDualNumbersAboveTheDarkest) {
+  expect_loss_of_radiance([](auto... x) { return display_loss(x...); });
+}
+
+TEST(LinearLoss, GradientEqualsDualNumbers) {
+  expect_loss_of_radiance([](auto... x) { return linear_loss(x...); });
+}
+
+TEST(DisplayLoss, HasTheSlopeOfTheDarkestBelowIt) {
+  const double least = display_loss(1e-4, 0.9).gradient;
+  EXPECT_DOUBLE_EQ(display_loss(0.0039, 0.9).gradient, least);
+  EXPECT_DOUBLE_EQ(display_loss(-0.1, 0.9).gradient, least);
+  EXPECT_LT(least, display_loss(0.0041, 0.9).gradient);
+}
+
+TEST(CrossEntropy, GradientEqualsDualNumbers) {
+  for (double y : {1e-3, 0.2, 0.5, 0.999})
+    for (double wanted : {0.0, 0.3, 1.0}) {
+      const LossValue<D> dual = cross_entropy(D(y, 1), D(wanted));
+      EXPECT_NEAR(cross_entropy(y, wanted).gradient, dual.value.derivative,
+                  1e-9 * std::abs(dual.value.derivative) + 1e-9);
+    }
+}
+
+TEST(CrossEntropy, BehindASigmoidHasTheErrorAsGradientAndIsFiniteAtTheEdges) {
+  for (double z : {-6.0, -0.5, 0.0, 2.0}) {
+    const ActivationValue<double> y = Sigmoid::eval(z, 0);
+    EXPECT_NEAR(cross_entropy(y.value, 0.3).gradient * y.first, y.value - 0.3, 1e-9);
+  }
+  for (float y : {0.0f, 1.0f}) {
+    EXPECT_TRUE(std::isfinite(cross_entropy(y, 0.3f).value));
+    EXPECT_TRUE(std::isfinite(cross_entropy(y, 0.3f).gradient));
   }
 }
 

@@ -104,14 +104,49 @@ HD T base_share(SplitSum<T> s, T specular, T metalness) {
   return f0 * s.scale / max(reflectance(s, f0), T(1e-6f));
 }
 
+// The mean over both lobes of something that each of them has; share: base_share().
+template <class T, class V>
+HD V mean_of_lobes(T share, V base, V fresnel) {
+  return base * share + fresnel * (T(1.0f) - share);
+}
+
+// The reflection of a point is F0 * scale * (radiance along the base lobe) + bias * (radiance along
+// Fresnel's), which is mean_of_lobes() times reflectance() if F0 is the one that base_share() takes. As a
+// function of the radiance:
+template <class T>
+struct ReflectionGains {
+  Vec3<T> base;
+  T fresnel;
+  // Adds the reflection of the mean radiance along the lobes to `sum`.
+  HD Vec3<T> added_to(Vec3<T> sum, Vec3<T> base_radiance, Vec3<T> fresnel_radiance) const {
+    return sum + base * base_radiance + fresnel_radiance * fresnel;
+  }
+};
+template <class T>
+HD ReflectionGains<T> reflection_gains(SplitSum<T> s, Vec3<T> f0) {
+  return {f0 * s.scale, s.bias};
+}
+// The reflection of a point as a function of F0, for given radiance along the lobes.
+template <class T>
+struct ReflectedParts {
+  Vec3<T> base;     // per unit of F0
+  Vec3<T> fresnel;  // whatever F0 is
+  HD Vec3<T> sum(Vec3<T> f0) const { return base * f0 + fresnel; }
+  HD Vec3<T> removed_from(Vec3<T> color, Vec3<T> f0) const { return color - fresnel - base * f0; }
+};
+template <class T>
+HD ReflectedParts<T> reflected_parts(SplitSum<T> s, Vec3<T> base_radiance, Vec3<T> fresnel_radiance) {
+  return {base_radiance * s.scale, fresnel_radiance * s.bias};
+}
+
 struct ReflectionTables {
   const float* split_sum;
   PartTables base, fresnel;
 };
 ReflectionTables reflection_tables();  // on the host
 
-// The two lobes of a surface point. Their weighted sum of incident radiance is the mean radiance over the
-// reflection lobe, which the reflectance multiplies.
+// The two lobes of a surface point. The mean_of_lobes() of the radiance along them is the mean radiance over
+// the reflection lobe, which the reflectance multiplies.
 template <class T>
 struct SurfaceReflection {
   LobeFrame<T> base, fresnel;

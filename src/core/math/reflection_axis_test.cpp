@@ -155,6 +155,21 @@ void expect_adjoint(Vec3d n, Vec3d v, double roughness, double metalness) {
   }
 }
 
+// The split sum over both lobes is the reflectance times the mean radiance.
+TEST(ReflectionAxis, ReflectionIsTheSameByGainsByPartsAndByTheMean) {
+  const Vec3d base{2, 0.3, 0.9}, fresnel{0.1, 1.5, 0.4};
+  for (const double metalness : {0.0, 1.0})
+    for (const double nv : {0.1, 0.5, 0.95}) {
+      const SplitSum<double> s = split_sum(split_sum_table(), nv, 0.4);
+      const Vec3d albedo{kMetalF0, kMetalF0, kMetalF0}, f0 = f0_of(albedo, 0.5, metalness), white{1, 1, 1};
+      const Vec3d want = mean_of_lobes(base_share(s, 0.5, metalness), base, fresnel) * reflectance(s, f0);
+      EXPECT_NEAR(length(reflection_gains(s, f0).added_to(white, base, fresnel) - white - want), 0, 1e-12);
+      const ReflectedParts<double> parts = reflected_parts(s, base, fresnel);
+      EXPECT_NEAR(length(parts.sum(f0) - want), 0, 1e-12);
+      EXPECT_NEAR(length(parts.removed_from(white, f0) + want - white), 0, 1e-12);
+    }
+}
+
 TEST(ReflectionAxis, AdjointEqualsDualNumbersInEveryArgument) {
   for (uint64_t i = 0; i < 20; ++i) {
     Rng rng(5, 0, i);

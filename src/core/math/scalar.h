@@ -48,6 +48,9 @@ HD void sin_cos(T x, T& s, T& c) {
   s = sin(x);
   c = cos(x);
 }
+// For a constant exponent; not for Lanes.
+HD float pow(float a, float exponent) { return ::powf(a, exponent); }
+HD double pow(double a, float exponent) { return ::pow(a, double(exponent)); }
 HD float floor(float a) { return ::floorf(a); }
 HD double floor(double a) { return ::floor(a); }
 

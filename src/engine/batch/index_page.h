@@ -9,8 +9,8 @@
 
 namespace cei3d {
 
-// rows: as in index.json, in the order in which they are shown. Pages after the first are called NAME-2.html,
-// ...
+// rows: as in index.json, in the order in which they are shown. The second page is called NAME-2.html, and so
+// on.
 void write_index_pages(const std::vector<Json>& rows, const std::filesystem::path& catalog,
                        const std::filesystem::path& out);
 

@@ -23,8 +23,8 @@ class ItemProgress : public Progress {
   const BatchAttempt& attempt_;
 };
 
-// Makes what is not done yet and publishes it step by step. Returns what the steps found: {"figures": {...},
-// ...}, with "seconds" in each. Errors: as the steps; again: another worker has taken over.
+// Makes what is not done yet and publishes it step by step. Returns what the steps found, by their names,
+// such as "figures", with "seconds" in each. Errors: as the steps; again: another worker has taken over.
 Json make_item(const BatchSteps&, BatchAttempt&, Session&, Progress&);
 
 }  // namespace cei3d

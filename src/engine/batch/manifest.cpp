@@ -63,7 +63,7 @@ std::string jsonl_text(const std::string& bytes, const fs::path& file, const fs:
 BatchManifest BatchManifest::read(const fs::path& file) {
   const fs::path base = fs::absolute(file).parent_path();
   const std::string bytes = read_file(file);
-  // Those in a catalog are as this program writes them.
+  // Manifests in a catalog are as this program writes them.
   if (base.filename() == "manifests" && file.stem() == content_hash(bytes)) return {bytes, file.string()};
   if (file.extension() != ".csv") return {jsonl_text(bytes, file, base), file.string()};
   std::string text;

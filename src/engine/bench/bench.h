@@ -55,7 +55,7 @@ struct BenchReport {
 // Errors: capture or project cannot be read; cancelled.
 BenchReport run_bench(Session&, const BenchRequest&, Progress&);
 
-// Its parts. Kernels and peaks: one core. Fields, training and object: all threads.
+// The parts of run_bench(). Kernels and peaks: one core. Fields, training and object: all threads.
 std::vector<BenchFigure> bench_kernels(const Device&, int repeats);
 std::vector<BenchFigure> bench_fields(const Device&, int repeats, Progress&);
 struct TrainingBench {

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Training steps of distance fields alone: values and gradients at random points, the eikonal loss back to
 // the parameters, Adam. bench/peer_torch times the same in PyTorch.
-#include <cmath>
-
 #include "core/base/cancel.h"
+#include "core/math/loss.h"
 #include "core/math/rng.h"
 #include "engine/bench/bench.h"
 #include "engine/reconstruct/presets.h"
@@ -27,8 +26,7 @@ std::vector<Vec3f> random_points() {
 void step(const Device& device, FieldTrainer& trainer, std::span<const Vec3f> points) {
   const float weight = 1.0f / float(points.size());
   trainer.accumulate_jets(device, points, [&](int, const FieldJet& jet) {
-    const float slope = std::max(length(jet.gradient), 1e-9f);
-    return FieldJet{std::copysign(weight, jet.value), (2 * weight * (slope - 1) / slope) * jet.gradient};
+    return FieldJet{weight * absolute(jet.value).gradient, eikonal(jet.gradient).gradient * weight};
   });
   trainer.update(device);
 }

@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "engine/capture/capture_format.h"
-#include "engine/capture/picture_index.h"
+#include "engine/capture/photograph_index.h"
 #include "engine/capture/words.h"
 
 namespace cei3d {
@@ -145,14 +145,14 @@ Capture load_meshroom(const fs::path& path) {
   Capture capture;
   capture.root = file.parent_path();
   capture.format = "meshroom";
-  const PictureIndex pictures(capture.root);
+  const PhotographIndex photographs(capture.root);
   for (const auto& [id, v] : views) {
     const std::string where = fmt::format("View {} of {}", id, file.string());
     const auto pose = poses.find(text_in(*v, "poseId")), k = intrinsics.find(text_in(*v, "intrinsicId"));
     if (pose == poses.end() || k == intrinsics.end()) continue;  // not reconstructed
     const Intrinsics in = read_intrinsics(*k->second, version, fmt::format("Intrinsics of {}", where));
     View view;
-    view.image_path = pictures.find(text_in(*v, "path"));
+    view.image_path = photographs.find(text_in(*v, "path"));
     view.name = view_name(view.image_path.filename().string(), Split::train);
     view.camera = in.k;
     set_pose(view.camera, *pose->second, where);

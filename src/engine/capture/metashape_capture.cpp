@@ -9,7 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "engine/capture/capture_format.h"
-#include "engine/capture/picture_index.h"
+#include "engine/capture/photograph_index.h"
 #include "engine/capture/words.h"
 
 namespace cei3d {
@@ -138,7 +138,7 @@ Chunk read_chunk(const pugi::xml_node& node, const std::string& file) {
   return chunk;
 }
 
-// Those that are switched on; cameras may stand in groups.
+// Finds the cameras that are switched on; they may stand in groups.
 void collect_cameras(const pugi::xml_node& node, std::vector<pugi::xml_node>& out) {
   for (const pugi::xml_node c : node.children())
     if (std::string_view(c.name()) == "group")
@@ -147,7 +147,7 @@ void collect_cameras(const pugi::xml_node& node, std::vector<pugi::xml_node>& ou
       out.push_back(c);
 }
 
-View view_of(const pugi::xml_node& c, const Chunk& chunk, const PictureIndex& pictures,
+View view_of(const pugi::xml_node& c, const Chunk& chunk, const PhotographIndex& photographs,
              const std::string& file) {
   const std::string label = c.attribute("label").as_string();
   const std::string where = fmt::format("Camera {} of {}", label, file);
@@ -157,7 +157,7 @@ View view_of(const pugi::xml_node& c, const Chunk& chunk, const PictureIndex& pi
   const auto placed = chunk.components.find(c.attribute("component_id").as_string());
   View view;
   view.name = view_name(with_slashes(label), Split::train);
-  view.image_path = pictures.find(label);
+  view.image_path = photographs.find(label);
   view.camera = sensor->second.k;
   set_pose(view.camera, c.child("transform"),
            placed == chunk.components.end() ? Similarity() : placed->second, where);
@@ -181,13 +181,13 @@ Capture load_metashape(const fs::path& path) {
   Capture capture;
   capture.root = file.parent_path();
   capture.format = "metashape";
-  const PictureIndex pictures(capture.root);
+  const PhotographIndex photographs(capture.root);
   size_t unaligned = 0;
   std::vector<pugi::xml_node> cameras;
   collect_cameras(node.child("cameras"), cameras);
   for (const pugi::xml_node& c : cameras)
     if (c.child("transform"))
-      capture.views.push_back(view_of(c, chunk, pictures, file.string()));
+      capture.views.push_back(view_of(c, chunk, photographs, file.string()));
     else
       ++unaligned;
   if (unaligned > 0)

@@ -6,7 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "engine/capture/capture_format.h"
-#include "engine/capture/picture_index.h"
+#include "engine/capture/photograph_index.h"
 #include "engine/capture/words.h"
 
 namespace cei3d {
@@ -74,13 +74,13 @@ Mat3d rotation_of(double heading, double pitch, double roll) {
 }
 
 // f is that of a frame 36 units wide, along the longer side; px, py are parts of that side from the middle.
-View view_of(const Row& row, const PictureIndex& pictures, const std::string& where) {
+View view_of(const Row& row, const PhotographIndex& photographs, const std::string& where) {
   const std::string& name = row.at("name");
   if (name.empty()) fail("{} has no image name.", where);
   const auto number = [&](const char* column) { return number_in(row, column, where); };
   View view;
   view.name = view_name(with_slashes(name), Split::train);
-  view.image_path = pictures.find(name);
+  view.image_path = photographs.find(name);
   Camera& c = view.camera;
   const ImageSize size = size_of_image(view.image_path);
   c.width = size.width, c.height = size.height;
@@ -110,7 +110,7 @@ Capture load_realitycapture(const fs::path& path) {
   Capture capture;
   capture.root = file.parent_path();
   capture.format = "realitycapture";
-  const PictureIndex pictures(capture.root);
+  const PhotographIndex photographs(capture.root);
   const std::string text = read_file(file);
   Lines lines(text);
   for (lines.next(); lines.next_data();) {
@@ -119,7 +119,7 @@ Capture load_realitycapture(const fs::path& path) {
     if (cells.size() < columns.size()) fail("{} has {} of {} columns.", where, cells.size(), columns.size());
     Row row;
     for (size_t i = 0; i < columns.size(); ++i) row[columns[i]] = cells[i];
-    capture.views.push_back(view_of(row, pictures, where));
+    capture.views.push_back(view_of(row, photographs, where));
   }
   return capture;
 }

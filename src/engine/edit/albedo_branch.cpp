@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/base/cancel.h"
+#include "core/math/loss.h"
 #include "core/math/rng.h"
 
 namespace cei3d {
@@ -39,16 +40,22 @@ struct Batch {
   }
 };
 
-// Gradient of the mean cross entropy. Through the sigmoid it becomes out - target, so dark and saturated
-// colors, where the sigmoid is flat, are learned as fast as others.
-FieldTrainer::Loss cross_entropy(const std::vector<Vec3f>& target) {
-  return [&target](int begin, int end, const float* out, float* d_out) {
+// The sum over all channels of a loss of a channel and of the one that is wanted, over `count`.
+template <class Loss>
+FieldTrainer::Loss mean_loss(const std::vector<Vec3f>& target, float count, const Loss& loss) {
+  return [&target, count, loss](int begin, int end, const float* out, float* d_out) {
     for (int i = begin; i < end; ++i)
       for (int c = 0; c < 3; ++c) {
         const int k = 3 * (i - begin) + c;
-        d_out[k] = (out[k] - target[i][c]) / (max(out[k] * (1 - out[k]), 1e-6f) * float(target.size()));
+        d_out[k] = loss(out[k], target[i][c]).gradient / count;
       }
   };
+}
+
+// Mean over the points.
+FieldTrainer::Loss cross_entropy_of(const std::vector<Vec3f>& target) {
+  return mean_loss(target, float(target.size()),
+                   [](float y, float wanted) { return cross_entropy(y, wanted); });
 }
 
 SettingTable<BranchOptions> make_settings() {
@@ -81,14 +88,8 @@ SettingTable<BranchOptions> make_settings() {
 }  // namespace
 
 FieldTrainer::Loss absolute_difference(const std::vector<Vec3f>& target) {
-  return [&target](int begin, int end, const float* out, float* d_out) {
-    for (int i = begin; i < end; ++i)
-      for (int c = 0; c < 3; ++c) {
-        const int k = 3 * (i - begin) + c;
-        const float d = out[k] - target[i][c];
-        d_out[k] = float((d > 0) - (d < 0)) / (3 * float(target.size()));
-      }
-  };
+  return mean_loss(target, 3 * float(target.size()),
+                   [](float y, float wanted) { return absolute(y - wanted); });
 }
 
 const SettingTable<BranchOptions>& branch_settings() {
@@ -108,7 +109,7 @@ std::shared_ptr<const Field> fit_branch(const Device& device, const BranchSample
     const Batch batch(s, size_t(options.batch), seed, step);
     trainer.step(
         device, batch.x,
-        options.loss == BranchLoss::l1 ? absolute_difference(batch.target) : cross_entropy(batch.target),
+        options.loss == BranchLoss::l1 ? absolute_difference(batch.target) : cross_entropy_of(batch.target),
         options.decay ? 0.5f * (1 + std::cos(kPi * fraction)) + 1e-3f : 1);
     if (step % 40 == 0) progress.report({"paint", 0.2 + 0.8 * fraction, -1, ""});
   }

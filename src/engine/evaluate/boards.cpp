@@ -5,6 +5,7 @@
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "core/base/json.h"
+#include "core/image/resample.h"
 #include "engine/evaluate/evaluation_set.h"
 #include "engine/io/image_file.h"
 #include "engine/session/frame_files.h"
@@ -18,10 +19,7 @@ constexpr size_t kViews = 5;  // of an object, as in the paper's study
 // The n-th of equal columns.
 Image column(const Image& row, int n, int columns) {
   const int width = row.width / columns;
-  Image out(width, row.height, row.channels);
-  for (int y = 0; y < row.height; ++y)
-    std::copy_n(row.at(n * width, y), size_t(width) * row.channels, out.at(0, y));
-  return out;
+  return cropped(row, {n * width, 0, width, row.height});
 }
 
 Image opaque(const Image& rgb) {

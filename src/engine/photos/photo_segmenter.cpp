@@ -14,13 +14,6 @@
 namespace cei3d {
 namespace {
 
-Image cut_out(const Image& image, const PixelBox& box) {
-  Image out(box.width, box.height, image.channels);
-  for (int y = 0; y < box.height; ++y)
-    std::copy_n(image.at(box.x0, box.y0 + y), size_t(box.width) * image.channels, out.at(0, y));
-  return out;
-}
-
 class SamSegmenter final : public PhotoSegmenter {
  public:
   SamSegmenter(const std::filesystem::path& folder, int threads) : sam_(folder, threads) {}
@@ -28,7 +21,7 @@ class SamSegmenter final : public PhotoSegmenter {
   Image log_odds(const View& view, const PixelBox& box, const Prompts& prompts,
                  const std::optional<PixelBox>& around) override {
     constexpr int kEnough = 1024;  // pixels that the network sees
-    Image shown = cut_out(load_photo(view), box);
+    Image shown = cropped(load_photo(view), box);
     const int n = std::max(1, std::max(box.width, box.height) / kEnough);
     if (n > 1) shown = downscale(shown, n);
     const SamImage encoded = sam_.encode(shown);
@@ -91,7 +84,7 @@ class PlateSegmenter final : public PhotoSegmenter {
     constexpr float kNoise = 6, kMin = 0.12f;
     const float threshold = std::max(kMin, kNoise * median(border));
     for (float& d : apart.data) d = 10 * (d / threshold - 1);
-    return cut_out(apart, box);
+    return cropped(apart, box);
   }
 
  private:

@@ -7,16 +7,11 @@
 #include "core/base/json_reader.h"
 #include "engine/capture/capture.h"
 #include "model/geometry/shape/camera_json.h"
+#include "model/geometry/shape/vec_json.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
-
-Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
-Vec3d vector_from(JsonReader& reader, const char* key) {
-  const auto [x, y, z] = reader.numbers<3>(key);
-  return {x, y, z};
-}
 
 std::string relative_to(const fs::path& file, const fs::path& root) {
   return file.empty() ? std::string()

@@ -9,6 +9,7 @@
 #include "core/base/system.h"
 #include "engine/project/dataset.h"
 #include "engine/project/json_file.h"
+#include "model/geometry/shape/vec_json.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -45,8 +46,7 @@ ProjectHead read_head(const fs::path& path) {
     JsonReader reader(j, path.string());
     for (const char* key : {"format", "version", "created"}) reader.has(key);
     JsonReader n = reader.object("normalization");
-    const auto [x, y, z] = n.numbers<3>("center");
-    head.normalization = {{x, y, z}, n.require<double>("scale")};
+    head.normalization = {vector_from(n, "center"), n.require<double>("scale")};
     n.finish();
     head.options = reader.member("options");
     reader.finish();

@@ -27,7 +27,7 @@ class AnyRun {
     options.seed = 5;
   }
   Scene run(Checkpoints& checkpoints, Progress& progress, ShowPicture show = {}, Clock clock = {}) {
-    VirtualClock time(0.7);  // so that the geometry stage saves in its middle
+    VirtualClock time(tick);
     return reconstruct({.device = device_,
                         .capture = capture_,
                         .images = images_,
@@ -41,6 +41,7 @@ class AnyRun {
 
   Preset preset;
   ReconstructOptions options;
+  double tick = 0.7;  // s of the virtual clock; so that the geometry stage saves in its middle
 
  private:
   Device device_ = make_device();
@@ -201,6 +202,35 @@ TEST(Reconstruct, ResumedAnywhereMakesTheSameObject) {
     expect_same_after(small, reference, s, checks, How::cancel);
   }
   expect_same_after(small, reference, 2, reference.progress.checks.at("geometry") / 2, How::cancel);
+}
+
+// The line that says whether the joint stage's result was kept; how good it is, is in it to the last bit.
+Json joint_judgment(const ScriptedProgress& progress) {
+  const auto line = std::find_if(progress.lines.begin(), progress.lines.end(),
+                                 [](const Json& l) { return l.contains("kept"); });
+  return line == progress.lines.end() ? Json() : *line;
+}
+
+TEST(Reconstruct, TheJointStageIsResumedInTheMiddleOfItsDescent) {
+  SmallRun small;
+  small.tick = 40;  // every step is saved
+  const Reference& reference = uninterrupted();
+  const Json judgment = joint_judgment(reference.progress);
+  ASSERT_TRUE(judgment.contains("after"));
+  for (const int saves : {1, 2, 3, 4}) {  // before the first step and after it, a refresh before the last
+    SCOPED_TRACE(saves);
+    KilledAfterSaves killed(reference.checkpoints.after.at("appearance"), "joint", saves);
+    ScriptedProgress progress;
+    EXPECT_THROW(small.run(killed, progress), Killed);
+    EXPECT_FALSE(killed.latest_state->head.at("finished").get<bool>());
+    EXPECT_EQ(killed.latest_state->head.at("state").at("descent_step"), saves - 1);
+    MemoryCheckpoints resumed;
+    resumed.latest_state = killed.latest_state;
+    ScriptedProgress rest;
+    const Scene scene = small.run(resumed, rest);
+    EXPECT_EQ(joint_judgment(rest), judgment);
+    expect_same(saved(scene).tensors, reference.scene.tensors, "the object");
+  }
 }
 
 TEST(Reconstruct, InterruptedAgainAndAgainMakesTheSameObject) {

@@ -28,7 +28,8 @@ struct RunState {
 
   // Between the stages of light and appearance: LinearSplit::albedo, #V of scene.surface; else empty.
   std::vector<Vec3f> separated_albedo;
-  DescentState descent;  // of the appearance stage, while it is in the middle of its descent
+  DescentState descent;      // of a stage that is in the middle of a descent on the appearance or on all
+  double joint_seconds = 0;  // s that the joint stage's descent took so far
 
   // Hits of these stages on scene.surface, and its transport. Not in checkpoints: they are recomputed.
   ObjectHits hits;

@@ -2,6 +2,7 @@
 #include "engine/reconstruct/stage.h"
 
 #include <algorithm>
+#include <memory>
 
 #include "core/base/cancel.h"
 #include "core/base/json.h"
@@ -32,6 +33,21 @@ Error interrupted(const std::string& stage, bool has_checkpoint) {
 }
 
 }  // namespace
+
+DescentStore descent_store(const RunContext& run, RunState& state, double* seconds,
+                           const Stage::Checkpoint& checkpoint) {
+  const Clock clock = run.progress.clock();
+  const double now = clock(), begin = now - (seconds ? *seconds : 0);
+  const auto last_save = std::make_shared<double>(now);
+  const auto due = [=] { return clock() - *last_save > kCheckpointSeconds; };
+  const auto save = [=, &state, &checkpoint](DescentState descent) {
+    state.descent = std::move(descent);
+    if (seconds) *seconds = clock() - begin;
+    checkpoint();
+    *last_save = clock();
+  };
+  return {state.descent, due, save};
+}
 
 void StageRunner::run(const std::vector<Stage>& stages, RunState& state,
                       const std::optional<RunPosition>& position) {

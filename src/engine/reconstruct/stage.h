@@ -47,6 +47,11 @@ struct Stage {
   Run run;
 };
 
+// A descent in the middle of a stage continues from the state, and is saved into it every kCheckpointSeconds
+// and before an interruption. seconds: what the descent took so far; null: nobody asks. All arguments must
+// outlive the store.
+DescentStore descent_store(const RunContext&, RunState&, double* seconds, const Stage::Checkpoint&);
+
 class StageRunner {
  public:
   StageRunner(const RunContext& context, Json rates, Checkpoints& checkpoints)

@@ -233,15 +233,9 @@ void estimate_appearance(const RunContext& run, RunState& state, const Stage::Ch
   AppearanceResult made{scene.light, scene.material, nullptr, {}};
   AppearanceOptions options = appearance_options(run);
   options.show = shown_on(run, scene, turns.get());
-  double last_save = run.progress.now();
-  const auto save = [&](DescentState descent) {
-    state.descent = std::move(descent);
-    checkpoint();
-    last_save = run.progress.now();
-  };
-  const auto due = [&] { return run.progress.now() - last_save > kCheckpointSeconds; };
   descend_on_appearance(run.device, appearance_input(run, state, turns.get()), options,
-                        state.separated_albedo, made, run.progress, {state.descent, due, save});
+                        state.separated_albedo, made, run.progress,
+                        descent_store(run, state, nullptr, checkpoint));
   check_cancelled(run.progress);
   state.descent = {};
   state.hits = {};
@@ -268,32 +262,42 @@ void refine(const RunContext& run, RunState& state, uint64_t subset) {
   scene.albedo = std::move(result.albedo);
 }
 
+// The descent of the joint stage, from its checkpoint if it was interrupted.
+JointObject joint_object(const RunContext& run, RunState& state, const AppearanceInput& input,
+                         const Stage::Checkpoint& checkpoint) {
+  const Scene& scene = state.scene;
+  JointStageOptions options{run.preset.joint, run.plan.joint_steps, kJointDescentShare * run.plan.joint,
+                            run.progress.clock(), shown_on(run, scene, input.samples.turned.turns)};
+  options.descent.seed = run.seed;
+  options.spent = state.joint_seconds;
+  options.store = descent_store(run, state, &state.joint_seconds, checkpoint);
+  return descend_jointly(run.device, input, run.views.train,
+                         {*scene.sdf, *scene.albedo, scene.material, scene.light}, options, run.progress);
+}
+
 // Descends on everything at once, and keeps the result if it explains pixels better that the descent has not
 // seen.
-void descend_on_all(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+void descend_on_all(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
   const Plan& plan = run.plan;
-  if (run.progress.left() < plan.joint + plan.finer_mesh + plan.residual) return;
+  const bool begun = !state.descent.tensors.empty();
+  if (!begun && run.progress.left() < plan.joint + plan.finer_mesh + plan.residual) return;
   Scene& scene = state.scene;
   const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, kJointSubset});
   const Turns turns = light_turns(run, state, scene.surface, hits);
-  JointStageOptions options{run.preset.joint, plan.joint_steps, kJointDescentShare * plan.joint,
-                            run.progress.clock(), shown_on(run, scene, turns.get())};
-  options.descent.seed = run.seed;
-  JointObject made =
-      descend_jointly(run.device, {scene.surface, hits.samples(turns.get())}, run.views.train,
-                      {*scene.sdf, *scene.albedo, scene.material, scene.light}, options, run.progress);
+  const SurfaceSamples samples = hits.samples(turns.get());
+  JointObject made = joint_object(run, state, {scene.surface, samples}, checkpoint);
   Scene after = scene;
   after.sdf = std::make_shared<const Field>(std::move(made.sdf));
   after.albedo = std::make_shared<const Field>(std::move(made.albedo));
   after.material = made.material;
   after.light = std::move(made.light);
   after.surface = extract_surface(run.device, *after.sdf, run.preset.meshing, run.progress);
-  const SurfaceSamples samples = hits.samples(turns.get());
   const double before_psnr = held_out_psnr(run.device, scene, samples, run.progress),
                psnr = held_out_psnr(run.device, after, samples, run.progress);
   const bool kept = psnr > before_psnr + kMinJointGain;
   run.progress.log(Json{{"stage", "joint"}, {"before", before_psnr}, {"after", psnr}, {"kept", kept}}.dump());
   check_cancelled(run.progress);
+  state.descent = {};
   if (!kept) return;
   after.handlers = handlers_of(scene_hits(run, after, {run.preset.max_hits}), run.views.footprint);
   scene = std::move(after);

@@ -163,6 +163,22 @@ struct Killed : std::runtime_error {
   Killed() : std::runtime_error("killed") {}
 };
 
+// Killed as soon as the stage has saved itself `saves` times in its middle.
+class KilledAfterSaves : public MemoryCheckpoints {
+ public:
+  KilledAfterSaves(State from, std::string stage, int saves) : stage_(std::move(stage)), saves_(saves) {
+    latest_state = std::move(from);
+  }
+  void save(const State& s) override {
+    MemoryCheckpoints::save(s);
+    if (midway[stage_] == saves_) throw Killed();
+  }
+
+ private:
+  std::string stage_;
+  int saves_;
+};
+
 // Notes the stages, counts the checks in each, and stops the run at one of them.
 class ScriptedProgress : public Progress {
  public:

@@ -14,7 +14,7 @@ inline SurfaceReflection<float> reflection_of(const Hit& h, const Material& m) {
 
 // One lobe in place of both: their mean, weighted by their shares.
 inline LobeFrame<float> mean_lobe(const SurfaceReflection<float>& r) {
-  const auto mean = [&](auto base, auto fresnel) { return base * r.share + fresnel * (1 - r.share); };
+  const auto mean = [&](auto base, auto fresnel) { return mean_of_lobes(r.share, base, fresnel); };
   return {normalize(mean(r.base.axis, r.fresnel.axis)), r.base.across,
           mean(r.base.roughness, r.fresnel.roughness), mean(r.base.stretch, r.fresnel.stretch)};
 }

@@ -167,7 +167,7 @@ std::vector<Vec3f> Lighting::sky_reflection(const HitBatch& batch) const {
             fresnel = sky_along(device_, lobes(), in.fresnel, batch.size());
   std::vector<Vec3f> radiance(batch.size());
   for (size_t i = 0; i < radiance.size(); ++i)
-    radiance[i] = base.get(0, i) * in.share[i] + fresnel.get(0, i) * (1 - in.share[i]);
+    radiance[i] = mean_of_lobes(in.share[i], base.get(0, i), fresnel.get(0, i));
   return radiance;
 }
 

@@ -29,7 +29,7 @@ using VersionLights = std::vector<std::shared_ptr<const VersionLight>>;  // by v
 // Light on shape version k. before: light on version k - 1; null for version 0.
 std::shared_ptr<const VersionLight> light_on_version(const Device&, const Scene&, size_t k, const Transport&,
                                                      const VersionLight* before);
-// The same from the light at the vertices of version k.
+// Light on shape version k from the light at its vertices.
 std::shared_ptr<const VersionLight> light_on_version(const Device&, const Scene&, size_t k, VertexLight);
 // Materials of the vertices of shape version 0, as reconstructed.
 VertexMaterials rest_materials(const Device&, const Scene&);

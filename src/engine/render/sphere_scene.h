@@ -31,7 +31,7 @@ inline Mesh sphere_mesh(int rows, int columns) {
   return m;
 }
 
-// Its field is exactly the sphere; the albedo is noise, the light has a broad and a narrow lobe.
+// The field is exactly the sphere; the albedo is noise, the light has a broad and a narrow lobe.
 inline Scene sphere_scene() {
   Scene s;
   FieldConfig sdf;
@@ -53,7 +53,7 @@ inline Scene sphere_scene() {
   return s;
 }
 
-// The same with a handler point at each vertex.
+// sphere_scene() with a handler point at each vertex.
 inline Scene sphere_with_handlers() {
   Scene s = sphere_scene();
   auto points = std::make_shared<HandlerPoints>();

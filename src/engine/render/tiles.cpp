@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/image/resample.h"
+
 namespace cei3d {
 namespace {
 
@@ -13,13 +15,6 @@ PixelBox grown(const PixelBox& b, int width, int height) {
   const int x0 = std::max(b.x0 - kMargin, 0), y0 = std::max(b.y0 - kMargin, 0);
   return {x0, y0, std::min(b.x0 + b.width + kMargin, width) - x0,
           std::min(b.y0 + b.height + kMargin, height) - y0};
-}
-
-Image cropped(const Image& image, const PixelBox& b) {
-  Image out(b.width, b.height, image.channels);
-  for (int y = 0; y < b.height; ++y)
-    std::copy_n(image.at(b.x0, b.y0 + y), size_t(b.width) * image.channels, out.at(0, y));
-  return out;
 }
 
 // Squared distance of the middle of the box to the middle of the image, times four.
@@ -41,7 +36,7 @@ std::vector<PixelBox> tiles_of(int width, int height, int side) {
   return tiles;
 }
 
-Frame cropped(const Frame& f, const PixelBox& b) {
+Frame cropped_frame(const Frame& f, const PixelBox& b) {
   Frame out;
   for (const auto image : {&Frame::rgb, &Frame::albedo, &Frame::diffuse, &Frame::specular, &Frame::normal,
                            &Frame::depth, &Frame::roughness, &Frame::metalness, &Frame::mask})
@@ -58,7 +53,7 @@ Frame render_tile(RenderCache& frames, const Scene& scene, const SceneLight& lig
   const PixelBox outer = grown(box, camera.width, camera.height);
   const auto view = frames.trace(scene, crop_camera(camera, outer), samples);
   const PixelBox inner{box.x0 - outer.x0, box.y0 - outer.y0, box.width, box.height};
-  return cropped(frames.shade(scene, light, *view), inner);
+  return cropped_frame(frames.shade(scene, light, *view), inner);
 }
 
 }  // namespace cei3d

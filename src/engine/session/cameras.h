@@ -19,7 +19,7 @@ std::vector<NamedCamera> choose_cameras(const Project&, const CameraChoice&, int
 std::vector<View> choose_views(const Project&, const std::filesystem::path& capture,
                                std::optional<Split> split);
 
-// The same view with another image size and the same horizontal field of view.
+// The camera with another image size and the same horizontal field of view.
 Camera resized(Camera, int width, int height);
 
 std::vector<NamedCamera> turntable(const Capture&, const Normalization&, int frames);

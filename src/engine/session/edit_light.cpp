@@ -3,6 +3,7 @@
 #include "engine/io/npy.h"
 #include "engine/session/edit_ops.h"
 #include "engine/session/light_choice.h"
+#include "model/geometry/shape/vec_json.h"
 
 namespace cei3d {
 namespace {
@@ -10,8 +11,7 @@ namespace {
 std::optional<Sun> sun_from(JsonReader& params) {
   if (!params.has("sun")) return std::nullopt;
   JsonReader reader = params.object("sun");
-  const auto [x, y, z] = reader.numbers<3>("direction");
-  const Sun sun{{x, y, z}, reader.require<double>("strength")};
+  const Sun sun{vector_from(reader, "direction"), reader.require<double>("strength")};
   reader.finish();
   return sun;
 }

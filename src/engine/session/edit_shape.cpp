@@ -5,19 +5,15 @@
 #include "engine/edit/deform.h"
 #include "engine/edit/remove.h"
 #include "engine/session/edit_ops.h"
+#include "model/geometry/shape/vec_json.h"
 
 namespace cei3d {
 namespace {
 
-Vec3d point_from(JsonReader& params, const char* key) {
-  const auto [x, y, z] = params.numbers<3>(key);
-  return {x, y, z};
-}
-
 DeformHandle handle_from(JsonReader& params, const Normalization& n) {
-  DeformHandle h{to_float(n.unit_from_capture(point_from(params, "from"))),
-                 to_float(n.unit_from_capture(point_from(params, "to")))};
-  if (params.has("turn")) h.turn = to_float(point_from(params, "turn") * (double(kPi) / 180));
+  DeformHandle h{to_float(n.unit_from_capture(vector_from(params, "from"))),
+                 to_float(n.unit_from_capture(vector_from(params, "to")))};
+  if (params.has("turn")) h.turn = to_float(vector_from(params, "turn") * (double(kPi) / 180));
   return h;
 }
 
@@ -46,7 +42,7 @@ EditOutcome make_deform(const EditContext& context, const EditJob& job) {
     for (const Json& pin : params.array("pins")) {
       const Json named = {{"pin", pin}};
       JsonReader reader(named, "A pin of edit " + job.id);
-      request.pins.push_back(to_float(n.unit_from_capture(point_from(reader, "pin"))));
+      request.pins.push_back(to_float(n.unit_from_capture(vector_from(reader, "pin"))));
     }
   read_geometry(params, request);
   if (const auto radius = params.optional<double>("radius")) request.radius = float(*radius * n.scale);

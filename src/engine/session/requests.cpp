@@ -7,6 +7,7 @@
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "engine/capture/coverage.h"
+#include "model/geometry/shape/vec_json.h"
 
 namespace cei3d {
 namespace {
@@ -26,8 +27,6 @@ std::optional<Enum> from_name(const char* const (&names)[N], const std::string& 
     if (name == names[i] && *names[i]) return Enum(i);
   return std::nullopt;
 }
-
-Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
 Json normalization_json(const Normalization& n) {
   return {{"center", vector_json(n.center)}, {"scale", n.scale}};

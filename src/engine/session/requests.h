@@ -151,7 +151,6 @@ struct PartInfo {
   Json json() const;
 };
 
-// Which cameras.
 struct CaptureViews {
   std::filesystem::path path;
   std::optional<Split> split;
@@ -163,6 +162,7 @@ struct Turntable {
   int frames = 0;
 };
 struct ProjectViews {};  // the project's held-out views, or all when it has none
+// Which cameras to render.
 using CameraChoice = std::variant<ProjectViews, CaptureViews, CameraFile, Turntable>;
 bool shows_photographs(const CameraChoice&);        // whether they are views of a capture
 bool is_camera_file(const std::filesystem::path&);  // whether it is JSON with a list "cameras"

@@ -67,12 +67,12 @@ class Session {
   EditSummary deform(const DeformCommand&, Progress&);
   EditSummary remove(const RemoveCommand&, Progress&);
   EditSummary select_part(const PartCommand&, Progress&);
-  // Any of them. amend: in place of the last edit, which must be of the same kind and on the same part, so
-  // that several tries are one step of the history.
+  // An edit of any kind. amend: in place of the last edit, which must be of the same kind and on the same
+  // part, so that several tries are one step of the history.
   EditSummary edit(const EditCommand&, Progress&, bool amend = false);
   // An edit without input files by the parameters that log() shows of one like it.
   EditSummary edit_by_params(const std::string& op, const Json& params, Progress&);
-  // The same in two steps: what preview() made is not stored before commit(). Error of commit(): the history
+  // An edit in two steps: what preview() makes is not stored before commit(). Error of commit(): the history
   // has changed since.
   std::shared_ptr<const EditPreview> preview(const EditCommand&, Progress&, bool amend = false);
   EditSummary commit(const EditPreview&);

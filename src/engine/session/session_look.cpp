@@ -20,6 +20,7 @@
 #include "engine/session/part_mask.h"
 #include "engine/session/session.h"
 #include "engine/session/tiled_frame.h"
+#include "model/geometry/shape/vec_json.h"
 #include "model/scene/appearance.h"
 #include "model/scene/parts.h"
 
@@ -43,10 +44,14 @@ std::vector<std::string> parts_at(const Scene& scene, const Hit& hit) {
 }  // namespace
 
 Json PickedPoint::json() const {
-  const auto list = [](Vec3d v) { return Json::array({v.x, v.y, v.z}); };
-  return {{"position", list(position)}, {"normal", list(normal)}, {"depth", depth},
-          {"albedo", albedo},           {"roughness", roughness}, {"specular", specular},
-          {"metalness", metalness},     {"parts", parts}};
+  return {{"position", vector_json(position)},
+          {"normal", vector_json(normal)},
+          {"depth", depth},
+          {"albedo", albedo},
+          {"roughness", roughness},
+          {"specular", specular},
+          {"metalness", metalness},
+          {"parts", parts}};
 }
 
 std::unique_ptr<TiledFrame> Session::frame(const FrameRequest& request, const EditPreview* on_top) {

@@ -89,7 +89,7 @@ int usable_downscale(int asked, const CaptureReport& report) {
               fmt::format("Use them smaller (downscale {}), or fewer of them (views).", n + 1));
 }
 
-// The same checks as in `check`, so that nothing is written for an unusable capture.
+// Checks as `check` does, so that nothing is written for an unusable capture.
 Project create_project(const ReconstructRequest& request, const CheckReport& checked) {
   require_usable(checked.report);
   Capture capture = checked.capture;

@@ -79,7 +79,7 @@ RenderReport Session::render(const RenderRequest& request, Progress& progress) {
         chosen_light(*device_, request.light, scene.light, scene.up, {project().folder() / "cache"});
     if (!request.residual || !request.light.is_own()) scene.residual = nullptr;
     const double depth = depth_scale(cameras, scene.normalization);
-    // Its own light turns with the photographs; other cameras may be anywhere.
+    // The object's own light turns with the photographs; other cameras may be anywhere.
     const bool turns = request.light.env.empty() && shows_photographs(request.cameras);
     RenderReport report;
     for (size_t i = 0; i < cameras.size(); ++i) {

@@ -9,6 +9,7 @@
 #include "engine/session/edit_params.h"
 #include "engine/session/edit_plan.h"
 #include "engine/session/session.h"
+#include "model/geometry/shape/vec_json.h"
 
 namespace cei3d {
 namespace {
@@ -38,11 +39,9 @@ PointDrag drag_of(const Device& device, const Scene& scene, const Capture& captu
   return {scene.normalization.capture_from_unit(from), scene.normalization.capture_from_unit(to)};
 }
 
-Json list_of(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
-
 Json handle_json(const PointDrag& drag) {
-  Json j = {{"from", list_of(drag.from)}, {"to", list_of(drag.to)}};
-  if (length(drag.turn) > 0) j["turn"] = list_of(drag.turn);
+  Json j = {{"from", vector_json(drag.from)}, {"to", vector_json(drag.to)}};
+  if (length(drag.turn) > 0) j["turn"] = vector_json(drag.turn);
   return j;
 }
 
@@ -55,7 +54,7 @@ EditPlan Session::plan(const DeformCommand& command) const {
              : drag_of(*device_, project().scene(), project().capture(), std::get<PixelDrag>(command.drag));
   Json params = handle_json(drag);
   for (const PointDrag& d : command.more) params["more"].push_back(handle_json(d));
-  for (const Vec3d pin : command.pins) params["pins"].push_back(list_of(pin));
+  for (const Vec3d pin : command.pins) params["pins"].push_back(vector_json(pin));
   if (command.geometry != "mesh") {
     params["geometry"] = command.geometry;
     params["distance"] = command.distance;

@@ -6,11 +6,10 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "engine/synthetic/truth_files.h"
+#include "model/geometry/shape/vec_json.h"
 
 namespace cei3d {
 namespace {
-
-Json json_of(Vec3f v) { return Json::array({v.x, v.y, v.z}); }
 
 Json material_json(const SyntheticScene& scene, bool lambert) {
   Json regions = Json::object();
@@ -20,8 +19,8 @@ Json material_json(const SyntheticScene& scene, bool lambert) {
     r = {{"roughness", f.material.roughness},
          {"specular", f.material.specular},
          {"metalness", f.material.metalness},
-         {"color_linear", json_of(f.color)}};
-    if (f.second_color) r["second_color_linear"] = json_of(*f.second_color);
+         {"color_linear", vector_json(f.color)}};
+    if (f.second_color) r["second_color_linear"] = vector_json(*f.second_color);
   }
   return {
       {"model",
@@ -42,7 +41,7 @@ Json lighting_json(const SynthRequest& r, const SyntheticScene& scene,
   Json out{
       {"train_env", "envs/" + r.light + ".hdr"},
       {"relight_envs", maps},
-      {"tint", json_of(r.light_tint)},
+      {"tint", vector_json(r.light_tint)},
       {"strength", r.light_strength},
       {"turns", r.light_turns},
       {"lobes", lobes},

@@ -35,8 +35,8 @@ Json nerf_frame(const std::string& file_path, const Camera&);
 void write_nerf_cameras(const std::filesystem::path& folder, const std::string& split,
                         std::span<const Camera> cameras);
 
-// The same in PhySG's layout: <split>/cam_dict_norm.json for <split>/image/r_000.exr ...; its pixel centers
-// are at whole numbers.
+// <split>/cam_dict_norm.json in PhySG's layout, for images <split>/image/r_000.exr and so on; its pixel
+// centers are at whole numbers.
 void write_physg_cameras(const std::filesystem::path& folder, const std::string& split,
                          std::span<const Camera> cameras);
 

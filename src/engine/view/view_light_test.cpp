@@ -98,7 +98,7 @@ Vec3f exact(const Device& device, const SgMixture& light, Vec3f n, Vec3f v, cons
         {{planes.data(), int(light.lobes.size()), stride}, stride, frames.planes(), out.data()}, stride);
     return load_planes<float>(out.data(), stride, 0);
   };
-  return along(r.base) * r.share + along(r.fresnel) * (1 - r.share);
+  return mean_of_lobes(r.share, along(r.base), along(r.fresnel));
 }
 
 TEST(ViewLight, ReflectionsAreThoseOfTheClosedForm) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Light that turns against the object from picture to picture: on a turntable the object turns under lamps
+// Light that turns against the object from view to view: on a turntable the object turns under lamps
 // that stand still, which in the object's frame is a light that goes round with the camera.
 // (docs/method.md#turning-light)
 #pragma once
@@ -23,14 +23,15 @@ enum class LightMotion {
 const char* light_motion_name(LightMotion);
 std::optional<LightMotion> light_motion_named(const std::string&);
 
-// The frame in which a moving light is known: that of the object in one of its pictures.
+// The frame of the light, "room" in names, in which a turning light stands still: that of the object in one
+// of its photographs.
 struct LightFrame {
   LightMotion motion = LightMotion::world;
   Vec3f axis{0, 0, 1};                  // of the turntable; unit, capture frame
-  Mat3f reference = Mat3f::identity();  // rotation of that picture's camera, world_from_cam
+  Mat3f reference = Mat3f::identity();  // rotation of that photograph's camera, world_from_cam
 
-  // The rotation of the light in the picture of a camera with this rotation: it takes a direction of the
-  // object to the direction in the reference picture from which the same light comes.
+  // The rotation of the light in the view of a camera with this rotation: it takes a direction of the object
+  // to the direction in the reference photograph from which the same light comes.
   Mat3f room_from_object(const Mat3d& world_from_cam) const;
 };
 

@@ -4,17 +4,11 @@
 #include <algorithm>
 
 #include "core/base/json_reader.h"
+#include "model/geometry/shape/vec_json.h"
 #include "model/scene/stored.h"
 
 namespace cei3d {
 namespace {
-
-Json vector_json(Vec3f v) { return Json::array({v.x, v.y, v.z}); }
-
-Vec3f vector_from(JsonReader& reader, const char* key) {
-  const auto [x, y, z] = reader.numbers<3>(key);
-  return {float(x), float(y), float(z)};
-}
 
 Json tint_json(const Tint& t) {
   Json j = {{"color", vector_json(t.color)}, {"keep_texture", t.keep_texture}, {"mean", vector_json(t.mean)}};
@@ -23,8 +17,8 @@ Json tint_json(const Tint& t) {
 }
 
 Tint tint_from(JsonReader reader) {
-  const Tint tint{vector_from(reader, "color"), reader.require<bool>("keep_texture"),
-                  vector_from(reader, "mean"), reader.optional("blend", 1.0f)};
+  const Tint tint{to_float(vector_from(reader, "color")), reader.require<bool>("keep_texture"),
+                  to_float(vector_from(reader, "mean")), reader.optional("blend", 1.0f)};
   reader.finish();
   return tint;
 }

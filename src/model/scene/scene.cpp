@@ -3,18 +3,12 @@
 
 #include "core/base/json_reader.h"
 #include "model/geometry/shape/carry.h"
+#include "model/geometry/shape/vec_json.h"
 #include "model/geometry/shape/vec_tensors.h"
 #include "model/scene/stored.h"
 
 namespace cei3d {
 namespace {
-
-Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
-
-Vec3d vector_from(JsonReader& reader, const char* key) {
-  const auto [x, y, z] = reader.numbers<3>(key);
-  return {x, y, z};
-}
 
 void save_surface(const Surface& surface, Tensors& tensors, Json& head) {
   const Mesh& mesh = surface.mesh();
@@ -99,7 +93,7 @@ void save_light_frame(const LightFrame& frame, Json& head) {
   const auto& r = frame.reference.row;
   const Json reference = {r[0].x, r[0].y, r[0].z, r[1].x, r[1].y, r[1].z, r[2].x, r[2].y, r[2].z};
   head["light_frame"] = {{"motion", light_motion_name(frame.motion)},
-                         {"axis", vector_json(to_double(frame.axis))},
+                         {"axis", vector_json(frame.axis)},
                          {"reference", reference}};
 }
 
@@ -128,7 +122,7 @@ Json poses_json(const std::vector<RefinedPose>& poses) {
 Json exposures_json(const std::vector<ViewExposure>& exposures) {
   Json list = Json::array();
   for (const ViewExposure& e : exposures)
-    list.push_back({{"view", e.view}, {"factors", vector_json(to_double(e.factors))}});
+    list.push_back({{"view", e.view}, {"factors", vector_json(e.factors)}});
   return list;
 }
 
@@ -212,7 +206,7 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   save_field(scene.material.varying(), "materials", tensors, head);
   if (scene.surface) save_surface(*scene.surface, tensors, head);
   save_light(scene.light, tensors, head);
-  if (scene.light_error) head["light_error"] = vector_json(to_double(*scene.light_error));
+  if (scene.light_error) head["light_error"] = vector_json(*scene.light_error);
   if (scene.light_frame.motion != LightMotion::world) save_light_frame(scene.light_frame, head);
   if (scene.residual) save_residual(*scene.residual, scene.sdf, tensors, head);
   if (scene.handlers) save_handlers(*scene.handlers, tensors, head);

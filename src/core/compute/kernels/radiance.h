@@ -2,7 +2,7 @@
 // The inputs of the auxiliary radiance network at a surface sample: SDF features, normal n, position,
 // direction of the ray (away from the camera), n . v with v the direction to the camera, and the mirrored
 // direction with four octaves. Where the light turns against the object, normal and directions are in the
-// frame of the light, in which radiance does not depend on the picture; features and position are the
+// frame of the light, in which radiance does not depend on the view; features and position are the
 // object's.
 #pragma once
 

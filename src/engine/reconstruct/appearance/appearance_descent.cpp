@@ -5,10 +5,8 @@
 
 #include "core/base/cancel.h"
 #include "core/math/rng.h"
-#include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/reconstruct/appearance/pixel_points.h"
-#include "model/geometry/shape/vec_tensors.h"
-#include "model/scene/stored.h"
+#include "engine/reconstruct/appearance/sample_grad.h"
 
 namespace cei3d {
 
@@ -17,17 +15,6 @@ namespace {
 // Steps between two computations of visibility and bounces. With a turning light one takes many times as
 // long.
 constexpr int kRefresh = 25, kTurningRefresh = 100;
-
-std::vector<Vec3f> rows_of(const std::vector<Material>& materials) {
-  std::vector<Vec3f> rows;
-  for (const Material& m : materials) rows.push_back({m.roughness, m.specular, m.metalness});
-  return rows;
-}
-std::vector<Material> materials_of(const std::vector<Vec3f>& rows) {
-  std::vector<Material> materials;
-  for (const Vec3f r : rows) materials.push_back({r.x, r.y, r.z});
-  return materials;
-}
 
 }  // namespace
 
@@ -111,10 +98,7 @@ void AppearanceDescent::relight(std::vector<Vec3f> albedo) {
 }
 
 void AppearanceDescent::light_up() {
-  lighting_ = std::make_unique<Lighting>(
-      device_, input_.surface, relit_.light,
-      turned_vertex_lights(*transport_, relit_.light, {relit_.albedo, relit_.materials},
-                           input_.samples.turned.turns));
+  lighting_ = relit_.lighting(device_, input_.surface, *transport_, input_.samples.turned.turns);
 }
 
 void AppearanceDescent::choose_batch() {
@@ -167,14 +151,11 @@ DescentState AppearanceDescent::state() const {
     material_trainer_->save(s.tensors, "materials_adam");
   }
   if (light_) light_->save(s.tensors, "light");
-  s.tensors["relit_albedo"] = tensor_of(relit_.albedo);
-  s.tensors["relit_materials"] = tensor_of(rows_of(relit_.materials));
-  s.tensors["relit_light"] = tensor_of(relit_.light);
+  relit_.save(s.tensors);
   return s;
 }
 
 void AppearanceDescent::load(const DescentState& s, const DescentSchedule& schedule) {
-  const auto vertices = int64_t(input_.surface->mesh().positions.size());
   step_ = s.step;
   albedo_.params().load(s.tensors, "albedo");
   albedo_trainer_.load(s.tensors, "albedo_adam");
@@ -182,9 +163,7 @@ void AppearanceDescent::load(const DescentState& s, const DescentSchedule& sched
     materials_->params().load(s.tensors, "materials");
     material_trainer_->load(s.tensors, "materials_adam");
   }
-  relit_ = {vectors_from(s.tensors, "relit_albedo", vertices),
-            materials_of(vectors_from(s.tensors, "relit_materials", vertices)),
-            light_from(s.tensors, "relit_light", int64_t(result_.light.lobes.size()))};
+  relit_ = RelitObject::load(s.tensors, input_.surface->mesh().positions.size(), result_.light.lobes.size());
   if (step_ >= schedule.albedo && s.tensors.contains("light/axes")) {
     light_.emplace(result_.light, schedule.keep_power);
     light_->load(s.tensors, "light");

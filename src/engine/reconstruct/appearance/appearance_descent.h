@@ -8,6 +8,7 @@
 
 #include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/appearance/light_descent.h"
+#include "engine/reconstruct/appearance/relit_object.h"
 #include "engine/render/lighting.h"
 
 namespace cei3d {
@@ -63,12 +64,7 @@ class AppearanceDescent {
   std::unique_ptr<FieldTrainer> material_trainer_;
   std::optional<LightDescent> light_;  // while all descend
 
-  // What visibility, bounces and reflections were last computed from, at the vertices.
-  struct {
-    std::vector<Vec3f> albedo;
-    std::vector<Material> materials;
-    SgMixture light;
-  } relit_;
+  RelitObject relit_;
   std::unique_ptr<Lighting> lighting_;
 
   int64_t step_ = 0;  // steps that are done, of both descents

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "engine/reconstruct/appearance/display_loss.h"
+#include "core/math/loss.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
 #include "engine/reconstruct/test_directions.h"
 #include "engine/render/render.h"

@@ -26,7 +26,7 @@ class LightDescent {
   // One step at `rate` times the full rates. d_irradiance, d_reflected: as in lobes_grad().
   void step(const Device&, const HitBatch&, std::span<const Vec3f> d_irradiance,
             std::span<const Vec3f> d_reflected, float rate);
-  // The same step. d_lobes: what lobes_grad() returns for the present lobes.
+  // One step from a gradient. d_lobes: what lobes_grad() returns for the present lobes.
   void step(const Device&, const std::vector<float>& d_lobes, float rate);
   SgMixture light() const;
 

@@ -10,7 +10,7 @@
 #include "core/math/dual.h"
 #include "core/math/rng.h"
 #include "core/math/rotation.h"
-#include "engine/reconstruct/appearance/display_loss.h"
+#include "engine/reconstruct/appearance/sample_grad.h"
 #include "engine/render/hit_reflection.h"
 
 namespace cei3d {
@@ -169,8 +169,7 @@ TEST(LightDescent, FindsBackToTheLightAndKeepsItsPower) {
   EXPECT_NEAR(power(descent.light()) / power(wanted), 1, 1e-4);
 }
 
-// The loss whose slope display_loss_grad() gives, of a dielectric sample with these terms.
-TEST(DisplayLoss, SampleGradientEqualsDifferences) {
+TEST(SampleGrad, EqualsDifferencesOfTheDisplayLossOfADielectricSample) {
   const std::vector<Hit> hits(1);
   const std::vector<Vec3f> colors{{0.3f, 0.05f, 0.7f}};
   const SurfaceSamples samples{hits, colors, {}, {}};
@@ -189,12 +188,6 @@ TEST(DisplayLoss, SampleGradientEqualsDifferences) {
       EXPECT_NEAR(g.d_radiance[c] * terms.gain()[c], g.d_albedo[c], 1e-6);
     }
   }
-}
-
-TEST(DisplayLoss, AClippedChannelPullsUpOnly) {
-  EXPECT_EQ(display_loss_grad(1.3f, 1.0f, true), 0);
-  EXPECT_GT(display_loss_grad(1.3f, 1.0f, false), 0);
-  EXPECT_LT(display_loss_grad(0.6f, 1.0f, true), 0);
 }
 
 }  // namespace

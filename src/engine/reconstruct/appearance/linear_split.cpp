@@ -14,6 +14,7 @@
 #include "core/math/quantile.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
 #include "engine/reconstruct/appearance/split_solver.h"
+#include "model/geometry/shape/vec_json.h"
 #include "model/light/envmap.h"
 
 namespace cei3d {
@@ -250,12 +251,12 @@ LightCovariance believe_light(SplitSolver& solver, const LinearSplitOptions& opt
                                            options.light_height);
   const LightBelief belief = weigh_light_color(evidence, mean, options.light_color);
   solver.scale_light(s, belief.factor);
-  const auto list = [](Vec3f v) { return Json::array({v.x, v.y, v.z}); };
-  progress.log(Json{{"stage", "light color"},
-                    {"evidence", list(evidence.factor)},
-                    {"evidence_error", list(relative_error(evidence.covariance).value_or(Vec3f{0, 0, 0}))},
-                    {"factor", list(belief.factor)}}
-                   .dump());
+  progress.log(
+      Json{{"stage", "light color"},
+           {"evidence", vector_json(evidence.factor)},
+           {"evidence_error", vector_json(relative_error(evidence.covariance).value_or(Vec3f{0, 0, 0}))},
+           {"factor", vector_json(belief.factor)}}
+          .dump());
   return belief.covariance;
 }
 

@@ -72,7 +72,7 @@ LitSamples::RowLight LitSamples::light_of(const SplitRow& row, float roughness) 
   const auto incident = [&](ReflectionPart part) {
     return incident_at(sky_, reflected_sky(row, part, roughness, light_height_), row);
   };
-  return {incident(ReflectionPart::base) * s.scale, incident(ReflectionPart::fresnel) * s.bias,
+  return {reflected_parts(s, incident(ReflectionPart::base), incident(ReflectionPart::fresnel)),
           row.diffuse_light * diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
                                            light_directions_.at(row.normal).towards(row.to_camera))};
 }
@@ -93,8 +93,8 @@ int LitSamples::add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float*
   OneCoefficient dielectric, metal;
   const int count = for_samples(vertex, BlurLadder::roughness(level),
                                 [&](const SplitRow& row, Vec3f color, const RowLight& s) {
-                                  dielectric.add(row.weight, s.diffuse, color - s.fresnel - s.base * f0);
-                                  metal.add(row.weight, s.base, color - s.fresnel);
+                                  dielectric.add(row.weight, s.diffuse, s.reflected.removed_from(color, f0));
+                                  metal.add(row.weight, s.reflected.base, color - s.reflected.fresnel);
                                 });
   errors[level] = dielectric.error(black, max_diffuse);
   errors[kLevels + level] = metal.error(white * kMinMetal, white * kMaxMetal);
@@ -133,7 +133,7 @@ std::vector<ReflectionSample> LitSamples::of_dielectric(uint32_t vertex, const M
   const Vec3f f0 = f0_of(Vec3f{0, 0, 0}, kUsualSpecular, 0.0f);
   std::vector<ReflectionSample> out;
   for_samples(vertex, m.roughness, [&](const SplitRow& row, Vec3f color, const RowLight& s) {
-    out.push_back({row.weight, s.diffuse, s.base * f0 + s.fresnel, color});
+    out.push_back({row.weight, s.diffuse, s.reflected.sum(f0), color});
   });
   return out;
 }

@@ -45,8 +45,8 @@ class LitSamples {
                          const SampleNoise&) const;
   // What a row sees of the light if its surface has a given roughness.
   struct RowLight {
-    Vec3f base, fresnel;  // reflected radiance: the part scaled by F0, and the rest
-    Vec3f diffuse;        // factor from D to the diffuse radiance of the row
+    ReflectedParts<float> reflected;
+    Vec3f diffuse;  // factor from D to the diffuse radiance of the row
   };
   RowLight light_of(const SplitRow&, float roughness) const;
   int add_errors(uint32_t vertex, int level, Vec3f max_diffuse, float* errors) const;

@@ -2,7 +2,7 @@
 #include "engine/reconstruct/appearance/normal_grads.h"
 
 #include "core/math/rng.h"
-#include "engine/reconstruct/appearance/display_loss.h"
+#include "engine/reconstruct/appearance/sample_grad.h"
 #include "engine/render/lighting.h"
 #include "engine/render/render.h"
 #include "model/geometry/shape/sdf_normals.h"

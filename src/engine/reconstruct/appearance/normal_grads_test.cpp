@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/math/loss.h"
 #include "core/math/rng.h"
-#include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/render/render.h"
 #include "engine/render/sphere_scene.h"
 #include "model/geometry/shape/sdf_normals.h"
@@ -70,7 +70,7 @@ class NormalGradsTest : public testing::Test {
     const Shading s = lighting_->shade({hits, materials}, albedo);
     double sum = 0;
     for (size_t i = 0; i < hits.size(); ++i)
-      for (int c = 0; c < 3; ++c) sum += display_loss(s.diffuse[i][c] + s.specular[i][c], 2).value;
+      for (int c = 0; c < 3; ++c) sum += display_loss(s.diffuse[i][c] + s.specular[i][c], 2.0f).value;
     return kWeight * sum / double(hits.size());
   }
 

@@ -8,9 +8,9 @@
 #include "core/base/json.h"
 #include "core/base/parallel.h"
 #include "core/base/pool.h"
+#include "core/math/loss.h"
 #include "core/math/psnr.h"
 #include "core/math/rng.h"
-#include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
 #include "model/field/gradients.h"
 #include "model/field/optimizer.h"
@@ -131,8 +131,9 @@ class Trainer {
   Vec3f output_grad(uint32_t sample, Vec3f residual) const {
     Vec3f out;
     for (int c = 0; c < 3; ++c)
-      out[c] = display_loss_grad(radiance_[sample][c] + residual[c], samples_.colors[sample][c],
-                                 samples_.is_clipped(sample, c)) /
+      out[c] = display_loss(radiance_[sample][c] + residual[c], samples_.colors[sample][c],
+                            samples_.is_clipped(sample, c))
+                   .gradient /
                float(kBatch);
     return out;
   }

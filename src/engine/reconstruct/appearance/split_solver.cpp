@@ -14,8 +14,8 @@ namespace cei3d {
 namespace {
 
 // Rounds of materials and light. A light that is too sharp and surfaces that are too rough explain the
-// pictures nearly as well as the truth, and each round takes off a fifth of what is wrong; but the strength
-// of the light creeps, too (docs/notebook/0022).
+// photographs nearly as well as the truth, and each round takes off a fifth of what is wrong; but the
+// strength of the light creeps, too (docs/notebook/0022).
 constexpr int kRounds = 6;
 // Rounds of linearization for a turning light: without a guess, and with one.
 constexpr int kFirstTurns = 3, kTurns = 2;

@@ -47,9 +47,8 @@ SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {
   o.base = reflected_sky(row, ReflectionPart::base, roughness, options_.light_height);
   o.fresnel = reflected_sky(row, ReflectionPart::fresnel, roughness, options_.light_height);
   o.split_sum = split_sum(split_sum_table(), row.nv, roughness);
-  o.base_gain = f0 * o.split_sum.scale;
-  const float bias = o.split_sum.bias * (1 - o.fresnel.open);
-  o.far_gain = o.base_gain * (1 - o.base.open) + Vec3f{bias, bias, bias};
+  o.gains = reflection_gains(o.split_sum, f0);
+  o.far_gain = o.gain_of(1 - o.base.open, 1 - o.fresnel.open);
   o.diffuse_view = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
                                 light_directions_.at(row.normal).towards(row.to_camera));
   return o;
@@ -92,8 +91,7 @@ Vec3f SplitSystem::predict(size_t i, const SplitUnknowns& x, const Sky& sky) con
   if (!diffuse_light_grad_.rows.empty())
     diffuse += diffuse_light_grad_.rows[i].gain * dot(diffuse_light_grad_.rows[i].d_light, sky.harmonics);
   diffuse = diffuse * o.diffuse_view;
-  return diffuse + o.base_gain * radiance_at(sky.blurred, o.base) +
-         radiance_at(sky.blurred, o.fresnel) * o.split_sum.bias;
+  return o.gains.added_to(diffuse, radiance_at(sky.blurred, o.base), radiance_at(sky.blurred, o.fresnel));
 }
 
 void SplitSystem::release_bounds(const SplitUnknowns& x) {
@@ -141,8 +139,8 @@ void SplitSystem::add_row(size_t i, Vec3f y, RowSums& sum) const {
     for (size_t j = 0; j < kHarmonics; ++j)
       sum.harmonics[j] += weight * diffuse_light_grad_.rows[i].d_light[j];
   }
-  scatter_radiance(o.base, y * o.base_gain, sum.sky);
-  scatter_radiance(o.fresnel, y * o.split_sum.bias, sum.sky);
+  scatter_radiance(o.base, y * o.gains.base, sum.sky);
+  scatter_radiance(o.fresnel, y * o.gains.fresnel, sum.sky);
 }
 
 // The light that the blurs and harmonics of all chunks stand for.
@@ -278,11 +276,11 @@ std::vector<Vec3f> SplitSystem::fit_metal_color(const SplitUnknowns& x) {
   for (size_t i = 0; i < rows_.size(); ++i) {
     const SplitRow& row = rows_[i];
     const Optics& o = optics_[i];
-    const Vec3f slope = incident_at(sky, o.base, row) * o.split_sum.scale,
-                rest = row.color - incident_at(sky, o.fresnel, row) * o.split_sum.bias;
+    const ReflectedParts<float> reflected =
+        reflected_parts(o.split_sum, incident_at(sky, o.base, row), incident_at(sky, o.fresnel, row));
     for (int k = 0; k < 3; ++k) {
-      above[row.vertices[k]] += weights_[i] * rest * row.barycentric[k];
-      below[row.vertices[k]] += weights_[i] * slope * row.barycentric[k];
+      above[row.vertices[k]] += weights_[i] * (row.color - reflected.fresnel) * row.barycentric[k];
+      below[row.vertices[k]] += weights_[i] * reflected.base * row.barycentric[k];
     }
   }
   // Regularization: a small weight towards the mean color, which unseen vertices take.

@@ -84,13 +84,14 @@ class SplitSystem {
   struct Optics {
     ReflectedSky base, fresnel;
     SplitSum<float> split_sum;
-    Vec3f base_gain;     // factor of the light at `base`; that of the light at `fresnel` is split_sum.bias
-    float diffuse_view;  // factor of D, which is 0 for metals
-    Vec3f far_gain;      // factor of the radiance of the far point
-    Vec3f sky_gain() const {
-      const float bias = split_sum.bias * fresnel.open;
-      return base_gain * base.open + Vec3f{bias, bias, bias};
+    ReflectionGains<float> gains;  // of the light along `base` and `fresnel`
+    float diffuse_view;            // factor of D, which is 0 for metals
+    Vec3f far_gain;                // factor of the radiance of the far point
+    // Factor of light that is the same along both lobes, of which so much is seen.
+    Vec3f gain_of(float base_seen, float fresnel_seen) const {
+      return gains.added_to({0, 0, 0}, Vec3f{1, 1, 1} * base_seen, Vec3f{1, 1, 1} * fresnel_seen);
     }
+    Vec3f sky_gain() const { return gain_of(base.open, fresnel.open); }
   };
   Optics optics_of(const SplitRow&) const;
   // A light as the rows read it.

@@ -57,7 +57,7 @@ class GeometryStage {
   GeometryStats evaluate(const PixelStore& held_out, int rays, double u);
   // The whole view by the radiance field, over white, display-encoded RGB. samples: per pixel and axis.
   Image render_radiance(const Camera& unit_camera, int samples);
-  // The same with depths, by one sample a pixel.
+  // The view of render_radiance() and its depths, by one sample a pixel.
   ModelView render_view(const Camera& unit_camera);
 
   const Field& sdf() const { return sdf_; }

@@ -31,11 +31,12 @@ class VolumeRenderer {
   JetView jets() const { return {jet_.output(), rows_}; }  // #samples: distance and its gradient
   Vec3f point(int sample) const { return load_point<float>(points_.data(), sample); }
 
-  // The adjoint in two parts, so that losses of the distances and their gradients can be added to d_jets()
-  // in between. First back through compositing and opacities. d_pixels: #rays
+  // The first part of the adjoint: back through compositing and opacities. Losses of the distances and of
+  // their gradients can be added to d_jets() between the two parts. d_pixels: #rays
   void backward_composite(const RayBatch&, const RaySamples&, std::span<const Vec3f> d_pixels);
   JetGradView d_jets() { return {jet_.d_output(), rows_}; }
-  // Then back through the networks. Overwrites both gradients; radiance: layers, as MlpWeights has them.
+  // The second part of the adjoint: back through the networks. Overwrites both gradients; radiance: layers,
+  // as MlpWeights has them.
   void backward_networks(const GeometryNetworks&, const RayBatch&, ChunkGradients& sdf,
                          std::vector<float>& radiance);
 

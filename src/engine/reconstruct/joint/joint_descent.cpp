@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/math/loss.h"
 #include "core/math/rng.h"
-#include "engine/reconstruct/appearance/display_loss.h"
 #include "engine/reconstruct/appearance/pixel_points.h"
 #include "engine/reconstruct/appearance/shaded_samples.h"
 #include "model/geometry/shape/trace_field.h"
@@ -78,11 +78,13 @@ void JointDescent::relight() {
     return lighting_->use_hit_normals();
   }
   const std::vector<Vec3f>& vertices = input_.surface->mesh().positions;
-  lighting_ = std::make_unique<Lighting>(
-      device_, input_.surface, object_.light,
-      turned_vertex_lights(*transport_, object_.light,
-                           {object_.albedo.eval3(device_, vertices), object_.material.at(device_, vertices)},
-                           input_.samples.turned.turns));
+  relit_ = RelitObject{object_.albedo.eval3(device_, vertices), object_.material.at(device_, vertices),
+                       object_.light};
+  light_up();
+}
+
+void JointDescent::light_up() {
+  lighting_ = relit_->lighting(device_, input_.surface, *transport_, input_.samples.turned.turns);
   lighting_->use_hit_normals();
 }
 
@@ -178,7 +180,7 @@ double JointDescent::color_loss(uint32_t sample, Vec3f radiance, Vec3f& d_radian
     const bool clipped = input_.samples.is_clipped(sample, c);
     const LossValue<float> loss = options_.color == ColorLoss::display
                                       ? display_loss(radiance[c], photo, clipped)
-                                      : absolute_loss(radiance[c], photo, clipped);
+                                      : linear_loss(radiance[c], photo, clipped);
     sum += double(weight) * loss.value;
     d_radiance[c] = weight * loss.gradient;
   }
@@ -327,6 +329,7 @@ void JointDescent::save(Tensors& out) const {
   material_.save(out, "material");
   light_.save(out, "light");
   if (gloss_) gloss_->save(out, "gloss");
+  if (relit_) relit_->save(out);
 }
 
 void JointDescent::load(const Tensors& in) {
@@ -345,6 +348,11 @@ void JointDescent::load(const Tensors& in) {
   light_.load(in, "light");
   object_.light = light_.light();
   lighting_ = nullptr;
+  relit_.reset();
+  if (!input_.surface || !RelitObject::is_in(in)) return;
+  relit_ = RelitObject::load(in, input_.surface->mesh().positions.size(), object_.light.lobes.size());
+  light_up();
+  if (!gloss_) lighting_->set_lobes(object_.light);
 }
 
 }  // namespace cei3d

@@ -10,6 +10,7 @@
 #include "core/base/progress.h"
 #include "engine/reconstruct/appearance/appearance_stage.h"
 #include "engine/reconstruct/appearance/light_descent.h"
+#include "engine/reconstruct/appearance/relit_object.h"
 #include "engine/reconstruct/joint/material_descent.h"
 #include "engine/reconstruct/joint/sg_shading.h"
 #include "engine/reconstruct/joint/traced_hits.h"
@@ -94,8 +95,8 @@ class JointDescent {
   // 20,000 of them. Rays that miss the surface are black.
   double held_out_psnr();
 
-  // The object and the moments of its optimizers. A descent that is loaded from them continues as if it had
-  // not been interrupted; with a surface only nearly, because it computes visibility and bounces at once.
+  // The object, the moments of its optimizers, and what visibility and bounces were computed from. A descent
+  // that is loaded from them continues as if it had not been interrupted.
   void save(Tensors& out) const;
   void load(const Tensors& in);
 
@@ -112,6 +113,7 @@ class JointDescent {
   void update(const Shaded&, float rate);
 
   void relight();
+  void light_up();  // from relit_
   std::vector<IncidentLight<float>> light_at(const HitBatch&) const;
   std::vector<ShadingTerms<float>> terms_at(const HitBatch&, const std::vector<IncidentLight<float>>&);
   void make_gloss();
@@ -136,6 +138,7 @@ class JointDescent {
   LightDescent light_;
   std::unique_ptr<SgShading> gloss_;    // null: split sum
   std::optional<Transport> transport_;  // none without a surface
+  std::optional<RelitObject> relit_;    // none without a surface, and before the first step
   std::unique_ptr<Lighting> lighting_;
   std::vector<uint32_t> empty_;  // pixels without any object
   Vec3f box_min_, box_max_;      // of the object

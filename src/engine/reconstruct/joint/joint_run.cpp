@@ -41,21 +41,11 @@ void descend(const RunContext& run, RunState& state, const Stage::Checkpoint& ch
   const PixelStore& pixels = run.views.train;
   const ObjectHits rays = object_rays(pixels, {run.preset.max_hits});
   const auto turns = turns_of(scene.light_frame, pixels.cameras());
-  const Clock clock = run.progress.clock();
-  const double begin = clock() - state.training_seconds;
-  double last_save = clock();
   JointStageOptions options{run.preset.joint, run.plan.joint_steps, seconds_of(run, state.training_seconds),
-                            clock};
+                            run.progress.clock()};
   options.descent.seed = run.seed;
   options.spent = state.training_seconds;
-  options.store.from = state.descent;
-  options.store.due = [&] { return clock() - last_save > kCheckpointSeconds; };
-  options.store.save = [&](DescentState descent) {
-    state.descent = std::move(descent);
-    state.training_seconds = clock() - begin;
-    checkpoint();
-    last_save = clock();
-  };
+  options.store = descent_store(run, state, &state.training_seconds, checkpoint);
   keep(descend_jointly(run.device, {nullptr, rays.samples(turns.get())}, pixels,
                        start_values(run.device, run.preset, run.seed), options, run.progress),
        scene);

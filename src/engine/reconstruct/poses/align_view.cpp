@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/math/bilinear.h"
+#include "core/math/loss.h"
 
 namespace cei3d {
 
@@ -116,8 +117,7 @@ void add_point(const Camera& camera, const Point& p, const Image& model, const I
   const Vector6 x = vector_of(grad.d_turn[0], grad.d_shift[0]),
                 y = vector_of(grad.d_turn[1], grad.d_shift[1]);
   for (int c = 0; c < 3; ++c) {
-    const double r = shown.color[c] - rendered.color[c],
-                 w = std::min(1.0, kHuber / std::max(std::abs(r), 1e-9));
+    const double r = shown.color[c] - rendered.color[c], w = huber_weight(r, kHuber);
     // The mean gradient of both images: the step is then right to second order [Malis 2004].
     const Vector6 row =
         0.5 * (shown.d_x[c] + rendered.d_x[c]) * x + 0.5 * (shown.d_y[c] + rendered.d_y[c]) * y;

@@ -46,7 +46,7 @@ Gray cropped(const Gray& g) {
   return out;
 }
 
-std::vector<Gray> gray_pictures(const PixelStore& pixels, int factor) {
+std::vector<Gray> gray_images(const PixelStore& pixels, int factor) {
   std::vector<Gray> out;
   for (const Camera& c : pixels.cameras()) {
     Gray g{scaled(c, factor), {}, {}};
@@ -74,11 +74,11 @@ std::vector<Gray> gray_pictures(const PixelStore& pixels, int factor) {
 }
 
 // The views whose angle to this one, seen from the origin, is nearest to the optimum.
-std::vector<int> neighbors_of(int view, const std::vector<Gray>& pictures, int max_count) {
-  const Vec3d here = normalize(pictures[view].camera.center);
+std::vector<int> neighbors_of(int view, const std::vector<Gray>& images, int max_count) {
+  const Vec3d here = normalize(images[view].camera.center);
   std::vector<std::pair<double, int>> ranked;
-  for (int v = 0; v < int(pictures.size()); ++v) {
-    const double angle = std::acos(std::clamp(dot(here, normalize(pictures[v].camera.center)), -1.0, 1.0));
+  for (int v = 0; v < int(images.size()); ++v) {
+    const double angle = std::acos(std::clamp(dot(here, normalize(images[v].camera.center)), -1.0, 1.0));
     if (v != view && angle > kMinAngle && angle < kMaxAngle)
       ranked.push_back({std::abs(std::log(angle / kBestAngle)), v});
   }
@@ -151,18 +151,18 @@ struct Estimate {
 
 // Every plane's score is the mean of the two images that agree best with it: the point may be hidden in the
 // others.
-Estimate sweep(int view, const std::vector<Gray>& pictures, const std::vector<Vec3d>& corners,
+Estimate sweep(int view, const std::vector<Gray>& images, const std::vector<Vec3d>& corners,
                const StereoOptions& options, const Progress& progress) {
-  const Gray& a = pictures[view];
+  const Gray& a = images[view];
   const size_t n = a.value.size();
   Estimate out{std::vector<float>(n, 0.0f), {}};
-  const std::vector<int> others = neighbors_of(view, pictures, options.neighbors);
+  const std::vector<int> others = neighbors_of(view, images, options.neighbors);
   if (others.size() < 2) return out;
   double baseline = 0;
   std::vector<Warp> warps;
   for (const int o : others) {
-    baseline = std::max(baseline, length(pictures[o].camera.center - a.camera.center));
-    warps.push_back(warp_between(a.camera, pictures[o].camera));
+    baseline = std::max(baseline, length(images[o].camera.center - a.camera.center));
+    warps.push_back(warp_between(a.camera, images[o].camera));
   }
   out.planes = planes_for(a.camera, corners, baseline);
   WindowMatcher matcher(a, options.window);
@@ -172,7 +172,7 @@ Estimate sweep(int view, const std::vector<Gray>& pictures, const std::vector<Ve
     std::fill(first.begin(), first.end(), -1.0f);
     std::fill(second.begin(), second.end(), -1.0f);
     for (size_t o = 0; o < others.size(); ++o) {
-      matcher.match(pictures[others[o]], warps[o], out.planes.depth(k), score);
+      matcher.match(images[others[o]], warps[o], out.planes.depth(k), score);
       for (size_t i = 0; i < n; ++i) {
         second[i] = std::max(second[i], std::min(first[i], score[i]));
         first[i] = std::max(first[i], score[i]);
@@ -221,26 +221,26 @@ std::vector<Vec3d> corners_of(const VisualHull& hull) {
 
 std::vector<DepthMap> stereo_depths(const PixelStore& pixels, const VisualHull& hull,
                                     const StereoOptions& options, const Progress& progress) {
-  const std::vector<Gray> pictures = gray_pictures(pixels, shrink_for(pixels, options.pixels));
+  const std::vector<Gray> images = gray_images(pixels, shrink_for(pixels, options.pixels));
   const std::vector<Vec3d> corners = corners_of(hull);
-  std::vector<Estimate> estimates(pictures.size());
-  parallel_for(int(pictures.size()), [&](int v) {
-    if (!progress.cancelled()) estimates[v] = sweep(v, pictures, corners, options, progress);
+  std::vector<Estimate> estimates(images.size());
+  parallel_for(int(images.size()), [&](int v) {
+    if (!progress.cancelled()) estimates[v] = sweep(v, images, corners, options, progress);
   });
   check_cancelled(progress);
-  std::vector<DepthMap> out(pictures.size());
-  parallel_for(int(pictures.size()), [&](int v) {
-    const Camera& camera = pictures[v].camera;
+  std::vector<DepthMap> out(images.size());
+  parallel_for(int(images.size()), [&](int v) {
+    const Camera& camera = images[v].camera;
     out[v] = {camera, estimates[v].depth};
-    const std::vector<int> others = neighbors_of(v, pictures, options.neighbors);
+    const std::vector<int> others = neighbors_of(v, images, options.neighbors);
     for (size_t i = 0; i < out[v].depth.size(); ++i) {
       if (out[v].depth[i] == 0) continue;
       const Vec3d p =
           point_at(camera, int(i % size_t(camera.width)), int(i / size_t(camera.width)), out[v].depth[i]);
       int agree = 0;
       for (const int o : others) {
-        const Vec3d there = pictures[o].camera.project(p);
-        const float z = depth_at(pictures[o].camera, estimates[o].depth, there);
+        const Vec3d there = images[o].camera.project(p);
+        const float z = depth_at(images[o].camera, estimates[o].depth, there);
         agree += z > 0 && std::abs(z - there.z) < options.agreement * estimates[o].planes.step_at(there.z);
       }
       if (!agree) out[v].depth[i] = 0;

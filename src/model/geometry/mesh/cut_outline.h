@@ -20,8 +20,8 @@ struct Outline {
   // Vertices around each hole, in the order of the triangles that will fill it.
   std::vector<std::vector<uint32_t>> loops;
 };
-// Also removes triangles that touch the outline only at a corner, so that every vertex is on at most one
-// loop, once.
+// The outline of a part. Triangles that touch it only at a corner are removed, too, so that every vertex is
+// on at most one loop, once.
 Outline outline_of(const Mesh&, std::span<const uint8_t> in_part);
 
 }  // namespace cei3d

@@ -2,19 +2,18 @@
 #include "model/geometry/shape/camera_json.h"
 
 #include "core/base/json.h"
+#include "model/geometry/shape/vec_json.h"
 
 namespace cei3d {
 namespace {
-
-Json vector_json(Vec3d v) { return Json::array({v.x, v.y, v.z}); }
 
 Mat3d rotation_from(JsonReader& reader) {
   const Json& rows = reader.array("world_from_cam");
   Mat3d m;
   for (size_t i = 0; i < 3; ++i) {
     const Json row{{"world_from_cam", rows.size() == 3 ? rows[i] : Json()}};
-    const auto [x, y, z] = JsonReader(row, reader.what()).numbers<3>("world_from_cam");
-    m.row[i] = {x, y, z};
+    JsonReader row_reader(row, reader.what());
+    m.row[i] = vector_from(row_reader, "world_from_cam");
   }
   return m;
 }
@@ -45,8 +44,7 @@ Camera camera_from_json(JsonReader& reader) {
   c.cy = reader.require<double>("cy");
   c.skew = reader.optional("skew", 0.0);
   c.world_from_cam = rotation_from(reader);
-  const auto [x, y, z] = reader.numbers<3>("center");
-  c.center = {x, y, z};
+  c.center = vector_from(reader, "center");
   return c;
 }
 

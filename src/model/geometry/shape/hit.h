@@ -28,7 +28,7 @@ inline Vec3f ray_origin(const Hit& h) { return h.position + h.normal * kRayLift;
 // Unit direction from which a mirror at the hit would reflect light to the camera.
 inline Vec3f mirror_direction(const Hit& h) { return mirrored_direction(h.normal, h.to_camera); }
 
-// Its directions rotated, its position as it is.
+// The hit with its directions rotated and its position as it is.
 inline Hit with_rotated_directions(Hit h, const Mat3f& rotation) {
   h.normal = rotation * h.normal;
   h.to_camera = rotation * h.to_camera;

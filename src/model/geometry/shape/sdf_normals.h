@@ -26,8 +26,8 @@ void sdf_normals(const Device&, const Field& sdf, std::span<const Vec3f> x, std:
 // The gradients whose directions sdf_normals() gives. x: #N. edges: as there.
 std::vector<Vec3f> sdf_gradients(const Device&, const Field& sdf, std::span<const Vec3f> x,
                                  std::span<float> edges = {});
-// Their derivatives along unit directions (#N): Hessian times direction, by central differences. edges: #N,
-// of sdf_gradients(), held constant.
+// Derivatives of sdf_gradients() along unit directions (#N): Hessian times direction, by central differences.
+// edges: #N, of sdf_gradients(), held constant.
 std::vector<Vec3f> sdf_gradients_along(const Device&, const Field& sdf, std::span<const Vec3f> x,
                                        std::span<const Vec3f> directions, std::span<const float> edges);
 

@@ -13,8 +13,8 @@ namespace {
 
 constexpr uint32_t kNone = ~0u;
 constexpr float kCone = 0.4f;  // cosine between a face and the axis of its chart, at least
-// The same for small charts that are joined to another, as a share of the whole area: what does not lie flat
-// then is cut again.
+// kSmallCone: kCone of charts that are joined to another because they are small; what does not lie flat then
+// is cut again. kSmall: the largest area of such a chart, as a share of the whole.
 constexpr float kSmallCone = 0.0f, kSmall = 0.02f;
 constexpr float kTurning = 8;      // weight of the turn of the normal against the distance walked
 constexpr int kRounds = 6;         // of moving the seeds

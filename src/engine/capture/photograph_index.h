@@ -8,11 +8,11 @@
 
 namespace cei3d {
 
-class PictureIndex {
+class PhotographIndex {
  public:
   // Indexes the images in a folder and below, but not those in folders for masks. Sub-folders to a depth of
   // four.
-  explicit PictureIndex(const std::filesystem::path& root);
+  explicit PhotographIndex(const std::filesystem::path& root);
 
   // The image of a name: a path of which only the end has to fit, from any system, with or without suffix.
   // Where several fit, that with the longest common end, then the first in sorted order. None:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/capture/picture_index.h"
+#include "engine/capture/photograph_index.h"
 
 #include <algorithm>
 #include <vector>
@@ -31,7 +31,7 @@ int common_end(const fs::path& a, const fs::path& b) {
 
 }  // namespace
 
-PictureIndex::PictureIndex(const fs::path& root) : root_(root) {
+PhotographIndex::PhotographIndex(const fs::path& root) : root_(root) {
   std::error_code error;
   std::vector<fs::path> files;
   for (fs::recursive_directory_iterator it(root, error), end; !error && it != end; it.increment(error)) {
@@ -47,7 +47,7 @@ PictureIndex::PictureIndex(const fs::path& root) : root_(root) {
   for (const fs::path& file : files) by_stem_.emplace(file.stem().string(), file);
 }
 
-fs::path PictureIndex::find(const std::string& name) const {
+fs::path PhotographIndex::find(const std::string& name) const {
   const fs::path wanted = fs::path(with_slashes(name)).lexically_normal();
   const fs::path* best = nullptr;
   int longest = 0;
