@@ -12,6 +12,7 @@
 #include "core/math/color.h"
 #include "core/math/parabola.h"
 #include "core/math/quantile.h"
+#include "engine/reconstruct/appearance/shading_light.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
 #include "engine/reconstruct/appearance/split_solver.h"
 #include "model/geometry/shape/vec_json.h"
@@ -31,11 +32,11 @@ constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
 // A light that was raised by more than this, so that nothing is whiter than white, is one of assumed
 // strength.
 constexpr float kAssumed = 1.1f;
-// A light that was raised by more than this has faded in the separation: reflections in wide lobes said
-// nothing about it.
-constexpr float kFaded = 10;
-// Roughness with which a light that has faded is sought again.
-constexpr float kFadedRoughness = 0.3f;
+// A light that was raised by more than this has faded in the separation: reflections said nothing about it.
+// Dielectrics reflect at least 2 %, half of what is usual.
+constexpr float kFaded = 5;
+// Roughness of a dielectric whose reflections say nothing.
+constexpr float kUsualRoughness = 0.3f;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
 constexpr double kSharedError = 0.1;
@@ -304,21 +305,10 @@ float smoothest_of(const std::vector<Material>& materials) {
   return quantile(std::move(roughness), 0.01);
 }
 
-// gain: by how much the light was raised in the end.
-LinearSplit separate(const Transport& transport, const SurfaceSamples& samples,
-                     const LinearSplitOptions& options, Progress& progress, float& gain) {
+LinearSplit result_of(const Transport& transport, SplitSolution s, const LinearSplitOptions& options,
+                      const LightTurns* turns) {
   LinearSplit result;
-  auto [s, light_error] = solve(transport, samples, options, progress, result.trials);
-  result.light_error = light_error;
   const auto& of = s.materials.of;
-  const LightTurns* turns = samples.turned.turns;
-  s.x.diffuse = clamped(std::move(s.x.diffuse), 1e6f);
-  if (all_metal(s))
-    make_light_gray(s, options.light_height);
-  else
-    gain = brighten_light(transport, seen_vertices(transport.surface().mesh(), samples), s,
-                          options.light_height, turns, progress);
-  if (gain > kAssumed) result.light_error = {};
   result.material = mean_of(of);
   if (std::any_of(of.begin(), of.end(), [&](const Material& m) { return !(m == of.front()); }))
     result.materials = of;
@@ -326,10 +316,39 @@ LinearSplit separate(const Transport& transport, const SurfaceSamples& samples,
     result.material = of.front();
   result.smoothest = smoothest_of(of);
   result.light = light_image(s.x.light, options.light_height);
+  result.albedo = clamped(vertex_albedo(transport, s, options.light_height, turns), 1);
   result.diffuse = std::move(s.x.diffuse);
-  result.albedo = clamped(
-      vertex_albedo(transport, {{result.diffuse, s.x.light}, s.materials, 0}, options.light_height, turns),
-      1);
+  return result;
+}
+
+// gain: by how much the light was raised in the end.
+LinearSplit separate(const Transport& transport, const SurfaceSamples& samples,
+                     const LinearSplitOptions& options, Progress& progress, float& gain) {
+  std::vector<LinearSplit::Trial> trials;
+  auto [s, light_error] = solve(transport, samples, options, progress, trials);
+  const LightTurns* turns = samples.turned.turns;
+  s.x.diffuse = clamped(std::move(s.x.diffuse), 1e6f);
+  if (all_metal(s))
+    make_light_gray(s, options.light_height);
+  else
+    gain = brighten_light(transport, seen_vertices(transport.surface().mesh(), samples), s,
+                          options.light_height, turns, progress);
+  LinearSplit result = result_of(transport, std::move(s), options, turns);
+  result.trials = std::move(trials);
+  if (gain <= kAssumed) result.light_error = light_error;
+  return result;
+}
+
+// For a light that has faded: the one that the shading shows.
+LinearSplit separate_by_shading(const Transport& transport, const SurfaceSamples& samples,
+                                const LinearSplitOptions& options, Progress& progress, LinearSplit faded) {
+  ShadingLight light = light_of_shading(transport, faded.diffuse, options.light_height, options.seed);
+  if (options.light_color.kind == LightColorPrior::Kind::known)
+    for (Vec3f& l : light.radiance) l = l * options.light_color.color;
+  SplitSolver solver(transport, samples, options, progress);
+  LinearSplit result = result_of(transport, solver.under_light(light.radiance, kUsualRoughness), options,
+                                 samples.turned.turns);
+  result.trials = std::move(faded.trials);
   return result;
 }
 
@@ -349,11 +368,9 @@ LinearSplit linear_split(const Transport& transport, const SurfaceSamples& sampl
                          const LinearSplitOptions& options, Progress& progress) {
   float gain = 1;
   LinearSplit result = separate(transport, samples, options, progress, gain);
-  if (gain < kFaded || options.fixed_roughness > 0) return result;
+  if (gain < kFaded || options.fixed_roughness > 0 || samples.turned.turns) return result;
   progress.log(Json{{"stage", "light faded"}, {"gain", gain}}.dump());
-  LinearSplitOptions usual = options;
-  usual.fixed_roughness = kFadedRoughness;
-  return separate(transport, samples, usual, progress, gain);
+  return separate_by_shading(transport, samples, options, progress, std::move(result));
 }
 
 }  // namespace cei3d

@@ -157,6 +157,17 @@ TEST(LinearSplit, ASmallWhiteSpotIsNotCutOff) {
   EXPECT_NEAR((spot / spots) / (rest / rests), 5, 0.5);
 }
 
+// Where nothing is reflected, least squares make the light vanish. Its shading still tells it.
+TEST(LinearSplit, AMatteBodyHasTheLightOfItsShading) {
+  Drawn d = draw({0.8f, 0.5f, 0});
+  d.colors = d.diffuse;
+  Progress quiet;
+  const LinearSplit split = linear_split(*d.transport, d.samples(), small(), quiet);
+  EXPECT_FALSE(relative_error(split.light_error));  // the strength is assumed
+  EXPECT_LT(split.material.specular, 0.3f);
+  EXPECT_LT(match(pick(split.albedo, seen(d)), pick(d.base, seen(d))).error, 0.15);
+}
+
 TEST(LinearSplit, TellsAMetalFromADielectric) {
   const Drawn d = draw({0.25f, 0.5f, 1});
   Progress quiet;

@@ -7,6 +7,7 @@
 #include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/math/color.h"
 #include "core/math/quantile.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
 
@@ -24,6 +25,10 @@ constexpr float kMetalBy = 0.85f;  // maximum ratio of the errors of a metal and
 // Upper bounds of the diffuse albedo of a vertex, in multiples of white: while the scale of the light is
 // uncertain, and afterwards.
 constexpr float kFirstWhite = 3, kLastWhite = 1.3f;
+// Minimum reflectance under a given light, over the usual one: the smallest that light_scale() tells from
+// none. Reflections of a smooth light on a surface that shows none cost more than they add
+// (docs/notebook/0033).
+constexpr float kMinReflected = 0.05f;
 
 }  // namespace
 
@@ -112,6 +117,22 @@ SplitSolution SplitSolver::metal(float roughness) {
   system_.set_diffuse_light_grad({});  // metals have no diffuse light
   for (int round = 0; round < 3; ++round) s = with_fitted_metals(std::move(s), 3, 8);
   return finish(std::move(s), true, roughness);
+}
+
+SplitSolution SplitSolver::under_light(const std::vector<Vec3f>& light, float roughness) {
+  SplitSolution s{{mean_colors(mesh_.positions.size(), rows_), light},
+                  one_material(mesh_.positions.size(), {roughness, kUsualSpecular, 0})};
+  system_.set_light(light);
+  system_.set_materials(s.materials);
+  const LightScale found = lit_samples(s.x).light_scale(s.materials, mesh_.positions);
+  const bool known = found.covariance.row[0].x < 1;
+  const float share = known ? clamp(luminance(found.factor), kMinReflected, 1.0f) : kMinReflected;
+  SplitUnknowns as_reflected = s.x;
+  for (Vec3f& l : as_reflected.light) l = l * share;
+  s.x.diffuse = lit_samples(as_reflected).fit_diffuse(s.materials, s.x.diffuse);
+  for (Material& m : s.materials.of) m.specular *= share;
+  progress_.log(Json{{"stage", "light from shading"}, {"reflected", share}}.dump());
+  return s;
 }
 
 std::vector<Vec3f> SplitSolver::white_radiance(const SplitSolution& s, float albedo) const {

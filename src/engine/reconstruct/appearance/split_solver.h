@@ -42,6 +42,8 @@ class SplitSolver {
   SplitSolution several(SplitSolution start, double max_residual);
   // Light and D for given materials.
   SplitSolution with_materials(const SplitMaterials&);
+  // D and the specular strength, at most the usual one, of one dielectric under a given light: #cells.
+  SplitSolution under_light(const std::vector<Vec3f>& light, float roughness);
   // A factor on the light of the solution, estimated from the samples (LitSamples::light_correction()).
   LightScale light_correction(const SplitSolution&);
   // Multiplies the light by `factor`, divides the color of metals by it, and refits the dielectrics.

@@ -71,6 +71,7 @@ struct Drawn {
   std::vector<Vec3f> base;
   std::vector<Hit> hits;
   std::vector<Vec3f> colors;
+  std::vector<Vec3f> diffuse = {};  // the colors without reflections
   std::vector<Camera> cameras;
   std::vector<uint16_t> views;  // of the hits
   std::vector<uint8_t> clipped = {};
@@ -140,6 +141,7 @@ inline Drawn draw(const Materials& material_at, const Colors& color_at,
     const Shading s = lighting.shade(HitBatch{d.hits, of_hits}.part(int(begin), int(end)),
                                      std::span(albedo).subspan(begin, end - begin));
     for (size_t i = 0; i < end - begin; ++i) d.colors.push_back(s.diffuse[i] + s.specular[i]);
+    d.diffuse.insert(d.diffuse.end(), s.diffuse.begin(), s.diffuse.end());
   }
   return d;
 }
