@@ -36,7 +36,7 @@ std::vector<PixelBox> tiles_of(int width, int height, int side) {
   return tiles;
 }
 
-Frame cropped_frame(const Frame& f, const PixelBox& b) {
+Frame cropped(const Frame& f, const PixelBox& b) {
   Frame out;
   for (const auto image : {&Frame::rgb, &Frame::albedo, &Frame::diffuse, &Frame::specular, &Frame::normal,
                            &Frame::depth, &Frame::roughness, &Frame::metalness, &Frame::mask})
@@ -53,7 +53,7 @@ Frame render_tile(RenderCache& frames, const Scene& scene, const SceneLight& lig
   const PixelBox outer = grown(box, camera.width, camera.height);
   const auto view = frames.trace(scene, crop_camera(camera, outer), samples);
   const PixelBox inner{box.x0 - outer.x0, box.y0 - outer.y0, box.width, box.height};
-  return cropped_frame(frames.shade(scene, light, *view), inner);
+  return cropped(frames.shade(scene, light, *view), inner);
 }
 
 }  // namespace cei3d
