@@ -206,8 +206,9 @@ TEST(Reconstruct, ResumedAnywhereMakesTheSameObject) {
 
 // The line that says whether the joint stage's result was kept; how good it is, is in it to the last bit.
 Json joint_judgment(const ScriptedProgress& progress) {
-  const auto line = std::find_if(progress.lines.begin(), progress.lines.end(),
-                                 [](const Json& l) { return l.contains("kept"); });
+  const auto line = std::find_if(progress.lines.begin(), progress.lines.end(), [](const Json& l) {
+    return l.contains("kept") && l.value("stage", "") == "joint";
+  });
   return line == progress.lines.end() ? Json() : *line;
 }
 

@@ -271,6 +271,9 @@ JointObject joint_object(const RunContext& run, RunState& state, const Appearanc
   options.descent.seed = run.seed;
   options.spent = state.joint_seconds;
   options.store = descent_store(run, state, &state.joint_seconds, checkpoint);
+  // Before the first step there is nothing to go on from, and what was stored differs from the scene in the
+  // last bit.
+  if (state.descent.step == 0) options.store.from = {};
   return descend_jointly(run.device, input, run.views.train,
                          {*scene.sdf, *scene.albedo, scene.material, scene.light}, options, run.progress);
 }
