@@ -343,8 +343,8 @@ LinearSplit separate(const Transport& transport, const SurfaceSamples& samples,
 LinearSplit separate_by_shading(const Transport& transport, const SurfaceSamples& samples,
                                 const LinearSplitOptions& options, Progress& progress, LinearSplit faded) {
   ShadingLight light = light_of_shading(transport, faded.diffuse, options.light_height, options.seed);
-  if (options.light_color.kind == LightColorPrior::Kind::known)
-    for (Vec3f& l : light.radiance) l = l * options.light_color.color;
+  if (const Vec3f color = options.light_color.color; options.light_color.kind == LightColorPrior::Kind::known)
+    for (Vec3f& l : light.radiance) l = l * color / luminance(color);
   SplitSolver solver(transport, samples, options, progress);
   LinearSplit result = result_of(transport, solver.under_light(light.radiance, kUsualRoughness), options,
                                  samples.turned.turns);
