@@ -5,6 +5,7 @@
 
 #include "core/base/cancel.h"
 #include "core/math/rng.h"
+#include "engine/reconstruct/edge_pixels.h"
 #include "engine/render/render.h"
 
 namespace cei3d {
@@ -15,6 +16,8 @@ namespace {
 // one core.
 constexpr size_t kSlab = 1 << 13;
 constexpr float kHandlerSpacing = 1.5f;  // of handler points, in pixels
+// Share of the pixels at edges that are kept, for the sake of bars so thin that they have no others.
+constexpr float kEdgeShare = 0.125f;
 
 // Calls use(index) for the pixels wholly on the object, or for a random subset of them.
 template <class Use>
@@ -48,7 +51,11 @@ void add_hits(const Device& device, const Field& sdf, const Surface& surface, co
   for (const size_t i : slab) rays.push_back(pixels.ray(pixels.pixels()[i]));
   std::vector<uint32_t> ray_of_hit;
   const std::vector<Hit> hits = trace_rays(device, sdf, surface, rays, ray_of_hit);
-  for (size_t i = 0; i < hits.size(); ++i) add_hit(pixels, slab[ray_of_hit[i]], hits[i], out);
+  std::vector<size_t> pixel_of;
+  for (const uint32_t ray : ray_of_hit) pixel_of.push_back(slab[ray]);
+  const std::vector<uint8_t> edge = on_edges(surface, pixels, hits, pixel_of);
+  for (size_t i = 0; i < hits.size(); ++i)
+    if (!edge[i] || Rng(8, 0, pixel_of[i]).uniform() < kEdgeShare) add_hit(pixels, pixel_of[i], hits[i], out);
   slab.clear();
 }
 

@@ -35,8 +35,6 @@ constexpr float kAssumed = 1.1f;
 // A light that was raised by more than this has faded in the separation: reflections said nothing about it.
 // Dielectrics reflect at least 2 %, half of what is usual.
 constexpr float kFaded = 5;
-// Roughness of a dielectric whose reflections say nothing.
-constexpr float kUsualRoughness = 0.3f;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
 constexpr double kSharedError = 0.1;
@@ -339,15 +337,20 @@ LinearSplit separate(const Transport& transport, const SurfaceSamples& samples,
   return result;
 }
 
-// For a light that has faded: the one that the shading shows.
+// For a light that has faded: the one that the shading shows, and the roughness that explains best under it
+// how the surface looks from different sides.
 LinearSplit separate_by_shading(const Transport& transport, const SurfaceSamples& samples,
                                 const LinearSplitOptions& options, Progress& progress, LinearSplit faded) {
-  ShadingLight light = light_of_shading(transport, faded.diffuse, options.light_height, options.seed);
+  SkyRadiance sky = light_of_shading(transport, faded.diffuse, options.seed).sky;
   if (const Vec3f color = options.light_color.color; options.light_color.kind == LightColorPrior::Kind::known)
-    for (Vec3f& l : light.radiance) l = l * color / luminance(color);
-  SplitSolver solver(transport, samples, options, progress);
-  LinearSplit result = result_of(transport, solver.under_light(light.radiance, kUsualRoughness), options,
-                                 samples.turned.turns);
+    for (Vec3f& l : sky) l = l * color / luminance(color);
+  const LinearSplitOptions fewer = search_options(options, options.search_hits);
+  SplitSolver search(transport, samples, fewer, progress), fine(transport, samples, options, progress);
+  const float roughness = search_roughness(
+      [&](float r) { return search.under_light(grid_of_sky(sky, fewer.light_height), r).residual; }, fewer);
+  LinearSplit result =
+      result_of(transport, fine.under_light(grid_of_sky(sky, options.light_height), roughness), options,
+                samples.turned.turns);
   result.trials = std::move(faded.trials);
   return result;
 }

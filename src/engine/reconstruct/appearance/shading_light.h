@@ -12,15 +12,17 @@
 namespace cei3d {
 
 struct ShadingLight {
-  std::vector<Vec3f> radiance;    // #cells of a lat-long grid (EnvUp::z), linear, >= 0
+  SkyRadiance sky;                // white, > 0
   std::vector<Vec3f> irradiance;  // #V, with the bounce
 };
 
 // Albedo of the brightest places, which decides the strength of the light.
 inline constexpr float kBrightAlbedo = 0.8f;
 
-// A white light, smooth up to the third band of spherical harmonics. diffuse: #V, diffuse radiance, linear;
-// black vertices take no part. height: rows of the grid.
-ShadingLight light_of_shading(const Transport&, std::span<const Vec3f> diffuse, int height, uint64_t seed);
+// diffuse: #V, diffuse radiance, linear; black vertices take no part.
+ShadingLight light_of_shading(const Transport&, std::span<const Vec3f> diffuse, uint64_t seed);
+
+// Radiance of the cells of a lat-long grid (EnvUp::z) of `height` rows: the mean of the nearest directions.
+std::vector<Vec3f> grid_of_sky(const SkyRadiance&, int height);
 
 }  // namespace cei3d

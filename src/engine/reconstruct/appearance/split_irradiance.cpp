@@ -76,6 +76,9 @@ std::vector<Vec3f> split_irradiance(const Transport& transport, const SplitUnkno
   return out;
 }
 
+namespace {
+
+// Irradiance of every vertex from each harmonic of a light, without the bounce: #V.
 std::vector<Harmonics> transfer_of(const Transport& transport) {
   std::vector<Harmonics> out(transport.surface().mesh().positions.size());
   std::vector<SkyRadiance> skies(kHarmonics);
@@ -86,6 +89,8 @@ std::vector<Harmonics> transfer_of(const Transport& transport) {
     for (size_t j = 0; j < kHarmonics; ++j) out[v][j] = irradiance[j][v].x;
   return out;
 }
+
+}  // namespace
 
 TurningIrradiance::TurningIrradiance(const Transport& transport, const LightTurns& turns, int light_height)
     : transport_(transport),

@@ -18,9 +18,6 @@ SkyRadiance sky_radiance(const Image& light, const Mat3f& room_from_object = Mat
 std::vector<Vec3f> split_irradiance(const Transport&, const SplitUnknowns&, const SplitMaterials&, int height,
                                     const LightTurns* turns);
 
-// Irradiance of every vertex from each harmonic of a light, without the bounce: #V.
-std::vector<Harmonics> transfer_of(const Transport&);
-
 // The irradiance of samples under a turning light.
 class TurningIrradiance {
  public:

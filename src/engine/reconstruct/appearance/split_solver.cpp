@@ -131,7 +131,8 @@ SplitSolution SplitSolver::under_light(const std::vector<Vec3f>& light, float ro
   for (Vec3f& l : as_reflected.light) l = l * share;
   s.x.diffuse = lit_samples(as_reflected).fit_diffuse(s.materials, s.x.diffuse);
   for (Material& m : s.materials.of) m.specular *= share;
-  progress_.log(Json{{"stage", "light from shading"}, {"reflected", share}}.dump());
+  s = finish(std::move(s), false, roughness);
+  progress_.log(Json{{"stage", "light from shading"}, {"roughness", roughness}, {"reflected", share}}.dump());
   return s;
 }
 
