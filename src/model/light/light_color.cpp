@@ -11,9 +11,9 @@
 namespace cei3d {
 namespace {
 
-// Standard deviation of the logarithms of red over green and blue over green. Photographs under a clear sky
-// and under a lamp at dusk, without white balance, differ by about that.
-constexpr double kNearWhite = 0.2;
+// Standard deviation of the logarithms of red over green and blue over green. By that daylight of 5000 and of
+// 9000 K, without white balance, is off from that of 6500 K in its blue.
+constexpr double kNearWhite = 0.3;
 constexpr double kKnown = 1e-3;  // standard deviation for a given color
 constexpr double kSplit = 0.7;  // standard deviation of the logarithm of the strength, without other evidence
 // Error of the reflection model, independent per channel, relative.

@@ -157,15 +157,33 @@ TEST(LinearSplit, ASmallWhiteSpotIsNotCutOff) {
   EXPECT_NEAR((spot / spots) / (rest / rests), 5, 0.5);
 }
 
-// Where nothing is reflected, least squares make the light vanish. Its shading still tells it.
-TEST(LinearSplit, AMatteBodyHasTheLightOfItsShading) {
+Drawn matte_body() {
   Drawn d = draw({0.8f, 0.5f, 0});
   d.colors = d.diffuse;
+  return d;
+}
+
+// Where nothing is reflected, least squares make the light vanish. Its shading still tells it.
+TEST(LinearSplit, AMatteBodyHasTheLightOfItsShading) {
+  const Drawn d = matte_body();
   Progress quiet;
   const LinearSplit split = linear_split(*d.transport, d.samples(), small(), quiet);
   EXPECT_FALSE(relative_error(split.light_error));  // the strength is assumed
   EXPECT_LT(split.material.specular, 0.3f);
   EXPECT_LT(match(pick(split.albedo, seen(d)), pick(d.base, seen(d))).error, 0.15);
+}
+
+TEST(LinearSplit, TheLightOfAMatteBodyHasTheColorThatTheUserKnows) {
+  const Drawn d = matte_body();
+  LinearSplitOptions options = small();
+  options.light_color = {LightColorPrior::Kind::known, {1.2f, 1, 0.7f}};
+  Progress quiet;
+  const Image light = linear_split(*d.transport, d.samples(), options, quiet).light;
+  for (int y = 0; y < light.height; ++y)
+    for (int x = 0; x < light.width; ++x) {
+      EXPECT_NEAR(light.rgb(x, y).x, 1.2f * light.rgb(x, y).y, 1e-4f * light.rgb(x, y).y);
+      EXPECT_NEAR(light.rgb(x, y).z, 0.7f * light.rgb(x, y).y, 1e-4f * light.rgb(x, y).y);
+    }
 }
 
 TEST(LinearSplit, TellsAMetalFromADielectric) {
