@@ -18,13 +18,19 @@ constexpr size_t kSlab = 1 << 13;
 constexpr float kHandlerSpacing = 1.5f;  // of handler points, in pixels
 // Share of the pixels at edges that are kept, for the sake of bars so thin that they have no others.
 constexpr float kEdgeShare = 0.125f;
+constexpr size_t kFewPixels = 50000;  // captures with fewer pixels on the object keep all
+
+bool inside(const Pixel& p) { return p.srgba[3] == 255; }
+
+size_t count_inside(const PixelStore& pixels) {
+  return size_t(std::count_if(pixels.pixels().begin(), pixels.pixels().end(), inside));
+}
 
 // Calls use(index) for the pixels wholly on the object, or for a random subset of them.
 template <class Use>
 void for_chosen_pixels(const PixelStore& pixels, const HitOptions& options, const Use& use) {
-  const auto inside = [](const Pixel& p) { return p.srgba[3] == 255; };
-  const auto inner = size_t(std::count_if(pixels.pixels().begin(), pixels.pixels().end(), inside));
-  const double keep = std::min(1.0, double(options.max_hits) / double(std::max<size_t>(inner, 1)));
+  const double inner = double(std::max<size_t>(count_inside(pixels), 1)),
+               keep = std::min(1.0, double(options.max_hits) / inner);
   size_t i = 0;
   for (size_t pixel = 0; pixel < pixels.pixels().size(); ++pixel) {
     if (!inside(pixels.pixels()[pixel])) continue;
@@ -43,9 +49,9 @@ void add_hit(const PixelStore& pixels, size_t pixel, const Hit& hit, ObjectHits&
   out.footprints.push_back(length(hit.position - to_float(camera.center)) / float(camera.fx));
 }
 
-// Traces the pixels of the slab (indices) and empties it.
+// Traces the pixels of the slab (indices) and empties it. edge_share: of the pixels at edges, kept at random.
 void add_hits(const Device& device, const Field& sdf, const Surface& surface, const PixelStore& pixels,
-              std::vector<size_t>& slab, ObjectHits& out) {
+              float edge_share, std::vector<size_t>& slab, ObjectHits& out) {
   std::vector<Ray> rays;
   rays.reserve(slab.size());
   for (const size_t i : slab) rays.push_back(pixels.ray(pixels.pixels()[i]));
@@ -55,7 +61,7 @@ void add_hits(const Device& device, const Field& sdf, const Surface& surface, co
   for (const uint32_t ray : ray_of_hit) pixel_of.push_back(slab[ray]);
   const std::vector<uint8_t> edge = on_edges(surface, pixels, hits, pixel_of);
   for (size_t i = 0; i < hits.size(); ++i)
-    if (!edge[i] || Rng(8, 0, pixel_of[i]).uniform() < kEdgeShare) add_hit(pixels, pixel_of[i], hits[i], out);
+    if (!edge[i] || Rng(8, 0, pixel_of[i]).uniform() < edge_share) add_hit(pixels, pixel_of[i], hits[i], out);
   slab.clear();
 }
 
@@ -78,10 +84,11 @@ ObjectHits object_hits(const Device& device, const Field& sdf, const Surface& su
     (lists.reserve(n), ...);
   };
   reserve(out.hits, out.colors, out.clipped, out.views, out.footprints);
+  const float edge_share = count_inside(pixels) < kFewPixels ? 1 : kEdgeShare;
   std::vector<size_t> slab;
   const auto trace = [&] {
     check_cancelled(progress);
-    add_hits(device, sdf, surface, pixels, slab, out);
+    add_hits(device, sdf, surface, pixels, edge_share, slab, out);
   };
   for_chosen_pixels(pixels, options, [&](size_t pixel) {
     slab.push_back(pixel);

@@ -34,7 +34,7 @@ struct HitOptions {
 // that is nearest to the origin, with the footprint there; normals and triangles mean nothing.
 ObjectHits object_rays(const PixelStore&, const HitOptions&);
 
-// Of the pixels at edges (edge_pixels.h) one in eight. Error: interrupted.
+// Of the pixels at edges (edge_pixels.h) one in eight, unless there are few pixels. Error: interrupted.
 ObjectHits object_hits(const Device&, const Field& sdf, const Surface&, const PixelStore&, const HitOptions&,
                        const Progress&);
 
