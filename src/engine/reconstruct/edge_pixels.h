@@ -14,7 +14,7 @@ namespace cei3d {
 class Surface;
 
 // #hits, 1: a ray one pixel beside that of the hit misses the surface or meets it at another depth. A pixel's
-// color is a mean over about that area (Frame), so it is of two surfaces; and where the edge of the
+// color is a mean over about that area (as in render.h), so it is of two surfaces; and where the edge of the
 // reconstructed surface is off by less than a pixel, it is of the wrong one.
 // hits: on the surface; pixel_of: #hits, index into PixelStore::pixels().
 std::vector<uint8_t> on_edges(const Surface&, const PixelStore&, std::span<const Hit> hits,

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "core/math/rotation.h"
 #include "engine/synthetic/views.h"
 #include "model/geometry/mesh/test_meshes.h"
 #include "model/geometry/shape/surface.h"

@@ -19,7 +19,7 @@ struct ShadingLight {
 // Albedo of the brightest places, which decides the strength of the light.
 inline constexpr float kBrightAlbedo = 0.8f;
 
-// diffuse: #V, diffuse radiance, linear; black vertices take no part.
+// A white light with its bounce. diffuse: #V, diffuse radiance, linear; black vertices take no part.
 ShadingLight light_of_shading(const Transport&, std::span<const Vec3f> diffuse, uint64_t seed);
 
 // Radiance of the cells of a lat-long grid (EnvUp::z) of `height` rows: the mean of the nearest directions.
