@@ -23,8 +23,8 @@ struct Atlas {
 // Cuts, flattens and packs for a texture of texels x texels. Empty texels between charts: texels / 256, so
 // that charts do not mix in mip levels down to 256 texels. Where a chart would be flipped, overlap itself or
 // be stretched by more than kMaxStretch, it is cut in two, at worst down to single triangles; no texel's
-// center lies in two triangles. Errors: no triangles with an area; so many charts that the texture has no
-// room for them.
+// center lies in two triangles. Charts are joined where their union lies nearly flat. Errors: no triangles
+// with an area; so many charts that the texture has no room for them.
 Atlas unwrap(const Mesh& mesh, int texels);
 
 inline constexpr double kMaxStretch = 1.4;

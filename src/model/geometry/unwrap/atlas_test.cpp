@@ -104,6 +104,12 @@ TEST(Atlas, ManyFacesAtOneEdgeAndTwistedOnes) {
   expect_good(m, {0.3, 1.0001});
 }
 
+// A ball of three caps is the fewest that lie nearly flat; a box may be unfolded.
+TEST(Atlas, SmoothSurfacesHaveFewCharts) {
+  EXPECT_LE(unwrap(sphere_mesh(1, 5), 512).charts, 8u);
+  EXPECT_LE(unwrap(box_mesh(20, 10, 5, 0.1f), 512).charts, 6u);
+}
+
 TEST(Atlas, TheSameBitsEveryTime) {
   const Mesh m = torus(30, 10, 1, 0.4f);
   const Atlas a = unwrap(m, 256), b = unwrap(m, 256);

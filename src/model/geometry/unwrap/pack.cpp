@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/parallel.h"
 #include "core/math/mirror.h"
+#include "model/geometry/unwrap/outline.h"
 #include "model/geometry/unwrap/place.h"
 
 namespace cei3d {
@@ -33,24 +34,6 @@ Vec2d turned(Vec2d p, double radians) {
   return {c * p.x - s * p.y, s * p.x + c * p.y};
 }
 
-// The convex hull, counter-clockwise. [Andrew 1979]
-std::vector<Vec2d> hull_of(std::vector<Vec2d> p) {
-  std::sort(p.begin(), p.end(), [](Vec2d a, Vec2d b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
-  std::vector<Vec2d> hull;
-  for (int side = 0; side < 2; ++side) {
-    const size_t start = hull.size();
-    for (const Vec2d& q : p) {
-      while (hull.size() >= start + 2 &&
-             signed_area(hull.back() - hull[hull.size() - 2], q - hull[hull.size() - 2]) <= 0)
-        hull.pop_back();
-      hull.push_back(q);
-    }
-    if (!hull.empty()) hull.pop_back();
-    std::reverse(p.begin(), p.end());
-  }
-  return hull;
-}
-
 // Turned so that the lower left corner of its box is the origin.
 std::vector<Vec2d> turned_to_origin(std::vector<Vec2d> points, double radians) {
   for (Vec2d& p : points) p = turned(p, radians);
@@ -61,7 +44,7 @@ std::vector<Vec2d> turned_to_origin(std::vector<Vec2d> points, double radians) {
 
 // By which turn the points get into the smallest box that lies along an edge of their hull, wider than high.
 double smallest_box(const std::vector<Vec2d>& points) {
-  const std::vector<Vec2d> hull = hull_of(points);
+  const std::vector<Vec2d> hull = convex_hull(points);
   double best = 1e300, angle = 0;
   for (size_t i = 0; i < hull.size(); ++i) {
     const Vec2d edge = hull[(i + 1) % hull.size()] - hull[i];
@@ -262,20 +245,11 @@ class Packer {
   std::vector<std::vector<size_t>> orders_;
 };
 
-double area_of(std::span<const FlatPiece> pieces) {
-  double sum = 0;
-  for (const FlatPiece& piece : pieces)
-    for (const auto& [a, b, c] : piece.triangles) {
-      const auto& p = piece.points;
-      sum += std::abs(signed_area(p[b] - p[a], p[c] - p[a])) / 2;
-    }
-  return sum;
-}
-
 }  // namespace
 
 std::vector<std::vector<Vec2d>> packed(std::span<const FlatPiece> pieces, const PackOptions& options) {
-  const double area = area_of(pieces);
+  double area = 0;
+  for (const FlatPiece& piece : pieces) area += area_of(piece);
   if (!(area > 0)) fail("The surface has no area that a texture could cover.");
   const Packer packer(pieces, options);
   const Packing packing = packer.best(area);
