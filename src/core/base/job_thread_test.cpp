@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/session/worker.h"
+#include "core/base/job_thread.h"
 
 #include <gtest/gtest.h>
 
@@ -8,13 +8,11 @@
 namespace cei3d {
 namespace {
 
-std::unique_ptr<Session> a_session() { return std::make_unique<Session>("cpu", 1); }
-
-// Holds the worker until it is let go, so that what is asked for meanwhile waits.
+// Holds the thread until it is let go, so that what is asked for meanwhile waits.
 class Gate {
  public:
-  explicit Gate(Worker& worker) {
-    worker.edit("gate", [this](Session&, Progress&) {
+  explicit Gate(JobThread& jobs) {
+    jobs.add("gate", [this](Progress&) {
       entered_.set_value();
       open_.get_future().wait();
     });
@@ -26,73 +24,71 @@ class Gate {
   std::promise<void> entered_, open_;
 };
 
-TEST(Worker, EditsComeInOrderThenFramesThenTheRest) {
+TEST(JobThread, JobsComeInOrderThenFramesThenTheRest) {
   std::string order;
-  Worker worker(a_session(), nullptr);
-  Gate gate(worker);
-  worker.background([&](Session&) { return order += "b", false; });
-  worker.frame("tab", [&](Session&) { return order += "f", false; });
-  for (const char c : {'1', '2', '3'}) worker.edit("edit", [&order, c](Session&, Progress&) { order += c; });
-  EXPECT_EQ(worker.edits_waiting(), 4u);
+  JobThread jobs(nullptr);
+  Gate gate(jobs);
+  jobs.background([&] { return order += "b", false; });
+  jobs.frame("tab", [&] { return order += "f", false; });
+  for (const char c : {'1', '2', '3'}) jobs.add("edit", [&order, c](Progress&) { order += c; });
+  EXPECT_EQ(jobs.jobs_waiting(), 4u);
   gate.open();
-  worker.wait_until_idle();
+  jobs.wait_until_idle();
   EXPECT_EQ(order, "123fb");
 }
 
-TEST(Worker, OnlyTheNewestFrameOfAViewerIsComputedAndViewersTakeTurns) {
+TEST(JobThread, OnlyTheNewestFrameOfAViewerIsComputedAndViewersTakeTurns) {
   std::string order;
-  Worker worker(a_session(), nullptr);
-  Gate gate(worker);
-  const auto steps = [&](char c, int n) {
-    return [&order, c, n](Session&) mutable { return order += c, --n > 0; };
-  };
-  worker.frame("one", steps('x', 3));
+  JobThread jobs(nullptr);
+  Gate gate(jobs);
+  const auto steps = [&](char c, int n) { return [&order, c, n]() mutable { return order += c, --n > 0; }; };
+  jobs.frame("one", steps('x', 3));
   auto a = std::make_shared<int>(3), b = std::make_shared<int>(2);
-  worker.frame("one", [&order, a](Session&) { return order += 'a', --*a > 0; });
-  worker.frame("two", [&order, b](Session&) { return order += 'b', --*b > 0; });
+  jobs.frame("one", [&order, a] { return order += 'a', --*a > 0; });
+  jobs.frame("two", [&order, b] { return order += 'b', --*b > 0; });
   gate.open();
-  worker.wait_until_idle();
+  jobs.wait_until_idle();
   EXPECT_EQ(order, "ababa");
 }
 
-TEST(Worker, AnEditWaitsForOneStepOfAFrameAndNoMore) {
+TEST(JobThread, AJobWaitsForOneStepOfAFrameAndNoMore) {
   std::string order;
-  Worker worker(a_session(), nullptr);
+  JobThread jobs(nullptr);
   auto steps = std::make_shared<int>(0);
-  worker.frame("tab", [&, steps](Session&) {
+  jobs.frame("tab", [&, steps] {
     order += 'f';
-    if (++*steps == 2) worker.edit("edit", [&](Session&, Progress&) { order += 'e'; });
+    if (++*steps == 2) jobs.add("edit", [&](Progress&) { order += 'e'; });
     return *steps < 4;
   });
-  worker.wait_until_idle();
+  jobs.wait_until_idle();
   EXPECT_EQ(order, "ffeff");
 }
 
-TEST(Worker, ANewerFrameTakesThePlaceOfOneThatHasBegun) {
+TEST(JobThread, ANewerFrameTakesThePlaceOfOneThatHasBegun) {
   std::string order;
-  Worker worker(a_session(), nullptr);
-  worker.frame("tab", [&](Session&) {
+  JobThread jobs(nullptr);
+  jobs.frame("tab", [&] {
     order += 'o';
-    worker.frame("tab", [&](Session&) { return order += 'n', false; });
+    jobs.frame("tab", [&] { return order += 'n', false; });
     return true;
   });
-  worker.wait_until_idle();
+  jobs.wait_until_idle();
   EXPECT_EQ(order, "on");
 }
 
-TEST(Worker, CancelsTheJobThatRunsAndNoOther) {
-  Worker worker(a_session(), nullptr);
+TEST(JobThread, CancelsTheJobThatRunsAndNoOther) {
+  JobThread jobs(nullptr);
   bool first = false, second = true;
-  Gate gate(worker);
-  worker.edit("first", [&](Session&, Progress& p) {
-    worker.cancel("second");
+  Gate gate(jobs);
+  jobs.add("first", [&](Progress& p) {
+    jobs.cancel("second");
     first = p.cancelled();
-    worker.cancel("first");
+    jobs.cancel("first");
     first = !first && p.cancelled();
   });
-  worker.edit("second", [&](Session&, Progress& p) { second = p.cancelled(); });
+  jobs.add("second", [&](Progress& p) { second = p.cancelled(); });
   gate.open();
-  worker.wait_until_idle();
+  jobs.wait_until_idle();
   EXPECT_TRUE(first);
   EXPECT_FALSE(second);
 }
@@ -103,23 +99,23 @@ class Reports : public JobListener {
   std::string text;
 };
 
-TEST(Worker, TellsTheListenerHowFarAJobIs) {
+TEST(JobThread, TellsTheListenerHowFarAJobIs) {
   Reports reports;
-  Worker worker(a_session(), &reports);
-  worker.edit("paint", [](Session&, Progress& p) { p.report({" fit", 0.5, -1, ""}); });
-  worker.wait_until_idle();
+  JobThread jobs(&reports);
+  jobs.add("paint", [](Progress& p) { p.report({" fit", 0.5, -1, ""}); });
+  jobs.wait_until_idle();
   EXPECT_EQ(reports.text, "paint fit");
 }
 
-TEST(Worker, EndsWithoutWhatStillWaits) {
+TEST(JobThread, EndsWithoutWhatStillWaits) {
   bool ran = false;
   {
-    Worker worker(a_session(), nullptr);
-    worker.edit("long", [&](Session&, Progress& p) {
-      worker.edit("later", [&](Session&, Progress&) { ran = true; });
+    JobThread jobs(nullptr);
+    jobs.add("long", [&](Progress& p) {
+      jobs.add("later", [&](Progress&) { ran = true; });
       while (!p.cancelled()) std::this_thread::yield();
     });
-    while (worker.edits_waiting() < 2) std::this_thread::yield();
+    while (jobs.jobs_waiting() < 2) std::this_thread::yield();
   }
   EXPECT_FALSE(ran);
 }
