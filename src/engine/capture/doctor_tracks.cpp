@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kFewest = 8;      // sightings of a view that are judged
 constexpr double kFits = 1.0;      // pixels at a size of 1000: median of cameras that fit
-constexpr double kExplains = 0.5;  // of the median: what another reading of the cameras must leave
+constexpr double kExplains = 0.5;  // maximum share of the median that another reading of the cameras leaves
 constexpr double kOddView = 5;     // medians of all
 
 PhotoCamera camera_of(const View& view) {

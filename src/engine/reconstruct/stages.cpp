@@ -25,7 +25,7 @@ constexpr uint64_t kResidualSubset = 1000, kJointSubset = 1001;
 constexpr double kJointDescentShare = 0.7;
 constexpr double kMinJointGain = 0.02;  // dB on pixels that the joint descent does not see
 constexpr float kMaxLevel = 0.002f;  // maximum shift of the zero level: the thickness of the sharpest density
-constexpr double kLightShare = 0.6;  // of the planned time of light and appearance
+constexpr double kLightShare = 0.6;  // share of light in the planned time of light and appearance
 
 // Lengths of the stages of a run by steps, in steps of the geometry stage.
 constexpr double kStartSteps = 50, kTrialsSteps = 1500, kLookSteps = 350, kSurfaceSteps = 80,

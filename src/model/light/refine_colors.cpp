@@ -13,7 +13,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kDirections = 600;
-constexpr int kRows = 128;                // of the image: fine beside the blurs
+constexpr int kRows = 128;                // rows of the light's image: fine beside the blurs
 constexpr float kBlurs[] = {0, 44, 217};  // 0: the cosine of irradiance, else the sharpness of a Gaussian
 constexpr double kHold = 1e-3;            // weight of the colors that were there
 constexpr int kSweeps = 300;
