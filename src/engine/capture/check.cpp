@@ -225,7 +225,7 @@ void check_polarity(const std::vector<Checked>& all, CaptureReport& report) {
        fmt::format("The masks cover the borders of {} of {} images: they seem to mean the background, not "
                    "the object.",
                    inside_out, stated),
-       "Invert them: `cei3d check --fix -o CAPTURE2` does.", [](Capture& c) {
+       "Invert them; `check` can write a corrected copy of the capture.", [](Capture& c) {
          for (View& v : c.views) v.dark_object = !v.dark_object;
        }});
 }

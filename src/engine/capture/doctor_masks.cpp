@@ -314,7 +314,8 @@ bool report_mistake(std::span<const JudgedMask> masks, std::vector<Finding>& fin
        fmt::format("Masks and cameras disagree ({:.0f} % of the object is confirmed by the other views). "
                    "They agree ({:.0f} %) if {}.",
                    100 * now, 100 * largest, best->what),
-       "Correct the cameras: `cei3d check --fix -o CAPTURE2` does.", [undo = best->undo](Capture& c) {
+       "Correct the cameras; `check` can write a corrected copy of the capture.",
+       [undo = best->undo](Capture& c) {
          for (View& v : c.views) {
            v.camera = undo(v.camera);
            if (v.photo) v.photo = PhotoCamera(undo(v.photo->camera()), v.photo->lens());

@@ -227,7 +227,8 @@ void check_background(std::span<const JudgedPhoto> photos, Vec3d center, std::ve
         {Severity::note,
          "The background does not move with the cameras: the object was turned, and the light with it "
          "against the object.",
-         "`reconstruct --light auto` finds that out, too; `reconstruct --light turntable` says it."});
+         "Say that the light turns as on a turntable when it is reconstructed, or let the reconstruction "
+         "find out."});
 }
 
 // The mean colors of blocks, whatever the mask says.

@@ -163,7 +163,8 @@ void check_tracks(const Capture& capture, std::vector<Finding>& findings) {
          fmt::format("The sparse points are seen {:.2f} pixels from where the cameras put them. The "
                      "cameras fit if {}.",
                      now, best->what),
-         "Correct the cameras: `cei3d check --fix -o CAPTURE2` does.", [change = best->change](Capture& c) {
+         "Correct the cameras; `check` can write a corrected copy of the capture.",
+         [change = best->change](Capture& c) {
            for (View& v : c.views) set_photo(v, change(camera_of(v)));
          }});
   } else if (now > 3 * fits) {
