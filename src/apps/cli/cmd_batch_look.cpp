@@ -47,7 +47,7 @@ void status(const Options& o, Session& session, Console& console) {
         [&] { return batch_status(catalog, BatchManifest::read(catalog.manifest_file())); });
     console.answer(s.json(), status_text(s, o.failed));
     if (!o.watch || s.done + s.failed == s.objects) return;
-    constexpr int kPause = 100;  // of 0.1 s
+    constexpr int kPause = 100;  // number of pauses of 0.1 s
     for (int i = 0; i < kPause; ++i) {
       check_cancelled(console, "No longer watched; the catalog goes on.");
       std::this_thread::sleep_for(std::chrono::milliseconds(100));

@@ -11,8 +11,8 @@
 namespace cei3d {
 namespace {
 
-const std::filesystem::path kFolder =
-    "build/sam";  // tests run in the repository's root; `./run sam` fills it
+// `./run sam` fills it; tests run in the repository's root.
+const std::filesystem::path kFolder = "build/sam";
 
 // c = a - b
 std::string subtraction() {

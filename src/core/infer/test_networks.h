@@ -49,14 +49,14 @@ inline std::string network(const std::string& nodes, const std::vector<std::stri
   return number(1, 7) + bytes(7, graph) + bytes(8, bytes(1, "") + number(2, 13));
 }
 
-// Two pictures [1, C, H, W] -> their mean squared difference, [1, 1, 1, 1].
+// Two images [1, C, H, W] -> their mean squared difference, [1, 1, 1, 1].
 inline std::string squared_distance() {
   return network(node("Sub", {"a", "b"}, "d") + node("Mul", {"d", "d"}, "q") +
                      node("ReduceMean", {"q"}, "c", attribute("axes", {1, 2, 3})),
                  {float_tensor("a", 4), float_tensor("b", 4)}, {float_tensor("c", 4)});
 }
 
-// A picture [1, C, H, W] -> the means of its channels, [1, C, 1, 1].
+// An image [1, C, H, W] -> the means of its channels, [1, C, 1, 1].
 inline std::string channel_means() {
   return network(node("ReduceMean", {"x"}, "m", attribute("axes", {2, 3})), {float_tensor("x", 4)},
                  {float_tensor("m", 4)});

@@ -11,7 +11,8 @@
 
 namespace cei3d {
 
-inline constexpr float kMiddleShare = 2.0f / 3;  // of the lobe about the axis; the others share the rest
+// Weight of the lobe about the axis; the others share the rest.
+inline constexpr float kMiddleShare = 2.0f / 3;
 
 struct LobeTriple {
   float roughness;  // of each; the variance of a lobe grows with roughness^4

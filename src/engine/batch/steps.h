@@ -16,8 +16,8 @@ namespace cei3d {
 struct BatchStepTools {
   Session& session;
   Progress& progress;
-  std::function<std::filesystem::path(const std::string& step)>
-      results;  // folder of another step that is done
+  // Folder of another step that is done.
+  std::function<std::filesystem::path(const std::string& step)> results;
 };
 
 struct BatchStep {

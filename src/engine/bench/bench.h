@@ -29,8 +29,8 @@ Spread spread_of(std::vector<double> values, bool higher_is_better);
 
 struct BenchFigure {
   std::string group;  // "machine", "kernels", "fields", "training", "object"
-  std::string
-      subject;  // capture or project that it was measured on; figures of different ones do not compare
+  // Capture or project that it was measured on; figures of different ones do not compare.
+  std::string subject;
   std::string name, unit;
   bool higher_is_better = true;
   Spread spread;

@@ -16,7 +16,7 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kSize = 512;  // of the frame, pixels
+constexpr int kSize = 512;  // side of the frame, pixels
 
 BenchFigure seconds_figure(const std::string& subject, std::string name, std::vector<double> seconds) {
   return {"object", subject, std::move(name), "s", false, spread_of(std::move(seconds), false), {}};

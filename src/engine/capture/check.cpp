@@ -74,7 +74,7 @@ int border_pixels(const Mask& m) {
   return n;
 }
 
-void look_at_picture(const View& view, ViewResult& out) {
+void look_at_image(const View& view, ViewResult& out) {
   out.look = look_at_photo(view, load_linear_rgba(view));  // decodes the whole file and rejects NaN
   out.has[kProfile] = has_unusable_profile(view.image_path);
   out.mask = load_mask(view);
@@ -98,7 +98,7 @@ ViewResult look_at(const View& view) {
                      (!view.mask_path.empty() && !std::filesystem::exists(view.mask_path));
   if (out.has[kNoFile] || camera_only) return out;
   try {
-    look_at_picture(view, out);
+    look_at_image(view, out);
   } catch (const Error& e) {
     out.has[kBroken] = true;
     out.detail = e.what();
@@ -225,7 +225,7 @@ void check_polarity(const std::vector<Checked>& all, CaptureReport& report) {
        fmt::format("The masks cover the borders of {} of {} images: they seem to mean the background, not "
                    "the object.",
                    inside_out, stated),
-       "Invert them: `cei3d check --fix -o CAPTURE2` does.", [](Capture& c) {
+       "Invert them; `check` can write a corrected copy of the capture.", [](Capture& c) {
          for (View& v : c.views) v.dark_object = !v.dark_object;
        }});
 }

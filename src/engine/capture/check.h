@@ -20,8 +20,8 @@ enum class Severity { note, warning, error };  // error: reconstruct refuses the
 struct Finding {
   Severity severity = Severity::error;
   std::string what, fix;  // sentences
-  std::function<void(Capture&)> repair =
-      {};  // a safe change of the capture that removes the cause; empty: none
+  // A safe change of the capture that removes the cause; empty: there is none.
+  std::function<void(Capture&)> repair = {};
 };
 
 struct SplitReport {

@@ -30,8 +30,8 @@ void check_intrinsics(const Capture& capture, std::vector<Finding>& findings);
 
 struct JudgedMask {
   const View* view = nullptr;
-  std::span<const uint8_t> mask;   // of view->camera
-  const Image* picture = nullptr;  // PhotoLook::small of the view; null: none
+  std::span<const uint8_t> mask;      // of view->camera
+  const Image* photograph = nullptr;  // PhotoLook::small of the view; null: none
 };
 
 // Views whose mask disagrees with the others. normalization: none if the masks have no volume in common;

@@ -148,14 +148,15 @@ struct Colors {
   Vec3d mean{0, 0, 0}, deviation{0, 0, 0};
 };
 
-Colors colors_of(const Image& picture, const std::vector<uint8_t>& mask, uint8_t kind, const Area& doubtful) {
+Colors colors_of(const Image& photograph, const std::vector<uint8_t>& mask, uint8_t kind,
+                 const Area& doubtful) {
   Colors c;
   Vec3d squares{0, 0, 0};
   double n = 0;
   for (size_t i = 0; i < mask.size(); ++i) {
     if (mask[i] != kind || doubtful[i]) continue;
     for (int k = 0; k < 3; ++k) {
-      const double v = picture.data[3 * i + size_t(k)];
+      const double v = photograph.data[3 * i + size_t(k)];
       c.mean[k] += v, squares[k] += v * v;
     }
     ++n;
@@ -176,33 +177,33 @@ double distance_to(const Colors& colors, const float* color) {
 
 // Whether the photograph shows the background where the mask has background and the other views have the
 // object: most colors there are nearer to those of the background than to those of the object.
-bool shows_background(const Image& picture, const std::vector<uint8_t>& mask, const MaskDoubt& doubt) {
-  const Colors background = colors_of(picture, mask, kBackground, doubt.doubtful),
-               object = colors_of(picture, mask, kObject, doubt.doubtful);
+bool shows_background(const Image& photograph, const std::vector<uint8_t>& mask, const MaskDoubt& doubt) {
+  const Colors background = colors_of(photograph, mask, kBackground, doubt.doubtful),
+               object = colors_of(photograph, mask, kObject, doubt.doubtful);
   size_t alike = 0, all = 0;
   for (size_t i = 0; i < mask.size(); ++i) {
     if (!doubt.missing_area[i]) continue;
-    alike += distance_to(background, &picture.data[3 * i]) < distance_to(object, &picture.data[3 * i]);
+    alike += distance_to(background, &photograph.data[3 * i]) < distance_to(object, &photograph.data[3 * i]);
     ++all;
   }
   return 2 * alike > all;
 }
 
-// The picture at the size of the small mask: the mask may be reduced more.
-Image of_mask_size(const Image& picture, const MaskDoubt& doubt) {
-  const bool same = picture.width == doubt.width && picture.height == doubt.height;
-  return same ? picture : scaled_to(picture, doubt.width, doubt.height);
+// The photograph at the size of the small mask: the mask may be reduced more.
+Image of_mask_size(const Image& photograph, const MaskDoubt& doubt) {
+  const bool same = photograph.width == doubt.width && photograph.height == doubt.height;
+  return same ? photograph : scaled_to(photograph, doubt.width, doubt.height);
 }
 
 // The votes that the photographs do not contradict. A view with an explanation is wrong as a whole, so its
 // photograph does not count.
-void believe_pictures(std::span<const JudgedMask> masks, const SmallMasks& small,
-                      const std::vector<std::string>& explanations, std::vector<MaskDoubt>& doubts) {
+void believe_photographs(std::span<const JudgedMask> masks, const SmallMasks& small,
+                         const std::vector<std::string>& explanations, std::vector<MaskDoubt>& doubts) {
   for (size_t i = 0; i < doubts.size(); ++i) {
-    const Image* picture = masks[i].picture;
+    const Image* photograph = masks[i].photograph;
     MaskDoubt& d = doubts[i];
-    if (!d.stands_out || !explanations[i].empty() || !picture || picture->empty()) continue;
-    if (pixels_in(d.missing_area) == 0 || !shows_background(of_mask_size(*picture, d), small.masks[i], d))
+    if (!d.stands_out || !explanations[i].empty() || !photograph || photograph->empty()) continue;
+    if (pixels_in(d.missing_area) == 0 || !shows_background(of_mask_size(*photograph, d), small.masks[i], d))
       continue;
     for (size_t k = 0; k < d.doubtful.size(); ++k) d.doubtful[k] = d.doubtful[k] && !d.missing_area[k];
     d.missing = 0;
@@ -313,7 +314,8 @@ bool report_mistake(std::span<const JudgedMask> masks, std::vector<Finding>& fin
        fmt::format("Masks and cameras disagree ({:.0f} % of the object is confirmed by the other views). "
                    "They agree ({:.0f} %) if {}.",
                    100 * now, 100 * largest, best->what),
-       "Correct the cameras: `cei3d check --fix -o CAPTURE2` does.", [undo = best->undo](Capture& c) {
+       "Correct the cameras; `check` can write a corrected copy of the capture.",
+       [undo = best->undo](Capture& c) {
          for (View& v : c.views) {
            v.camera = undo(v.camera);
            if (v.photo) v.photo = PhotoCamera(undo(v.photo->camera()), v.photo->lens());
@@ -337,7 +339,7 @@ std::vector<MaskDoubt> check_silhouettes(std::span<const JudgedMask> masks,
   const SmallMasks small = small_masks(hull, *normalization);
   std::vector<MaskDoubt> doubts = vote_on_masks(small);
   const std::vector<std::string> explanations = explanations_of(masks, small, doubts);
-  believe_pictures(masks, small, explanations, doubts);
+  believe_photographs(masks, small, explanations, doubts);
   std::vector<double> unconfirmed;
   for (const MaskDoubt& d : doubts) unconfirmed.push_back(d.extra + d.missing);
   if (median(unconfirmed) > 1 - kAgree && report_mistake(masks, findings)) return {};

@@ -16,7 +16,7 @@ namespace {
 constexpr size_t kNeighbors = 6;
 constexpr double kJump = 0.5;        // natural logarithm: 1.6 times as bright as the neighbors
 constexpr double kSpreads = 5;       // median deviations from the neighbors
-constexpr double kBlurred = 0.4;     // of the neighbors' sharpness
+constexpr double kBlurred = 0.4;     // maximum sharpness of a blurred photograph, relative to its neighbors'
 constexpr double kSame = 0.004;      // root mean square difference of thumbnails, linear
 constexpr double kExposures = 1.25;  // ratio of the camera's own notes that matters
 
@@ -227,11 +227,12 @@ void check_background(std::span<const JudgedPhoto> photos, Vec3d center, std::ve
         {Severity::note,
          "The background does not move with the cameras: the object was turned, and the light with it "
          "against the object.",
-         "`reconstruct --light auto` finds that out, too; `reconstruct --light turntable` says it."});
+         "Say that the light turns as on a turntable when it is reconstructed, or let the reconstruction "
+         "find out."});
 }
 
 // The mean colors of blocks, whatever the mask says.
-Image small_picture(const Image& rgba) {
+Image small_image(const Image& rgba) {
   Image rgb(rgba.width, rgba.height, 3);
   for (size_t i = 0; i < rgb.data.size(); ++i) rgb.data[i] = rgba.data[i / 3 * 4 + i % 3];
   return downscale(rgb, reduction_of(rgba.width, rgba.height));
@@ -245,7 +246,7 @@ PhotoLook look_at_photo(const View& view, const Image& rgba) {
   look.brightness = brightness_of(rgba);
   look.sharpness = sharpness_of(rgba);
   look.notes = read_image_exif(view.image_path);
-  look.small = small_picture(rgba);
+  look.small = small_image(rgba);
   fill_thumbnail(rgba, look);
   return look;
 }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t kFewest = 8;      // sightings of a view that are judged
 constexpr double kFits = 1.0;      // pixels at a size of 1000: median of cameras that fit
-constexpr double kExplains = 0.5;  // of the median: what another reading of the cameras must leave
+constexpr double kExplains = 0.5;  // maximum share of the median that another reading of the cameras leaves
 constexpr double kOddView = 5;     // medians of all
 
 PhotoCamera camera_of(const View& view) {
@@ -163,7 +163,8 @@ void check_tracks(const Capture& capture, std::vector<Finding>& findings) {
          fmt::format("The sparse points are seen {:.2f} pixels from where the cameras put them. The "
                      "cameras fit if {}.",
                      now, best->what),
-         "Correct the cameras: `cei3d check --fix -o CAPTURE2` does.", [change = best->change](Capture& c) {
+         "Correct the cameras; `check` can write a corrected copy of the capture.",
+         [change = best->change](Capture& c) {
            for (View& v : c.views) set_photo(v, change(camera_of(v)));
          }});
   } else if (now > 3 * fits) {

@@ -15,7 +15,7 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr uint64_t kMaxBytes = uint64_t(64) << 20;  // of all matrices: those of 100,000 views
+constexpr uint64_t kMaxBytes = uint64_t(64) << 20;  // maximum size of all matrices: those of 100,000 views
 using Files = std::vector<fs::path>;
 using Entries = std::map<std::string, std::string>;
 

@@ -112,7 +112,7 @@ TEST(Idr, FilesAreMatchedByNumberThenByOrder) {
   EXPECT_THAT(c.warnings[0], HasSubstr("1 of 5"));
   EXPECT_EQ(c.views[3].image_path.filename(), "000003.png");
   fs::remove(images / "000007.png");
-  fs::remove(images / "000001.png");  // a camera without a picture: check() says which
+  fs::remove(images / "000001.png");  // a camera without an image: check() says which
   CaptureOptions strict;
   strict.strict = true;
   c = load_capture(temp.path(), strict);

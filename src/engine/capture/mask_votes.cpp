@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kCells = 96;         // per axis of [-1, 1]^3
 constexpr double kAgainst = 0.15;  // share of the other views that may see background in a cell of the object
-constexpr size_t kNear =
-    8;  // views nearest in direction; a hole that is really there is seen by most of them
+// Number of views nearest in direction: a hole that is really there is seen by most of them.
+constexpr size_t kNear = 8;
 constexpr double kNearCosine = 0.64;  // 50 degrees
 constexpr size_t kFewest = 3;         // near views without which nothing is decided
 constexpr int kOpening = 2;           // pixels: doubts about the outline alone do not count

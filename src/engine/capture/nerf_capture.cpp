@@ -39,7 +39,7 @@ std::vector<CameraFile> camera_files(const fs::path& path) {
 }
 
 // The image of a name, as written or with a suffix; the first guess when no file exists.
-fs::path picture_path(const fs::path& base) {
+fs::path path_of_image(const fs::path& base) {
   if (has_image_suffix(base) || is_heic(base)) return readable_image(base);
   for (const char* suffix :
        {".png", ".jpg", ".jpeg", ".exr", ".PNG", ".JPG", ".JPEG", ".EXR", ".heic", ".HEIC"})
@@ -160,7 +160,7 @@ View read_frame(const Json& frame, Split split, const fs::path& folder, const st
   View view;
   view.split = split;
   view.name = view_name(file_path, split);
-  view.image_path = picture_path(own_file(folder, folder / file_path, where));
+  view.image_path = path_of_image(own_file(folder, folder / file_path, where));
   if (frame.contains("mask_path") && frame["mask_path"].is_string())
     view.mask_path = own_file(folder, folder / with_slashes(frame["mask_path"]), where);
   set_pose(view.camera, matrix_of(frame["transform_matrix"], fmt::format("transform_matrix of {}", where)));

@@ -22,15 +22,15 @@ bool is_missing(const View& view) { return !view.image_path.empty() && !fs::exis
 
 void drop_missing(Capture& capture) {
   std::vector<std::string> missing;
-  size_t pictured = 0;
+  size_t with_image = 0;
   for (const View& v : capture.views) {
-    pictured += !v.image_path.empty();
+    with_image += !v.image_path.empty();
     if (is_missing(v)) missing.push_back(v.name);
   }
-  if (missing.empty() || 2 * missing.size() > pictured) return;
+  if (missing.empty() || 2 * missing.size() > with_image) return;
   std::erase_if(capture.views, is_missing);
   capture.warnings.push_back(fmt::format("{} of {} images are missing; their views are left out: {}.",
-                                         missing.size(), pictured, some_names(missing)));
+                                         missing.size(), with_image, some_names(missing)));
 }
 
 Camera scaled_camera(Camera c, ImageSize to) {

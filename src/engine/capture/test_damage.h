@@ -136,7 +136,8 @@ inline std::vector<size_t> frames_beside_the_first(DamagedCapture& c, double rad
   return beside;
 }
 
-inline std::vector<Damage> usual_damages() {
+// All cameras are wrong in the same way.
+inline void add_mistakes_of_all_cameras(std::vector<Damage>& all) {
   const auto inverse = [](const Json& m) {
     Json out = m;
     for (size_t r = 0; r < 3; ++r) {
@@ -152,7 +153,6 @@ inline std::vector<Damage> usual_damages() {
       for (size_t c = 1; c < 3; ++c) out[r][c] = -m[r][c].get<double>();
     return out;
   };
-  std::vector<Damage> all;
   all.push_back({"axes", [=](DamagedCapture& c) { c.every_pose(opencv); }, "agree .*y and z axes"});
   all.push_back(
       {"inverse poses", [=](DamagedCapture& c) { c.every_pose(inverse); }, "agree .*world-to-camera"});
@@ -171,6 +171,10 @@ inline std::vector<Damage> usual_damages() {
                    for (const char* key : {"fl_x", "fl_y", "cx", "cy"}) c.every_number(key, 2);
                  },
                  "principal points"});
+}
+
+// Image and camera of single views do not belong together.
+inline void add_mistakes_of_single_views(std::vector<Damage>& all) {
   all.push_back({"mirrored images",
                  [](DamagedCapture& c) {
                    for (const size_t i : {2, 9})
@@ -209,6 +213,9 @@ inline std::vector<Damage> usual_damages() {
                            1.6 * c.frame(i)["transform_matrix"][r][3].get<double>();
                  },
                  "do not fit the others|masks (leave out|include)"});
+}
+
+inline void add_mistakes_of_photographs(std::vector<Damage>& all) {
   all.push_back({"inverted alpha",
                  [](DamagedCapture& c) {
                    for (size_t i = 0; i < c.size(); ++i)
@@ -228,6 +235,9 @@ inline std::vector<Damage> usual_damages() {
   all.push_back({"the same image twice",
                  [](DamagedCapture& c) { write_file_atomic(c.image(6), read_file(c.image(2))); },
                  "there twice"});
+}
+
+inline void add_mistakes_of_masks(std::vector<Damage>& all) {
   all.push_back({"hole in a mask",
                  [](DamagedCapture& c) {
                    c.redraw(4, [](const Image& m) {
@@ -262,6 +272,9 @@ inline std::vector<Damage> usual_damages() {
          c.redraw(5, [](const Image& m) { return with_alpha(m, [](double, double, float) { return 0; }); });
        },
        "masks are empty"});
+}
+
+inline void add_mistakes_of_files(std::vector<Damage>& all) {
   all.push_back({"missing images",
                  [](DamagedCapture& c) {
                    for (size_t i = 0; i < c.size(); i += 5) std::filesystem::remove(c.image(i));
@@ -288,6 +301,10 @@ inline std::vector<Damage> usual_damages() {
   all.push_back({"image turned by 90 degrees",
                  [](DamagedCapture& c) { c.redraw(6, [](const Image& m) { return turned(m, 6); }); },
                  "cannot be used|turned by .* degrees|do not fit the others"});
+}
+
+// Too few photographs, or one of another size.
+inline void add_mistakes_of_coverage(std::vector<Damage>& all) {
   all.push_back({"too few views",
                  [](DamagedCapture& c) {
                    for (size_t i = 9; i < c.size(); ++i) std::filesystem::remove(c.image(i));
@@ -308,6 +325,16 @@ inline std::vector<Damage> usual_damages() {
   all.push_back({"image of half the size",
                  [](DamagedCapture& c) { c.redraw(5, [](const Image& m) { return downscale(m, 2); }); },
                  "cameras of 1 of .* were scaled to their images"});
+}
+
+inline std::vector<Damage> usual_damages() {
+  std::vector<Damage> all;
+  add_mistakes_of_all_cameras(all);
+  add_mistakes_of_single_views(all);
+  add_mistakes_of_photographs(all);
+  add_mistakes_of_masks(all);
+  add_mistakes_of_files(all);
+  add_mistakes_of_coverage(all);
   return all;
 }
 

@@ -67,7 +67,7 @@ inline std::vector<double> world_mat(const Camera& c, double factor = 1) {
   return m;
 }
 
-// cameras_sphere.npz, image/, mask/: pictures 000000.png, masks 000.png, as the DTU sets have them.
+// cameras_sphere.npz, image/, mask/: images 000000.png, masks 000.png, as the DTU sets have them.
 inline void write_idr(const std::filesystem::path& folder, const TestBall& ball,
                       const std::vector<TestView>& views) {
   std::map<std::string, std::string> files;

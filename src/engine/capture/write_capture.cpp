@@ -69,10 +69,10 @@ Json write_view(const View& view, const fs::path& folder) {
   if (view.photo) put_lens(view.photo->lens(), frame);
   if (view.mask_path.empty() && view.dark_object) {
     const Mask mask = load_file_mask(view);
-    Image picture(mask.width, mask.height, 1);
-    for (size_t i = 0; i < picture.data.size(); ++i) picture.data[i] = mask.object[i] == kObject;
+    Image gray(mask.width, mask.height, 1);
+    for (size_t i = 0; i < gray.data.size(); ++i) gray.data[i] = mask.object[i] == kObject;
     frame["mask_path"] = "masks/" + view.name + ".png";
-    write_png(folder / ("masks/" + view.name + ".png"), picture);
+    write_png(folder / ("masks/" + view.name + ".png"), gray);
   } else if (!view.mask_path.empty()) {
     const std::string suffix = view.dark_object ? ".png" : view.mask_path.extension().string();
     frame["mask_path"] = "masks/" + view.name + suffix;

@@ -12,7 +12,7 @@
 namespace cei3d {
 namespace {
 
-constexpr double kSamplesPerPixel = 2;  // of the tile's pixels on the surface
+constexpr double kSamplesPerPixel = 2;  // samples of the surface per pixel of the tile
 constexpr size_t kMinSamples = 20000, kMaxSamples = 300000;
 constexpr uint64_t kSeed = 1;
 

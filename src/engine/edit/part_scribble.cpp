@@ -11,7 +11,7 @@ namespace cei3d {
 namespace {
 
 constexpr float kAlike = 0.06f;          // largest difference of a channel, sRGB, between pixels of one color
-constexpr double kOneColorShare = 0.95;  // of the pixels, from which strokes count as of one color
+constexpr double kOneColorShare = 0.95;  // share of the pixels that have the color of a stroke of one color
 
 struct Rectangle {
   int x = 0, y = 0, width = 0, height = 0;

@@ -14,9 +14,10 @@
 namespace cei3d {
 namespace {
 
-constexpr float kHeldFrom = 0.04f;    // distance from all that moved from which the field is held
-constexpr float kHeldSpread = 0.01f;  // of the points around the surface where it is held
-constexpr float kSpreads[] = {0.002f, 0.01f, 0.05f};  // of the other points, in turns
+constexpr float kHeldFrom = 0.04f;  // distance from all that moved from which the field is held
+// Standard deviation of points around the surface where the field is held.
+constexpr float kHeldSpread = 0.01f;
+constexpr float kSpreads[] = {0.002f, 0.01f, 0.05f};  // standard deviations of the other points, in turns
 constexpr float kLastRate = 0.02f;
 constexpr float kRounded = 2e-4f;  // errors below which the L1 loss is rounded off
 

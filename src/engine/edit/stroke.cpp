@@ -15,7 +15,7 @@ namespace {
 constexpr float kHard = 0.5f, kSoft = 0.5f / 255;  // min_alpha
 constexpr float kMinFacing = 0.1f;  // minimum cosine between the normal and the direction to the camera
 constexpr int kMaxScale = 4;
-constexpr int64_t kMaxRays = 300000;    // in the crop: about half a second
+constexpr int64_t kMaxRays = 300000;    // maximum number of rays through the crop: about half a second
 constexpr int64_t kMaxPainted = 60000;  // painted rays: as many as training uses anyway
 
 bool beside_opaque(const Image& rgba, int x, int y) {

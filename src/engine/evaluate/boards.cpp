@@ -14,7 +14,7 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kViews = 5;  // of an object, as in the paper's study
+constexpr size_t kViews = 5;  // number of views of an object, as in the paper's study
 
 // The n-th of equal columns.
 Image column(const Image& row, int n, int columns) {

@@ -42,7 +42,7 @@ Json EvaluationObjects::describe_given(const Capture& capture) {
   const ProjectInfo info = session_.info();
   session_.close();
   if (!info.finished)
-    fail("{} is no finished object; go on with `cei3d reconstruct --resume`.", r_.project.string());
+    fail("Project {} holds no finished object; resume its reconstruction.", r_.project.string());
   if (full_path(info.capture_root) != full_path(capture.root))
     fail_usage("{} is an object of the capture {}, not of {}.", r_.project.string(),
                info.capture_root.string(), capture.root.string());

@@ -14,7 +14,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kQuality = 92;  // of lossy pictures
+constexpr int kQuality = 92;  // quality of lossy pictures, 0 to 100
 
 Picture encoded(const Image& image, const std::string& name, PictureKind kind) {
   if (kind == PictureKind::jpeg) return {name + ".jpg", encode_jpeg(image, kQuality), kind};

@@ -22,7 +22,7 @@ std::vector<Vec3f> in_capture_frame(std::vector<Vec3f> points, const Normalizati
 
 // A mesh has few materials: where they vary continuously they are rounded.
 std::vector<Material> rounded(std::vector<Material> materials) {
-  constexpr float kStep = 0.1f;  // of the roughness
+  constexpr float kStep = 0.1f;  // step of the roughness
   for (Material& m : materials)
     m = {kStep * std::round(m.roughness / kStep), m.specular, std::round(m.metalness)};
   return materials;

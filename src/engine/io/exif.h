@@ -9,8 +9,8 @@ namespace cei3d {
 
 struct ExifNotes {
   int orientation = 1;  // 1 to 8; 5 to 8 swap the sides
-  std::optional<double>
-      exposure;  // relative light that reached the sensor and its gain: time * ISO / f-number^2
+  // Relative light that reached the sensor, times its gain: time * ISO / f-number^2.
+  std::optional<double> exposure;
   std::optional<double> focal_length;  // millimeters
   std::optional<bool> auto_white;      // whether the camera chose the white balance of this photograph itself
 };

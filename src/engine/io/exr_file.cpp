@@ -21,7 +21,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kMaxChannels = 128;  // of all that a file holds; most are not read
+constexpr int kMaxChannels = 128;  // maximum number of channels in a file; most are not read
 
 class Source : public Imf::IStream {
  public:

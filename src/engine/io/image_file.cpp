@@ -22,7 +22,8 @@
 namespace cei3d {
 namespace {
 
-constexpr size_t kHeaderBytes = size_t(1) << 20;  // that hold the size of nearly every file
+// Number of bytes within which nearly every file states its size.
+constexpr size_t kHeaderBytes = size_t(1) << 20;
 
 ImageSize png_size(const std::string& bytes, const std::string& name) {
   if (bytes.size() < 25 || bytes.compare(12, 4, "IHDR") != 0)

@@ -12,9 +12,9 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kPrompts = 4;    // of each kind
+constexpr size_t kPrompts = 4;    // number of prompts of each kind
 constexpr float kPrior = 3;       // masks that must contradict what the points' places say
-constexpr double kMargin = 0.05;  // of the box around the points, as a share of its longer side
+constexpr double kMargin = 0.05;  // margin of the box around the points, as a share of its longer side
 
 bool is_in(const Image& mask, Vec2f p) {
   const int x = std::clamp(int(p.x), 0, mask.width - 1), y = std::clamp(int(p.y), 0, mask.height - 1);

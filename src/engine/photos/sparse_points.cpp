@@ -15,15 +15,15 @@ namespace cei3d {
 namespace {
 
 // Lengths as shares of the radius that the photographs show.
-constexpr double kReach = 1.5;   // from the center: an object that fills the frame is that large
+constexpr double kReach = 1.5;   // distance from the center: an object that fills the frame is that large
 constexpr double kBeside = 2.5;  // no object of which whole photographs were taken reaches as far
 constexpr double kFlat = 0.02;   // distance from a plane up to which a point is on it
 constexpr double kAbove = 0.05;  // distance from which it surely stands above it
 constexpr double kLinkMin = 0.04, kLinkMax = 0.15;  // points of one thing are closer to each other than that
-constexpr double kPlaneShare = 0.1;                 // of the points, to be a plane that the object lies on
-constexpr double kBehind = 0.03;  // share of the points that may be behind that plane, for mistakes
+constexpr double kPlaneShare = 0.1;  // minimum share of the points in a plane that the object lies on
+constexpr double kBehind = 0.03;     // share of the points that may be behind that plane, for mistakes
 constexpr int kPlaneTrials = 2000;
-constexpr size_t kPlanePoints = 5000;  // that are counted
+constexpr size_t kPlanePoints = 5000;  // maximum number of points that are counted
 
 struct Plane {
   Vec3d normal;  // towards the cameras

@@ -250,9 +250,7 @@ std::string Project::base_key() const {
 }
 
 Scene Project::base() const {
-  if (!has_base())
-    fail("Project {} holds no finished object; continue with `cei3d reconstruct --resume -o {}`.",
-         folder_.string(), folder_.string());
+  if (!has_base()) fail("Project {} holds no finished object; resume its reconstruction.", folder_.string());
   return read_json_file(file("base/scene.json"), [&](const Json& j) {
     JsonReader reader(j, file("base/scene.json").string());
     const auto object = reader.require<std::string>("object");

@@ -269,8 +269,8 @@ std::vector<std::pair<std::string, std::string>> Project::edit_inputs(const std:
   return read_json_file(edit_file(id), [&](const Json& j) {
     std::vector<std::pair<std::string, std::string>> inputs;
     for (const auto& [name, hash] : j.at("inputs").items()) {
-      const fs::path path =
-          file("edits") / id / fs::path(name).filename();  // never beyond the edit's own folder
+      // Never beyond the edit's own folder, whatever the name says.
+      const fs::path path = file("edits") / id / fs::path(name).filename();
       std::string bytes = read_file(path);
       if (content_hash(bytes) != hash.get<std::string>())
         fail("{} is not the file that edit {} was made from; restore it from a copy of the project.",

@@ -23,7 +23,7 @@ constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
 // Positions in the schedule at which poses that were moved before, and exposures, are fitted to what was
 // trained.
 constexpr std::array kFitAt{0.1, 0.2, 0.3, 0.45, 0.6};
-constexpr int kAlignSide = 320, kExposeSide = 64;  // of the images that are compared, at most; pixels
+constexpr int kAlignSide = 320, kExposeSide = 64;  // maximum sides of the images that are compared, pixels
 // Exposures are found late: what was trained briefly is off by as much. Their spread (exposure_change()) from
 // which on they are believed: of equal ones it is .05 at most, for a metal.
 constexpr double kExposeFrom = 0.3, kMinExposure = 0.08;

@@ -16,7 +16,7 @@ namespace {
 uint8_t to_byte(float v) { return uint8_t(std::lround(std::clamp(v, 0.0f, 1.0f) * 255)); }
 
 std::array<uint16_t, 3> halves_of(const float* linear) {
-  constexpr float kMax = 65504;  // of 16 bits
+  constexpr float kMax = 65504;  // largest finite half float
   std::array<uint16_t, 3> h;
   for (size_t c = 0; c < 3; ++c) h[c] = half_from_float(std::clamp(linear[c], 0.0f, kMax));
   return h;

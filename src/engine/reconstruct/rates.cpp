@@ -21,7 +21,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kSdfPoints = 2048;
-constexpr int kLobes = 128;        // of the light, as many as a fitted one has
+constexpr int kLobes = 128;        // lobes of the light, as many as a fitted one has
 constexpr int kMeshShare = 4;      // the measured mesh has 1/4 of the preset's cells per axis
 constexpr size_t kHitShare = 100;  // 1/100 of the preset's hits are traced and shaded
 

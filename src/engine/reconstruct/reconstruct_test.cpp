@@ -66,18 +66,6 @@ class SmallTurningRun : Owner<TurntableCapture>, public AnyRun {
   SmallTurningRun() : AnyRun(own.capture(), own) { options.light = LightMotion::turntable; }
 };
 
-// The box in photographs that are brighter and darker in turn.
-class ExposedCapture : public BoxCapture {
- public:
-  Image load(const View& view) const override {
-    Image image = BoxCapture::load(view);
-    const float factor = std::stoi(view.name) % 2 ? 0.6f : 1.3f;
-    for (size_t i = 0; i < image.data.size(); ++i)
-      if (i % 4 < 3) image.data[i] *= factor;
-    return image;
-  }
-};
-
 class SmallExposedRun : Owner<ExposedCapture>, public AnyRun {
  public:
   SmallExposedRun() : AnyRun(own.capture(), own) { preset.exposures_from_steps = 1; }
@@ -98,15 +86,6 @@ class SmallRunFromASphere : Owner<BoxCapture>, public AnyRun {
  public:
   SmallRunFromASphere() : AnyRun(own.capture(), own) { preset.start = StartChoice::sphere; }
 };
-
-void expect_same(const Tensors& a, const Tensors& b, const std::string& where) {
-  ASSERT_EQ(a.size(), b.size()) << where;
-  for (const auto& [name, tensor] : a) {
-    ASSERT_TRUE(b.contains(name)) << where << " " << name;
-    EXPECT_EQ(tensor.shape, b.at(name).shape) << where << " " << name;
-    EXPECT_TRUE(tensor.f32 == b.at(name).f32 && tensor.u8 == b.at(name).u8) << where << " " << name;
-  }
-}
 
 Checkpoints::State saved(const Scene& scene) {
   Checkpoints::State s;
@@ -212,6 +191,19 @@ Json joint_judgment(const ScriptedProgress& progress) {
   return line == progress.lines.end() ? Json() : *line;
 }
 
+// A run that was killed as soon as the stage had saved its descent `saves` times, each before a step.
+MemoryCheckpoints killed_in_the_middle(AnyRun& small, const Checkpoints::State& from,
+                                       const std::string& stage, int saves) {
+  KilledAfterSaves killed(from, stage, saves);
+  ScriptedProgress progress;
+  EXPECT_THROW(small.run(killed, progress), Killed);
+  EXPECT_FALSE(killed.latest_state->head.at("finished").get<bool>());
+  EXPECT_EQ(killed.latest_state->head.at("state").at("descent_step"), saves - 1);
+  MemoryCheckpoints left;
+  left.latest_state = killed.latest_state;
+  return left;
+}
+
 TEST(Reconstruct, TheJointStageIsResumedInTheMiddleOfItsDescent) {
   SmallRun small;
   small.tick = 40;  // every step is saved
@@ -220,17 +212,26 @@ TEST(Reconstruct, TheJointStageIsResumedInTheMiddleOfItsDescent) {
   ASSERT_TRUE(judgment.contains("after"));
   for (const int saves : {1, 2, 3, 4}) {  // before the first step and after it, a refresh before the last
     SCOPED_TRACE(saves);
-    KilledAfterSaves killed(reference.checkpoints.after.at("appearance"), "joint", saves);
-    ScriptedProgress progress;
-    EXPECT_THROW(small.run(killed, progress), Killed);
-    EXPECT_FALSE(killed.latest_state->head.at("finished").get<bool>());
-    EXPECT_EQ(killed.latest_state->head.at("state").at("descent_step"), saves - 1);
-    MemoryCheckpoints resumed;
-    resumed.latest_state = killed.latest_state;
+    MemoryCheckpoints resumed =
+        killed_in_the_middle(small, reference.checkpoints.after.at("appearance"), "joint", saves);
     ScriptedProgress rest;
     const Scene scene = small.run(resumed, rest);
     EXPECT_EQ(joint_judgment(rest), judgment);
     expect_same(saved(scene).tensors, reference.scene.tensors, "the object");
+  }
+}
+
+TEST(Reconstruct, ARoundOfPolishingIsResumedInTheMiddleOfItsDescent) {
+  SmallRun small;
+  small.tick = 40;  // every step is saved
+  const Reference& reference = uninterrupted();
+  for (const int saves : {1, 3}) {  // before the first step, and between others
+    SCOPED_TRACE(saves);
+    MemoryCheckpoints resumed =
+        killed_in_the_middle(small, reference.checkpoints.after.at("polish 1"), "polish 2", saves);
+    run_interrupted(small, resumed, "surface", 1, How::cancel);
+    expect_same(resumed.after.at("polish 2").tensors, reference.checkpoints.after.at("polish 2").tensors,
+                "after the round");
   }
 }
 

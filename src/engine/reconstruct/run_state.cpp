@@ -59,7 +59,7 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
           {"start_seconds", state.start_seconds},
           {"polish_deadline", state.polish_deadline},
           {"look_seconds", state.look_seconds},
-          {"joint_seconds", state.joint_seconds},
+          {"descent_seconds", state.descent_seconds},
           {"light_frame_known", state.light_frame_known},
           {"alignments", state.alignments},
           {"has_geometry", bool(state.geometry)}};
@@ -86,7 +86,8 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   state.start_seconds = reader.require<double>("start_seconds");
   state.polish_deadline = reader.require<double>("polish_deadline");
   state.look_seconds = reader.require<double>("look_seconds");
-  state.joint_seconds = reader.optional("joint_seconds", 0.0);
+  const double of_older = reader.optional("joint_seconds", 0.0);  // before polishing had it, too
+  state.descent_seconds = reader.optional("descent_seconds", of_older);
   state.light_frame_known = reader.optional("light_frame_known", false);
   state.descent = {reader.optional<int64_t>("descent_step", 0), without_prefix(kDescent, tensors)};
   state.alignments = reader.optional("alignments", 0);

@@ -24,14 +24,15 @@ struct RunState {
   double look_seconds = 0;         // s that the last round took to estimate light and material
   bool light_frame_known = false;  // whether scene.light_frame is final
   int alignments = 0;              // of the poses that are done in the geometry stage
-  Scene scene;                     // the finished parts of the object
+  // The finished parts of the object; in the middle of a round of polishing what it estimates, instead.
+  Scene scene;
 
   // Between the stages of light and appearance: LinearSplit::albedo, #V of scene.surface; else empty.
   std::vector<Vec3f> separated_albedo;
-  DescentState descent;      // of a stage that is in the middle of a descent on the appearance or on all
-  double joint_seconds = 0;  // s that the joint stage's descent took so far
+  DescentState descent;        // of a stage that is in the middle of a descent
+  double descent_seconds = 0;  // s that the descent took so far; of polishing and of the joint stage
 
-  // Hits of these stages on scene.surface, and its transport. Not in checkpoints: they are recomputed.
+  // Hits of the present stage on scene.surface, and its transport. Not in checkpoints: they are recomputed.
   ObjectHits hits;
   std::shared_ptr<const Transport> transport;
 };

@@ -11,7 +11,9 @@
 #include "engine/reconstruct/geometry_training.h"
 #include "engine/reconstruct/joint/joint_run.h"
 #include "engine/reconstruct/joint/joint_stage.h"
+#include "engine/reconstruct/polish_round.h"
 #include "engine/reconstruct/poses/refined_poses.h"
+#include "engine/reconstruct/stage_inputs.h"
 
 namespace cei3d {
 
@@ -23,16 +25,12 @@ constexpr uint64_t kResidualSubset = 1000, kJointSubset = 1001;
 constexpr double kJointDescentShare = 0.7;
 constexpr double kMinJointGain = 0.02;  // dB on pixels that the joint descent does not see
 constexpr float kMaxLevel = 0.002f;  // maximum shift of the zero level: the thickness of the sharpest density
-// Minimum share of a descent's planned time; less is not worth another estimate of light and material.
-constexpr double kMinPolishShare = 1.0 / 6;
-constexpr double kLightShare = 0.6;  // of the planned time of light and appearance
+constexpr double kLightShare = 0.6;  // share of light in the planned time of light and appearance
 
 // Lengths of the stages of a run by steps, in steps of the geometry stage.
 constexpr double kStartSteps = 50, kTrialsSteps = 1500, kLookSteps = 350, kSurfaceSteps = 80,
                  kAppearanceSteps = 600, kFinerMeshSteps = 400, kPolishStepLength = 3, kJointStepLength = 2,
                  kResidualStepLength = 0.4;
-
-Vec3f turntable_axis(const RunContext& run) { return to_float(normalize(run.capture.up)); }
 
 // How the light turns in the training views, found on the visual hull if it is not given: the diffuse shading
 // of a rough shape mostly suffices.
@@ -95,71 +93,6 @@ void run_geometry(const RunContext& run, RunState& state, const Stage::Checkpoin
   check_cancelled(run.progress);
 }
 
-// Seconds of this round's descent, if the estimate before it took state.look_seconds and those of later
-// rounds take as long.
-double polish_seconds(const RunContext& run, const RunState& state, int round) {
-  const int rounds_left = run.plan.polish_rounds - round;
-  const double left = state.polish_deadline - run.progress.elapsed() - (rounds_left - 1) * state.look_seconds;
-  return std::clamp(left / rounds_left, std::min(1.0, run.plan.polish), run.plan.polish);
-}
-
-using Turns = std::shared_ptr<const LightTurns>;
-
-// Rotations of the light in the training views. Null: the light is fixed to the object. A light that seemed
-// to be fixed on the visual hull is tested again on the first trained surface.
-Turns light_turns(const RunContext& run, RunState& state, const std::shared_ptr<const Surface>& surface,
-                  const ObjectHits& hits) {
-  const std::vector<Camera>& cameras = run.views.train.cameras();
-  LightFrame& frame = state.scene.light_frame;
-  if (!state.light_frame_known)
-    frame = find_light_frame({surface, hits.samples()}, hits.views, cameras, turntable_axis(run), run.seed,
-                             run.progress);
-  state.light_frame_known = true;
-  return turns_of(frame, cameras);
-}
-
-// One round of polishing: estimates light and material of the present surface, then improves the surface
-// under them. Skipped if there is no time.
-void polish(const RunContext& run, RunState& state, int round) {
-  const Plan& plan = run.plan;
-  const bool timed = plan.polish > 0;
-  const double begin = run.progress.elapsed();
-  if (round == 0) {
-    state.polish_deadline = begin + plan.polish_rounds * (plan.polish + plan.look);
-    state.look_seconds = plan.look;
-  }
-  if (timed && round > 0 &&
-      state.polish_deadline - begin < state.look_seconds + kMinPolishShare * plan.polish)
-    return;
-  GeometryStage& geometry = *state.geometry;
-  const PixelStore& pixels = run.views.train;
-  const SurfaceAndHits all = extract_surface_and_hits(run.device, geometry.sdf(), run.preset.meshing, pixels,
-                                                      run.preset.max_hits, run.progress);
-  const ObjectHits fewer =
-      object_hits(run.device, geometry.sdf(), *all.surface, pixels, {run.preset.brief_hits}, run.progress);
-  AppearanceOptions brief = run.preset.appearance;
-  brief.effort = Effort::brief;
-  brief.seed = run.seed;
-  brief.light_color = run.light_color;
-  const Turns turns = light_turns(run, state, all.surface, fewer);
-  const AppearanceResult appearance =
-      fit_appearance(run.device, {all.surface, fewer.samples(turns.get())}, brief, run.progress);
-  check_cancelled(run.progress);
-  state.look_seconds = run.progress.elapsed() - begin;
-  PolishOptions options = run.preset.polish;
-  options.steps = plan.polish_steps;
-  options.seconds = timed ? polish_seconds(run, state, round) : 0;
-  options.clock = run.progress.clock();
-  options.seed = run.seed + uint64_t(round);
-  options.first_step = (int64_t(round) + 1) << 24;
-  options.show = [&] {
-    run.live.offer([&](const Camera& camera) { return geometry.render_radiance(camera, 1); });
-  };
-  polish_surface(run.device, geometry, all.input(turns.get()), appearance, options, run.progress);
-  check_cancelled(run.progress);
-  run.progress.log(Json{{"stage", "polish"}, {"look_seconds", state.look_seconds}}.dump());
-}
-
 // Shifts the field so that the surface of the silhouettes becomes its zero level.
 Field at_silhouettes(const RunContext& run, Field sdf) {
   const float level = silhouette_level(run.device, sdf, run.views.train, kMaxLevel, run.seed, run.progress);
@@ -179,10 +112,6 @@ void make_surface(const RunContext& run, RunState& state, const Stage::Checkpoin
   state.hits = std::move(made.hits);
   run.progress.report({"handler points", 0.8, -1, ""});
   scene.handlers = handlers_of(state.hits, run.views.footprint);
-}
-
-ObjectHits scene_hits(const RunContext& run, const Scene& scene, const HitOptions& options) {
-  return object_hits(run.device, *scene.sdf, *scene.surface, run.views.train, options, run.progress);
 }
 
 AppearanceOptions appearance_options(const RunContext& run) {
@@ -207,10 +136,6 @@ ShowAppearance shown_on(const RunContext& run, const Scene& scene, const LightTu
       return lit_picture(run.device, {*scene.sdf, scene.surface, lighting, albedo, material, turns}, camera);
     });
   };
-}
-
-void find_hits(const RunContext& run, RunState& state) {
-  if (state.hits.hits.empty()) state.hits = scene_hits(run, state.scene, {run.preset.max_hits});
 }
 
 void estimate_light(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
@@ -269,8 +194,8 @@ JointObject joint_object(const RunContext& run, RunState& state, const Appearanc
   JointStageOptions options{run.preset.joint, run.plan.joint_steps, kJointDescentShare * run.plan.joint,
                             run.progress.clock(), shown_on(run, scene, input.samples.turned.turns)};
   options.descent.seed = run.seed;
-  options.spent = state.joint_seconds;
-  options.store = descent_store(run, state, &state.joint_seconds, checkpoint);
+  options.spent = state.descent_seconds;
+  options.store = descent_store(run, state, &state.descent_seconds, checkpoint);
   // Before the first step there is nothing to go on from, and what was stored differs from the scene in the
   // last bit.
   if (state.descent.step == 0) options.store.from = {};
@@ -301,6 +226,7 @@ void descend_on_all(const RunContext& run, RunState& state, const Stage::Checkpo
   run.progress.log(Json{{"stage", "joint"}, {"before", before_psnr}, {"after", psnr}, {"kept", kept}}.dump());
   check_cancelled(run.progress);
   state.descent = {};
+  state.descent_seconds = 0;
   if (!kept) return;
   after.handlers = handlers_of(scene_hits(run, after, {run.preset.max_hits}), run.views.footprint);
   scene = std::move(after);
@@ -364,8 +290,8 @@ std::vector<Stage> stages_of(const Plan& plan) {
   std::vector<Stage> stages{{"start", budget.start, make_start}, {"geometry", budget.geometry, run_geometry}};
   for (int round = 0; round < plan.polish_rounds; ++round)
     stages.push_back({fmt::format("polish {}", round + 1), budget.polish,
-                      [round](const RunContext& run, RunState& state, const Stage::Checkpoint&) {
-                        polish(run, state, round);
+                      [round](const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
+                        polish(run, state, round, checkpoint);
                       }});
   stages.push_back({"surface", budget.surface, make_surface});
   stages.push_back({"light", kLightShare * budget.appearance, estimate_light});

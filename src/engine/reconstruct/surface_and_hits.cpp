@@ -15,7 +15,7 @@ namespace {
 // Pixels traced at a time: tracing takes more memory than the hits do, and with the largest networks 5 s of
 // one core.
 constexpr size_t kSlab = 1 << 13;
-constexpr float kHandlerSpacing = 1.5f;  // of handler points, in pixels
+constexpr float kHandlerSpacing = 1.5f;  // spacing of handler points, in pixels
 // Share of the pixels at edges that are kept, for the sake of bars so thin that they have no others.
 constexpr float kEdgeShare = 0.125f;
 constexpr size_t kFewPixels = 50000;  // captures with fewer pixels on the object keep all

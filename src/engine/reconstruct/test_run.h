@@ -2,6 +2,8 @@
 // For tests: a reconstruction small enough to be run many times, on a clock that the test owns.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <map>
 #include <mutex>
 #include <stdexcept>
@@ -17,51 +19,70 @@
 
 namespace cei3d {
 
-// The box from all around, checkered so that stereo and albedo have something to find.
-class BoxCapture : public ImageSource {
+// Pictures that a test has drawn, in place of photographs.
+class DrawnCapture : public ImageSource {
  public:
-  explicit BoxCapture(int views = 12, int size = 28) {
-    for (int v = 0; v < views; ++v) {
-      const Camera camera = box_camera(-0.5 + 1.3 * v / views, 2.4 * v, size);
-      View view;
-      view.name = std::to_string(v);
-      view.split = v % 6 == 5 ? Split::test : Split::train;
-      view.camera = camera;
-      pictures_[view.name] = box_picture(camera, [](Vec3f p) {
-        const bool odd = (int(std::floor(p.x * 7)) + int(std::floor(p.y * 7)) + int(std::floor(p.z * 7))) & 1;
-        return (odd ? Vec3f{0.5f, 0.3f, 0.2f} : Vec3f{0.2f, 0.3f, 0.4f}) * (1 + 0.3f * p.z);
-      });
-      capture_.views.push_back(view);
-    }
-  }
   Image load(const View& view) const override { return pictures_.at(view.name); }
   const Capture& capture() const { return capture_; }
+
+ protected:
+  // Every sixth view is held out.
+  void add(const Camera& camera, Image picture) {
+    const size_t index = capture_.views.size();
+    View view;
+    view.name = std::to_string(index);
+    view.split = index % 6 == 5 ? Split::test : Split::train;
+    view.camera = camera;
+    pictures_[view.name] = std::move(picture);
+    capture_.views.push_back(view);
+  }
 
  private:
   std::map<std::string, Image> pictures_;
   Capture capture_;
 };
 
+// The box from all around, checkered so that stereo and albedo have something to find.
+class BoxCapture : public DrawnCapture {
+ public:
+  explicit BoxCapture(int views = 12, int size = 28) {
+    for (int v = 0; v < views; ++v) {
+      const Camera camera = box_camera(-0.5 + 1.3 * v / views, 2.4 * v, size);
+      add(camera, box_picture(camera, [](Vec3f p) {
+            const bool odd =
+                (int(std::floor(p.x * 7)) + int(std::floor(p.y * 7)) + int(std::floor(p.z * 7))) & 1;
+            return (odd ? Vec3f{0.5f, 0.3f, 0.2f} : Vec3f{0.2f, 0.3f, 0.4f}) * (1 + 0.3f * p.z);
+          }));
+    }
+  }
+};
+
+// The box in photographs that are brighter and darker in turn.
+class ExposedCapture : public BoxCapture {
+ public:
+  Image load(const View& view) const override {
+    Image image = BoxCapture::load(view);
+    const float factor = std::stoi(view.name) % 2 ? 0.6f : 1.3f;
+    for (size_t i = 0; i < image.data.size(); ++i)
+      if (i % 4 < 3) image.data[i] *= factor;
+    return image;
+  }
+};
+
 // The same box, of matte stone below and of polished metal above, on a turntable under fixed lamps.
-class TurntableCapture : public ImageSource {
+class TurntableCapture : public DrawnCapture {
  public:
   explicit TurntableCapture(int views = 12, int size = 32) {
     for (int v = 0; v < views; ++v) {
-      View view;
-      view.name = std::to_string(v);
-      view.split = v % 6 == 5 ? Split::test : Split::train;
-      view.camera = box_camera(-0.5 + 1.3 * v / views, 2.4 * v, size);
-      const Vec3f eye = to_float(view.camera.center);
+      const Camera camera = box_camera(-0.5 + 1.3 * v / views, 2.4 * v, size);
+      const Vec3f eye = to_float(camera.center);
       const Mat3f room = about_axis({0, 0, 1}, -std::atan2(eye.y, eye.x));
-      pictures_[view.name] = box_picture(view.camera, [&](Vec3f p) {
-        const Vec3f n = pit_box().normal(p), d = normalize(p - eye), r = d - n * (2 * dot(d, n));
-        return p.z > 0 ? Vec3f{1, 0.75f, 0.4f} * lamps(room * r, 6) : stone(p) * lamps(room * n, 1);
-      });
-      capture_.views.push_back(view);
+      add(camera, box_picture(camera, [&](Vec3f p) {
+            const Vec3f n = pit_box().normal(p), d = normalize(p - eye), r = d - n * (2 * dot(d, n));
+            return p.z > 0 ? Vec3f{1, 0.75f, 0.4f} * lamps(room * r, 6) : stone(p) * lamps(room * n, 1);
+          }));
     }
   }
-  Image load(const View& view) const override { return pictures_.at(view.name); }
-  const Capture& capture() const { return capture_; }
 
  private:
   // sharpness: of the lobes of two lamps.
@@ -74,9 +95,6 @@ class TurntableCapture : public ImageSource {
     const bool odd = (int(std::floor(p.x * 7)) + int(std::floor(p.y * 7))) & 1;
     return odd ? Vec3f{0.5f, 0.3f, 0.2f} : Vec3f{0.2f, 0.3f, 0.4f};
   }
-
-  std::map<std::string, Image> pictures_;
-  Capture capture_;
 };
 
 inline void shrink_networks(Preset& p) {
@@ -227,5 +245,14 @@ class ScriptedProgress : public Progress {
   How how_ = How::cancel;
   mutable bool stopped_ = false;
 };
+
+inline void expect_same(const Tensors& a, const Tensors& b, const std::string& where) {
+  ASSERT_EQ(a.size(), b.size()) << where;
+  for (const auto& [name, tensor] : a) {
+    ASSERT_TRUE(b.contains(name)) << where << " " << name;
+    EXPECT_EQ(tensor.shape, b.at(name).shape) << where << " " << name;
+    EXPECT_TRUE(tensor.f32 == b.at(name).f32 && tensor.u8 == b.at(name).u8) << where << " " << name;
+  }
+}
 
 }  // namespace cei3d

@@ -179,7 +179,7 @@ DiffuseLight<float> Lighting::diffuse_light(const HitBatch& batch, size_t hit) c
 
 void Lighting::add_diffuse_light_grad(const HitBatch& batch, size_t hit, const DiffuseLight<float>& d,
                                       Vec3f& d_normal, Vec3f& d_view) const {
-  constexpr float kStep = 0.02f;  // of differences: the table changes slowly
+  constexpr float kStep = 0.02f;  // step of differences: the table changes slowly
   const Vec3f n = batch.turned.in_room(hit, batch.hits[hit].normal),
               v = batch.turned.in_room(hit, batch.hits[hit].to_camera);
   const float nv = dot(n, v);

@@ -12,7 +12,7 @@
 namespace cei3d {
 namespace {
 
-constexpr float kMinCosine = 0.02f;  // of a surface seen in a reflection
+constexpr float kMinCosine = 0.02f;  // minimum cosine of normal and view of a surface seen in a reflection
 
 Vec3f unblocked(Vec3f blocked, Vec3f all) {
   const auto rest = [](float part, float whole) { return whole > 0 ? max(1 - part / whole, 0.0f) : 1.0f; };

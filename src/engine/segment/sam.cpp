@@ -36,13 +36,13 @@ OnnxTensor encoder_input(const Image& rgb) {
   return t;
 }
 
-OnnxTensors decoder_input(const SamImage& picture, std::span<const Vec2f> positive,
+OnnxTensors decoder_input(const SamImage& image, std::span<const Vec2f> positive,
                           std::span<const Vec2f> negative, const std::optional<std::array<Vec2f, 2>>& box) {
   OnnxTensor coords, labels;
   const auto add = [&](Vec2f p, float label) {
     // The network itself adds half a frame pixel.
-    coords.data.push_back((p.x - float(picture.x0)) * picture.scale - 0.5f);
-    coords.data.push_back((p.y - float(picture.y0)) * picture.scale - 0.5f);
+    coords.data.push_back((p.x - float(image.x0)) * image.scale - 0.5f);
+    coords.data.push_back((p.y - float(image.y0)) * image.scale - 0.5f);
     labels.data.push_back(label);
   };
   for (Vec2f p : positive) add(p, 1);
@@ -57,7 +57,7 @@ OnnxTensors decoder_input(const SamImage& picture, std::span<const Vec2f> positi
   const auto n = int64_t(labels.data.size());
   coords.shape = {1, n, 2};
   labels.shape = {1, n};
-  return {{"image_embeddings", picture.embedding},
+  return {{"image_embeddings", image.embedding},
           {"point_coords", coords},
           {"point_labels", labels},
           {"mask_input", {{1, 1, kLowRes, kLowRes}, std::vector<float>(size_t(kLowRes) * kLowRes, 0.0f)}},
@@ -97,7 +97,7 @@ void blur(std::vector<float>& plane) {
 }
 
 // Bilinear between the centers of the low-resolution pixels.
-Image to_picture(const std::vector<float>& plane, const SamImage& p) {
+Image to_image(const std::vector<float>& plane, const SamImage& p) {
   Image out(p.width, p.height, 1, kOutside);
   constexpr float kStep = float(kFrame) / kLowRes;
   const auto last = float(kLowRes - 1);
@@ -144,10 +144,10 @@ SamImage Sam::encode(const Image& rgba) const {
   return {std::move(out.at(output)), rgba.width, rgba.height, frame.x0, frame.y0, frame.scale};
 }
 
-Image Sam::mask(const SamImage& picture, std::span<const Vec2f> positive, std::span<const Vec2f> negative,
+Image Sam::mask(const SamImage& image, std::span<const Vec2f> positive, std::span<const Vec2f> negative,
                 const std::optional<std::array<Vec2f, 2>>& box) const {
   const OnnxTensors out =
-      decoder_.run(decoder_input(picture, positive, negative, box), {"low_res_masks", "iou_predictions"});
+      decoder_.run(decoder_input(image, positive, negative, box), {"low_res_masks", "iou_predictions"});
   const OnnxTensor& masks = out.at("low_res_masks");
   constexpr size_t kPlane = size_t(kLowRes) * kLowRes;
   const size_t best = best_mask(out.at("iou_predictions"), positive.size() + negative.size() + (box ? 2 : 0));
@@ -159,7 +159,7 @@ Image Sam::mask(const SamImage& picture, std::span<const Vec2f> positive, std::s
   std::vector<float> plane(masks.data.begin() + long(best * kPlane),
                            masks.data.begin() + long((best + 1) * kPlane));
   blur(plane);
-  return to_picture(plane, picture);
+  return to_image(plane, image);
 }
 
 }  // namespace cei3d

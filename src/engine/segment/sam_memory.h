@@ -24,8 +24,8 @@ class EncodedImages {
   std::shared_ptr<const SamImage> get(const Image& rgba, const Encode& encode);
 
  private:
-  std::deque<std::pair<std::string, std::shared_ptr<const SamImage>>>
-      images_;  // hash; the last used one last
+  // By the hash of the image; the last used one last.
+  std::deque<std::pair<std::string, std::shared_ptr<const SamImage>>> images_;
 };
 
 class SamMemory {

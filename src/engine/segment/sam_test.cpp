@@ -8,8 +8,8 @@
 namespace cei3d {
 namespace {
 
-const std::filesystem::path kFolder =
-    "build/sam";  // tests run in the repository's root; `./run sam` fills it
+// `./run sam` fills it; tests run in the repository's root.
+const std::filesystem::path kFolder = "build/sam";
 
 // A disc of one color on a square of another, on nothing.
 Image disc(float cx, float cy, float radius) {

@@ -7,11 +7,12 @@
 namespace cei3d {
 namespace {
 
-constexpr double kMaxPixels = 60e6;  // of the object, in all training views
+constexpr double kMaxPixels = 60e6;  // maximum number of pixels of the object in all training views
 // Rough bounds: networks and meshes; a pixel of the object; any pixel of a view, which has a mask. 87 views
 // of 12 megapixels, used at 1/3 of their size, took 1.8 GB.
 constexpr double kBaseBytes = 0.5e9, kObjectBytes = 22, kPixelBytes = 1;
-constexpr double kDecodedBytes = 60;  // of a pixel of the photograph that is read, at its full size
+// Memory per pixel of the photograph that is being read, at its full size.
+constexpr double kDecodedBytes = 60;
 
 struct Pixels {
   double all = 0, object = 0;  // of all training views

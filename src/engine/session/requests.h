@@ -38,8 +38,8 @@ struct CheckRequest {
 CaptureOptions capture_options(const std::string& format, const ReconstructOptions&);
 struct CheckReport {
   Capture capture;
-  std::vector<std::string>
-      repaired;  // findings that were repaired; capture and report are those of the new capture
+  // Findings that were repaired; capture and report are those of the new capture.
+  std::vector<std::string> repaired;
   CaptureReport report;
   double object_radius = 0;  // of its bounding sphere, when the report has a normalization
   Json json() const;
@@ -81,8 +81,8 @@ struct ObjectSummary {
   LightMotion light_motion = LightMotion::world;
   std::optional<Vec3f> light_error;  // relative, of the strength of its channels; none: not known
   size_t refined_poses = 0;          // training views whose poses the reconstruction moved
-  double exposures = 0;  // by how much their photographs are of different brightness, standard deviation of
-                         // the logarithm; 0: they are taken for equal
+  // Standard deviation of the logarithm of the photographs' exposures; 0: they are taken for equal.
+  double exposures = 0;
   // A sentence if light and material alone explain the photographs much worse than with the correction
   // network; else empty.
   std::string warning() const;

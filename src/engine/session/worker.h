@@ -1,30 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one thread that uses a Session on behalf of several others, which never wait for each other's work.
-// Edits run in their order and are never dropped. Frames run step by step in between; of each viewer only the
-// newest is wanted. What may wait runs last.
+// The one thread that uses a Session on behalf of several others: a JobThread whose jobs get the session.
 #pragma once
 
-#include <atomic>
-#include <condition_variable>
-#include <deque>
-#include <functional>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
+#include <utility>
 
-#include "core/base/progress.h"
+#include "core/base/job_thread.h"
 #include "engine/session/session.h"
 
 namespace cei3d {
-
-// Listens to the job that runs; called on the worker's thread and those that it computes on.
-class JobListener {
- public:
-  virtual ~JobListener() = default;
-  virtual void on_progress(const std::string& job, const ProgressReport&) = 0;
-};
 
 class Worker {
  public:
@@ -32,49 +17,28 @@ class Worker {
   using Step = std::function<bool(Session&)>;            // false: the work is done; throws nothing
 
   // listener: must outlive this; may be null.
-  Worker(std::unique_ptr<Session>, JobListener* listener);
-  ~Worker();  // cancels the running job, drops waiting ones
+  Worker(std::unique_ptr<Session> session, JobListener* listener)
+      : session_(std::move(session)), thread_(listener) {}
 
-  // name: for the listener and cancel().
-  void edit(const std::string& name, Job);
-  // Replaces the viewer's frame, also one that has begun.
-  void frame(const std::string& viewer, Step);
-  void drop_frame(const std::string& viewer);
-  void drop_frames();  // of every viewer
-  void background(Step);
-  void cancel(const std::string& name);  // the running job of that name: its Progress says so
+  void edit(const std::string& name, Job job) {
+    thread_.add(name, [s = session_.get(), job = std::move(job)](Progress& p) { job(*s, p); });
+  }
+  void frame(const std::string& viewer, Step step) { thread_.frame(viewer, with_session(std::move(step))); }
+  void drop_frame(const std::string& viewer) { thread_.drop_frame(viewer); }
+  void drop_frames() { thread_.drop_frames(); }
+  void background(Step step) { thread_.background(with_session(std::move(step))); }
+  void cancel(const std::string& name) { thread_.cancel(name); }
 
-  size_t edits_waiting() const;  // including the one that runs
-  void wait_until_idle();        // for tests
+  size_t edits_waiting() const { return thread_.jobs_waiting(); }
+  void wait_until_idle() { thread_.wait_until_idle(); }  // for tests
 
  private:
-  struct NamedJob {
-    std::string name;
-    Job run;
-  };
-  class JobProgress;
-  void work();
-  std::function<void()> next();  // empty: nothing to do. With the mutex locked.
-  std::function<void()> next_frame();
-  void run_edit(const NamedJob&);
+  JobThread::Step with_session(Step step) const {
+    return [s = session_.get(), step = std::move(step)] { return step(*s); };
+  }
 
   std::unique_ptr<Session> session_;
-  JobListener* listener_;
-  mutable std::mutex mutex_;
-  std::condition_variable changed_, idle_;
-  std::deque<NamedJob> edits_;
-  struct Frame {
-    Step step;
-    uint64_t number;  // of the request; a newer one of the same viewer has another
-  };
-  std::map<std::string, Frame> frames_;
-  std::string last_viewer_;  // viewers take turns
-  std::deque<std::shared_ptr<Step>> background_;
-  std::string running_;  // name of the edit that runs; empty: none
-  std::atomic<bool> cancelled_ = false;
-  bool busy_ = false, ending_ = false;
-  uint64_t requests_ = 0;
-  std::thread thread_;
+  JobThread thread_;  // last: it uses the session
 };
 
 }  // namespace cei3d

@@ -15,7 +15,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kViews = 48;           // directions of view on the sphere; about half are above a horizon
-constexpr float kMinCosine = 0.08f;  // of normal and view
+constexpr float kMinCosine = 0.08f;  // minimum cosine of normal and view
 constexpr size_t kBlock = 1024;      // vertices that are shaded together
 constexpr float kRidge = 1e-3f;      // relative: keeps the terms small that no view determines
 

@@ -55,7 +55,7 @@ std::vector<uint32_t> reflection_nodes(const Device& device, const LobePlanes& l
   return out;
 }
 
-constexpr int kColumns = 64, kRows = 32;  // of the tables
+constexpr int kColumns = 64, kRows = 32;  // size of the tables
 
 // Mean over a reflection lobe of the Legendre polynomial of degree 1 (its mean direction) or 2.
 float lobe_band(float roughness, int degree) {

@@ -14,6 +14,7 @@
 #include "core/compute/device.h"
 #include "core/math/encoding.h"
 #include "core/math/vec.h"
+#include "model/field/adam_constants.h"
 #include "model/field/mlp.h"
 #include "model/field/params.h"
 
@@ -81,9 +82,9 @@ struct FieldJet {
 class FieldTrainer {
  public:
   struct Options {
-    float encoding_rate = 1e-2f;        // Adam's rate for hash tables (entries without gradient are skipped)
-    float network_rate = 2e-3f;         // Adam's rate for layers
-    float beta2 = 0.99f, eps = 1e-15f;  // of Adam
+    float encoding_rate = 1e-2f;  // Adam's rate for hash tables (entries without gradient are skipped)
+    float network_rate = 2e-3f;   // Adam's rate for layers
+    AdamConstants adam{};
   };
   FieldTrainer(Field& field, const Options& options);
   ~FieldTrainer();

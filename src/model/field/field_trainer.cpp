@@ -27,11 +27,10 @@ struct FieldTrainer::State {
 
 FieldTrainer::FieldTrainer(Field& field, const Options& options)
     : field_(field), options_(options), state_(new State(field.config())) {
-  Optimizer::Group tables{.rate = options.encoding_rate, .beta2 = options.beta2, .eps = options.eps},
-      layers{.rate = options.network_rate, .beta2 = options.beta2, .eps = options.eps};
-  tables.skip_zero = true;
-  state_->optimizer.add(field.params(), "encoding/", tables);
-  state_->optimizer.add(field.params(), "layer", layers);
+  Optimizer& optimizer = state_->optimizer;
+  optimizer.add(field.params(), "encoding/",
+                {.rate = options.encoding_rate, .adam = options.adam, .skip_zero = true});
+  optimizer.add(field.params(), "layer", {.rate = options.network_rate, .adam = options.adam});
 }
 FieldTrainer::~FieldTrainer() = default;
 

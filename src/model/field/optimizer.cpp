@@ -7,6 +7,8 @@
 
 namespace cei3d {
 
+constexpr float kBeta1 = 0.9f;  // decay of the mean gradient
+
 void Optimizer::add(ParamSet& params, const std::string& prefix, const Group& group) {
   for (Param& p : params.all())
     if (p.name.starts_with(prefix)) {
@@ -26,8 +28,9 @@ void Optimizer::step(const Device& device, float rate_scale) {
   constexpr int kGrain = 1 << 16;
   for (Slot& s : slots_) {
     const Group& g = s.group;
-    const double correction = bias_correction(g.beta1, g.beta2, steps_);
-    const AdamStep step{float(g.rate * rate_scale * correction), g.beta1, g.beta2, g.eps, g.skip_zero};
+    const auto [beta2, eps] = g.adam;
+    const double correction = bias_correction(kBeta1, beta2, steps_);
+    const AdamStep step{float(g.rate * rate_scale * correction), kBeta1, beta2, eps, g.skip_zero};
     parallel_ranges(int(s.gradient.size()), kGrain, [&](int begin, int end) {
       device.launch<Adam>({step, s.param->value.data() + begin, s.gradient.data() + begin, s.m.data() + begin,
                            s.v.data() + begin},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/compute/device.h"
+#include "model/field/adam_constants.h"
 #include "model/field/params.h"
 
 namespace cei3d {
@@ -13,7 +14,8 @@ namespace cei3d {
 class Optimizer {
  public:
   struct Group {
-    float rate = 1e-3f, beta1 = 0.9f, beta2 = 0.99f, eps = 1e-15f;
+    float rate = 1e-3f;
+    AdamConstants adam{};
     bool skip_zero = false;  // see AdamStep
   };
   // params must outlive the optimizer. The group has the parameters whose names begin with `prefix` ("":

@@ -11,7 +11,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kDirections = 512;      // in which the sphere is measured
+constexpr int kDirections = 512;      // number of directions in which the sphere is measured
 constexpr float kLastSpread = 1e-4f;  // standard deviation of the last weights
 
 // from: first input whose weights are zero.

@@ -29,7 +29,7 @@ WeightNorm::WeightNorm(Field& field, float rate, AdamConstants adam) {
     own_.add(name + "/bias", bias.shape).value = bias.value;
     layers_.push_back({&weight, &bias, first, first + 1, first + 2});
   }
-  optimizer_.add(own_, "", {.rate = rate, .beta2 = adam.beta2, .eps = adam.eps});
+  optimizer_.add(own_, "", {.rate = rate, .adam = adam});
   set_field();
 }
 

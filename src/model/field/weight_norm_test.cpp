@@ -43,12 +43,28 @@ double loss(const Device& device, const Field& field, const std::vector<Vec3f>& 
   return sum;
 }
 
+constexpr float kStep = 1e-2f;  // of differences
+using MovedRow = std::function<Vec3f(float)>;
+
+// Slope of the loss, by differences, when one row of the first layer's weights moves.
+double slope_of_row(const Device& device, const Field& field, const std::vector<Vec3f>& x, size_t row,
+                    const MovedRow& moved) {
+  double both[2];
+  for (const int side : {0, 1}) {
+    Field f = field;
+    const Vec3f w = moved(side ? kStep : -kStep);
+    for (int c = 0; c < 3; ++c) f.params().get("layer0/weight").value[3 * row + size_t(c)] = w[c];
+    both[side] = loss(device, f, x);
+  }
+  return (both[1] - both[0]) / (2 * double(kStep));
+}
+
 // Adam's first step goes by the rate against the sign of every slope: of the length and the direction of each
 // row, by differences of the loss.
 TEST(WeightNorm, StepsAgainstTheSlopesOfLengthsAndDirections) {
   const Device device = make_device();
   const std::vector<Vec3f> x = points();
-  constexpr float kRate = 1e-3f, kStep = 1e-2f;
+  constexpr float kRate = 1e-3f;
   Field field(tiny(), 2);
   const Field before = field;
   FieldTrainer trainer(field, {});
@@ -60,16 +76,7 @@ TEST(WeightNorm, StepsAgainstTheSlopesOfLengthsAndDirections) {
     const auto row = [&](const Param& p) {
       return Vec3f{p.value[3 * r], p.value[3 * r + 1], p.value[3 * r + 2]};
     };
-    const auto slope = [&](const std::function<Vec3f(float)>& moved) {
-      double both[2];
-      for (const int side : {0, 1}) {
-        Field f = before;
-        const Vec3f w = moved(side ? kStep : -kStep);
-        for (int c = 0; c < 3; ++c) f.params().get("layer0/weight").value[3 * r + size_t(c)] = w[c];
-        both[side] = loss(device, f, x);
-      }
-      return (both[1] - both[0]) / (2 * double(kStep));
-    };
+    const auto slope = [&](const MovedRow& moved) { return slope_of_row(device, before, x, r, moved); };
     const Vec3f w = row(was);
     const float g = length(w);
     const double by_length = slope([&](float h) { return w * ((g + h) / g); });

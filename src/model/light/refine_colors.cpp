@@ -13,49 +13,50 @@ namespace cei3d {
 namespace {
 
 constexpr int kDirections = 600;
-constexpr int kRows = 128;                // of the image: fine beside the blurs
+constexpr int kRows = 128;                // rows of the light's image: fine beside the blurs
 constexpr float kBlurs[] = {0, 44, 217};  // 0: the cosine of irradiance, else the sharpness of a Gaussian
 constexpr double kHold = 1e-3;            // weight of the colors that were there
 constexpr int kSweeps = 300;
 
-// What is seen in one direction through one blur: of unit integral.
-struct Look {
+// A sample of the light: in one direction, through one blur of unit integral.
+struct BlurredSample {
   Vec3f direction;
   float blur, unit;  // unit: what makes its integral 1
 };
 constexpr float kFar = -12;  // logarithm of what is left out of a blur
 
-float through(const Look& look, Vec3f light) {
-  const float c = dot(look.direction, light);
-  if (look.blur == 0) return max(c, 0.0f) * look.unit;
-  const float t = look.blur * (c - 1);
-  return t < kFar ? 0 : std::exp(t) * look.unit;
+float through(const BlurredSample& sample, Vec3f light) {
+  const float c = dot(sample.direction, light);
+  if (sample.blur == 0) return max(c, 0.0f) * sample.unit;
+  const float t = sample.blur * (c - 1);
+  return t < kFar ? 0 : std::exp(t) * sample.unit;
 }
-float through(const Look& look, const SgLobe& lobe) {
-  const Vec3f gap = look.direction - lobe.axis;
-  return look.unit * (look.blur > 0 ? sg_inner(lobe.lambda, look.blur, dot(gap, gap))
-                                    : max(sg_irradiance(lobe.lambda, dot(look.direction, lobe.axis)), 0.0f));
+float through(const BlurredSample& sample, const SgLobe& lobe) {
+  const Vec3f gap = sample.direction - lobe.axis;
+  return sample.unit * (sample.blur > 0
+                            ? sg_inner(lobe.lambda, sample.blur, dot(gap, gap))
+                            : max(sg_irradiance(lobe.lambda, dot(sample.direction, lobe.axis)), 0.0f));
 }
 
-std::vector<Look> looks() {
-  std::vector<Look> out;
+std::vector<BlurredSample> blurred_samples() {
+  std::vector<BlurredSample> out;
   for (const float blur : kBlurs)
     for (int i = 0; i < kDirections; ++i)
       out.push_back({fibonacci_direction(i, kDirections), blur, 1 / (blur > 0 ? sg_integral(blur) : kPi)});
   return out;
 }
 
-std::vector<Vec3f> seen(const std::vector<Look>& looks, const Image& map, EnvUp up) {
+std::vector<Vec3f> seen(const std::vector<BlurredSample>& samples, const Image& map, EnvUp up) {
   std::vector<Vec3f> directions, light;
   for (int y = 0; y < map.height; ++y)
     for (int x = 0; x < map.width; ++x) {
       directions.push_back(env_direction(float(x) + 0.5f, float(y) + 0.5f, map.width, map.height, up));
       light.push_back(map.rgb(x, y) * env_solid_angle(y, map.width, map.height));
     }
-  std::vector<Vec3f> out(looks.size(), Vec3f{0, 0, 0});
-  parallel_for(int(looks.size()), [&](int i) {
+  std::vector<Vec3f> out(samples.size(), Vec3f{0, 0, 0});
+  parallel_for(int(samples.size()), [&](int i) {
     for (size_t k = 0; k < directions.size(); ++k)
-      out[size_t(i)] += light[k] * through(looks[size_t(i)], directions[k]);
+      out[size_t(i)] += light[k] * through(samples[size_t(i)], directions[k]);
   });
   return out;
 }
@@ -66,11 +67,11 @@ struct Normal {
   std::vector<double> matrix, pull;            // #n * n, #n
   std::vector<std::array<double, 3>> product;  // #n, a channel each
 
-  Normal(const std::vector<Look>& looks, const std::vector<Vec3f>& wanted, const SgMixture& light)
+  Normal(const std::vector<BlurredSample>& samples, const std::vector<Vec3f>& wanted, const SgMixture& light)
       : n(light.lobes.size()), matrix(n * n, 0.0), pull(n), product(n, {0, 0, 0}) {
     std::vector<float> row(n);
-    for (size_t i = 0; i < looks.size(); ++i) {
-      for (size_t k = 0; k < n; ++k) row[k] = through(looks[i], light.lobes[k]);
+    for (size_t i = 0; i < samples.size(); ++i) {
+      for (size_t k = 0; k < n; ++k) row[k] = through(samples[i], light.lobes[k]);
       for (size_t j = 0; j < n; ++j) {
         for (size_t k = 0; k < n; ++k) matrix[j * n + k] += double(row[j]) * row[k];
         for (int c = 0; c < 3; ++c) product[j][size_t(c)] += double(row[j]) * wanted[i][c];
@@ -100,8 +101,8 @@ void solve(const Normal& a, int channel, SgMixture& light) {
 
 SgMixture refine_colors(SgMixture light, const Image& lat_long, EnvUp up) {
   const Image map = env_resample(lat_long, kRows);
-  const std::vector<Look> views = looks();
-  const Normal normal(views, seen(views, map, up), light);
+  const std::vector<BlurredSample> samples = blurred_samples();
+  const Normal normal(samples, seen(samples, map, up), light);
   for (int c = 0; c < 3; ++c) solve(normal, c, light);
   return light;
 }

@@ -6,7 +6,7 @@
 namespace cei3d {
 namespace {
 
-constexpr float kCutOff = 0.1f;  // of the metalness, at both ends
+constexpr float kCutOff = 0.1f;  // metalness within this of 0 or 1 counts as 0 or 1
 
 }  // namespace
 

@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "core/base/cancel.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/pixel_points.h"
 #include "engine/reconstruct/appearance/sample_grad.h"
@@ -79,9 +78,7 @@ void AppearanceDescent::refine(const DescentSchedule& schedule, const DescentSto
 
 // done: of all steps, in [0, 1].
 void AppearanceDescent::between_steps(const DescentStore& store, const char* what, double done) const {
-  const bool stop = progress_.cancelled();
-  if (store.save && (stop || (store.due && store.due()))) store.save(state());
-  if (stop) check_cancelled(progress_);
+  store.between_steps(progress_, [this] { return state(); });
   if (options_.show) options_.show(*lighting_, albedo_, result_.material);
   if (step_ % 50 == 0) progress_.report({what, done, -1, ""});
 }

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 
+#include "core/base/cancel.h"
 #include "core/base/progress.h"
 #include "engine/reconstruct/appearance/linear_split.h"
 #include "engine/render/lighting.h"
@@ -63,6 +64,14 @@ struct DescentStore {
   std::function<bool()> due{};  // asked between steps whether to save; may be empty
   // Called when `due` says so, and before an interruption; may be empty.
   std::function<void(DescentState)> save{};
+
+  // To be called between two steps; state() makes the DescentState that is saved. Error: interrupted.
+  template <class State>
+  void between_steps(const Progress& progress, const State& state) const {
+    const bool stop = progress.cancelled();
+    if (save && (stop || (due && due()))) save(state());
+    if (stop) check_cancelled(progress);
+  }
 };
 
 // Fits the albedo field under the separated light, then descends on albedo, material and light. result: light

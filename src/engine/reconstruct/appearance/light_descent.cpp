@@ -91,8 +91,8 @@ LightDescent::LightDescent(const SgMixture& light, bool keep_power, AdamConstant
   params_.add("logs", {4, padded_});
   axes_ = &params_.get("axes");
   logs_ = &params_.get("logs");
-  optimizer_.add(params_, "axes", {.rate = kAxisRate, .beta2 = adam.beta2, .eps = adam.eps});
-  optimizer_.add(params_, "logs", {.rate = kLogRate, .beta2 = adam.beta2, .eps = adam.eps});
+  optimizer_.add(params_, "axes", {.rate = kAxisRate, .adam = adam});
+  optimizer_.add(params_, "logs", {.rate = kLogRate, .adam = adam});
   for (int k = 0; k < count_; ++k) {
     const SgLobe& l = light.lobes[size_t(k)];
     store_planes(axes_->value.data(), padded_, k, l.axis);

@@ -41,6 +41,16 @@ ValueGradSpans NormalGrads::at(const Field& sdf, int step) {
   return {points_, value_grads_};
 }
 
+void NormalGrads::save(Tensors& out) const {
+  albedo_.params().save(out, "albedo");
+  trainer_.save(out, "albedo_adam");
+}
+
+void NormalGrads::load(const Tensors& in) {
+  albedo_.params().load(in, "albedo");
+  trainer_.load(in, "albedo_adam");
+}
+
 void NormalGrads::choose_batch(int step) {
   const int n = options_.batch;
   batch_.resize(n);

@@ -20,6 +20,10 @@ class NormalGrads {
   // the next call.
   ValueGradSpans at(const Field& sdf, int step);
 
+  // The albedo and the moments of its optimizer, which at() changes.
+  void save(Tensors& out) const;
+  void load(const Tensors& in);
+
   // The last batch: hits on the field, and which samples they are.
   std::span<const Hit> hits() const { return hits_; }
   std::span<const uint32_t> samples() const { return batch_; }

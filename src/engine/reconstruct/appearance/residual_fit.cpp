@@ -40,12 +40,10 @@ class Trainer {
         features_learn_(features_->config().encoding.levels > 0),
         residual_(make_residual(features_learn_ ? features_ : scene.sdf, options.seed)),
         passes_([this] { return std::make_unique<ResidualPass>(features_->config(), residual_.network); }) {
-    optimizer_.add(residual_.params, "", {options.rate});
+    optimizer_.add(residual_.params, "", {.rate = options.rate});
     if (features_learn_) {
-      Optimizer::Group tables{options.table_rate};
-      tables.skip_zero = true;
-      optimizer_.add(features_->params(), "encoding/", tables);
-      optimizer_.add(features_->params(), "layer", {options.feature_rate});
+      optimizer_.add(features_->params(), "encoding/", {.rate = options.table_rate, .skip_zero = true});
+      optimizer_.add(features_->params(), "layer", {.rate = options.feature_rate});
     }
     for (uint32_t i = 0; i < views.size(); ++i)
       (views[i] % kValidationStride == kValidationStride - 1 ? validation_ : training_).push_back(i);

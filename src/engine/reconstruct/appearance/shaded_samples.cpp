@@ -23,8 +23,8 @@ std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::
 
 std::vector<Vec3f> radiance_of(const Device& device, const Scene& scene, const SurfaceSamples& samples,
                                const Progress& progress) {
-  constexpr size_t kSlab =
-      1 << 15;  // hits between two checks for interruption: 5 s with the largest networks
+  // Number of hits between two checks for interruption: 5 s with the largest networks.
+  constexpr size_t kSlab = 1 << 15;
   const std::vector<Vec3f>& vertices = scene.surface->mesh().positions;
   const Lighting light(
       device, scene.surface, scene.light,

@@ -15,23 +15,23 @@ namespace cei3d {
 namespace {
 
 constexpr int kPairs = 60000;
-constexpr int kMaxSteps = 24;        // of the walk along edges from one place of a pair to the other
+constexpr int kMaxSteps = 24;        // maximum number of edges from one place of a pair to the other
 constexpr float kHueSpread = 0.03f;  // by which the channels' shares of the sum differ within one paint
-constexpr float kDark = 0.02f;       // of the mean radiance: darker places say little
+constexpr float kDark = 0.02f;  // radiance of dark places, which say little, relative to the mean radiance
 // Minimum share of the sky that reaches places of pairs, and those whose albedo decides the light's strength:
 // what little light reaches cavities is known badly.
 constexpr float kOpen = 0.15f, kWideOpen = 0.5f;
-constexpr int kRounds = 8;       // of least squares, weighted anew
+constexpr int kRounds = 8;       // rounds of least squares, each weighted by the last
 constexpr float kNoise = 0.02f;  // relative difference that noise explains
 // Weights of the light's smoothness and of its change in a round, relative to the mean of its directions.
 constexpr float kSmoothness = 1e-3f, kDamping = 1e-2f;
-constexpr float kMeanWeight = 100;       // of the light's mean irradiance, which the pairs do not determine
-constexpr int kSweeps = 300;             // over the directions, of the solution of a round
-constexpr double kBright = 0.98;         // quantile of the albedo that counts as the brightest
-constexpr float kMinRadiance = 0.01f;    // of the light, relative to its mean
+constexpr float kMeanWeight = 100;  // weight of the light's mean irradiance, which the pairs do not determine
+constexpr int kSweeps = 300;        // over the directions, of the solution of a round
+constexpr double kBright = 0.98;    // quantile of the albedo that counts as the brightest
+constexpr float kMinRadiance = 0.01f;    // minimum radiance of the light, relative to its mean
 constexpr float kMinIrradiance = 1e-3f;  // keeps divisors positive
 
-constexpr int kChunks = 16;     // of pairs; fixed, so that sums are the same on any machine
+constexpr int kChunks = 16;     // chunks of pairs; fixed, so that sums are the same on any machine
 constexpr size_t kBlock = 256;  // pairs of a chunk at a time
 
 using Matrix = Eigen::MatrixXf;

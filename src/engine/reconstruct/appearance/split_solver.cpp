@@ -206,7 +206,7 @@ float colored_metal_peak(const SplitMaterials& materials) {
 // variance.
 void SplitSolver::fix_scale(SplitSolution& s) {
   constexpr float kPeak = 0.94f;
-  constexpr float kPeakError = 0.2f, kDielectricError = 0.1f;  // of the logarithms
+  constexpr float kPeakError = 0.2f, kDielectricError = 0.1f;  // standard deviations of the logarithms
   system_.set_materials(s.materials);
   s.materials.color = system_.fit_metal_color(s.x);
   if (s.materials.metal_share() > 1 - kFewVertices) return;  // decided after the separation

@@ -11,7 +11,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kChunks = 16;  // of rows; fixed, so that sums are the same on any machine
+constexpr int kChunks = 16;  // chunks of rows; fixed, so that sums are the same on any machine
 
 }  // namespace
 

@@ -24,10 +24,13 @@ struct PolishOptions {
   uint64_t seed = 1;
   int64_t first_step = int64_t(1) << 24;  // index of the first step, which keys the random rays
   std::function<void()> show{};           // called after each step; changes nothing; may be empty
+  double spent = 0;                       // s of `seconds` that earlier parts of the round took
+  DescentStore store{};                   // does not hold the GeometryStage, whose state its user saves
 };
 
 // input: the surface of the stage, and its hits. appearance: of that surface; light and material are fixed,
-// the albedo is trained along in a copy that is discarded.
+// the albedo is trained along in a copy that is discarded. Error: interrupted; within a step, without saving
+// it.
 void polish_surface(const Device&, GeometryStage&, const AppearanceInput& input,
                     const AppearanceResult& appearance, const PolishOptions&, Progress&);
 

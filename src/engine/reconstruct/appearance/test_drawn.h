@@ -110,10 +110,10 @@ inline std::vector<Vec3f> look_at(Drawn& d) {
     if (far[i].t < 0) continue;
     const auto& t = m.triangles[far[i].triangle];
     const float b1 = far[i].b1, b2 = far[i].b2;
-    const Vec3f n = normalize(m.normals[t[0]] * (1 - b1 - b2) + m.normals[t[1]] * b1 + m.normals[t[2]] * b2);
+    const Vec3f n = normalize(at_corners(m.normals, t, b1, b2));
     d.views.push_back(uint16_t(i / 800));
     d.hits.push_back({origins[i] + directions[i] * far[i].t, n, -directions[i], far[i].triangle, b1, b2});
-    albedo.push_back(d.base[t[0]] * (1 - b1 - b2) + d.base[t[1]] * b1 + d.base[t[2]] * b2);
+    albedo.push_back(at_corners(d.base, t, b1, b2));
   }
   return albedo;
 }

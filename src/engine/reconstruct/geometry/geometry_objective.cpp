@@ -91,7 +91,7 @@ LossValue<float> GeometryObjective::hold(Vec3f x, float distance, int count) con
 }
 
 std::vector<Vec3f> hold_points(const DistanceGrid& start, uint64_t seed, int64_t step, int count) {
-  constexpr float kNear = 0.08f;  // of the surface
+  constexpr float kNear = 0.08f;  // distance of points that are near the surface
   constexpr int kTries = 16;
   std::vector<Vec3f> x(static_cast<size_t>(count));
   for (int i = 0; i < count; ++i) {

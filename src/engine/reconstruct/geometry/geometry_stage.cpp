@@ -23,11 +23,9 @@ GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, con
       work_([this] { return std::make_unique<Work>(options_); }),
       radiance_gradients_(options.rays / kChunkRays) {
   add_mlp_params(radiance_config(options), radiance_, seed + 1);
-  Optimizer::Group layers{.rate = options.layer_rate, .beta2 = options.adam.beta2, .eps = options.adam.eps},
-      tables = layers;
-  tables.rate = options.table_rate;
-  tables.skip_zero = true;
-  optimizer_.add(sdf_.params(), "encoding/", tables);
+  const Optimizer::Group layers{.rate = options.layer_rate, .adam = options.adam};
+  optimizer_.add(sdf_.params(), "encoding/",
+                 {.rate = options.table_rate, .adam = options.adam, .skip_zero = true});
   optimizer_.add(sdf_.params(), "layer", layers);
   optimizer_.add(radiance_, "layer", layers);
 }

@@ -56,8 +56,8 @@ Vec3f OccupancyGrid::center_of(size_t place) const {
 namespace {
 
 constexpr int kChunk = 1 << 14;
-constexpr size_t kSlab =
-    1 << 15;  // points between two checks: with the largest networks 2 to 4 s of one core
+// Number of points between two checks for interruption: with the largest networks 2 to 4 s of one core.
+constexpr size_t kSlab = 1 << 15;
 
 std::vector<float> distances_at(const Device& device, const Field& sdf, std::span<const Vec3f> points,
                                 const Progress& progress) {

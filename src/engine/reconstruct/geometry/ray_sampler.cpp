@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMaxRaySamples = 64;  // rays that graze the object need many
 constexpr int kMaxCandidates = 320;
-constexpr int kCandidatesPerPass = 8;  // of a ray
+constexpr int kCandidatesPerPass = 8;  // candidates of a ray that are evaluated at a time
 
 }  // namespace
 

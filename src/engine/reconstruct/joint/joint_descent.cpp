@@ -17,20 +17,14 @@ namespace {
 
 constexpr float kBoxMargin = 0.1f;    // around the object, unit frame
 constexpr float kNearSpread = 0.01f;  // standard deviation of points near the surface
-constexpr size_t kJudged = 20000;     // samples
+constexpr size_t kMinJudged = 20000;  // held-out samples that judge the result, where there are so many
 constexpr float kAlong = 1e-3f;       // step of differences along rays
 
 // Keys of random numbers: what they choose.
 enum : uint64_t { kSamples = 0x301a, kMask = 0x3a5c, kBox = 0xb0c5, kNear = 0x9ea2 };
 
 FieldTrainer::Options sdf_rates(const JointOptions& o) {
-  return {.encoding_rate = o.rates.sdf_tables,
-          .network_rate = o.rates.sdf_layers,
-          .beta2 = o.adam.beta2,
-          .eps = o.adam.eps};
-}
-FieldTrainer::Options albedo_rates(const JointOptions& o) {
-  return {.beta2 = o.adam.beta2, .eps = o.adam.eps};
+  return {.encoding_rate = o.rates.sdf_tables, .network_rate = o.rates.sdf_layers, .adam = o.adam};
 }
 
 }  // namespace
@@ -43,7 +37,7 @@ JointDescent::JointDescent(const Device& device, const AppearanceInput& input, c
       options_(options),
       object_(std::move(start)),
       sdf_trainer_(object_.sdf, sdf_rates(options)),
-      albedo_trainer_(object_.albedo, albedo_rates(options)),
+      albedo_trainer_(object_.albedo, {.adam = options.adam}),
       material_(object_.material, options.rates.material, options.learn_specular, options.adam),
       light_(object_.light, options.keep_power, options.adam),
       box_min_{-1, -1, -1},
@@ -298,7 +292,7 @@ void JointDescent::update(const Shaded& shaded, float rate) {
 double JointDescent::held_out_psnr() {
   if (!lighting_) relight();
   const size_t all = input_.samples.hits.size(), held = (all + kHeldOutStride - 1) / kHeldOutStride,
-               stride = kHeldOutStride * std::max<size_t>(1, held / kJudged);
+               stride = kHeldOutStride * std::max<size_t>(1, held / kMinJudged);
   std::vector<uint32_t> judged, seen;
   std::vector<Hit> near;
   for (size_t s = 0; s < all; s += stride)

@@ -91,8 +91,8 @@ class JointDescent {
   JointLoss step(int step, float rate);
   const JointObject& object() const { return object_; }
   const Lighting& lighting() const { return *lighting_; }  // of the last step
-  // PSNR (dB, display-encoded) of the descent's own shading on samples that it leaves out, at most
-  // 20,000 of them. Rays that miss the surface are black.
+  // PSNR (dB, display-encoded) of the descent's own shading on held-out samples, fewer than 40,000 of them.
+  // Rays that miss the surface are black.
   double held_out_psnr();
 
   // The object, the moments of its optimizers, and what visibility and bounces were computed from. A descent

@@ -40,18 +40,6 @@ class Summary {
   int summed_ = 0;
 };
 
-// Saves where it is due, and before an interruption.
-void between_steps(const JointDescent& descent, int step, const DescentStore& store,
-                   const Progress& progress) {
-  const bool stop = progress.cancelled();
-  if (store.save && (stop || (store.due && store.due()))) {
-    DescentState state{step, {}};
-    descent.save(state.tensors);
-    store.save(std::move(state));
-  }
-  if (stop) check_cancelled(progress);
-}
-
 }  // namespace
 
 JointObject descend_jointly(const Device& device, const AppearanceInput& input, const PixelStore& pixels,
@@ -63,7 +51,11 @@ JointObject descend_jointly(const Device& device, const AppearanceInput& input, 
   if (!store.from.tensors.empty()) descent.load(store.from.tensors);
   Summary summary(progress);
   for (int step = int(store.from.step); step < options.steps; ++step) {
-    between_steps(descent, step, store, progress);
+    store.between_steps(progress, [&] {
+      DescentState state{step, {}};
+      descent.save(state.tensors);
+      return state;
+    });
     const double time = options.seconds > 0 ? (options.clock() - begin) / options.seconds : 0,
                  u = std::max(time, double(step) / options.steps);
     if (u >= 1) break;

@@ -20,8 +20,7 @@ MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool le
   if (start.varying()) {
     varying_ = std::make_shared<Field>(*start.varying());
     field_ = {start.mean(), varying_};
-    trainer_ = std::make_unique<FieldTrainer>(*varying_,
-                                              FieldTrainer::Options{.beta2 = adam.beta2, .eps = adam.eps});
+    trainer_ = std::make_unique<FieldTrainer>(*varying_, FieldTrainer::Options{.adam = adam});
     return;
   }
   const Material& m = start.mean();
@@ -32,7 +31,7 @@ MaterialDescent::MaterialDescent(const MaterialField& start, float rate, bool le
   learned_[0] = true;
   learned_[1] = learn_specular;
   learned_[2] = m.metalness > 0 && m.metalness < 1;
-  optimizer_.add(params_, "", {.rate = kFullRate, .beta2 = adam.beta2, .eps = adam.eps});
+  optimizer_.add(params_, "", {.rate = kFullRate, .adam = adam});
 }
 
 Material MaterialDescent::from_logits() const {

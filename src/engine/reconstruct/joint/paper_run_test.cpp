@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "core/math/color.h"
 #include "engine/reconstruct/test_run.h"
@@ -16,7 +15,7 @@ namespace {
 
 constexpr float kBallRadius = 0.75f;
 
-class BallCapture : public ImageSource {
+class BallCapture : public DrawnCapture {
  public:
   BallCapture() {
     SyntheticScene ball;
@@ -24,21 +23,9 @@ class BallCapture : public ImageSource {
     ball.finishes = finish_set("plastic", ball.shape.regions);
     ball.light = light_by_name("daylight");
     const std::vector<Camera> cameras = spread_cameras(18, {36, 36, 50});
-    for (size_t v = 0; v < cameras.size(); ++v) {
-      View view;
-      view.name = std::to_string(v);
-      view.split = v % 6 == 5 ? Split::test : Split::train;
-      view.camera = cameras[v];
-      pictures_[view.name] = draw(ball, view.camera, {.samples = 16, .view = v}).color;
-      capture_.views.push_back(view);
-    }
+    for (size_t v = 0; v < cameras.size(); ++v)
+      add(cameras[v], draw(ball, cameras[v], {.samples = 16, .view = v}).color);
   }
-  Image load(const View& view) const override { return pictures_.at(view.name); }
-  const Capture& capture() const { return capture_; }
-
- private:
-  std::map<std::string, Image> pictures_;
-  Capture capture_;
 };
 
 // The preset with networks and batches that a test can train, and rates for as few steps.

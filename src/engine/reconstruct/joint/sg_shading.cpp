@@ -52,7 +52,7 @@ SgShading::SgShading(const Device& device, const SgMaterial& m, float rate, Adam
   raw_->value[kRoughness] = logit(m.roughness);
   raw_->value[kSpecular] = logit(m.specular);
   raw_->value[kMetalness] = logit(m.metalness);
-  optimizer_.add(params_, "", {.rate = rate, .beta2 = adam.beta2, .eps = adam.eps});
+  optimizer_.add(params_, "", {.rate = rate, .adam = adam});
 }
 
 SgMaterial SgShading::material() const {

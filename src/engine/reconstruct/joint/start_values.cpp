@@ -12,7 +12,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kLobes = 128;
-constexpr float kSharpness = 20, kSharpnessSpread = 100;  // of lobes of light: 20 + |100 N(0, 1)|
+constexpr float kSharpness = 20, kSharpnessSpread = 100;  // a lobe of light has sharpness 20 + |100 N(0, 1)|
 constexpr float kMinSpecular = 0.18f, kMaxSpecular = 0.26f;
 constexpr float kMetalness = 0.05f;                      // not stated; 0 would stay
 constexpr float kMinGloss = 95, kMaxGloss = 125;         // sharpness of the material's lobe

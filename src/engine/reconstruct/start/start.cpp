@@ -29,7 +29,7 @@ constexpr double kMinGain = 0.8;
 // Minimum number of views that must have a cell in their frame for the start shape to fill it. With fewer
 // views, floating blobs in front of the surface remain.
 constexpr int kMinViews = 3;
-constexpr int kCompareSide = 160;  // of the images that show what is wrong with views, at most; pixels
+constexpr int kCompareSide = 160;  // maximum side of the images that show what is wrong with views, pixels
 // Alignments of cameras at most, and pixels by which one has to move the object in the images (median of the
 // views).
 constexpr int kMaxAlignments = 5;

@@ -10,9 +10,9 @@ namespace cei3d {
 
 namespace {
 
-constexpr int kSums = 6;           // of a window: 1, a, b, aa, bb, ab
+constexpr int kSums = 6;           // number of sums over a window: 1, a, b, aa, bb, ab
 constexpr float kNoise = 1e-4f;    // variance of a window without texture; gray values are 0 to 1
-constexpr float kMinKnown = 0.6f;  // of a window
+constexpr float kMinKnown = 0.6f;  // minimum share of a window's pixels that are known
 
 }  // namespace
 

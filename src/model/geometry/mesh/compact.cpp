@@ -25,7 +25,7 @@ Mesh compact(const Mesh& mesh, std::vector<std::array<uint32_t, 3>> triangles, s
 }
 
 std::vector<std::array<uint32_t, 3>> with_area(const Mesh& mesh) {
-  constexpr float kFlat = 1e-6f;  // of a triangle's height to its longest side
+  constexpr float kFlat = 1e-6f;  // maximum ratio of the height of a flat triangle to its longest side
   std::vector<std::array<uint32_t, 3>> out;
   for (const auto& t : mesh.triangles) {
     const Vec3f a = mesh.positions[t[1]] - mesh.positions[t[0]],

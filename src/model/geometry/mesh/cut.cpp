@@ -17,7 +17,7 @@ namespace {
 // Rings of the mesh around a hole that take part in closing it. Albedo next to the outline is mixed with that
 // of the part; the patch takes its own from kMixedRings rings away.
 constexpr int kRings = 5, kMixedRings = 3;
-constexpr float kBendingShare = 0.25f;  // of the hole's radius, over which its rim is rounded
+constexpr float kBendingShare = 0.25f;  // width over which a rim is rounded, as a share of the hole's radius
 
 using Triangle = std::array<uint32_t, 3>;
 

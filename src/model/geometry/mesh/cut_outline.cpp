@@ -11,7 +11,7 @@ namespace cei3d {
 namespace {
 
 constexpr int kSmoothingRounds = 4;
-constexpr double kIslandShare = 0.02;  // of the part's area
+constexpr double kIslandShare = 0.02;  // maximum area of an island, as a share of the part's
 
 using Triangle = std::array<uint32_t, 3>;
 

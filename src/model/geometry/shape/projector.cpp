@@ -29,9 +29,7 @@ float texel(const Image& image, int x, int y) {
   return *image.at(min(max(x, 0), image.width - 1), min(max(y, 0), image.height - 1));
 }
 
-bool in_picture(const Camera& c, double u, double v) {
-  return u >= 0 && v >= 0 && u < c.width && v < c.height;
-}
+bool in_image(const Camera& c, double u, double v) { return u >= 0 && v >= 0 && u < c.width && v < c.height; }
 
 Image image_of(const Tensors& tensors, const std::string& name) {
   const auto it = tensors.find(name);
@@ -57,7 +55,7 @@ Camera camera_from(JsonReader reader) {
 }  // namespace
 
 float Projector::alpha_at(double u, double v) const {
-  if (!in_picture(camera, u, v)) return 0;
+  if (!in_image(camera, u, v)) return 0;
   const Texels k(alpha, camera, u, v);
   const float top = texel(alpha, k.x, k.y) * (1 - k.tx) + texel(alpha, k.x + 1, k.y) * k.tx;
   const float bottom = texel(alpha, k.x, k.y + 1) * (1 - k.tx) + texel(alpha, k.x + 1, k.y + 1) * k.tx;
@@ -76,7 +74,7 @@ bool Projector::covers(Vec3f position, Vec3f normal) const {
   const Vec3f to_camera = to_float(camera.center) - position;
   if (!(dot(normal, to_camera) > min_facing * length(to_camera))) return false;
   const Vec3d p = camera.project(to_double(position));
-  if (!(p.z > 0) || !in_picture(camera, p.x, p.y)) return false;
+  if (!(p.z > 0) || !in_image(camera, p.x, p.y)) return false;
   return alpha_at(p.x, p.y) >= min_alpha && sees(p.x, p.y, p.z);
 }
 

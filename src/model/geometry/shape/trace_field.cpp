@@ -9,10 +9,10 @@
 namespace cei3d {
 namespace {
 
-constexpr float kNear = 0.01f;       // around a start within which the surface is looked for first
+constexpr float kNear = 0.01f;       // distance from a start within which the surface is looked for first
 constexpr float kOvershoot = 5e-4f;  // added to every step, so that marching ends behind the surface
-constexpr int kMaxSteps = 64;        // of sphere tracing; rays along the surface take short ones
-constexpr int kSamples = 64;         // of the rest of a ray after that
+constexpr int kMaxSteps = 64;        // steps of sphere tracing; rays along the surface take short ones
+constexpr int kSamples = 64;         // samples of the rest of a ray after these steps
 constexpr int kMaxBisections = 24;
 const FieldTrace kUnknown{false, 0, std::numeric_limits<float>::infinity()};
 

@@ -17,8 +17,8 @@ constexpr float kCone = 0.4f;  // cosine between a face and the axis of its char
 // is cut again. kSmall: the largest area of such a chart, as a share of the whole.
 constexpr float kSmallCone = 0.0f, kSmall = 0.02f;
 constexpr float kTurning = 8;      // weight of the turn of the normal against the distance walked
-constexpr int kRounds = 6;         // of moving the seeds
-constexpr int kSmoothPasses = 12;  // of the borders
+constexpr int kRounds = 6;         // number of times that the seeds are moved
+constexpr int kSmoothPasses = 12;  // passes that shorten the borders
 
 struct Seed {
   uint32_t face;

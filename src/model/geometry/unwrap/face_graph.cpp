@@ -47,7 +47,7 @@ void join_faces(Triangles triangles, FaceGraph& graph) {
 
 // Slivers, whose own normals are rounding errors.
 std::vector<uint32_t> measure_faces(std::span<const Vec3f> p, Triangles triangles, FaceGraph& graph) {
-  constexpr float kThin = 1e-3f;  // of the height to the longest edge
+  constexpr float kThin = 1e-3f;  // ratio of the height of a thin triangle to its longest edge
   std::vector<uint32_t> slivers;
   for (size_t f = 0; f < triangles.size(); ++f) {
     const auto [a, b, c] = triangles[f];

@@ -1,28 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "engine/session/worker.h"
+#include "core/base/job_thread.h"
 
 #include <utility>
 
 namespace cei3d {
 
-class Worker::JobProgress : public Progress {
+class JobThread::JobProgress : public Progress {
  public:
-  JobProgress(const Worker& worker, std::string job) : worker_(worker), job_(std::move(job)) {}
+  JobProgress(const JobThread& owner, std::string job) : owner_(owner), job_(std::move(job)) {}
 
  private:
   void on_report(const ProgressReport& r) override {
-    if (worker_.listener_) worker_.listener_->on_progress(job_, r);
+    if (owner_.listener_) owner_.listener_->on_progress(job_, r);
   }
-  bool is_cancelled() const override { return worker_.cancelled_; }
+  bool is_cancelled() const override { return owner_.cancelled_; }
 
-  const Worker& worker_;
+  const JobThread& owner_;
   std::string job_;
 };
 
-Worker::Worker(std::unique_ptr<Session> session, JobListener* listener)
-    : session_(std::move(session)), listener_(listener), thread_([this] { work(); }) {}
+JobThread::JobThread(JobListener* listener) : listener_(listener), thread_([this] { work(); }) {}
 
-Worker::~Worker() {
+JobThread::~JobThread() {
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;
@@ -32,15 +31,15 @@ Worker::~Worker() {
   thread_.join();
 }
 
-void Worker::edit(const std::string& name, Job job) {
+void JobThread::add(const std::string& name, Job job) {
   {
     const std::lock_guard lock(mutex_);
-    edits_.push_back({name, std::move(job)});
+    jobs_.push_back({name, std::move(job)});
   }
   changed_.notify_all();
 }
 
-void Worker::frame(const std::string& viewer, Step step) {
+void JobThread::frame(const std::string& viewer, Step step) {
   {
     const std::lock_guard lock(mutex_);
     frames_[viewer] = {std::move(step), ++requests_};
@@ -48,17 +47,17 @@ void Worker::frame(const std::string& viewer, Step step) {
   changed_.notify_all();
 }
 
-void Worker::drop_frame(const std::string& viewer) {
+void JobThread::drop_frame(const std::string& viewer) {
   const std::lock_guard lock(mutex_);
   frames_.erase(viewer);
 }
 
-void Worker::drop_frames() {
+void JobThread::drop_frames() {
   const std::lock_guard lock(mutex_);
   frames_.clear();
 }
 
-void Worker::background(Step step) {
+void JobThread::background(Step step) {
   {
     const std::lock_guard lock(mutex_);
     background_.push_back(std::make_shared<Step>(std::move(step)));
@@ -66,59 +65,59 @@ void Worker::background(Step step) {
   changed_.notify_all();
 }
 
-void Worker::cancel(const std::string& name) {
+void JobThread::cancel(const std::string& name) {
   const std::lock_guard lock(mutex_);
   if (running_ == name) cancelled_ = true;
 }
 
-size_t Worker::edits_waiting() const {
+size_t JobThread::jobs_waiting() const {
   const std::lock_guard lock(mutex_);
-  return edits_.size() + (running_.empty() ? 0 : 1);
+  return jobs_.size() + (running_.empty() ? 0 : 1);
 }
 
-void Worker::wait_until_idle() {
+void JobThread::wait_until_idle() {
   std::unique_lock lock(mutex_);
-  idle_.wait(lock, [&] { return !busy_ && edits_.empty() && frames_.empty() && background_.empty(); });
+  idle_.wait(lock, [&] { return !busy_ && jobs_.empty() && frames_.empty() && background_.empty(); });
 }
 
 // The viewer after the one that had its turn last.
-std::function<void()> Worker::next_frame() {
+std::function<void()> JobThread::next_frame() {
   auto it = frames_.upper_bound(last_viewer_);
   if (it == frames_.end()) it = frames_.begin();
   last_viewer_ = it->first;
   return [this, viewer = it->first, frame = it->second] {
-    if (frame.step(*session_)) return;
+    if (frame.step()) return;
     const std::lock_guard lock(mutex_);
     const auto now = frames_.find(viewer);
     if (now != frames_.end() && now->second.number == frame.number) frames_.erase(now);
   };
 }
 
-std::function<void()> Worker::next() {
-  if (!edits_.empty()) {
-    NamedJob job = std::move(edits_.front());
-    edits_.pop_front();
+std::function<void()> JobThread::next() {
+  if (!jobs_.empty()) {
+    NamedJob job = std::move(jobs_.front());
+    jobs_.pop_front();
     running_ = job.name;
     cancelled_ = ending_;
-    return [this, job = std::move(job)] { run_edit(job); };
+    return [this, job = std::move(job)] { run_job(job); };
   }
   if (!frames_.empty()) return next_frame();
   if (background_.empty()) return nullptr;
   return [this, step = background_.front()] {
-    if ((*step)(*session_)) return;
+    if ((*step)()) return;
     const std::lock_guard lock(mutex_);
     background_.pop_front();
   };
 }
 
-void Worker::run_edit(const NamedJob& job) {
+void JobThread::run_job(const NamedJob& job) {
   JobProgress progress(*this, job.name);
-  job.run(*session_, progress);
+  job.run(progress);
   const std::lock_guard lock(mutex_);
   running_.clear();
 }
 
-void Worker::work() {
+void JobThread::work() {
   std::unique_lock lock(mutex_);
   while (true) {
     std::function<void()> job = ending_ ? nullptr : next();

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/reconstruct/polish_round.h"
+
+#include <algorithm>
+
+#include "core/base/cancel.h"
+#include "core/base/json.h"
+#include "engine/reconstruct/appearance/surface_polish.h"
+#include "engine/reconstruct/stage_inputs.h"
+
+namespace cei3d {
+namespace {
+
+// Minimum share of a descent's planned time; less is not worth another estimate of light and material.
+constexpr double kMinPolishShare = 1.0 / 6;
+
+// Sets the end of all rounds in the first.
+bool has_time(const RunContext& run, RunState& state, int round) {
+  const Plan& plan = run.plan;
+  const double now = run.progress.elapsed();
+  if (round == 0) {
+    state.polish_deadline = now + plan.polish_rounds * (plan.polish + plan.look);
+    state.look_seconds = plan.look;
+    return true;
+  }
+  return plan.polish <= 0 ||
+         state.polish_deadline - now >= state.look_seconds + kMinPolishShare * plan.polish;
+}
+
+// Estimates light and material of the present surface. Until the round ends the scene holds them and the
+// field and surface that they belong to, so that its checkpoints do.
+void estimate(const RunContext& run, RunState& state) {
+  const double begin = run.progress.elapsed();
+  const Field& sdf = state.geometry->sdf();
+  const PixelStore& pixels = run.views.train;
+  SurfaceAndHits all = extract_surface_and_hits(run.device, sdf, run.preset.meshing, pixels,
+                                                run.preset.max_hits, run.progress);
+  const ObjectHits fewer =
+      object_hits(run.device, sdf, *all.surface, pixels, {run.preset.brief_hits}, run.progress);
+  AppearanceOptions brief = run.preset.appearance;
+  brief.effort = Effort::brief;
+  brief.seed = run.seed;
+  brief.light_color = run.light_color;
+  const Turns turns = light_turns(run, state, all.surface, fewer);
+  AppearanceResult made =
+      fit_appearance(run.device, {all.surface, fewer.samples(turns.get())}, brief, run.progress);
+  check_cancelled(run.progress);
+  Scene& scene = state.scene;
+  scene.sdf = std::make_shared<const Field>(sdf);
+  scene.surface = std::move(all.surface);
+  scene.light = std::move(made.light);
+  scene.material = made.material;
+  scene.albedo = std::move(made.albedo);
+  state.hits = std::move(all.hits);
+  state.look_seconds = run.progress.elapsed() - begin;
+}
+
+void forget_estimate(RunState& state) {
+  Scene& scene = state.scene;
+  scene.sdf = scene.albedo = nullptr;
+  scene.surface = nullptr;
+  scene.light = {};
+  scene.material = {};
+  state.hits = {};
+  state.descent = {};
+  state.descent_seconds = 0;
+}
+
+// Seconds of this round's descent, if the estimate before it took state.look_seconds and those of later
+// rounds take as long.
+double descent_seconds(const RunContext& run, const RunState& state, int round) {
+  const int rounds_left = run.plan.polish_rounds - round;
+  const double begin = run.progress.elapsed() - state.descent_seconds,
+               left = state.polish_deadline - begin - (rounds_left - 1) * state.look_seconds;
+  return std::clamp(left / rounds_left, std::min(1.0, run.plan.polish), run.plan.polish);
+}
+
+PolishOptions options_of(const RunContext& run, RunState& state, int round,
+                         const Stage::Checkpoint& checkpoint) {
+  PolishOptions options = run.preset.polish;
+  options.steps = run.plan.polish_steps;
+  options.seconds = run.plan.polish > 0 ? descent_seconds(run, state, round) : 0;
+  options.spent = state.descent_seconds;
+  options.clock = run.progress.clock();
+  options.seed = run.seed + uint64_t(round);
+  options.first_step = (int64_t(round) + 1) << 24;
+  options.show = [&run, &geometry = *state.geometry] {
+    run.live.offer([&](const Camera& camera) { return geometry.render_radiance(camera, 1); });
+  };
+  options.store = descent_store(run, state, &state.descent_seconds, checkpoint);
+  return options;
+}
+
+}  // namespace
+
+void polish(const RunContext& run, RunState& state, int round, const Stage::Checkpoint& checkpoint) {
+  const bool begun = !state.descent.tensors.empty();
+  if (!begun && !has_time(run, state, round)) return;
+  if (!begun) estimate(run, state);
+  find_hits(run, state);
+  const Scene& scene = state.scene;
+  const Turns turns = light_turns(run, state, scene.surface, state.hits);
+  polish_surface(run.device, *state.geometry, {scene.surface, state.hits.samples(turns.get())},
+                 {scene.light, scene.material, scene.albedo, {}}, options_of(run, state, round, checkpoint),
+                 run.progress);
+  forget_estimate(state);
+  run.progress.log(Json{{"stage", "polish"}, {"look_seconds", state.look_seconds}}.dump());
+}
+
+}  // namespace cei3d
