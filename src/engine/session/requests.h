@@ -81,6 +81,7 @@ struct ObjectSummary {
   LightMotion light_motion = LightMotion::world;
   std::optional<Vec3f> light_error;  // relative, of the strength of its channels; none: not known
   size_t refined_poses = 0;          // training views whose poses the reconstruction moved
+  double focal = 1;                  // factor on the focal lengths of the capture that it found
   double exposures = 0;  // by how much their photographs are of different brightness, standard deviation of
                          // the logarithm; 0: they are taken for equal
   // A sentence if light and material alone explain the photographs much worse than with the correction
