@@ -52,4 +52,12 @@ inline Camera scaled(Camera c, int n) {
   return c;
 }
 
+// The camera with `factor` times the focal length; the principal point stays.
+inline Camera zoomed(Camera c, double factor) {
+  c.fx *= factor;
+  c.fy *= factor;
+  c.skew *= factor;
+  return c;
+}
+
 }  // namespace cei3d

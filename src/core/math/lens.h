@@ -86,6 +86,20 @@ double lens_reach(const LensDistortion&);
 // Inverse of distorted() within the reach of the lens; none where no direction there has this image.
 std::optional<Vec2d> undistorted(const LensDistortion&, double reach, Vec2d p);
 
+// The lens with which a camera of `factor` times the focal length moves pixels as the camera with this lens
+// does. Of perspective lenses; fisheye ones have none.
+inline LensDistortion zoomed(LensDistortion lens, double factor) {
+  double power = 1;
+  for (size_t i = 0; i < lens.radial.size(); ++i) {
+    power *= factor * factor;
+    lens.radial[i] *= power;
+    if (i < lens.divisor.size()) lens.divisor[i] *= power;
+  }
+  lens.p1 *= factor;
+  lens.p2 *= factor;
+  return lens;
+}
+
 // The camera that took a photograph: pose, K and size of the photograph, and its lens.
 class PhotoCamera {
  public:

@@ -24,6 +24,20 @@ const LensDistortion kLenses[] = {
     {LensKind::fisheye, {}, {}, 0, 0},
 };
 
+TEST(Lens, OfAnotherFocalLengthMovesPixelsAsBefore) {
+  constexpr double kFactor = 1.03;
+  for (const LensDistortion& lens : kLenses) {
+    if (lens.kind == LensKind::fisheye) continue;
+    const LensDistortion other = zoomed(lens, kFactor);
+    for (const Vec2d p : {Vec2d{0, 0}, Vec2d{0.3, -0.2}, Vec2d{-0.5, 0.45}}) {
+      const Vec2d before = distorted(lens, p), after = distorted(other, p * (1 / kFactor)) * kFactor;
+      EXPECT_NEAR(before.x, after.x, 1e-12);
+      EXPECT_NEAR(before.y, after.y, 1e-12);
+    }
+    EXPECT_EQ(zoomed(lens, 1), lens);
+  }
+}
+
 TEST(Lens, DerivativeAgainstDualNumbers) {
   using D = Dual<double>;
   for (const LensDistortion& lens : kLenses)

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Small motions of cameras.
+// Small motions of cameras, and changes of their focal length.
 #pragma once
 
 #include "core/math/camera.h"
 #include "core/math/rotation.h"
+#include "core/math/vec2.h"
 
 namespace cei3d {
 
@@ -57,6 +58,23 @@ inline MotionGrad motion_grad(const Camera& camera, Vec3d point) {
 inline RigidMotion motion_between(const Camera& from, const Camera& to) {
   const Mat3d r = to.world_from_cam * transpose(from.world_from_cam);
   return {turn_of(r), to.center - r * from.center};
+}
+
+// `factor` times the focal length, and as many times as far from the origin: what is there stays as large in
+// the image, only its perspective changes.
+inline Camera dolly_zoomed(const Camera& camera, double factor) {
+  Camera out = zoomed(camera, factor);
+  out.center = out.center * factor;
+  return out;
+}
+
+// Derivative of the continuous pixel position of a world point by the logarithm of the factor of
+// dolly_zoomed(), at a factor of 1.
+inline Vec2d dolly_zoom_grad(const Camera& camera, Vec3d point) {
+  const Vec3d at = camera.project(point);
+  const MotionGrad grad = motion_grad(camera, point);
+  return {at.x - camera.cx + dot(grad.d_shift[0], camera.center),
+          at.y - camera.cy + dot(grad.d_shift[1], camera.center)};
 }
 
 }  // namespace cei3d

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "core/math/rng.h"
 
 namespace cei3d {
@@ -29,11 +31,16 @@ TEST(RigidMotion, TurnsAboutTheOriginBeforeItShifts) {
   EXPECT_LT(length(turned.world_from_cam * Vec3d{1, 0, 0} - Vec3d{0, 1, 0}), 1e-12);
 }
 
-TEST(MotionGrad, AreThoseOfFiniteDifferences) {
+Camera skewed_camera() {
   Camera camera;
   camera.fx = 90, camera.fy = 110, camera.cx = 48, camera.cy = 40, camera.skew = 0.7;
   camera.world_from_cam = rotation_of({0.3, -1.2, 0.5});
   camera.center = camera.world_from_cam * Vec3d{0.2, -0.1, -3};
+  return camera;
+}
+
+TEST(MotionGrad, AreThoseOfFiniteDifferences) {
+  const Camera camera = skewed_camera();
   for (uint64_t i = 0; i < 20; ++i) {
     Rng rng(4, 0, i);
     const Vec3d point = 0.3 * Vec3d{rng.normal(), rng.normal(), rng.normal()};
@@ -51,6 +58,33 @@ TEST(MotionGrad, AreThoseOfFiniteDifferences) {
         EXPECT_NEAR(grad.d_shift[k][axis], shifted[k] / (2 * kStep), 1e-4);
       }
     }
+  }
+}
+
+TEST(DollyZoom, ItsGradientIsThatOfFiniteDifferences) {
+  const Camera camera = skewed_camera();
+  for (uint64_t i = 0; i < 20; ++i) {
+    Rng rng(4, 1, i);
+    const Vec3d point = 0.3 * Vec3d{rng.normal(), rng.normal(), rng.normal()};
+    const Vec2d grad = dolly_zoom_grad(camera, point);
+    constexpr double kStep = 1e-6;
+    const Vec3d d = dolly_zoomed(camera, std::exp(kStep)).project(point) -
+                    dolly_zoomed(camera, std::exp(-kStep)).project(point);
+    EXPECT_NEAR(grad.x, d.x / (2 * kStep), 1e-4);
+    EXPECT_NEAR(grad.y, d.y / (2 * kStep), 1e-4);
+  }
+}
+
+// A plane through the origin that faces the camera looks the same; what is before it becomes smaller, because
+// from farther away it is less near.
+TEST(DollyZoom, KeepsTheSizeOfWhatIsAtTheOrigin) {
+  Camera camera;
+  camera.fx = camera.fy = 100;
+  camera.center = {0, 0, -3};
+  const Camera other = dolly_zoomed(camera, 1.1);
+  for (const double x : {-0.5, 0.2}) {
+    EXPECT_NEAR(other.project({x, 0.3, 0}).x, camera.project({x, 0.3, 0}).x, 1e-9);
+    EXPECT_LT(std::abs(other.project({x, 0.3, -1}).x), std::abs(camera.project({x, 0.3, -1}).x));
   }
 }
 

@@ -45,7 +45,7 @@ Camera moved(Camera c, double dx, double dy) {
   c.cx += dx, c.cy += dy;
   return c;
 }
-Camera zoomed(Camera c, double s) {
+Camera enlarged(Camera c, double s) {
   for (double* k : {&c.fx, &c.fy, &c.cx, &c.cy, &c.skew}) *k *= s;
   return c;
 }
@@ -79,7 +79,7 @@ std::vector<Reading> readings() {
                    [d](const PhotoCamera& p) { return PhotoCamera(moved(p.camera(), d, d), p.lens()); }});
   for (const double s : {0.25, 0.5, 2.0, 4.0})
     all.push_back({fmt::format("K is multiplied by {}: it belongs to images of another size", s),
-                   [s](const PhotoCamera& p) { return PhotoCamera(zoomed(p.camera(), s), p.lens()); }});
+                   [s](const PhotoCamera& p) { return PhotoCamera(enlarged(p.camera(), s), p.lens()); }});
   return all;
 }
 
@@ -203,7 +203,7 @@ void check_intrinsics(const Capture& capture, std::vector<Finding>& findings) {
          fmt::format("K belongs to images of another size: multiply it by {:.3g}.", x), [x](Capture& c) {
            for (View& v : c.views) {
              const PhotoCamera p = camera_of(v);
-             set_photo(v, PhotoCamera(zoomed(p.camera(), x), p.lens()));
+             set_photo(v, PhotoCamera(enlarged(p.camera(), x), p.lens()));
            }
          }});
 }

@@ -145,7 +145,7 @@ Project::Project(fs::path folder, Mode mode)
       read_json_file(file("dataset.json"), [&](const Json& j) { return dataset_from_json(j, folder_); });
   given_capture_ = capture_ = std::move(dataset.capture);
   fingerprint_ = std::move(dataset.fingerprint);
-  capture_ = with_poses(given_capture_, refined_poses());
+  capture_ = with_cameras(given_capture_, refined_cameras());
 }
 
 Project Project::create(const fs::path& folder, const ProjectHead& head, const Capture& capture,
@@ -229,7 +229,7 @@ void Project::save_base(const Scene& scene) {
   save_scene(scene, tensors, head);
   const std::string object = store_.put(tensors);
   write_json_file(file("base/scene.json"), {{"object", object}, {"head", std::move(head)}});
-  capture_ = with_poses(given_capture_, scene.poses);
+  capture_ = with_cameras(given_capture_, scene.refined);
   collect_garbage();
 }
 
@@ -238,10 +238,10 @@ bool Project::has_base() const {
   return fs::exists(file("base/scene.json"), error);
 }
 
-std::vector<RefinedPose> Project::refined_poses() const {
+RefinedCameras Project::refined_cameras() const {
   if (!has_base()) return {};
   return read_json_file(file("base/scene.json"), [&](const Json& j) {
-    return poses_from_head(j.at("head"), file("base/scene.json").string());
+    return refined_from_head(j.at("head"), file("base/scene.json").string());
   });
 }
 

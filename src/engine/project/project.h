@@ -87,10 +87,10 @@ class Project {
 
   const std::filesystem::path& folder() const { return folder_; }
   const ProjectHead& head() const { return head_; }
-  // With the poses that the reconstruction refined, once it is finished.
+  // With the poses and focal lengths that the reconstruction refined, once it is finished.
   const Capture& capture() const { return capture_; }
-  std::vector<RefinedPose> refined_poses() const;  // empty: there are none, or the object is not finished
-  const Capture& given_capture() const { return given_capture_; }  // with the poses it was given
+  RefinedCameras refined_cameras() const;                          // none before the object is finished
+  const Capture& given_capture() const { return given_capture_; }  // with the cameras it was given
   const std::string& fingerprint() const { return fingerprint_; }  // of the capture when it was reconstructed
   const Stack& stack() const { return stack_; }
 

@@ -36,13 +36,13 @@ TEST_F(ProjectTest, ReopensAsItWas) {
   EXPECT_EQ(bytes_of(p.scene()), bytes_of(small_scene()));
 }
 
-// The pose of an object's view is where edits and renders see it from; what was given is still known.
-TEST_F(ProjectTest, RefinedPosesAreThoseOfItsViews) {
+// The camera of an object's view is where edits and renders see it from; what was given is still known.
+TEST_F(ProjectTest, RefinedCamerasAreThoseOfItsViews) {
   const Vec3d center{0.25, 4, -1};
   {
     Project p = make();
     Scene scene = small_scene();
-    scene.poses = {{"train/r_000", rotation_of({0.1, 0, 0.2}), center}};
+    scene.refined = {{{"train/r_000", rotation_of({0.1, 0, 0.2}), center}}, 1.02};
     p.save_base(scene);
     EXPECT_EQ(find_view(p.capture(), "train/r_000").camera.center.y, 4);
   }
@@ -52,8 +52,23 @@ TEST_F(ProjectTest, RefinedPosesAreThoseOfItsViews) {
   EXPECT_EQ(camera(p.capture(), "train/r_000").center.x, center.x);
   EXPECT_EQ(camera(p.capture(), "train/r_000").world_from_cam.row[1].z, rotation_of({0.1, 0, 0.2}).row[1].z);
   EXPECT_EQ(camera(p.capture(), "test/r_002").center.x, camera(given, "test/r_002").center.x);
+  EXPECT_EQ(camera(p.capture(), "test/r_002").fx, 1.02 * camera(given, "test/r_002").fx);
   EXPECT_EQ(camera(p.given_capture(), "train/r_000").center.x, camera(given, "train/r_000").center.x);
+  EXPECT_EQ(camera(p.given_capture(), "train/r_000").fx, camera(given, "train/r_000").fx);
   EXPECT_EQ(capture_fingerprint(p.given_capture()), p.fingerprint());
+}
+
+// As objects of older programs are stored, which knew poses alone.
+TEST_F(ProjectTest, WithoutARefinedFocalLengthThatOfTheCaptureIsRight) {
+  Scene scene = small_scene();
+  scene.refined.poses = {{"train/r_000", rotation_of({0.1, 0, 0.2}), {0, 4, 1}}};
+  Tensors tensors;
+  Json head = Json::object();
+  save_scene(scene, tensors, head);
+  EXPECT_FALSE(head.contains("focal"));
+  EXPECT_EQ(load_scene(tensors, head).refined.focal, 1);
+  head["focal"] = 0;
+  EXPECT_THROW(load_scene(tensors, head), Error);
 }
 
 TEST_F(ProjectTest, KeepsTheExposuresOfItsViews) {

@@ -11,7 +11,7 @@
 #include "core/math/color.h"
 #include "core/math/psnr.h"
 #include "engine/reconstruct/poses/align_views.h"
-#include "engine/reconstruct/poses/refined_poses.h"
+#include "engine/reconstruct/poses/refined_cameras.h"
 
 namespace cei3d {
 
@@ -74,12 +74,12 @@ class Training {
     while (state_.alignments < int(kFitAt.size()) && u >= kFitAt[size_t(state_.alignments)]) {
       std::vector<Camera> cameras;
       std::vector<Vec3f> exposures;
-      if (!state_.scene.poses.empty()) cameras = aligned_cameras(u);
+      if (!state_.scene.refined.poses.empty()) cameras = aligned_cameras(u);
       if (run_.fit_exposures && u >= kExposeFrom && state_.step >= run_.preset.exposures_from_steps)
         exposures = found_exposures(u);
       if (!cameras.empty()) {
         pixels.set_cameras(std::move(cameras));
-        keep_poses(run_, state_);
+        keep_cameras(run_, state_);
       }
       if (!exposures.empty()) {
         pixels.set_exposures(std::move(exposures));
@@ -89,11 +89,16 @@ class Training {
     }
   }
 
+  // A focal length that no trial has changed stays: here nothing tells whether a change pays.
   std::vector<Camera> aligned_cameras(double u) {
     const PixelStore& pixels = run_.views.train;
+    const double focal = state_.scene.refined.focal;
+    const FocalPrior prior{focal != 1 ? run_.preset.trial.focal_error : 0, focal};
     AlignedViews aligned =
-        align_views(show_views(*state_.geometry, pixels, kAlignSide, run_.progress), pixels);
-    run_.progress.log(Json{{"stage", "alignment"}, {"u", u}, {"pixels", aligned.pixels}}.dump());
+        align_views(show_views(*state_.geometry, pixels, kAlignSide, run_.progress), pixels, prior);
+    run_.progress.log(
+        Json{{"stage", "alignment"}, {"u", u}, {"pixels", aligned.pixels}, {"focal", focal * aligned.focal}}
+            .dump());
     return std::move(aligned.cameras);
   }
 
@@ -183,10 +188,11 @@ std::optional<double> view_error(GeometryStage& stage, const Camera& whole, cons
 
 }  // namespace
 
-void keep_poses(const RunContext& run, RunState& state) {
-  PixelStore& pixels = run.views.train;
-  state.scene.poses = refined_poses(run.capture, pixels.cameras(), run.normalization);
-  pixels.set_cameras(posed_cameras(pixels.cameras(), state.scene.poses, run.normalization));
+void keep_cameras(const RunContext& run, RunState& state) {
+  TrainingViews& views = run.views;
+  state.scene.refined =
+      refined_cameras(run.capture, views.given_train, views.train.cameras(), run.normalization);
+  views.set_cameras(state.scene.refined, run.normalization);
 }
 
 void keep_exposures(const RunContext& run, RunState& state) {
@@ -210,7 +216,7 @@ void train_geometry(const RunContext& run, RunState& state, const Stage::Checkpo
   state.training_seconds = training.elapsed();
 }
 
-void log_radiance_psnr(const RunContext& run, GeometryStage& stage) {
+void log_radiance_psnr(const RunContext& run, GeometryStage& stage, double focal) {
   constexpr size_t kViews = 8;
   constexpr double kSeconds = 15,
                    kReserveShare = 0.25;  // of a plan by time, whose other stages need the rest
@@ -226,7 +232,7 @@ void log_radiance_psnr(const RunContext& run, GeometryStage& stage) {
   for (size_t i = 0; i < held_out.size(); ++i) {
     if (i > 0 && i * kViews / held_out.size() == (i - 1) * kViews / held_out.size()) continue;
     const Image photograph = run.images.load(*held_out[i]);
-    const Camera whole = run.normalization.unit_from_capture(held_out[i]->camera);
+    const Camera whole = zoomed(run.normalization.unit_from_capture(held_out[i]->camera), focal);
     if (photograph.width != whole.width) return;  // downscaled
     const std::optional<double> error = view_error(stage, whole, photograph, is_over);
     if (!error) break;

@@ -6,9 +6,9 @@
 
 namespace cei3d {
 
-// Stores the poses of the training cameras in the scene, and takes the cameras from there again: stored poses
-// are rounded, and a resumed run must have the same cameras.
-void keep_poses(const RunContext&, RunState& state);
+// Stores poses and focal length of the training cameras in the scene, and takes all cameras from there again:
+// what is stored is rounded, and a resumed run must have the same cameras.
+void keep_cameras(const RunContext&, RunState& state);
 // Stores the exposures of the training pixels in the scene.
 void keep_exposures(const RunContext&, RunState&);
 
@@ -17,7 +17,7 @@ void train_geometry(const RunContext&, RunState& state, const Stage::Checkpoint&
 
 // Logs the PSNR of the radiance field on held-out views, for comparison with shading by light and material.
 // Up to 8 views, as many as 15 s allow, in a run with a time limit a quarter of its reserve. Stops when
-// progress.cancelled().
-void log_radiance_psnr(const RunContext&, GeometryStage&);
+// progress.cancelled(). focal: factor on the focal lengths of the capture.
+void log_radiance_psnr(const RunContext&, GeometryStage&, double focal);
 
 }  // namespace cei3d

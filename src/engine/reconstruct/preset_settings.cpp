@@ -281,7 +281,9 @@ SettingTable<Preset> make_table() {
   const Group<TrialOptions> trial = preset.part("trial.", &Preset::trial);
   trial.add("steps", &TrialOptions::steps, {1, 1e6}, "steps", "Training steps from each start shape")
       .add("rays", &TrialOptions::rays, {64, 1e8}, "pixels",
-           "Random training pixels by which start shapes are compared");
+           "Random training pixels by which start shapes are compared")
+      .add("focal_error", &TrialOptions::focal_error, {0, 0.5}, "of the focal length",
+           "Standard deviation of the focal length that the capture gives; 0: it is right");
   add_shapes(trial.part("shapes.", &TrialOptions::shapes));
   add_geometry(trial.part("geometry.", &TrialOptions::geometry));
   add_appearance(preset.part("appearance.", &Preset::appearance));

@@ -2,7 +2,6 @@
 #include "engine/reconstruct/reconstruct.h"
 
 #include "core/base/json.h"
-#include "engine/reconstruct/poses/refined_poses.h"
 #include "engine/reconstruct/preset_settings.h"
 #include "engine/reconstruct/reconstruct_with.h"
 #include "engine/reconstruct/stages.h"
@@ -64,8 +63,7 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
                            .progress = progress,
                            .live = live};
   RunState state = saved ? std::move(saved->state) : RunState();
-  if (!state.scene.poses.empty())
-    views.train.set_cameras(posed_cameras(views.train.cameras(), state.scene.poses, in.normalization));
+  if (!state.scene.refined.poses.empty()) views.set_cameras(state.scene.refined, in.normalization);
   std::vector<Vec3f> exposures;
   for (const ViewExposure& e : state.scene.exposures) exposures.push_back(e.factors);
   views.train.set_exposures(std::move(exposures));

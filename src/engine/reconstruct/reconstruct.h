@@ -32,8 +32,8 @@ struct ReconstructOptions {
   double test_share = 0;  // instead: hold out this share of the views, chosen at random by the seed
   std::optional<LightMotion> light;  // how the light moves against the object; none: to be found
   LightColorPrior light_color;
-  // Whether poses and exposures of the training views are refined, where start shapes are compared and it
-  // pays.
+  // Whether poses (and with them the focal length) and exposures of the training views are refined, where
+  // start shapes are compared and it pays.
   bool refine_poses = true, fit_exposures = true;
   int views = 0;  // number of training views, by keep_training_views(); 0: all
   // Values of the preset that differ from it, by key (engine/reconstruct/preset_settings.h).

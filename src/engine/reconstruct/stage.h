@@ -23,7 +23,7 @@ struct RunContext {
   const Capture& capture;
   const ImageSource& images;
   const Normalization& normalization;
-  TrainingViews& views;  // the start may move its cameras
+  TrainingViews& views;  // the start may change its cameras
   const Preset& preset;
   Plan plan;
   uint64_t seed;

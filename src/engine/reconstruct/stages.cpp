@@ -12,7 +12,7 @@
 #include "engine/reconstruct/joint/joint_run.h"
 #include "engine/reconstruct/joint/joint_stage.h"
 #include "engine/reconstruct/polish_round.h"
-#include "engine/reconstruct/poses/refined_poses.h"
+#include "engine/reconstruct/poses/refined_cameras.h"
 #include "engine/reconstruct/stage_inputs.h"
 
 namespace cei3d {
@@ -70,12 +70,13 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
   state.light_frame_known = run.light || trial.light.motion != LightMotion::world;
   if (run.plan.trial_steps > 0) trial.steps = run.plan.trial_steps;
   trial.align = run.refine_poses;
+  if (!can_change_focal(run.capture)) trial.focal_error = 0;
   if (run.fit_exposures) trial.exposures = run.views.noted_exposures;
   const std::vector<Camera> given = pixels.cameras();
   const StartShape start = run.plan.trial_steps > 0
                                ? choose_start(run.device, pixels, trial, run.seed, run.progress)
                                : start_shape(pixels, Start::hull, run.seed, trial.shapes, run.progress);
-  if (!same_poses(pixels.cameras(), given)) keep_poses(run, state);
+  if (!same_cameras(pixels.cameras(), given)) keep_cameras(run, state);
   if (!pixels.exposures().empty()) keep_exposures(run, state);
   const double chosen = run.progress.now();
   state.start_seconds = chosen - begin;
@@ -87,7 +88,7 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
 
 void run_geometry(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
   train_geometry(run, state, checkpoint);
-  log_radiance_psnr(run, *state.geometry);
+  log_radiance_psnr(run, *state.geometry, state.scene.refined.focal);
   if (!run.progress.cancelled()) return;
   checkpoint();
   check_cancelled(run.progress);

@@ -7,6 +7,7 @@
 
 #include "core/base/cancel.h"
 #include "engine/reconstruct/poses/align_views.h"
+#include "engine/reconstruct/poses/refined_cameras.h"
 
 namespace cei3d {
 
@@ -42,6 +43,13 @@ std::vector<Vec3f> relative_exposures(const std::vector<std::optional<double>>& 
 
 }  // namespace
 
+void TrainingViews::set_cameras(const RefinedCameras& found, const Normalization& normalization) {
+  train.set_cameras(refined(given_train, found, normalization));
+  std::vector<Camera> others = given_held_out;
+  for (Camera& c : others) c = zoomed(c, found.focal);
+  held_out.set_cameras(std::move(others));
+}
+
 TrainingViews load_training_views(const Capture& capture, const ImageSource& images,
                                   const Normalization& normalization, Progress& progress) {
   TrainingViews v;
@@ -61,6 +69,8 @@ TrainingViews load_training_views(const Capture& capture, const ImageSource& ima
   }
   v.footprint /= double(std::max<size_t>(noted.size(), 1));
   v.noted_exposures = relative_exposures(noted);
+  v.given_train = v.train.cameras();
+  v.given_held_out = v.held_out.cameras();
   if (v.train.pixels().empty()) fail("no training image shows the object: every mask is empty");
   return v;
 }

@@ -121,7 +121,7 @@ std::vector<View> choose_views(const Project& project, const fs::path& path, std
     doubtful[v.name] = v.doubtful_path;
   }
   if (!path.empty() && capture_fingerprint(capture) == project.fingerprint()) {
-    capture = with_poses(std::move(capture), project.refined_poses());
+    capture = with_cameras(std::move(capture), project.refined_cameras());
     for (View& v : capture.views) v.doubtful_path = doubtful[v.name];
   }
   const bool has_splits = std::any_of(capture.views.begin(), capture.views.end(),

@@ -24,7 +24,8 @@ ObjectSummary summary_of(const Device& device, const Scene& scene) {
   out.explained = scene.explained;
   out.light_motion = scene.light_frame.motion;
   out.light_error = scene.light_error;
-  out.refined_poses = scene.poses.size();
+  out.refined_poses = scene.refined.poses.size();
+  out.focal = scene.refined.focal;
   out.exposures = spread_of(scene.exposures);
   out.min_roughness = out.max_roughness = out.mean.roughness;
   out.metal_share = out.mean.metalness;

@@ -109,6 +109,7 @@ Json ObjectSummary::json() const {
   j["light"] = {{"motion", light_motion_name(light_motion)}};
   if (light_error) j["light"]["relative_error"] = {light_error->x, light_error->y, light_error->z};
   j["refined_poses"] = refined_poses;
+  j["focal"] = focal;
   j["exposures"] = exposures;
   if (explained)
     j["explained_db"] = {{"physical", explained->physical}, {"with_residual", explained->with_residual}};
@@ -118,6 +119,7 @@ Json ObjectSummary::json() const {
 std::string ObjectSummary::text() const {
   std::string text = material_text() + "; " + light_text();
   if (refined_poses > 0) text += fmt::format("; the poses of {} views were refined", refined_poses);
+  if (focal != 1) text += fmt::format("; the focal length was changed by {:+.1f} %", 100 * (focal - 1));
   if (exposures > 0)
     text +=
         fmt::format("; exposures that differ by {:.0f} % were made equal", 100 * (std::exp(exposures) - 1));

@@ -81,6 +81,7 @@ struct ObjectSummary {
   LightMotion light_motion = LightMotion::world;
   std::optional<Vec3f> light_error;  // relative, of the strength of its channels; none: not known
   size_t refined_poses = 0;          // training views whose poses the reconstruction moved
+  double focal = 1;                  // factor on the focal lengths of the capture that it found
   // Standard deviation of the logarithm of the photographs' exposures; 0: they are taken for equal.
   double exposures = 0;
   // A sentence if light and material alone explain the photographs much worse than with the correction

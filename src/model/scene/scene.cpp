@@ -213,15 +213,20 @@ void save_scene(const Scene& scene, Tensors& tensors, Json& head) {
   if (scene.explained)
     head["explained"] = {{"physical", scene.explained->physical},
                          {"with_residual", scene.explained->with_residual}};
-  if (!scene.poses.empty()) head["poses"] = poses_json(scene.poses);
+  if (!scene.refined.poses.empty()) head["poses"] = poses_json(scene.refined.poses);
+  if (scene.refined.focal != 1) head["focal"] = scene.refined.focal;
   if (!scene.exposures.empty()) head["exposures"] = exposures_json(scene.exposures);
 }
 
-std::vector<RefinedPose> poses_from_head(const Json& head, const std::string& what) {
-  std::vector<RefinedPose> poses;
-  if (!head.contains("poses")) return poses;
-  for (const Json& pose : head.at("poses")) poses.push_back(pose_from_json({pose, "A pose in " + what}));
-  return poses;
+RefinedCameras refined_from_head(const Json& head, const std::string& what) {
+  RefinedCameras refined;
+  if (head.contains("poses"))
+    for (const Json& pose : head.at("poses"))
+      refined.poses.push_back(pose_from_json({pose, "A pose in " + what}));
+  if (head.contains("focal")) refined.focal = head.at("focal").get<double>();
+  if (!(refined.focal > 0.1 && refined.focal < 10))
+    fail("{} has the impossible factor {} on the focal length", what, refined.focal);
+  return refined;
 }
 
 Scene load_scene(const Tensors& tensors, const Json& head, const std::string& what) {
@@ -249,8 +254,8 @@ Scene load_scene(const Tensors& tensors, const Json& head, const std::string& wh
       scene.explained = {explained.require<double>("physical"), explained.require<double>("with_residual")};
       explained.finish();
     }
-    reader.has("poses");
-    scene.poses = poses_from_head(head, what);
+    for (const char* key : {"poses", "focal"}) reader.has(key);
+    scene.refined = refined_from_head(head, what);
     if (reader.has("exposures"))
       for (const Json& e : head.at("exposures"))
         scene.exposures.push_back(exposure_from_json({e, "An exposure in " + what}));

@@ -45,7 +45,7 @@ struct Scene {
   // Correction network; null: none, or the light was changed.
   std::shared_ptr<const Residual> residual;
   std::optional<Explained> explained;             // of the reconstruction; none: not measured
-  std::vector<RefinedPose> poses;                 // of training views; empty: those of the capture are right
+  RefinedCameras refined;                         // of the capture, as the reconstruction found out
   std::vector<ViewExposure> exposures;            // of training views; empty: all have the same
   std::shared_ptr<const HandlerPoints> handlers;  // on the present shape
   ShapeVersions shape_versions;  // the last one has `surface`; empty while the shape is the reconstructed one
@@ -66,7 +66,7 @@ Scene in_view(Scene, const Camera&);  // the scene under light_in_view()
 void save_scene(const Scene&, Tensors& tensors, Json& head);
 Scene load_scene(const Tensors& tensors, const Json& head,
                  const std::string& what = "The description of the object");
-// Scene::poses alone.
-std::vector<RefinedPose> poses_from_head(const Json& head, const std::string& what);
+// Scene::refined alone.
+RefinedCameras refined_from_head(const Json& head, const std::string& what);
 
 }  // namespace cei3d

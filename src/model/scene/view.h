@@ -50,6 +50,12 @@ struct RefinedPose {
   Vec3d center;
 };
 
+// What a reconstruction found out about the cameras of a capture.
+struct RefinedCameras {
+  std::vector<RefinedPose> poses;  // of training views; empty: those of the capture are right
+  double focal = 1;                // factor on the focal lengths of all views, the held-out ones, too
+};
+
 // How much brighter a photograph is than the others, as a reconstruction found out.
 struct ViewExposure {
   std::string view;        // its name
@@ -71,8 +77,9 @@ struct Capture {
   std::vector<std::string> warnings;  // one sentence per assumption that the loader made
 };
 
-// The capture with the poses of the views that are named; other names are passed over.
-Capture with_poses(Capture, std::span<const RefinedPose>);
+// The capture with these focal lengths, and with the poses of the views that are named; other names are
+// passed over. Photographs are resampled as before.
+Capture with_cameras(Capture, const RefinedCameras&);
 
 // What an image file can hold.
 enum class ImageDepth {

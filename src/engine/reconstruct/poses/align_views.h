@@ -3,6 +3,7 @@
 // are.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/base/progress.h"
@@ -23,12 +24,23 @@ ShownViews show_views(GeometryStage& model, const PixelStore&, int side, const P
 
 struct AlignedViews {
   std::vector<Camera> cameras;  // of the store's views, moved
+  double focal = 1;             // factor on the focal lengths that they had
   double pixels = 0;  // median over views of how far they move the object in the image, in its pixels
 };
 
+// What is believed about the focal length before the photographs are asked.
+struct FocalPrior {
+  double error = 0;  // standard deviation of the logarithm of the capture's; 0: it is right
+  double found = 1;  // factor on the capture's that the cameras of the store have already
+};
+
 // Aligns every camera with the model by align_view(), then keep_frame(), so that the object stays where it is
-// and as large as it is.
-AlignedViews align_views(const ShownViews&, const PixelStore&);
+// and as large as it is. Changes the focal length of all by one factor, if the photographs are sure of it.
+AlignedViews align_views(const ShownViews&, const PixelStore&, const FocalPrior& = {});
+
+// The change of the logarithm of the focal length that explains all views best, with their poses, from
+// aligned poses; the views are then changed so. 0, and the views are of no more use: it is not known.
+double change_focal(std::span<ViewAligner> views, const FocalPrior&);
 
 // New exposures for the store: its present ones, times the factors by which the photographs are brighter than
 // the model, with a geometric mean of 1. A view that shows too little of the object gets no factor.

@@ -8,9 +8,11 @@
 
 #include "core/math/rigid_motion.h"
 #include "core/math/rng.h"
-#include "engine/reconstruct/poses/refined_poses.h"
+#include "engine/reconstruct/poses/refined_cameras.h"
 #include "engine/reconstruct/presets.h"
 #include "engine/reconstruct/test_box.h"
+#include "engine/reconstruct/test_run.h"
+#include "engine/reconstruct/training_views.h"
 
 namespace cei3d {
 namespace {
@@ -196,29 +198,57 @@ TEST(AlignViews, CamerasThatAreRightStay) {
   o.steps = 200;
   Progress quiet;
   choose_start(make_device(), store, o, 1, quiet);
-  EXPECT_TRUE(same_poses(store.cameras(), before));
+  EXPECT_TRUE(same_cameras(store.cameras(), before));
 }
 
-TEST(RefinedPoses, GoToTheCaptureAndBack) {
+TEST(RefinedCameras, GoToTheCaptureAndBack) {
   Capture capture;
-  std::vector<Camera> cameras;
+  std::vector<Camera> given, cameras;
   for (int v = 0; v < 4; ++v) {
     View view;
     view.name = std::to_string(v);
     view.split = v == 1 ? Split::test : Split::train;
     view.camera = true_camera(v);
     capture.views.push_back(view);
-    if (v != 1) cameras.push_back(moved(true_camera(v), disturbance(v, 0.01)));
+    if (v == 1) continue;
+    given.push_back(true_camera(v));
+    cameras.push_back(zoomed(moved(true_camera(v), disturbance(v, 0.01)), 1.03));
   }
   const Normalization n{{1, -2, 0.5}, 0.3};
-  const std::vector<RefinedPose> poses = refined_poses(capture, cameras, n);
-  ASSERT_EQ(poses.size(), 3u);
-  EXPECT_EQ(poses[1].view, "2");
-  const std::vector<Camera> back = posed_cameras(cameras, poses, n);
-  for (size_t i = 0; i < 3; ++i) EXPECT_LT(length(back[i].center - cameras[i].center), 1e-12);
-  const Capture posed = with_poses(capture, poses);
+  const RefinedCameras found = refined_cameras(capture, given, cameras, n);
+  ASSERT_EQ(found.poses.size(), 3u);
+  EXPECT_EQ(found.poses[1].view, "2");
+  EXPECT_NEAR(found.focal, 1.03, 1e-12);
+  EXPECT_EQ(refined_cameras(capture, given, given, n).focal, 1);
+  const std::vector<Camera> back = refined(given, found, n);
+  for (size_t i = 0; i < 3; ++i) {
+    EXPECT_LT(length(back[i].center - cameras[i].center), 1e-12);
+    EXPECT_NEAR(back[i].fx, cameras[i].fx, 1e-9);
+  }
+  const Capture posed = with_cameras(capture, found);
   EXPECT_EQ(posed.views[1].camera.center.x, capture.views[1].camera.center.x);  // of the held-out view
+  EXPECT_EQ(posed.views[1].camera.fx, found.focal * capture.views[1].camera.fx);
   EXPECT_LT(length(posed.views[3].camera.center - n.capture_from_unit(cameras[2].center)), 1e-12);
+}
+
+// A run goes on with what it stores; whoever resumes it starts from the given cameras.
+TEST(RefinedCameras, AreThoseOfAResumedRun) {
+  const BoxCapture box;
+  Progress quiet;
+  TrainingViews views = load_training_views(box.capture(), box, {}, quiet), again = views;
+  std::vector<Camera> cameras = views.train.cameras();
+  for (int round = 0; round < 3; ++round) {
+    for (size_t v = 0; v < cameras.size(); ++v)
+      cameras[v] = zoomed(moved(cameras[v], disturbance(int(v), 0.01)), 1.007);
+    const RefinedCameras found = refined_cameras(box.capture(), views.given_train, cameras, {});
+    views.set_cameras(found, {});
+    cameras = views.train.cameras();
+    again.set_cameras(found, {});
+    EXPECT_TRUE(same_cameras(cameras, again.train.cameras())) << round;
+    EXPECT_NEAR(found.focal, std::pow(1.007, round + 1), 1e-12);
+  }
+  ASSERT_FALSE(views.held_out.cameras().empty());
+  EXPECT_NEAR(views.held_out.cameras()[0].fx, std::pow(1.007, 3) * views.given_held_out[0].fx, 1e-9);
 }
 
 }  // namespace

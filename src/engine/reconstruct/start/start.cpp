@@ -98,13 +98,17 @@ Trial tried(const Device& device, const PixelStore& pixels, const TrialOptions& 
 }
 
 // Aligns the cameras with what was trained from the visual hull, and tries the hull again, while that moves
-// the object's image and explains more of the pixels. Returns the last trial of the hull.
+// the object's image or changes the focal length, and explains more of the pixels. Returns the last trial of
+// the hull.
 Trial align_with_hull(const Device& device, PixelStore& pixels, const TrialOptions& options, Trial hull,
                       uint64_t seed, Progress& progress) {
+  FocalPrior prior{options.focal_error};
   for (int round = 0; round < kMaxAlignments; ++round) {
-    AlignedViews aligned = align_views(show_views(*hull.trained, pixels, kCompareSide, progress), pixels);
-    Json log{{"stage", "alignment"}, {"pixels", aligned.pixels}, {"psnr", hull.psnr}};
-    if (aligned.pixels < kMinAlignment) {
+    AlignedViews aligned =
+        align_views(show_views(*hull.trained, pixels, kCompareSide, progress), pixels, prior);
+    const double focal = prior.found * aligned.focal;
+    Json log{{"stage", "alignment"}, {"pixels", aligned.pixels}, {"focal", focal}, {"psnr", hull.psnr}};
+    if (aligned.pixels < kMinAlignment && aligned.focal == 1) {
       progress.log(log.dump());
       break;
     }
@@ -118,6 +122,7 @@ Trial align_with_hull(const Device& device, PixelStore& pixels, const TrialOptio
       break;
     }
     hull = std::move(again);
+    prior.found = focal;
   }
   return hull;
 }

@@ -31,18 +31,21 @@ struct TrialOptions {
   ShapeOptions shapes;
   GeometryOptions geometry;
   int steps = 400;
-  int rays = 32768;              // number of random training pixels of the comparison
-  LightFrame light;              // in the training views
-  bool align = false;            // whether cameras are moved where that pays
+  int rays = 32768;    // number of random training pixels of the comparison
+  LightFrame light;    // in the training views
+  bool align = false;  // whether cameras are moved where that pays
+  // With `align`: standard deviation of the logarithm of the focal length as it is given; 0: it is right.
+  // That of EXIF notes is wrong by some percent, that of a calibration by less.
+  double focal_error = 0.02;
   std::vector<Vec3f> exposures;  // of the views, by their cameras' notes; empty: not known
 };
 
 // Trains briefly from each start shape and returns the one with the highest PSNR. Carving opens concavities
 // of the visual hull (the inside of a shovel) but fails on mirror images (it hollows out a metal body where
 // the reflections seem to be) and is left out under a light that turns; stereo finds hollows in textured
-// surface only. With `align` the cameras of the store are aligned with what was trained from the hull, as
-// long as it explains the pixels better for it; the noted exposures become the store's if the photographs
-// show them. Error: interrupted.
+// surface only. With `align` the cameras of the store, poses and focal length, are aligned with what was
+// trained from the hull, as long as it explains the pixels better for it; the noted exposures become the
+// store's if the photographs show them. Error: interrupted.
 StartShape choose_start(const Device&, PixelStore&, const TrialOptions&, uint64_t seed, Progress&);
 
 }  // namespace cei3d
