@@ -67,6 +67,9 @@ mapfile -t a < <(paint tests/e2e/data/corner_192.png); refused_edit 1 'on the ob
 mapfile -t a < <(paint tests/e2e/data/rgb_192.png); refused_edit 1 'alpha' "${a[@]}"
 mapfile -t a < <(paint "$out/no_such.png"); refused_edit 1 'no_such.png' "${a[@]}"
 refused_edit 2 'branch.steps' edit "$project" paint --view train/r_055 --scribble "$sample/edits/paint/scribble.png" --set branch.step=9
+refused_edit 2 'handle_share' edit "$project" deform --from 0,0,0 --to 0,0,1 --set handle_shore=0.2
+refused_edit 2 '0.01 to 0.9' edit "$project" deform --from 0,0,0 --to 0,0,1 --set handle_share=2
+refused_edit 2 'like.roughness' edit "$project" part --view train/r_055 --like 96,96 --set like.roughnes=0.2
 part() { printf '%s\n' edit "$project" part --view train/r_055 --scribble "$1"; }
 mapfile -t a < <(part tests/e2e/data/other_size.png); refused_edit 2 '48x48' "${a[@]}"
 mapfile -t a < <(part tests/e2e/data/empty_192.png); refused_edit 1 'no stroke' "${a[@]}"

@@ -77,6 +77,18 @@ TEST(Cli, HelpNamesEveryCaptureFormat) {
   EXPECT_THAT(type({"check", "-h"}).out, HasSubstr(capture_format_names()));
 }
 
+TEST(Cli, SettingsOfEditsAreListed) {
+  const std::pair<const char*, const char*> lines[] = {{"paint", "branch.steps = 400 steps"},
+                                                       {"part", "graph.crease = 0.03 "},
+                                                       {"deform", "refit.steps = 500 steps"}};
+  for (const auto& [edit, line] : lines) {
+    const Typed t = type({"edit", edit, "--list-settings"});
+    EXPECT_EQ(t.code, 0) << t.err;
+    EXPECT_THAT(t.out, HasSubstr(line));
+  }
+  EXPECT_THAT(type({"edit", "part", "--list-settings", "--json"}).out, HasSubstr("\"like.roughness\""));
+}
+
 TEST(Cli, MaterialsAreListedAndNearNamesAreTold) {
   for (const char* edit : {"material", "part", "paint"}) {
     const std::string help = type({"edit", edit, "-h"}).out;

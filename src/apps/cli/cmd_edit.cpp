@@ -27,6 +27,21 @@ void add_output(CLI::App* verb, EditOutput& o) {
       ->check(CLI::Validator(ends_in_png, "PNG"));
 }
 
+void add_settings(CLI::App* verb, EditSettings& s) {
+  verb->add_option(
+          "--set", s.set,
+          "key=value: a number or choice of how the edit is made; repeatable. @FILE.json: a file that "
+          "holds {\"set\": {\"key\": value, ...}}")
+      ->expected(1)
+      ->take_all();
+  verb->add_flag("--list-settings", s.list, "List what --set can change, and do nothing else");
+}
+
+void list_settings(Console& console, const std::string& edit) {
+  const SettingsReport r = settings_of_edit(edit);
+  console.answer(r.json(), r.text());
+}
+
 void add_amend(CLI::App* verb, bool& amend) {
   verb->add_flag("--amend", amend,
                  "In place of the last edit, which must be of the same kind and on the same part");

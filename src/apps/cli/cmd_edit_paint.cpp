@@ -11,6 +11,7 @@ struct Options {
   std::string decal, at;
   DecalPlace place;
   PaintCommand command;
+  EditSettings settings;
   EditOutput output;
 };
 
@@ -37,6 +38,7 @@ PaintCommand command_of(const Options& o) {
   PaintCommand c = o.command;
   c.target = *paint_target_from_name(o.target);
   c.routing = *routing_from_name(o.routing);
+  c.set = o.settings.set;
   if (!o.decal.empty()) {
     c.strokes.push_back(decal_of(o));
     return c;
@@ -135,14 +137,11 @@ void add_edit_paint(Commands& commands, CLI::App* edit, ProjectName project) {
   add_pictures(verb, *o);
   add_meaning(verb, *o);
   add_material_values(verb, o->command.material);
-  verb->add_option("--set", o->command.set,
-                   "key=value, repeatable: how the painted colors are learned. Keys: branch.steps, .batch, "
-                   ".levels, .hidden_layers, .width, .table_rate, .layer_rate, .loss (cross_entropy, l1)")
-      ->expected(1)
-      ->take_all();
+  add_settings(verb, o->settings);
   verb->add_option("--seed", o->command.seed, "Random seed")->capture_default_str();
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {
+    if (options.settings.list) return list_settings(console, "paint");
     const PaintCommand command = command_of(options);
     open_for_edit(session, *project, "paint --view NAME --scribble FILE.png");
     const EditSummary s = session.paint(command, console);

@@ -13,6 +13,7 @@ struct Options {
   std::string mask, like, camera;
   std::string views = "10", on = "renders", order = "informative", combine = "votes";
   bool keep_texture = false, remove = false;
+  EditSettings settings;
   EditOutput output;
 };
 
@@ -34,6 +35,7 @@ PartCommand command_of(const Options& o) {
   if (!o.like.empty()) c.like = parse_pixels({o.like}, "--like").front();
   c.effects.replace = !c.effects.color.empty() && !o.keep_texture;
   c.keep_texture = c.effects.color.empty() && o.keep_texture;
+  c.set = o.settings.set;
   c.network.photographs = o.on == "photographs";
   c.network.plan = {parse_views(o.views), *view_order_from_name(o.order),
                     *mask_combination_from_name(o.combine)};
@@ -161,8 +163,10 @@ void add_edit_part(Commands& commands, CLI::App* edit, ProjectName project) {
   add_where(verb, *o);
   add_name(verb, o->command);
   add_part_effects(verb, *o);
+  add_settings(verb, o->settings);
   add_output(verb, o->output);
   commands.on(verb, o, [project](const Options& options, Session& session, Console& console) {
+    if (options.settings.list) return list_settings(console, "part");
     const PartCommand command = command_of(options);
     open_for_edit(session, *project, "part --view NAME --positive X,Y");
     const EditSummary s = session.select_part(command, console);

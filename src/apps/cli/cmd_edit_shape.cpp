@@ -6,10 +6,11 @@
 namespace cei3d {
 namespace {
 
-struct DeformOptions {
+struct DragOptions {
   std::vector<std::string> from, to, turn, pin;
   std::string view, camera, pixel, drag, part, geometry = "mesh", distance = "signed";
   std::optional<double> radius;
+  EditSettings settings;
   EditOutput output;
 };
 
@@ -28,7 +29,7 @@ Vec2<double> pixel_of(const std::string& text, const std::string& option) {
   return {v[0], v[1]};
 }
 
-std::vector<PointDrag> drags_of(const DeformOptions& o) {
+std::vector<PointDrag> drags_of(const DragOptions& o) {
   if (o.from.size() != o.to.size()) fail_usage("There must be one --to for every --from.");
   if (!o.turn.empty() && o.turn.size() != o.from.size())
     fail_usage("There must be one --turn for every --from, or none.");
@@ -40,7 +41,7 @@ std::vector<PointDrag> drags_of(const DeformOptions& o) {
   return drags;
 }
 
-DeformCommand command_of(const DeformOptions& o) {
+DeformCommand command_of(const DragOptions& o) {
   const bool points = !o.from.empty() && !o.to.empty();
   const bool pixels = o.view.empty() != o.camera.empty() && !o.pixel.empty() && !o.drag.empty();
   const bool any_point = !o.from.empty() || !o.to.empty();
@@ -64,6 +65,7 @@ DeformCommand command_of(const DeformOptions& o) {
   c.distance = o.distance;
   c.radius = o.radius;
   c.part = o.part;
+  c.set = o.settings.set;
   return c;
 }
 
@@ -74,7 +76,7 @@ std::string deform_text(const EditSummary& s) {
 }
 
 // Points to drag and pins, in space or in a view.
-void add_points(CLI::App* verb, DeformOptions& o) {
+void add_points(CLI::App* verb, DragOptions& o) {
   const auto each = [&](const char* name, std::vector<std::string>& values, const char* help) {
     verb->add_option(name, values, help)->expected(1)->take_all();
   };
@@ -94,7 +96,7 @@ void add_points(CLI::App* verb, DeformOptions& o) {
 }
 
 void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
-  auto o = std::make_shared<DeformOptions>();
+  auto o = std::make_shared<DragOptions>();
   CLI::App* verb = commands.add("deform", "Drag a point of the surface; its surroundings follow", edit);
   add_points(verb, *o);
   verb->add_option("--radius", o->radius,
@@ -112,8 +114,10 @@ void add_deform(Commands& commands, CLI::App* edit, ProjectName project) {
                    "negative inside. l1: as the paper prints it, without a sign")
       ->check(CLI::IsMember({"signed", "l1"}))
       ->capture_default_str();
+  add_settings(verb, o->settings);
   add_output(verb, o->output);
-  commands.on(verb, o, [project](const DeformOptions& options, Session& session, Console& console) {
+  commands.on(verb, o, [project](const DragOptions& options, Session& session, Console& console) {
+    if (options.settings.list) return list_settings(console, "deform");
     const DeformCommand command = command_of(options);
     open_for_edit(session, *project, "deform --from X,Y,Z --to X,Y,Z");
     const EditSummary s = session.deform(command, console);

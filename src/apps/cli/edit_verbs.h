@@ -29,6 +29,15 @@ void add_output(CLI::App* verb, EditOutput&);
 // Prints the report of an edit and writes its --picture.
 void finish_edit(Session&, Console&, const EditSummary&, std::string text, const EditOutput&);
 
+// --set, --list-settings
+struct EditSettings {
+  std::vector<std::string> set;
+  bool list = false;
+};
+void add_settings(CLI::App* verb, EditSettings&);
+// edit: "paint".
+void list_settings(Console&, const std::string& edit);
+
 void add_amend(CLI::App* verb, bool& amend);  // --amend
 
 // --material, --roughness, --roughness-scale, --specular, --metalness

@@ -20,10 +20,6 @@ namespace {
 
 constexpr float kDefaultRadius = 0.3f, kRadiusPerDrag = 1.5f;
 constexpr float kNear = 0.05f;  // maximum distance of a given handle from the surface
-// Share of the radius that moves rigidly with the handle, and over which bending is resisted. Dragging a
-// single vertex makes a spike; with about a sixth, most of the radius remains for the fall-off. (On the ear
-// of spot shares of 0, 0.15, 0.25 differ from an artist's smooth fall-off by 0.10, 0.06, 0.09 of the drag.)
-constexpr float kHandleShare = 0.15f;
 // Iterations for a few seconds of work: 60 up to ten thousand vertices, fewer for larger regions, where the
 // last dozens move the surface by one or two hundredths of the drag.
 constexpr int kMaxIterations = 60, kMinIterations = 12, kVertexIterations = 600'000;
@@ -126,7 +122,7 @@ Reach reach_of(const Scene& scene, const DeformRequest& r, const std::vector<uin
       if (!std::isinf(d)) reach.radius = max(reach.radius, d);
   }
   if (!std::isinf(farthest)) reach.radius = farthest;
-  const float disc = kHandleShare * reach.radius;
+  const float disc = r.options.handle_share * reach.radius;
   reach.constraints.free.assign(n, 0);
   std::vector<uint8_t> held(n, 0);
   for (size_t k = 0; k < r.handles.size(); ++k)
@@ -146,6 +142,37 @@ Reach reach_of(const Scene& scene, const DeformRequest& r, const std::vector<uin
   }
   for (const uint32_t v : reach.constraints.handles) reach.constraints.free[v] = 0;
   return reach;
+}
+
+ArapOptions arap_options(const Reach& reach, const DeformOptions& o) {
+  ArapOptions options;
+  options.bending_length = o.handle_share * reach.radius;
+  const int free = int(std::count(reach.constraints.free.begin(), reach.constraints.free.end(), 1));
+  options.max_iterations =
+      o.iterations > 0 ? o.iterations
+                       : std::clamp(kVertexIterations / std::max(free, 1), kMinIterations, kMaxIterations);
+  return options;
+}
+
+SettingTable<DeformOptions> make_settings() {
+  SettingTable<DeformOptions> table;
+  const SettingGroup<DeformOptions, DeformOptions> deform(
+      table, "", [](DeformOptions& o) -> DeformOptions& { return o; });
+  deform
+      .add("handle_share", &DeformOptions::handle_share, {0.01, 0.9}, "of the radius",
+           "Surface that moves rigidly with the handle, and over which bending is resisted")
+      .add("iterations", &DeformOptions::iterations, {0, 10'000}, "iterations",
+           "Most rounds of the deformation of the mesh; 0: as many as a few seconds allow",
+           "[Sorkine and Alexa 2007]");
+  deform.part("refit.", &DeformOptions::refit)
+      .add("steps", &RefitOptions::steps, {1, 1e6}, "steps", "Training steps of the field",
+           "[paper sec. 5.1]")
+      .add("batch", &RefitOptions::batch, {4, 1e6, 4}, "points a step", "Size of a training batch")
+      .add("table_rate", &RefitOptions::table_rate, {0, 1}, "", "Learning rate of the hash tables",
+           "[Kingma and Ba 2015]")
+      .add("layer_rate", &RefitOptions::layer_rate, {0, 1}, "",
+           "Learning rate of the layers of a field without hash tables", "[paper sec. 5.1]");
+  return table;
 }
 
 void check_reach(const Scene& scene, const DeformRequest& r, const Reach& reach) {
@@ -243,12 +270,12 @@ float refit(const Device& device, const Scene& scene, const DeformRequest& reque
             std::shared_ptr<const Field>& sdf, const Progress& progress) {
   constexpr float kMaxMisfit = 0.01f;
   if (!scene.sdf) fail("The object has no distance field to deform; deform the mesh instead.");
-  sdf = std::make_shared<const Field>(
-      refit_field(device, present_field(scene), deformed_points(scene, change), request.refit, progress));
+  sdf = std::make_shared<const Field>(refit_field(
+      device, present_field(scene), deformed_points(scene, change), request.options.refit, progress));
   const std::vector<Vec3f> fitted = on_zero_set(device, *sdf, change.positions);
   const float misfit = misfit_of(device, *sdf, change, fitted);
   if (std::isinf(misfit))
-    fail("The field has lost its inside{}.", request.refit.distance == SurfaceDistance::l1
+    fail("The field has lost its inside{}.", request.options.refit.distance == SurfaceDistance::l1
                                                  ? ", as unsigned distances have none; use signed ones"
                                                  : "; deform the mesh instead");
   if (!(misfit < kMaxMisfit))
@@ -265,6 +292,11 @@ float refit(const Device& device, const Scene& scene, const DeformRequest& reque
 
 }  // namespace
 
+const SettingTable<DeformOptions>& deform_settings() {
+  static const SettingTable<DeformOptions> table = make_settings();
+  return table;
+}
+
 DeformResult deform(const Device& device, const Scene& scene, const DeformRequest& request,
                     Progress& progress) {
   const double start = steady_seconds();
@@ -275,11 +307,8 @@ DeformResult deform(const Device& device, const Scene& scene, const DeformReques
   const Reach reach = reach_of(scene, request, on_part);
   check_reach(scene, request, reach);
   progress.report({"deform", 0.1, -1, ""});
-  ArapOptions options;
-  options.bending_length = kHandleShare * reach.radius;
-  const int free = int(std::count(reach.constraints.free.begin(), reach.constraints.free.end(), 1));
-  options.max_iterations = std::clamp(kVertexIterations / std::max(free, 1), kMinIterations, kMaxIterations);
-  const ArapResult moved = arap_deform(mesh.positions, mesh.triangles, reach.constraints, options);
+  const ArapResult moved =
+      arap_deform(mesh.positions, mesh.triangles, reach.constraints, arap_options(reach, request.options));
   progress.report({"deform", request.geometry == DeformedGeometry::field ? 0.2 : 0.8, -1, ""});
   check_cancelled(progress, "deforming was interrupted; nothing was changed");
   auto reshape = std::make_shared<Reshape>(reshape_to(scene, moved.positions));

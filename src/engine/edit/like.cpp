@@ -13,17 +13,14 @@
 namespace cei3d {
 namespace {
 
-// Maximum differences between two points of one material.
-constexpr float kRoughness = 0.1f, kMetalness = 0.25f;
-constexpr float kColor = 0.12f;  // distance in sRGB
-
 // Difference over the maximum; 1: the limit.
-float material_difference(const Material& a, const Material& b) {
-  return max(abs(a.roughness - b.roughness) / kRoughness, abs(a.metalness - b.metalness) / kMetalness);
+float material_difference(const Material& a, const Material& b, const LikeLimits& limits) {
+  return max(abs(a.roughness - b.roughness) / limits.roughness,
+             abs(a.metalness - b.metalness) / limits.metalness);
 }
 
-float color_difference(Vec3f a, Vec3f b) {
-  return length(srgb_from_linear(a) - srgb_from_linear(b)) / kColor;
+float color_difference(Vec3f a, Vec3f b, const LikeLimits& limits) {
+  return length(srgb_from_linear(a) - srgb_from_linear(b)) / limits.color;
 }
 
 void check_not_everything(std::span<const float> scores, bool color) {
@@ -48,8 +45,10 @@ std::vector<float> like_scores(const Device& device, const Scene& scene, const P
   const Appearance points = appearance_at(device, scene, handler_hits(scene));
   std::vector<float> scores(points.material.size());
   for (size_t i = 0; i < scores.size(); ++i) {
-    float difference = material_difference(points.material[i], wanted.material[0]);
-    if (r.like->color) difference = max(difference, color_difference(points.albedo[i], wanted.albedo[0]));
+    const LikeLimits& limits = r.options.like;
+    float difference = material_difference(points.material[i], wanted.material[0], limits);
+    if (r.like->color)
+      difference = max(difference, color_difference(points.albedo[i], wanted.albedo[0], limits));
     scores[i] = clamp(1 - 0.5f * difference, 0.0f, 1.0f);
   }
   check_not_everything(scores, r.like->color);

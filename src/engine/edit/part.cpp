@@ -27,7 +27,7 @@ std::vector<float> selected(const Device& device, const Scene& scene, const Part
                             std::span<const Seed> seeds, Progress& progress) {
   if (r.like) return like_scores(device, scene, r);
   if (r.network) return r.network(scene, r, progress);
-  return grow(*scene.handlers, handler_colors(device, scene), seeds);
+  return grow(*scene.handlers, handler_colors(device, scene), seeds, r.options.graph);
 }
 
 // Score of each handler point in the existing part.
@@ -116,6 +116,22 @@ void set_effects(const Device& device, const Scene& scene, const PartRequest& r,
   set_pattern(device, scene, r, layer, progress);
 }
 
+SettingTable<PartOptions> make_settings() {
+  SettingTable<PartOptions> table;
+  const SettingGroup<PartOptions, PartOptions> part(table, "",
+                                                    [](PartOptions& o) -> PartOptions& { return o; });
+  part.part("graph.", &PartOptions::graph)
+      .add("lightness", &GraphOptions::lightness, {0, 10}, "",
+           "Weight of differences of lightness against those of hue")
+      .add("crease", &GraphOptions::crease, {0, 10}, "difference of color / radian",
+           "What a concave crease counts", "[Hoffman and Richards 1984]");
+  part.part("like.", &PartOptions::like)
+      .add("roughness", &LikeLimits::roughness, {1e-4, 1}, "", "Largest difference of roughness in a part")
+      .add("metalness", &LikeLimits::metalness, {1e-4, 1}, "", "Largest difference of metalness in a part")
+      .add("color", &LikeLimits::color, {1e-4, 2}, "sRGB", "Largest difference of color in a part");
+  return table;
+}
+
 double vertex_share(const Scene& scene, const EditLayer& layer) {
   const std::vector<Hit> hits = vertex_hits(scene.surface->mesh());
   size_t inside = 0;
@@ -124,6 +140,11 @@ double vertex_share(const Scene& scene, const EditLayer& layer) {
 }
 
 }  // namespace
+
+const SettingTable<PartOptions>& part_settings() {
+  static const SettingTable<PartOptions> table = make_settings();
+  return table;
+}
 
 PartResult select_part(const Device& device, const Scene& scene, const PartRequest& r, Progress& progress) {
   if (!scene.handlers || scene.handlers->positions.empty())

@@ -9,10 +9,12 @@
 #include <vector>
 
 #include "core/base/progress.h"
+#include "core/base/settings.h"
 #include "core/compute/device.h"
 #include "core/image/image.h"
 #include "core/math/camera.h"
 #include "engine/edit/part_scribble.h"
+#include "engine/segment/point_graph.h"
 #include "engine/segment/prompts.h"
 #include "model/scene/scene.h"
 
@@ -23,6 +25,18 @@ struct PartCombination {
   enum class How { add, subtract, intersect } how = How::add;  // old + new, old - new, old and new
   std::string part;
 };
+
+// Differences from which two points are not of one material.
+struct LikeLimits {
+  float roughness = 0.1f, metalness = 0.25f;
+  float color = 0.12f;  // distance in sRGB
+};
+
+struct PartOptions {
+  GraphOptions graph;  // on which parts grow and their borders are placed
+  LikeLimits like;
+};
+const SettingTable<PartOptions>& part_settings();
 
 // Selection of a part by its material.
 struct PartLikeness {
@@ -49,6 +63,7 @@ struct PartRequest {
   MaterialChange change;       // its blend is also that of the color
   std::optional<Vec3f> color;  // linear
   bool keep_texture = false;   // scale the present texture to the color instead of replacing it
+  PartOptions options{};
 };
 
 struct PartReport {

@@ -82,8 +82,8 @@ class FieldDeform : public testing::Test {
   static DeformRequest drag(DeformedGeometry geometry) {
     DeformRequest r{"0001-deform", {{{0, 0, kRadius}, {0, 0, kRadius + 0.15f}}}, 0.5f, ""};
     r.geometry = geometry;
-    r.refit.steps = 250;
-    r.refit.table_rate = 1e-2f;  // a small field has to change more
+    r.options.refit.steps = 250;
+    r.options.refit.table_rate = 1e-2f;  // a small field has to change more
     return r;
   }
   static DeformResult deformed(const DeformRequest& r) {
@@ -160,7 +160,7 @@ TEST_F(FieldDeform, SurfaceOutsideTheRadiusStays) {
 // As printed, the loss compares with distances that are positive on both sides.
 TEST_F(FieldDeform, UnsignedDistancesLeaveNoInside) {
   DeformRequest r = drag(DeformedGeometry::field);
-  r.refit.distance = SurfaceDistance::l1;
+  r.options.refit.distance = SurfaceDistance::l1;
   try {
     deformed(r);
     ADD_FAILURE() << "passed for a shape";

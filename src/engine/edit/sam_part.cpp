@@ -53,7 +53,7 @@ PropagateResult sam_part(const Device& device, const Scene& scene, const SamPart
   }
   for (size_t i = 0; i < request.certain.size(); ++i)
     if (request.certain[i] != Seed::none) seeds[i] = request.certain[i];
-  const PointGraph graph = point_graph(*scene.handlers, handler_colors(device, scene));
+  const PointGraph graph = point_graph(*scene.handlers, handler_colors(device, scene), request.graph);
   result.scores = random_walk(graph, seeds, result.scores);
   return result;
 }

@@ -18,6 +18,7 @@ struct SamPartRequest {
   // the albedo, which have no shadows or highlights that look like borders.
   std::function<Image(int view)> image;
   std::vector<Seed> certain;  // #handlers, points that the user marked; empty: none
+  GraphOptions graph{};       // on which the border is placed
 };
 
 // Scores like those of grow() (#handlers, [0, 1], to be interpolated by ScoredPoints), and the views that

@@ -53,6 +53,43 @@ TEST(EvaluationSet, TablesHaveMeansOfSeedsThenOfCaptures) {
   EXPECT_EQ(j["captures"].size(), 3u);
 }
 
+EvaluationRow scored(const char* name, const char* what, double psnr) {
+  EvaluationRow r;
+  r.name = name;
+  r.what = what;
+  r.scores.psnr = psnr;
+  r.scores.ssim = 0.5;
+  r.scores.edit = EditScore{};
+  r.scores.edit->rest = RestScore{psnr + 10, 0.9, {}, {}, 10, 1};
+  r.seconds = 4;
+  return r;
+}
+
+// What one capture lacks, or what was skipped there, is left out of the means.
+TEST(EvaluationSet, TablesOfApplicationsAndOfFewerAndSmallerPhotographs) {
+  EvaluationReport cow = report_of(30, 44), pot = report_of(20, 30);
+  cow.applications = {scored("light", "the light turned", 30), scored("drag", "a drag", 20)};
+  pot.applications = {scored("light", "the light turned", 20), {"drag", "a drag", "no surface", 0, {}, {}}};
+  cow.views = {scored("views-50", "50 views", 29), scored("views-12", "12 views", 21)};
+  pot.views = {{"views-50", "50 views", "the capture has 20", 0, {}, {}}, scored("views-12", "12 views", 11)};
+  cow.sizes = {scored("size-2", "1/2 of the size", 25)};
+  EvaluationSetReport set;
+  set.captures = {{"cow", "", {cow}}, {"pot", "", {pot}}};
+  const std::string text = set.markdown();
+  EXPECT_THAT(text, HasSubstr("## Another edit: the light turned\n"));
+  EXPECT_THAT(text, HasSubstr("| **mean** | 35.00 |"));  // of 40 and 30
+  EXPECT_THAT(text, HasSubstr("## Another edit: a drag\n"));
+  EXPECT_THAT(text, HasSubstr("## Fewer photographs: PSNR on white\n\n| capture | 50 views | 12 views |\n"));
+  EXPECT_THAT(text, HasSubstr("| [cow](cow/) | 29.00 | 21.00 |\n| [pot](pot/) | - | 11.00 |\n"));
+  EXPECT_THAT(text, HasSubstr("| **mean** | 29.00 | 16.00 |"));
+  EXPECT_THAT(text, HasSubstr("## Smaller photographs: SSIM\n\n| capture | 1/2 of the size |\n"));
+  const Json means = set.json()["means"];
+  EXPECT_EQ(means["applications"]["light"]["rest_psnr"], 35);
+  EXPECT_EQ(means["applications"]["drag"]["rest_psnr"], 30);
+  EXPECT_EQ(means["fewer_views"]["views-12"]["psnr"], 16);
+  EXPECT_EQ(means["sizes"]["size-2"]["psnr"], 25);
+}
+
 class OwnEditsTest : public ::testing::Test {
  protected:
   void SetUp() override {

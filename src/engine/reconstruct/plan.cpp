@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/math/scalar.h"
 
@@ -41,7 +42,8 @@ constexpr double kFullEffortShare = 0.36;   // the appearance stage at full effo
 constexpr double kRefinementsShare = 0.1;
 constexpr double kJointShare = 0.1;
 constexpr double kFinerMeshShare = 1.0 / 40;
-constexpr double kResidualShare = 0.1;           // training of the correction network
+constexpr double kCoupledShare = 0.3;   // of the network of a coupled color, in place of all that is left out
+constexpr double kResidualShare = 0.1;  // training of the correction network
 constexpr double kResidualShadingShare = 0.018;  // shading of the pixels of the correction network
 constexpr double kTrialsShare = 0.25;  // comparison of start shapes, as a share of the geometry stage
 
@@ -206,6 +208,24 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, b
   return p;
 }
 
+// A plan without light and material; t: 0: by steps.
+Plan without_light(Plan p, double t, const Preset& preset, size_t pixels, const Costs& c) {
+  p.color = ColorChoice::coupled;
+  p.polish_rounds = p.refinements = p.joint_steps = 0;
+  p.look = p.polish = p.appearance = p.refinement = p.joint = 0;
+  p.residual_steps = std::max(1, t > 0 ? preset.residual_steps : p.residual_steps);
+  if (t <= 0) return p;
+  p.residual_hits = std::min(preset.max_residual_hits, pixels);
+  p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
+  p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
+  p.residual = kCoupledShare * t;
+  p.reserve = std::min(p.reserve, (1 - kMinGeometryShare - kCoupledShare - kFinerMeshShare) * t);
+  p.geometry = t - rest_of(p);
+  if (preset.start == StartChoice::trials)
+    p.trial_steps = affordable_trial_steps(kTrialsShare * p.geometry, preset.trial.steps, c);
+  return p;
+}
+
 }  // namespace
 
 Plan plan_of(const ReconstructOptions& options, const Preset& given, size_t pixels, const Rates& rates) {
@@ -213,10 +233,14 @@ Plan plan_of(const ReconstructOptions& options, const Preset& given, size_t pixe
   if (options.joint_steps >= 0) preset.joint_steps = options.joint_steps;
   const bool timed = options.seconds > 0 && options.iterations <= 0;
   const Costs costs = timed ? costs_of(rates, preset, pixels) : Costs{};
-  if (preset.stages == StageChoice::joint)
-    return joint_plan(options, preset, timed ? options.seconds : 0, costs);
-  return timed ? timed_plan(options.seconds, preset, pixels, costs, options.joint_steps > 0)
-               : untimed_plan(options, preset);
+  const double t = timed ? options.seconds : 0;
+  const bool coupled = preset.color == ColorChoice::coupled;
+  if (coupled && preset.stages == StageChoice::joint)
+    fail_usage("A coupled color has no light to descend on; it goes with the setting stages=all.");
+  if (preset.stages == StageChoice::joint) return joint_plan(options, preset, t, costs);
+  const Plan plan =
+      timed ? timed_plan(t, preset, pixels, costs, options.joint_steps > 0) : untimed_plan(options, preset);
+  return coupled ? without_light(plan, t, preset, pixels, costs) : plan;
 }
 
 Json to_json(const Plan& p) {

@@ -14,6 +14,8 @@ namespace cei3d {
 // decide.
 struct Plan {
   StageChoice stages = StageChoice::all;
+  // Coupled: no polishing, appearance, refinements and joint descent; the correction network is the color.
+  ColorChoice color = ColorChoice::disentangled;
   int trial_steps = 0;    // of each training that tries one of three start shapes; 0: the visual hull
   double geometry = 0;    // s, the comparison of starts included
   int iterations = 0;     // steps of the geometry stage where `geometry` is 0
@@ -35,6 +37,7 @@ struct Plan {
   double reserve = 0;            // s for the first surface and for reading and writing files
 };
 
+// Usage error: a choice of stages and of color that exclude each other.
 // pixels: number of training pixels. rates: of this machine; not read for a run by steps.
 Plan plan_of(const ReconstructOptions&, const Preset&, size_t pixels, const Rates& rates);
 Json to_json(const Plan&);

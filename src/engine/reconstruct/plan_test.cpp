@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "core/base/error.h"
 #include "engine/reconstruct/test_rates.h"
 
 namespace cei3d {
@@ -98,6 +99,26 @@ TEST(Plan, ByStepsKnowsNoClock) {
   EXPECT_EQ(sum_of(p), 0);
   EXPECT_EQ(p.polish_steps, 300);
   EXPECT_EQ(p.residual_steps, 1000);
+}
+
+TEST(Plan, OfACoupledColorHasNoLight) {
+  Preset preset = preset_by_name("fast");
+  preset.color = ColorChoice::coupled;
+  fit_to_footprint(preset, 0.004);
+  for (const double seconds : {0.0, 30.0, 180.0, 900.0}) {
+    ReconstructOptions options;
+    options.seconds = seconds;
+    const Plan p = plan_of(options, preset, 3000000, kTestRates);
+    EXPECT_EQ(p.color, ColorChoice::coupled);
+    EXPECT_EQ(p.polish_rounds + p.refinements + p.joint_steps, 0);
+    EXPECT_EQ(p.appearance, 0);
+    EXPECT_GT(p.residual_steps, 0);
+    EXPECT_GT(p.residual_hits, 0u);
+    EXPECT_NEAR(sum_of(p), seconds, 1e-9 * seconds);
+    EXPECT_GE(p.geometry, 0.35 * seconds * (1 - 1e-9));
+  }
+  preset.stages = StageChoice::joint;
+  EXPECT_THROW(plan_of({}, preset, 3000000, kTestRates), Error);
 }
 
 TEST(Plan, OfTheJointDescentAloneGivesItTheTime) {

@@ -237,6 +237,11 @@ void add_beginning(const Group<Preset>& g) {
               "What is trained: the surface, then light and material; or all of them by the joint descent "
               "alone, from a sphere",
               "[paper eq. 16]")
+      .choice("color", &Preset::color,
+              {{ColorChoice::disentangled, "disentangled"}, {ColorChoice::coupled, "coupled"}},
+              "What the object's color is made of: light, albedo and material; or, for comparison, a network "
+              "over position and direction alone",
+              "[paper sec. 5]")
       .add("start_radius", &Preset::start_radius, {0.05, 0.95}, "object radii",
            "Radius of the sphere where `start` is sphere");
 }

@@ -20,9 +20,14 @@ enum class StartChoice { trials, hull, sphere };
 // the joint descent alone, from start values (engine/reconstruct/joint/start_values.h).
 enum class StageChoice { all, joint };
 
+// What the object's color is made of: light, albedo and material; or, for comparison, a network over position
+// and direction alone.
+enum class ColorChoice { disentangled, coupled };
+
 struct Preset {
   StartChoice start = StartChoice::trials;
   StageChoice stages = StageChoice::all;
+  ColorChoice color = ColorChoice::disentangled;
   float start_radius = 0.5f;  // of the sphere
   GeometryOptions geometry;
   TrialOptions trial;  // with the networks of "fast" in all presets

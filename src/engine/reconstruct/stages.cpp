@@ -7,6 +7,7 @@
 #include "core/base/json.h"
 #include "engine/reconstruct/appearance/find_light_frame.h"
 #include "engine/reconstruct/appearance/residual_fit.h"
+#include "engine/reconstruct/coupled_stages.h"
 #include "engine/reconstruct/geometry/silhouette_level.h"
 #include "engine/reconstruct/geometry_training.h"
 #include "engine/reconstruct/joint/joint_run.h"
@@ -295,6 +296,11 @@ std::vector<Stage> stages_of(const Plan& plan) {
                         polish(run, state, round, checkpoint);
                       }});
   stages.push_back({"surface", budget.surface, make_surface});
+  if (plan.color == ColorChoice::coupled) {
+    for (Stage& s : coupled_stages(plan, budget.finer_mesh, budget.residual, make_finer_mesh))
+      stages.push_back(std::move(s));
+    return stages;
+  }
   stages.push_back({"light", kLightShare * budget.appearance, estimate_light});
   stages.push_back({"appearance", (1 - kLightShare) * budget.appearance, estimate_appearance});
   for (int k = 1; k <= plan.refinements; ++k)

@@ -91,8 +91,8 @@ std::vector<Seed> stroke_seeds(const HandlerPoints& points, std::span<const Surf
 }
 
 std::vector<float> grow(const HandlerPoints& points, std::span<const Vec3f> albedo,
-                        std::span<const Seed> seeds) {
-  const PointGraph graph = point_graph(points, albedo);
+                        std::span<const Seed> seeds, const GraphOptions& options) {
+  const PointGraph graph = point_graph(points, albedo, options);
   const std::vector<uint8_t> side = compete(graph, seeds);
   return random_walk(graph, seeds, std::vector<float>(side.begin(), side.end()));
 }

@@ -24,6 +24,7 @@ std::vector<Seed> stroke_seeds(const HandlerPoints&, std::span<const SurfacePoin
 
 // Score of each handler point, [0, 1], to be interpolated by ScoredPoints. albedo: #N linear albedo.
 // Time: about n log n in the points; 200 000 take some seconds on one core.
-std::vector<float> grow(const HandlerPoints&, std::span<const Vec3f> albedo, std::span<const Seed> seeds);
+std::vector<float> grow(const HandlerPoints&, std::span<const Vec3f> albedo, std::span<const Seed> seeds,
+                        const GraphOptions& = {});
 
 }  // namespace cei3d

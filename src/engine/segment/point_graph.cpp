@@ -17,7 +17,8 @@ float concavity(Vec3f p, Vec3f normal_p, Vec3f q, Vec3f normal_q) {
 
 }  // namespace
 
-PointGraph point_graph(const HandlerPoints& points, std::span<const Vec3f> albedo) {
+PointGraph point_graph(const HandlerPoints& points, std::span<const Vec3f> albedo,
+                       const GraphOptions& options) {
   const int n = int(points.positions.size());
   PointGraph graph;
   graph.colors.resize(n);
@@ -27,7 +28,7 @@ PointGraph point_graph(const HandlerPoints& points, std::span<const Vec3f> albed
   parallel_ranges(n, 1024, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       graph.colors[i] = oklab_from_linear(albedo[i]);
-      graph.colors[i].x *= kLightness;
+      graph.colors[i].x *= options.lightness;
     }
   });
   parallel_ranges(n, 1024, [&](int begin, int end) {
@@ -36,7 +37,7 @@ PointGraph point_graph(const HandlerPoints& points, std::span<const Vec3f> albed
       index.any_within(p, reach, [&](size_t k) {
         if (int(k) <= i || dot(points.normals[k], normal) <= 0) return false;
         const float color = length(graph.colors[k] - graph.colors[i]);
-        const float crease = kCreaseStep * concavity(p, normal, points.positions[k], points.normals[k]);
+        const float crease = options.crease * concavity(p, normal, points.positions[k], points.normals[k]);
         of[i].push_back(
             {uint32_t(i), uint32_t(k), length(points.positions[k] - p) / points.spacing, color, crease});
         return false;

@@ -164,6 +164,28 @@ TEST(PointGraph, JoinsNeighborsOnOneSide) {
     }
 }
 
+TEST(PointGraph, OptionsWeighLightnessAndCreases) {
+  const Vec3f centers[] = {{0, 0, 0}, {0.6f, 0, 0}};  // they meet in a crease
+  const HandlerPoints points = spheres(centers, [](Vec3f) { return kWhite; }).points;
+  std::vector<Vec3f> grays;
+  for (const Vec3f p : points.positions) grays.push_back(Vec3f{1, 1, 1} * (p.y > 0 ? 0.6f : 0.1f));
+  const PointGraph usual = point_graph(points, grays), twice = point_graph(points, grays, {0.8f, 0.06f}),
+                   none = point_graph(points, grays, {0, 0});
+  ASSERT_EQ(usual.edges.size(), twice.edges.size());
+  float color = 0, crease = 0;
+  for (size_t i = 0; i < usual.edges.size(); ++i) {
+    const GraphEdge &a = usual.edges[i], &b = twice.edges[i], &c = none.edges[i];
+    EXPECT_NEAR(b.color, 2 * a.color, 1e-5f);
+    EXPECT_NEAR(b.crease, 2 * a.crease, 1e-5f);
+    EXPECT_NEAR(c.color, 0, 1e-5f);  // grays have no hue
+    EXPECT_EQ(c.crease, 0);
+    color = max(color, a.color);
+    crease = max(crease, a.crease);
+  }
+  EXPECT_GT(color, 0.1f);
+  EXPECT_GT(crease, 0.01f);
+}
+
 // On a path of equal steps the probability is linear between the seeds.
 TEST(RandomWalk, IsHarmonicBetweenSeeds) {
   constexpr int n = 41;

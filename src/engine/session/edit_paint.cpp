@@ -90,11 +90,7 @@ EditOutcome make(const EditContext& context, const EditJob& job) {
   request.erase = params.optional("erase", false);
   request.routing = routing_of(params);
   request.theta = params.optional("theta", 0.0f) * float(context.scene.normalization.scale);
-  if (params.has("set")) {
-    check_settings(branch_settings().infos(), params.member("set"));
-    branch_settings().put(params.member("set"), request.branch);
-    request.learn_one_color = true;
-  }
+  request.learn_one_color = settings_from(params, branch_settings(), request.branch);
   const Effects effects = effects_from_params(params);
   request.material = effects.change;
   request.color = effects.color;

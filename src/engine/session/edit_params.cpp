@@ -135,4 +135,16 @@ void put_effects(const MaterialEffects& effects, Json& params) {
   if (effects.replace) params["replace"] = true;
 }
 
+void put_settings(std::span<const SettingInfo> known, const std::vector<std::string>& written, Json& params) {
+  if (written.empty()) return;
+  params["set"] = Json::object();
+  for (const std::string& w : written) add_setting(known, w, params["set"]);
+}
+
+void refuse_settings(const Json& params, const std::string& prefix, const std::string& needs) {
+  if (!params.contains("set")) return;
+  for (const auto& [key, value] : params.at("set").items())
+    if (key.starts_with(prefix)) fail_usage("The setting {} has no effect here: {}.", key, needs);
+}
+
 }  // namespace cei3d

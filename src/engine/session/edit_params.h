@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/base/json_reader.h"
+#include "core/base/settings.h"
 #include "core/math/camera.h"
 #include "core/math/vec.h"
 #include "engine/session/requests.h"
@@ -36,5 +37,19 @@ struct EditPlace : View {  // of an own camera, the name is for messages
 EditPlace place_from(const Capture&, JsonReader& params);
 // Writes the key. Usage errors: neither or both, an unknown view.
 void put_place(const Capture&, const std::string& view, const std::optional<Camera>&, Json& params);
+
+// Key "set": numbers and choices of how the edit is made. written: "key=value", as users write them; none: no
+// key. Usage errors: those of add_setting().
+void put_settings(std::span<const SettingInfo> known, const std::vector<std::string>& written, Json& params);
+// Usage error: "set" has a key that begins so, which nothing would read. needs: what is missing.
+void refuse_settings(const Json& params, const std::string& prefix, const std::string& needs);
+// Whether there are any. Usage errors: those of check_settings().
+template <class Target>
+bool settings_from(JsonReader& params, const SettingTable<Target>& table, Target& target) {
+  if (!params.has("set")) return false;
+  check_settings(table.infos(), params.member("set"));
+  table.put(params.member("set"), target);
+  return true;
+}
 
 }  // namespace cei3d

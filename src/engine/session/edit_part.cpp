@@ -112,6 +112,7 @@ std::vector<float> scores_by_network(const EditContext& context, const NetworkVi
     request.views.cameras.push_back(scene.normalization.unit_from_capture(v.camera));
   }
   request.views.plan = network.plan;
+  request.graph = r.options.graph;
   request.views.mask = r.mask;
   request.views.clicks = network_prompts(context.device, scene, r);
   if (r.scribble || !r.mask.empty()) request.certain = part_seeds(context.device, scene, r);
@@ -143,6 +144,7 @@ PartRequest request_of(const EditContext& context, const EditJob& job) {
     };
   r.like = likeness_from(params);
   r.in_view = params.optional("in_view", false);
+  settings_from(params, part_settings(), r.options);
   r.combination = combination_from(params);
   params.finish();
   r.change = effects.change;

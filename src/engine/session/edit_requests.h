@@ -96,6 +96,7 @@ struct DeformCommand {
   std::vector<Vec3d> pins{};        // points of the surface around which nothing moves, capture frame
   std::string geometry = "mesh";    // "mesh", or "field": the moved surface gets a distance field of its own
   std::string distance = "signed";  // what that field is fitted to: "signed" distances or "l1", the paper's
+  std::vector<std::string> set{};   // "key=value" of deform_settings() (engine/edit/deform.h)
 };
 // How the segmentation network sees the object.
 struct NetworkViews {
@@ -123,6 +124,7 @@ struct PartCommand {
   std::string add, subtract, intersect;  // name of a part to combine with; at most one
   MaterialEffects effects;
   std::optional<Camera> camera = {};  // instead of a view, capture frame
+  std::vector<std::string> set{};     // "key=value" of part_settings() (engine/edit/part.h)
 };
 struct RemoveCommand {
   std::string part;

@@ -5,6 +5,7 @@
 #include "engine/edit/deform.h"
 #include "engine/edit/remove.h"
 #include "engine/session/edit_ops.h"
+#include "engine/session/edit_params.h"
 #include "model/geometry/shape/vec_json.h"
 
 namespace cei3d {
@@ -23,7 +24,7 @@ void read_geometry(JsonReader& params, DeformRequest& request) {
   if (geometry != "mesh" && geometry != "field") fail_usage("unknown geometry '{}': mesh or field", geometry);
   if (distance != "signed" && distance != "l1") fail_usage("unknown distance '{}': signed or l1", distance);
   if (geometry == "field") request.geometry = DeformedGeometry::field;
-  if (distance == "l1") request.refit.distance = SurfaceDistance::l1;
+  if (distance == "l1") request.options.refit.distance = SurfaceDistance::l1;
 }
 
 EditOutcome make_deform(const EditContext& context, const EditJob& job) {
@@ -45,6 +46,7 @@ EditOutcome make_deform(const EditContext& context, const EditJob& job) {
       request.pins.push_back(to_float(n.unit_from_capture(vector_from(reader, "pin"))));
     }
   read_geometry(params, request);
+  settings_from(params, deform_settings(), request.options);
   if (const auto radius = params.optional<double>("radius")) request.radius = float(*radius * n.scale);
   request.part = params.optional<std::string>("part", "");
   params.finish();

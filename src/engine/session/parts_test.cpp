@@ -119,6 +119,29 @@ TEST_F(PartsTest, APartLikeAnEditedOneIsRemadeWithThatEdit) {
   EXPECT_THAT(error_of([&] { session_.toggle("0001-part", quiet_); }).what(), HasSubstr("one material"));
 }
 
+TEST_F(PartsTest, SettingsAreStoredAndWrongOnesRefused) {
+  PartCommand metal = columns(24, 40);
+  metal.effects.preset = "copper";
+  metal.set = {"graph.lightness=1"};
+  session_.select_part(metal, quiet_);
+  EXPECT_EQ(session_.log().back().params.at("set"), Json({{"graph.lightness", 1.0}}));
+  PartCommand like;
+  like.view = "r_0";
+  like.like = {32, 32};
+  const auto refusal = [&](std::vector<std::string> set) {
+    like.set = std::move(set);
+    return std::string(error_of([&] { session_.select_part(like, quiet_); }).what());
+  };
+  // Limits that copper and the rest keep make them one material.
+  EXPECT_THAT(refusal({"like.roughness=1", "like.metalness=1"}), HasSubstr("one material"));
+  EXPECT_THAT(refusal({"like.metal=1"}), HasSubstr("'like.metalness'"));
+  EXPECT_THAT(refusal({"like.metalness=0"}), HasSubstr("0.0001 to 1"));
+  EXPECT_THAT(refusal({"graph.crease=1"}), HasSubstr("not grown"));
+  metal.set = {"like.color=1"};
+  EXPECT_THAT(error_of([&] { session_.select_part(metal, quiet_); }).what(), HasSubstr("'like'"));
+  EXPECT_EQ(session_.log().size(), 1u);
+}
+
 TEST_F(PartsTest, WrongCommandsChangeNothing) {
   const auto code = [&](const PartCommand& c) {
     return error_of([&] { session_.select_part(c, quiet_); }).code();

@@ -54,20 +54,22 @@ struct ReconstructRequest {
   bool strict = false;  // refuse a capture of which images are missing
   ShowPicture show{};
 };
-// The settings of a preset, for --list-settings.
+// The settings of a preset or of a kind of edit, for --list-settings.
 struct SettingsReport {
   struct Line {
     SettingInfo info;
     Json value;
     bool fitted = false;  // chosen by the size of a pixel on the object, unless it is set
   };
-  std::string preset;
+  std::string kind, name;  // "preset" "fast"; "edit" "paint"
   std::vector<Line> settings;
   Json json() const;
   std::string text() const;
 };
 // Usage error: no such preset.
 SettingsReport settings_of_preset(const std::string& preset);
+// edit: "paint", "part" or "deform"; the others have none.
+SettingsReport settings_of_edit(const std::string& edit);
 // Usage errors: those of add_setting().
 Json settings_from_text(const std::vector<std::string>& written);
 

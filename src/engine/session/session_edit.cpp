@@ -180,10 +180,7 @@ EditPlan Session::plan(const PaintCommand& command) const {
     params["target"] = paint_target_name(command.target);
   if (command.routing != Routing::both) params["routing"] = routing_name(command.routing);
   if (command.theta > 0) params["theta"] = command.theta;
-  if (!command.set.empty()) {
-    params["set"] = Json::object();
-    for (const std::string& s : command.set) add_setting(branch_settings().infos(), s, params["set"]);
-  }
+  put_settings(branch_settings().infos(), command.set, params);
   put_effects(command.material, params);
   return {"paint", std::move(params), std::move(inputs)};
 }

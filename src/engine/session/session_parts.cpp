@@ -10,6 +10,7 @@
 #include "core/base/parallel.h"
 #include "core/compute/device.h"
 #include "engine/capture/undistort.h"
+#include "engine/edit/part.h"
 #include "engine/io/image_file.h"
 #include "engine/project/project.h"
 #include "engine/render/render.h"
@@ -122,6 +123,9 @@ EditPlan Session::plan(const PartCommand& command) const {
   }
   put_scribble(command, params, inputs);
   if (command.segmenter == "sam") put_network(command.network, params);
+  put_settings(part_settings().infos(), command.set, params);
+  if (command.like) refuse_settings(params, "graph.", "surface of the same material is not grown");
+  if (!command.like) refuse_settings(params, "like.", "it goes with 'like'");
   put_effects(command.effects, params);
   return {"part", std::move(params), std::move(inputs)};
 }

@@ -4,6 +4,7 @@
 #include "core/base/parallel.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/undistort.h"
+#include "engine/edit/deform.h"
 #include "engine/project/project.h"
 #include "engine/render/render.h"
 #include "engine/session/edit_params.h"
@@ -59,6 +60,8 @@ EditPlan Session::plan(const DeformCommand& command) const {
     params["geometry"] = command.geometry;
     params["distance"] = command.distance;
   }
+  put_settings(deform_settings().infos(), command.set, params);
+  if (command.geometry != "field") refuse_settings(params, "refit.", "it goes with geometry field");
   if (command.radius) params["radius"] = *command.radius;
   if (!command.part.empty()) params["part"] = command.part;
   return {"deform", std::move(params), {}};

@@ -1,17 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "engine/edit/albedo_branch.h"
+#include "engine/edit/deform.h"
+#include "engine/edit/part.h"
 #include "engine/reconstruct/preset_settings.h"
 #include "engine/session/requests.h"
 
 namespace cei3d {
+namespace {
+
+template <class Target>
+std::vector<SettingsReport::Line> lines_of(const SettingTable<Target>& table, const Target& target) {
+  std::vector<SettingsReport::Line> lines;
+  for (size_t i = 0; i < table.infos().size(); ++i) lines.push_back({table.infos()[i], table.get(i, target)});
+  return lines;
+}
+
+}  // namespace
 
 SettingsReport settings_of_preset(const std::string& name) {
-  const SettingTable<Preset>& table = preset_settings();
   const Preset preset = preset_by_name(name);
-  SettingsReport r{name, {}};
-  for (size_t i = 0; i < table.infos().size(); ++i)
-    r.settings.push_back({table.infos()[i], table.get(i, preset), is_fitted(preset, table.infos()[i].key)});
+  SettingsReport r{"preset", name, lines_of(preset_settings(), preset)};
+  for (SettingsReport::Line& l : r.settings) l.fitted = is_fitted(preset, l.info.key);
+  return r;
+}
+
+SettingsReport settings_of_edit(const std::string& edit) {
+  SettingsReport r{"edit", edit, {}};
+  if (edit == "paint") r.settings = lines_of(branch_settings(), BranchOptions());
+  if (edit == "part") r.settings = lines_of(part_settings(), PartOptions());
+  if (edit == "deform") r.settings = lines_of(deform_settings(), DeformOptions());
   return r;
 }
 
@@ -30,7 +49,7 @@ Json SettingsReport::json() const {
     if (l.fitted) j["fitted_to_pixels"] = true;
     list.push_back(std::move(j));
   }
-  return {{"preset", preset}, {"settings", list}};
+  return {{kind, name}, {"settings", list}};
 }
 
 std::string SettingsReport::text() const {

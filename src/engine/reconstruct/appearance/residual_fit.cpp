@@ -35,7 +35,8 @@ class Trainer {
         samples_(samples),
         seed_(options.seed),
         warm_up_(kWarmUp * options.steps),
-        radiance_(radiance_of(device, scene, samples, progress)),
+        radiance_(options.alone ? std::vector<Vec3f>(samples.hits.size(), Vec3f{0, 0, 0})
+                                : radiance_of(device, scene, samples, progress)),
         features_(std::make_shared<Field>(*scene.sdf)),
         features_learn_(features_->config().encoding.levels > 0),
         residual_(make_residual(features_learn_ ? features_ : scene.sdf, options.seed)),
@@ -171,6 +172,11 @@ ResidualFit fit_residual(const Device& device, const Scene& scene, const Surface
   const double start = options.clock();
   progress.report({"residual", 0, -1, ""});
   Trainer trainer(device, scene, samples, views, options, progress);
+  if (options.alone) {
+    trainer.teach_all();
+    train(trainer, std::max(1, options.steps), options.seconds, options.clock, progress);
+    return {trainer.take(), {}};
+  }
   if (!trainer.can_judge()) return {};
   const double shading = options.clock() - start;
   const double seconds = options.seconds > 0 ? std::max(options.seconds - shading, 0.5 * options.seconds) : 0;

@@ -25,6 +25,8 @@ struct ResidualOptions {
   float table_rate = 1e-2f;    // of the hash tables of the features
   float feature_rate = 3e-3f;  // of the layers of the features
   uint64_t seed = 1;
+  // The network is all that the object shows: it is trained on the colors themselves, by all views, and kept.
+  bool alone = false;
 };
 
 // Result of the fit. During the first fifth of the training every eighth view is held back: if its pixels do

@@ -96,6 +96,28 @@ TEST_F(ResidualTest, LearnsWhatThePhysicalModelLeavesAndHoldsInOtherViews) {
   EXPECT_LT(std::sqrt(error / all), 0.2);
 }
 
+// Without light and material the network is all of the color.
+TEST_F(ResidualTest, AloneLearnsTheColorsThemselves) {
+  Photographed lit(device, without());
+  for (size_t i = 0; i < lit.hits.size(); ++i) lit.colors[i] = Vec3f{0.1f, 0.1f, 0.1f} + glow(lit.hits[i]);
+  Progress quiet;
+  ResidualOptions options;
+  options.steps = 250;
+  options.alone = true;
+  const ResidualFit fit =
+      fit_residual(device, without(), {lit.hits, lit.colors, {}, {}}, lit.views, options, quiet);
+  EXPECT_FALSE(fit.explained);  // nothing else explains anything
+  const std::vector<Hit> hits = seen_from(device, scene, {2.2, 2.0, 0.3});
+  const std::vector<Vec3f> got = residual_at(device, *fit.residual, hits);
+  double error = 0, all = 0;
+  for (size_t i = 0; i < hits.size(); ++i) {
+    const Vec3f want = Vec3f{0.1f, 0.1f, 0.1f} + glow(hits[i]);
+    error += dot(got[i] - want, got[i] - want);
+    all += dot(want, want);
+  }
+  EXPECT_LT(std::sqrt(error / all), 0.2);
+}
+
 TEST_F(ResidualTest, IsNotKeptWhereViewsThatItHasNotSeenGainNothing) {
   Photographed noisy(device, without());
   for (size_t i = 0; i < noisy.hits.size(); ++i) {
