@@ -105,7 +105,8 @@ class Session {
   Image part_picture(const Camera&, const std::string& part, const EditPreview* preview = nullptr);
   std::vector<View> views() const;  // of the capture
   // The object as a page draws it: packs of engine/view by kind, "shape", "coarse", "look", "vertex_light",
-  // "light" or "tables". view_keys(): a key for each kind, which changes when the pack does.
+  // "light" or "tables". view_keys(): a key for each of these, which changes when the pack does. "sun" is what
+  // a sun of a LightChoice adds to any light.
   std::string view_pack(const std::string& kind, const EditPreview* on_top = nullptr);
   Json view_keys() const;
   // The photograph of a view on white, sRGB, 3 channels, at 1/n of its size so that it is at least `width`
