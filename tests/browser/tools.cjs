@@ -148,7 +148,13 @@ async function bends(page) {
   check('a click on a handle selects it', (await points()) === 3 && (await page.locator('#bend-turn').count()) === 1);
   await put(page, '#bend-turn', 25);
   await drag(page, [at.x - 50, at.y], [at.x - 70, at.y - 25]);
+  check('the page bends the object while the handle moves', await page.evaluate(() => globalThis.cei3d.stage.isLive() && globalThis.cei3d.stage.live.pulled));
   await page.waitForFunction(() => globalThis.cei3d.stage.preview !== null, null, { timeout: 30000 });
+  await settled(page);
+  const bent = await likeness(page);
+  await page.evaluate(() => globalThis.cei3d.stage.live.letGo());
+  const before = await likeness(page);
+  check(`nearly as the program does: ${bent.toFixed(1)} dB, not bent ${before.toFixed(1)} dB`, bent > before + 2);
   await picture(page, '3-bend');
   await accessible(page, 'bending');
   await page.focus('#view');

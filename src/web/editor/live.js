@@ -4,6 +4,7 @@
 import { getBytes, postJson } from './api.js';
 import { partBall, partLooks } from './looks.js';
 import { Pace, steps } from './pace.js';
+import { Pull } from './pull.js';
 import { Sky } from './sun.js';
 
 /** @typedef {import('./light.js').Light} Light */
@@ -39,6 +40,9 @@ export class Live {
     this.sky = null;
     /** @type {{of: Pack[], sun: string}} the light that the renderer has */
     this.lit = { of: [], sun: '' };
+    /** @type {Pull | null} of the shape that was last pulled */
+    this.puller = null;
+    this.pulled = false;  // the renderer has a shape that is pulled by handles
     /** @type {Record<string, Pack>} those that say where the surface and parts are, by kind */
     this.surface = {};
     /** @type {Map<string, import('./looks.js').Look>} how parts look, by name */
@@ -64,6 +68,8 @@ export class Live {
     this.own = {};
     this.other = null;
     this.sky = null;
+    this.puller = null;
+    this.pulled = false;
     this.lit = { of: [], sun: '' };
     this.previewed = null;
     this.hidden.clear();
@@ -141,10 +147,39 @@ export class Live {
     if (kind === 'shape') {
       delete this.have[kCoarse];
       this.sky = null;
+      this.puller = null;
+      this.pulled = false;
       if (this.other) this.lookUnder(this.other.env);  // other light arrives at other vertices
     }
     this.have[kind] = key;
     this.underway.delete(kind);
+  }
+
+  /**
+   * Draws the surface as handles pull it, nearly, until another shape comes or it is let go.
+   * @param {import('./pull.js').Handle[]} handles @param {number} reach @param {string | null} part what alone may move @returns {boolean} whether it can
+   */
+  pull(handles, reach, part) {
+    const { shape, look } = this.surface;
+    if (!this.current()) return false;
+    if (this.puller?.shape !== shape) this.puller = new Pull(shape);
+    const index = look.head.parts.indexOf(part), { material } = look.arrays, may = part ? (/** @type {number} */ v) => material[4 * v + 3] === index : () => true;
+    const { positions, normals, min, size } = this.puller.moved(handles, reach, part ?? '', may);
+    this.place(positions, normals, { ...shape.head, min, size });
+    this.pulled = true;
+    return true;
+  }
+
+  letGo() {
+    const { shape } = this.surface;
+    if (this.pulled && shape) this.place(shape.arrays.positions, shape.arrays.normals, shape.head);
+    this.pulled = false;
+  }
+
+  /** @param {import('../pack.js').Numbers} positions @param {import('../pack.js').Numbers} normals @param {any} head */
+  place(positions, normals, head) {
+    this.renderer.setAttributes([[0, 'positions', positions, true], [1, 'normals', normals, true]]);
+    this.renderer.heads.set('shape', head);
   }
 
   /** Fetches what a sun adds to a light, once. */
@@ -212,7 +247,7 @@ export class Live {
   /** @param {string} channel @param {Light} light @param {string | null} preview @param {string | null} photo */
   shows(channel, light, preview, photo) {
     const still = photo === null || this.store.object?.material?.light?.motion === 'world';
-    return channel in kChannels && this.mapsOf(light) !== null && (!light.sun || this.sun !== null) && preview === this.previewed && still && this.current();
+    return channel in kChannels && this.mapsOf(light) !== null && (!light.sun || this.sun !== null) && (preview === this.previewed || this.pulled) && still && this.current();
   }
 
   /** @param {any} camera @param {string} channel @param {Light} light @param {import('./pace.js').Step} [step] */

@@ -2,6 +2,7 @@
 // @ts-check
 /** A sun in the light that the page draws under: added to the maps of the light, and to what arrives of it at each vertex. */
 import { dot } from './camera.js';
+import { fromOctahedron, onOctahedron } from './octahedron.js';
 
 /** @typedef {import('./camera.js').Vec} Vec */
 /** @typedef {import('../pack.js').Pack} Pack */
@@ -33,13 +34,6 @@ function unpacked(map) {
   return out;
 }
 
-/** @param {number} x @param {number} y on the octahedron @returns {Vec} unit */
-function fromOctahedron(x, y) {
-  const z = 1 - Math.abs(x) - Math.abs(y);
-  const [a, b] = z < 0 ? [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)] : [x, y], size = Math.hypot(a, b, z);
-  return [a / size, b / size, z / size];
-}
-
 /** Directions of the nodes of a map, row by row. @param {number} side */
 function nodes(side) {
   const out = new Float32Array(3 * side * side), at = (/** @type {number} */ i) => 2 * i / (side - 1) - 1;
@@ -49,8 +43,7 @@ function nodes(side) {
 
 /** The node of a map nearest to a direction. @param {number} side @param {number} x @param {number} y @param {number} z */
 function nodeAt(side, x, y, z) {
-  const sum = Math.abs(x) + Math.abs(y) + Math.abs(z), u = x / sum, v = y / sum;
-  const [a, b] = z < 0 ? [(1 - Math.abs(v)) * (u < 0 ? -1 : 1), (1 - Math.abs(u)) * (v < 0 ? -1 : 1)] : [u, v];
+  const [a, b] = onOctahedron(x, y, z);
   return Math.round((b * 0.5 + 0.5) * (side - 1)) * side + Math.round((a * 0.5 + 0.5) * (side - 1));
 }
 
