@@ -14,6 +14,7 @@
 //   POST /api/pick              {"camera", "pixel"}: the surface there, or null
 //   POST /api/decal             {"camera", "decal", "size"}: the camera whose picture the decal is, or null
 //   POST /api/mask              {"camera", "part" or "token"}: PNG
+//   POST /api/step              {"camera", "samples", "done"}: PNG of the object after so many edits
 //   POST /api/undo redo toggle goto rename restore forget
 //   POST /api/export            {"file", ...}; then GET /api/download/FILE
 //   POST /api/turntable         {"file", "turntable", ...}: its frames in a .zip; then the same
@@ -93,6 +94,7 @@ class Editor : public HttpApp, private JobListener {
   void pick(JsonReader&, const HttpRequest&, Reply);
   void decal(JsonReader&, const HttpRequest&, Reply);
   void mask(JsonReader&, const HttpRequest&, Reply);
+  void step(JsonReader&, const HttpRequest&, Reply);
   void undo(JsonReader&, const HttpRequest&, Reply);
   void redo(JsonReader&, const HttpRequest&, Reply);
   void toggle(JsonReader&, const HttpRequest&, Reply);

@@ -165,6 +165,18 @@ TEST_F(EditorTest, APreviewIsShownAndThenKeptOrNot) {
   EXPECT_EQ(post("/api/commit", {{"token", "preview999"}}).status, 400);
 }
 
+TEST_F(EditorTest, AStepOfTheHistoryHasAPicture) {
+  post("/api/edit", {{"op", "light"}, {"params", {{"scale", 0.25}}}});
+  const Json step = {{"camera", camera(0)}, {"done", 0}};
+  const HttpResponse first = post("/api/step", step, state()["revision"]);
+  ASSERT_EQ(first.type, "image/png") << first.body;
+  const auto middle = [&](const HttpResponse& r) { return decode_png(r.body, "step").at(24, 24)[0]; };
+  EXPECT_GT(middle(first), middle(post("/api/step", {{"camera", camera(0)}, {"done", 1}})));
+  EXPECT_EQ(state()["done"], 1);
+  EXPECT_EQ(post("/api/step", step, "another").status, 409);
+  EXPECT_EQ(post("/api/step", {{"camera", camera(0)}, {"done", 2}}).status, 400);
+}
+
 TEST_F(EditorTest, TellsWhatIsUnderThePointer) {
   const Json on = Json::parse(post("/api/pick", {{"camera", camera(0)}, {"pixel", {24, 24}}}).body);
   EXPECT_EQ(on["albedo"].get<std::string>().size(), 7u);

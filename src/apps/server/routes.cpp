@@ -32,16 +32,16 @@ bool is_number(const std::string& text) {
 
 const std::map<std::string, Editor::Route>& Editor::routes() {
   static const std::map<std::string, Route> all = {
-      {"edit", &Editor::edit},          {"preview", &Editor::preview},
-      {"commit", &Editor::commit},      {"pick", &Editor::pick},
-      {"mask", &Editor::mask},          {"undo", &Editor::undo},
-      {"redo", &Editor::redo},          {"toggle", &Editor::toggle},
-      {"goto", &Editor::go_to},         {"rename", &Editor::rename},
-      {"restore", &Editor::restore},    {"forget", &Editor::forget},
-      {"export", &Editor::export_file}, {"open", &Editor::open},
-      {"close", &Editor::close},        {"reconstruct", &Editor::reconstruct},
-      {"cancel", &Editor::cancel},      {"decal", &Editor::decal},
-      {"turntable", &Editor::turntable}};
+      {"edit", &Editor::edit},           {"preview", &Editor::preview},
+      {"commit", &Editor::commit},       {"pick", &Editor::pick},
+      {"mask", &Editor::mask},           {"undo", &Editor::undo},
+      {"redo", &Editor::redo},           {"toggle", &Editor::toggle},
+      {"goto", &Editor::go_to},          {"rename", &Editor::rename},
+      {"restore", &Editor::restore},     {"forget", &Editor::forget},
+      {"export", &Editor::export_file},  {"open", &Editor::open},
+      {"close", &Editor::close},         {"reconstruct", &Editor::reconstruct},
+      {"cancel", &Editor::cancel},       {"decal", &Editor::decal},
+      {"turntable", &Editor::turntable}, {"step", &Editor::step}};
   return all;
 }
 
@@ -149,6 +149,24 @@ void Editor::mask(JsonReader& j, const HttpRequest&, Reply reply) {
     const Image mask = session.part_picture(frame.camera, part, made.get());
     return HttpResponse{200, "image/png", encode_png(mask, 8)};
   });
+}
+
+void Editor::step(JsonReader& j, const HttpRequest& request, Reply reply) {
+  constexpr int kMaxSide = 512;  // it is computed at once
+  const FrameRequest frame = frame_request(j, uploads_);
+  const auto done = j.require<size_t>("done");
+  j.finish();
+  if (frame.camera.width > kMaxSide || frame.camera.height > kMaxSide)
+    fail_usage("A picture of a step has at most {} pixels a side.", kMaxSide);
+  worker_->background(
+      [this, reply = std::move(reply), frame, done, wanted = request.if_match](Session& session) {
+        reply(guarded_response([&] {
+          if (!wanted.empty() && wanted != state().value("revision", ""))
+            return error_response(409, "The history is another one by now.");
+          return HttpResponse{200, "image/png", encode_png(session.step_picture(frame, done), 8)};
+        }));
+        return false;
+      });
 }
 
 void Editor::undo(JsonReader& j, const HttpRequest& request, Reply reply) {
