@@ -130,8 +130,12 @@ class Editor : public HttpApp, private JobListener {
   void show_library();
   void show_making(const Image&);
   void publish(Session&);  // the present state, to everybody
-  void publish(Json state);
-  Json state() const;
+  // grows: members that grow with the history.
+  void publish(Json state, Json grows = Json::object());
+  Json state() const;              // without the members that grow
+  std::string state_text() const;  // JSON of the whole state
+  std::string revision() const;    // of the history; empty: nothing is open
+  void give_back_memory();         // at times, when nothing else is to do
   std::filesystem::path object_folder() const;
 
   // packs.cpp: what the page draws. The last pack of each kind is kept.
@@ -157,6 +161,7 @@ class Editor : public HttpApp, private JobListener {
   std::atomic<bool> read_only_ = false;
   mutable std::mutex mutex_;  // of the members below
   Json state_, object_;
+  std::string state_text_;
   std::string making_;  // PNG
   std::deque<std::pair<std::string, std::shared_ptr<const EditPreview>>> previews_;
   std::set<std::string> exports_;  // names of files that may be downloaded
@@ -167,7 +172,8 @@ class Editor : public HttpApp, private JobListener {
   std::deque<std::string> news_;                       // the last ones, in order
   std::map<std::string, KeptPack> packs_;              // by kind
   std::atomic<uint64_t> tokens_ = 0;
-  std::unique_ptr<Worker> worker_;  // last: it uses the others
+  std::atomic<uint64_t> memory_used_ = 0;  // changes and windows that left holes in it
+  std::unique_ptr<Worker> worker_;         // last: it uses the others
 };
 
 }  // namespace cei3d

@@ -20,9 +20,8 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-HttpResponse json_response(const Json& j) {
-  return {200, "application/json", j.dump(-1, ' ', false, Json::error_handler_t::replace)};
-}
+HttpResponse text_response(std::string json) { return {200, "application/json", std::move(json)}; }
+HttpResponse json_response(const Json& j) { return text_response(text_of(j)); }
 
 bool is_number(const std::string& text) {
   return !text.empty() && text.size() < 6 && text.find_first_not_of("0123456789") == std::string::npos;
@@ -46,7 +45,7 @@ const std::map<std::string, Editor::Route>& Editor::routes() {
 }
 
 void Editor::get(const HttpRequest& request, Reply reply) {
-  if (request.path == "/api/state") return reply(json_response(state()));
+  if (request.path == "/api/state") return reply(text_response(state_text()));
   if (request.path == "/api/object") {
     const std::lock_guard lock(mutex_);
     return reply(json_response(object_));
@@ -161,7 +160,7 @@ void Editor::step(JsonReader& j, const HttpRequest& request, Reply reply) {
   worker_->background(
       [this, reply = std::move(reply), frame, done, wanted = request.if_match](Session& session) {
         reply(guarded_response([&] {
-          if (!wanted.empty() && wanted != state().value("revision", ""))
+          if (!wanted.empty() && wanted != revision())
             return error_response(409, "The history is another one by now.");
           return HttpResponse{200, "image/png", encode_png(session.step_picture(frame, done), 8)};
         }));
@@ -295,13 +294,13 @@ void Editor::open(JsonReader& j, const HttpRequest&, Reply reply) {
   on_worker("open", std::move(reply), [this, id](Session& session, Progress&) {
     if (id == "sample" && sample_capture()) {
       open_path(session, *sample_capture());
-      return json_response(state());
+      return text_response(state_text());
     }
     for (const LibraryEntry& e : home_.empty() ? std::vector<LibraryEntry>() : entries_below(home_))
       if (e.name == id) {
         if (!e.problem.empty()) fail("{}", e.problem);  // the list stays, which says it, too
         open_path(session, e.path);
-        return json_response(state());
+        return text_response(state_text());
       }
     fail_usage("There is no '{}' here.", id);
   });
@@ -313,7 +312,7 @@ void Editor::close(JsonReader& j, const HttpRequest&, Reply reply) {
     if (home_.empty()) fail_usage("There is no folder to go back to.");
     session.close();
     show_library();
-    return json_response(state());
+    return text_response(state_text());
   });
 }
 

@@ -111,6 +111,7 @@ void Editor::received(const SocketPtr& socket, const std::string& text) {
     if (type != "hello" || !j.contains("token") || !j["token"].is_string() ||
         !guard_.knows(j["token"].get<std::string>()))
       return socket->close();
+    give_back_memory();
     return welcome(socket, j);
   }
   if (type == "rest") return worker_->drop_frame(tab.name);
@@ -165,7 +166,7 @@ void Editor::on_progress(const std::string& job, const ProgressReport& r) {
 void Editor::broadcast(Json message) {
   const std::lock_guard lock(mutex_);
   message["event"] = ++event_;
-  const std::string text = message.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = text_of(message);
   news_.push_back(text);
   if (news_.size() > options_.news_kept) news_.pop_front();
   for (const auto& [socket, tab] : tabs_)
