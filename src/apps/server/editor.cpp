@@ -73,6 +73,7 @@ void Editor::say_address(const std::string& address) {
 void Editor::stop() {
   worker_.reset();
   const std::lock_guard lock(mutex_);
+  held_packs_.clear();
   tabs_.clear();
 }
 

@@ -3,6 +3,7 @@
 //
 //   GET  /                      the page; its modules below /app/
 //   GET  /api/state             what is open: history, parts, findings, jobs
+//   GET  /api/start             {"state", "object"}: this and the next, for a page that begins
 //   GET  /api/object            what does not change while it is open: views, cameras, frame
 //   GET  /api/photo/VIEW?width= a photograph, JPEG
 //   GET  /api/making            the object that is being made, PNG
@@ -138,12 +139,14 @@ class Editor : public HttpApp, private JobListener {
   void give_back_memory();         // at times, when nothing else is to do
   std::filesystem::path object_folder() const;
 
-  // packs.cpp: what the page draws. The last pack of each kind is kept.
+  // packs.cpp: what the page draws. The last pack of each kind is kept. Those that an object needs at first
+  // wait for its first frame, where that is quick.
   struct KeptPack {
     std::string key;
     std::shared_ptr<const std::string> bytes;
   };
   void prepare_packs();  // in the background, before a page asks for them
+  void release_packs();  // that wait
   std::shared_ptr<const std::string> pack_of(Session&, const std::string& kind);
   std::shared_ptr<const std::string> kept_pack(const std::string& kind, const std::string& key) const;
 
@@ -171,6 +174,8 @@ class Editor : public HttpApp, private JobListener {
   uint64_t event_ = 0;                                 // number of the last of the news
   std::deque<std::string> news_;                       // the last ones, in order
   std::map<std::string, KeptPack> packs_;              // by kind
+  bool first_frame_ = false;                           // the object that is open has had no frame yet
+  std::vector<std::function<void()>> held_packs_;      // requests that wait for it
   std::atomic<uint64_t> tokens_ = 0;
   std::atomic<uint64_t> memory_used_ = 0;  // changes and windows that left holes in it
   std::unique_ptr<Worker> worker_;         // last: it uses the others

@@ -75,6 +75,7 @@ void Editor::open_path(Session& session, const fs::path& path) {
   }
   if (!home_.empty()) options_.project.clear();  // it belonged to what was open
   worker_->drop_frames();                        // they are of the object that was open
+  release_packs();
   if (!Project::is_project(path)) return open_capture(session, path);
   open_project(session, path);
 }
@@ -115,6 +116,11 @@ void Editor::open_project(Session& session, const fs::path& path) {
               {"note", note},
               {"can_close", !home_.empty()},
               {"program", kVersion}};
+  }
+  {
+    const bool quick = session.frame_is_quick();
+    const std::lock_guard lock(mutex_);
+    first_frame_ = quick;
   }
   publish(session);
   prepare_packs();

@@ -46,6 +46,10 @@ const std::map<std::string, Editor::Route>& Editor::routes() {
 
 void Editor::get(const HttpRequest& request, Reply reply) {
   if (request.path == "/api/state") return reply(text_response(state_text()));
+  if (request.path == "/api/start") {
+    const std::lock_guard lock(mutex_);
+    return reply(text_response("{\"state\":" + state_text_ + ",\"object\":" + text_of(object_) + "}"));
+  }
   if (request.path == "/api/object") {
     const std::lock_guard lock(mutex_);
     return reply(json_response(object_));

@@ -51,12 +51,13 @@ Json state_news(const Json& state) {
 class FrameJob {
  public:
   FrameJob(SocketPtr socket, FrameRequest request, std::shared_ptr<const EditPreview> preview, uint64_t seq,
-           bool packed)
+           bool packed, std::function<void()> ended)
       : socket_(std::move(socket)),
         request_(std::move(request)),
         preview_(std::move(preview)),
         seq_(seq),
-        packed_(packed) {}
+        packed_(packed),
+        ended_(std::move(ended)) {}
 
   bool step(Session& session) {
     try {
@@ -68,6 +69,7 @@ class FrameJob {
     } catch (const std::exception& e) {
       socket_->send(Json{{"type", "error"}, {"seq", seq_}, {"error", e.what()}}.dump());
     }
+    ended_();
     return false;
   }
 
@@ -77,6 +79,7 @@ class FrameJob {
   std::shared_ptr<const EditPreview> preview_;
   uint64_t seq_;
   bool packed_;
+  std::function<void()> ended_;
   std::shared_ptr<TiledFrame> frame_;
   double start_ = steady_seconds();
 };
@@ -148,8 +151,8 @@ void Editor::show_view(const SocketPtr& socket, const std::string& tab, const Js
   const auto token = reader.optional<std::string>("preview");
   const bool packed = reader.optional("packed", false);
   reader.finish();
-  auto job =
-      std::make_shared<FrameJob>(socket, std::move(request), token ? kept(*token) : nullptr, seq, packed);
+  auto job = std::make_shared<FrameJob>(socket, std::move(request), token ? kept(*token) : nullptr, seq,
+                                        packed, [this] { release_packs(); });
   worker_->frame(tab, [job](Session& session) { return job->step(session); });
 }
 

@@ -96,6 +96,7 @@ class Session {
   // A frame that is computed tile by tile; on_top: with this edit, too. It shows the object as it is now,
   // whatever is edited meanwhile, and must not outlive the open project.
   std::unique_ptr<TiledFrame> frame(const FrameRequest&, const EditPreview* on_top = nullptr);
+  bool frame_is_quick() const;  // no light has to be computed for it that takes seconds
   // The object after the first `done` edits of the history: RGBA, sRGB, straight alpha. Errors: there are not
   // so many; an edit would have to be remade.
   Image step_picture(const FrameRequest&, size_t done);

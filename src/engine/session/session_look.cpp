@@ -71,6 +71,10 @@ std::unique_ptr<TiledFrame> Session::frame(const FrameRequest& request, const Ed
   });
 }
 
+bool Session::frame_is_quick() const {
+  return threads_->run([&] { return frames_->light_is_stored(project().scene()); });
+}
+
 Image Session::step_picture(const FrameRequest& request, size_t done) {
   Stack stack = project().stack();
   stack.go_to(done);

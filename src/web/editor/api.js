@@ -81,7 +81,7 @@ async function unpacked(tile) {
   return { ...tile, pixels: new Uint8ClampedArray(await new Response(stream).arrayBuffer()) };
 }
 
-const kFar = 15;  // milliseconds there and back from which what is sent is packed
+export const kFar = 15;  // milliseconds there and back from which what is sent is packed
 
 /** The WebSocket; opens itself again after 1, 2, 4 seconds. */
 export class Line extends EventTarget {

@@ -5,6 +5,7 @@ import { getBytes, postJson } from './api.js';
 import { partBall, partLooks } from './looks.js';
 import { Pace, steps } from './pace.js';
 import { Pull } from './pull.js';
+import { onItsWay } from './start.js';
 import { Sky } from './sun.js';
 
 /** @typedef {import('./light.js').Light} Light */
@@ -126,7 +127,7 @@ export class Live {
   fetchPack(kind, key) {
     const before = this.underway.get(kind);
     if (before?.key === key) return before.bytes;
-    const bytes = getBytes(`/api/pack/${kind}?key=${key}${this.packed()}`);
+    const bytes = onItsWay(kind, key) ?? getBytes(`/api/pack/${kind}?key=${key}${this.packed()}`);
     bytes.catch(() => this.underway.delete(kind));  // refresh() awaits each, if those before it arrive
     this.underway.set(kind, { key, bytes });
     return bytes;
