@@ -18,7 +18,7 @@ export function packed(r, g, b) {
   bits.setFloat32(0, largest);
   let exponent = ((bits.getUint32(0) >>> 23) & 255) - 127 + 16;
   if (Math.round(largest * scales[exponent]) === 512) ++exponent;
-  const scale = scales[exponent], of = (/** @type {number} */ v) => Math.min(511, Math.round(v * scale));
+  const scale = scales[exponent], of = (/** @type {number} */ v) => Math.max(0, Math.min(511, Math.round(v * scale)));
   return (exponent << 27 | of(b) << 18 | of(g) << 9 | of(r)) >>> 0;
 }
 
@@ -135,7 +135,7 @@ export class Sky {
     for (let v = 0; v < n; ++v) {
       const nx = normals[3 * v], ny = normals[3 * v + 1], nz = normals[3 * v + 2];
       const node = 3 * nodeAt(side, a[0] * nx + a[1] * ny + a[2] * nz, b[0] * nx + b[1] * ny + b[2] * nz, c[0] * nx + c[1] * ny + c[2] * nz);
-      const falls = this.falls(nx * x + ny * y + nz * z, power);
+      const falls = Math.max(0, this.falls(nx * x + ny * y + nz * z, power));
       let open = 0;
       for (let k = 0; k < 9; ++k) open += terms[k] * free[12 * v + k];
       const arrives = falls * Math.max(0, Math.min(1, open));
