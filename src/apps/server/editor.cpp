@@ -71,6 +71,7 @@ void Editor::say_address(const std::string& address) {
 }
 
 void Editor::stop() {
+  if (worker_) worker_->end();  // its last job may still ask it for more
   worker_.reset();
   const std::lock_guard lock(mutex_);
   held_packs_.clear();

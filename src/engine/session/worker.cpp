@@ -22,7 +22,10 @@ class Worker::JobProgress : public Progress {
 Worker::Worker(std::unique_ptr<Session> session, JobListener* listener)
     : session_(std::move(session)), listener_(listener), thread_([this] { work(); }) {}
 
-Worker::~Worker() {
+Worker::~Worker() { end(); }
+
+void Worker::end() {
+  if (!thread_.joinable()) return;
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;

@@ -33,7 +33,9 @@ class Worker {
 
   // listener: must outlive this; may be null.
   Worker(std::unique_ptr<Session>, JobListener* listener);
-  ~Worker();  // cancels the running job, drops waiting ones
+  ~Worker();  // end()
+  // Cancels the running job and waits for it; nothing runs afterwards.
+  void end();
 
   // name: for the listener and cancel().
   void edit(const std::string& name, Job);

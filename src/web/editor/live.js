@@ -37,6 +37,7 @@ export class Live {
     this.other = null;
     /** @type {Pack | null} what a sun adds */
     this.sun = null;
+    this.sunComes = false;
     /** @type {{sky: Sky, of: Pack[]} | null} the light that a sun was last added to */
     this.sky = null;
     /** @type {{of: Pack[], sun: string}} the light that the renderer has */
@@ -185,8 +186,10 @@ export class Live {
 
   /** Fetches what a sun adds to a light, once. */
   async prepareSun() {
-    if (this.sun || !this.renderer) return;
+    if (this.sunComes || !this.renderer) return;
+    this.sunComes = true;
     const bytes = await getBytes('/api/pack/sun').catch(() => null);  // else the program's frames show it
+    this.sunComes = bytes !== null;
     if (bytes) this.sun = this.modules[1].readPack(bytes, 'sun');
   }
 

@@ -102,7 +102,7 @@ export class HistoryPanel {
     byId('history').addEventListener('scroll', () => this.fetchThumbs(), true);
   }
 
-  /** The first step in sight without a picture: made by a command, or before this window was open. @returns {{edit: import('./store.js').Edit | null, done: number} | undefined} */
+  /** The first step in sight without a picture: made by a command or in another window. @returns {{edit: import('./store.js').Edit | null, done: number} | undefined} */
   missing() {
     const steps = this.store.state.history.filter((e) => !e.set_aside);
     const rows = [...byId('history').querySelectorAll('li[data-step]')], list = byId('history').querySelector('ul')?.getBoundingClientRect();
@@ -126,7 +126,7 @@ export class HistoryPanel {
     try {
       const camera = resized(this.stage.camera.home.lens, kWidth, kHeight);
       this.thumbs.keep(...key, await createImageBitmap(await postForBlob('step', { camera, samples: 2, done }, revision)));
-      this.draw();
+      byId('history').querySelector(`li[data-step="${done}"] .thumb`)?.replaceWith(this.thumb(edit, ''));  // the list stays where it was scrolled to
     } catch (error) {
       if (/** @type {any} */ (error).status !== 409) return true;
       this.without.delete(key.join());
