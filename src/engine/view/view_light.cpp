@@ -123,8 +123,7 @@ std::string view_sun(float sharpness) {
   const float unit = 1 / sg_integral(sharpness);
   const auto share = [](int node) { return float(node) / (kNodes - 1); };
   std::vector<float> irradiance, reflection;
-  for (int i = 0; i < kNodes; ++i)
-    irradiance.push_back(unit * sg_irradiance(sharpness, 2 * share(i) - 1));
+  for (int i = 0; i < kNodes; ++i) irradiance.push_back(unit * sg_irradiance(sharpness, 2 * share(i) - 1));
   for (int level = 0; level < kReflectionLevels; ++level) {
     const StretchedLobe<float> lobe = stretched_lobe(reflection_level_roughness(level), 1.0f);
     for (int i = 0; i < kNodes; ++i) {
