@@ -29,7 +29,7 @@ const kHighlight = [1.0, 0.55, 0.1];
 const kUnits = ['uIrradiance', 'uReflection', 'uSurface', 'uBase', 'uFresnel', 'uLobe'];
 export const noTurn = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
-/** @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment */
+/** Has a program made, see madeProgram(). @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment */
 function makeProgram(gl, vertex, fragment) {
   const program = gl.createProgram();
   for (const [type, source] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
@@ -40,11 +40,15 @@ function makeProgram(gl, vertex, fragment) {
     gl.deleteShader(shader);
   }
   gl.linkProgram(program);
+  return program;
+}
+
+/** Waits for a program. Drivers make several at once, while nobody waits for one of them. @param {WebGL2RenderingContext} gl @param {WebGLProgram} program */
+function madeProgram(gl, program) {
   if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
     const logs = (gl.getAttachedShaders(program) ?? []).map((s) => gl.getShaderInfoLog(s)).join('');
     throw new Error(`The graphics driver refuses a shader: ${gl.getProgramInfoLog(program)} ${logs}`);
   }
-  return program;
 }
 
 /** Uniforms by name. @param {WebGL2RenderingContext} gl @param {WebGLProgram} program */
@@ -82,7 +86,9 @@ export class Renderer {
     this.plain = makeProgram(gl, vertexShader, plainShader);
     this.part = makeProgram(gl, vertexShader, partShader);
     this.filter = makeProgram(gl, screenShader, filterShader);
-    this.uniforms = new Map([this.lit, this.plain, this.part, this.filter].map((p) => [p, uniformsOf(gl, p)]));
+    const programs = [this.lit, this.plain, this.part, this.filter];
+    for (const program of programs) madeProgram(gl, program);
+    this.uniforms = new Map(programs.map((p) => [p, uniformsOf(gl, p)]));
     this.vertices = gl.createVertexArray();
     this.screen = gl.createVertexArray();
     /** @type {Map<string, WebGLBuffer>} */

@@ -339,6 +339,18 @@ async function keyboardOnly(page) {
   await keyboard.press('u');
 }
 
+/** Steps that a command made while no window was open get pictures. */
+async function commandsHavePictures(at) {
+  const { page } = at, { done } = await state(page);
+  await at.server.kill();
+  for (const roughness of ['0.4', '0.6']) require('node:child_process').execFileSync(program, ['edit', project, 'material', '--roughness', roughness, '--quiet']);
+  await at.restart();
+  await page.goto(at.server.url);
+  await steps(page, done + 2);
+  await page.waitForFunction((n) => [n + 1, n + 2].every((step) => document.querySelector(`#history li[data-step="${step}"] img.thumb`)), done, { timeout: 60000 });
+  say('steps that a command made have pictures');
+}
+
 withPage({ program, project, executablePath, picture }, async (at) => {
   const { page } = at;
   await firstSession(page, at.server.url);
@@ -366,6 +378,7 @@ withPage({ program, project, executablePath, picture }, async (at) => {
   check('what was undone and then displaced is set aside', (await aside.locator('summary').textContent()).startsWith('1 set aside'));
   await aside.locator('summary').click();
   await accessible(page, 'edits that are set aside');
+  await commandsHavePictures(at);
   await page.setViewportSize({ width: 820, height: 1180 });
   await settled(page);
   await tidy(page, 'tablet');

@@ -67,8 +67,8 @@ def check(what, got, *wanted):
 
 
 POSTS = ['edit', 'preview', 'commit', 'pick', 'mask', 'undo', 'redo', 'toggle', 'goto', 'rename', 'restore', 'forget',
-         'export', 'turntable', 'open', 'close', 'reconstruct', 'cancel', 'decal', 'upload?name=x']
-GETS = ['state', 'object', 'making', 'photo/train/r_000', 'download/x', 'pack/shape']
+         'export', 'turntable', 'open', 'close', 'reconstruct', 'cancel', 'decal', 'step', 'upload?name=x']
+GETS = ['state', 'start', 'object', 'making', 'photo/train/r_000', 'download/x', 'pack/shape']
 FORMS = ['application/x-www-form-urlencoded', 'multipart/form-data; boundary=x', 'text/plain', None]  # what a page of another site can send
 
 

@@ -3,7 +3,7 @@
 const fs = require('node:fs');
 const path = require('node:path');
 const { settled } = require('./serve.cjs');
-const { check, state, picturesIn, accessible, pixels, middle, drag, put, withPage } = require('./page.cjs');
+const { check, state, picturesIn, accessible, pixels, middle, drag, put, likeness, withPage } = require('./page.cjs');
 
 const [program, project, pictures, executablePath] = process.argv.slice(2);
 fs.mkdirSync(pictures, { recursive: true });
@@ -148,7 +148,13 @@ async function bends(page) {
   check('a click on a handle selects it', (await points()) === 3 && (await page.locator('#bend-turn').count()) === 1);
   await put(page, '#bend-turn', 25);
   await drag(page, [at.x - 50, at.y], [at.x - 70, at.y - 25]);
+  check('the page bends the object while the handle moves', await page.evaluate(() => globalThis.cei3d.stage.isLive() && globalThis.cei3d.stage.live.pulled));
   await page.waitForFunction(() => globalThis.cei3d.stage.preview !== null, null, { timeout: 30000 });
+  await settled(page);
+  const bent = await likeness(page);
+  await page.evaluate(() => globalThis.cei3d.stage.live.letGo());
+  const before = await likeness(page);
+  check(`nearly as the program does: ${bent.toFixed(1)} dB, not bent ${before.toFixed(1)} dB`, bent > before + 2);
   await picture(page, '3-bend');
   await accessible(page, 'bending');
   await page.focus('#view');
@@ -171,8 +177,12 @@ async function shines(page) {
   const { sun } = await light();
   check(`a click on the ball puts a sun: ${sun.direction.map((v) => v.toFixed(2))}`, Math.abs(Math.hypot(...sun.direction) - 1) < 1e-6 && sun.strength === 1);
   await put(page, '#sun-strength', 3);
+  await page.waitForFunction(() => globalThis.cei3d.stage.live.sun !== null, null, { timeout: 10000 });
   await settled(page);
   await picture(page, '5-sun');
+  // Under another light the page draws what the program's frame does not show.
+  const [psnr, plain] = [await likeness(page), await likenessUnder(page, { rotate: 0, scale: 1 })];
+  check(`the page draws the sun by itself: ${psnr.toFixed(1)} dB, without it ${plain.toFixed(1)} dB`, (await page.evaluate(() => globalThis.cei3d.stage.isLive())) && psnr > 26 && psnr > plain + 4);
   await accessible(page, 'a sun');
   await page.click('#light-keep');
   await steps(page, done + 1);
@@ -180,6 +190,30 @@ async function shines(page) {
   const kept = (await last(page)).params;
   check('the sun is kept', kept.sun.strength === 3 && kept.sun.direction.every((v, k) => Math.abs(v - sun.direction[k]) < 1e-9));
   check('and the light that is looked under is the object’s again', (await light()).sun === undefined);
+}
+
+/** likeness() where the page draws under another light than the program's frame. */
+async function likenessUnder(page, light) {
+  const was = await page.evaluate((l) => { const { stage } = globalThis.cei3d, before = stage.light; stage.light = l; return before; }, light);
+  const psnr = await likeness(page);
+  await page.evaluate((l) => { globalThis.cei3d.stage.light = l; }, was);
+  return psnr;
+}
+
+/** A picture that is dropped beside the object is a light, under which the page draws, too. */
+async function environments(page) {
+  const { done } = await state(page), box = await page.locator('#view').boundingBox();
+  await page.keyboard.press('v');
+  await settled(page);
+  await dropPicture(page, box.x + 8, box.y + box.height - 8);
+  await page.waitForFunction(() => globalThis.cei3d.stage.light.env && globalThis.cei3d.stage.isLive(), null, { timeout: 60000 });
+  await settled(page);
+  const [psnr, own] = [await likeness(page), await likenessUnder(page, { rotate: 0, scale: 1 })];
+  check(`the page draws under an environment: ${psnr.toFixed(1)} dB, under the object's light ${own.toFixed(1)} dB`, psnr > 30 && psnr > own + 4);
+  await page.click('#light-drop');
+  await settled(page);
+  const back = await likeness(page);
+  check(`and under the object's light again: ${back.toFixed(1)} dB`, back > 30 && (await state(page)).done === done);
 }
 
 /** A picture that is dropped on the view at a pixel of the window. */
@@ -251,6 +285,7 @@ withPage({ program, project, executablePath, picture }, async ({ page, server })
   await names(page);
   await framesPart(page);
   await hides(page);
+  await environments(page);
   await shines(page);
   await lays(page);
   await picksAndPens(page);

@@ -10,6 +10,7 @@
 #include "core/base/hash.h"
 #include "core/base/json.h"
 #include "core/base/parse_json.h"
+#include "core/base/system.h"
 
 namespace cei3d {
 namespace {
@@ -30,6 +31,8 @@ HttpResponse asset_response(const HttpRequest& r, const std::string& name,
 
 }  // namespace
 
+std::string text_of(const Json& j) { return j.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
 HttpResponse guarded_response(const std::function<HttpResponse()>& work) {
   try {
     return work();
@@ -49,6 +52,7 @@ Editor::Editor(const EditorOptions& options, Guard guard) : options_(options), g
   const auto entry = entry_at(options.path);
   if (!entry) home_ = options.path;
   state_ = {{"mode", "opening"}, {"name", entry ? entry->name : options.path.filename().string()}};
+  state_text_ = text_of(state_);
   JobListener* const listener = this;
   worker_ = std::make_unique<Worker>(std::make_unique<Session>(options.device, options.threads), listener);
   worker_->edit("open", [this, entry](Session& session, Progress&) {
@@ -67,8 +71,10 @@ void Editor::say_address(const std::string& address) {
 }
 
 void Editor::stop() {
+  if (worker_) worker_->end();  // its last job may still ask it for more
   worker_.reset();
   const std::lock_guard lock(mutex_);
+  held_packs_.clear();
   tabs_.clear();
 }
 
@@ -116,16 +122,17 @@ void Editor::change(const HttpRequest& request, Reply reply, std::function<Json(
   if (read_only_)
     return reply(error_response(403, "This object is open for looking only.",
                                 "Open it without --read-only, once no other program changes it."));
-  on_worker(
-      "edit", std::move(reply),
-      [this, wanted = request.if_match, make = std::move(make)](Session& session, Progress& progress) {
-        if (!wanted.empty() && wanted != state().value("revision", ""))
-          return error_response(409, "The history was changed in another window.",
-                                "It is shown now; make your change again.");
-        Json result = make(session, progress);
-        publish(session);
-        return HttpResponse{200, "application/json", Json{{"result", result}, {"state", state()}}.dump()};
-      });
+  on_worker("edit", std::move(reply),
+            [this, wanted = request.if_match, make = std::move(make)](Session& session, Progress& progress) {
+              if (!wanted.empty() && wanted != revision())
+                return error_response(409, "The history was changed in another window.",
+                                      "It is shown now; make your change again.");
+              const Json result = make(session, progress);
+              publish(session);
+              give_back_memory();
+              return HttpResponse{200, "application/json",
+                                  "{\"result\":" + text_of(result) + ",\"state\":" + state_text() + "}"};
+            });
 }
 
 void Editor::keep(const std::string& token, std::shared_ptr<const EditPreview> preview) {
@@ -145,6 +152,25 @@ std::shared_ptr<const EditPreview> Editor::kept(const std::string& token) {
 Json Editor::state() const {
   const std::lock_guard lock(mutex_);
   return state_;
+}
+
+std::string Editor::state_text() const {
+  const std::lock_guard lock(mutex_);
+  return state_text_;
+}
+
+std::string Editor::revision() const {
+  const std::lock_guard lock(mutex_);
+  return state_.value("revision", "");
+}
+
+void Editor::give_back_memory() {
+  constexpr uint64_t kOften = 16;
+  if (++memory_used_ % kOften == 0)
+    worker_->background([](Session&) {
+      give_back_holes();
+      return false;
+    });
 }
 
 }  // namespace cei3d

@@ -3,6 +3,7 @@
 //
 //   GET  /                      the page; its modules below /app/
 //   GET  /api/state             what is open: history, parts, findings, jobs
+//   GET  /api/start             {"state", "object"}: this and the next, for a page that begins
 //   GET  /api/object            what does not change while it is open: views, cameras, frame
 //   GET  /api/photo/VIEW?width= a photograph, JPEG
 //   GET  /api/making            the object that is being made, PNG
@@ -14,6 +15,7 @@
 //   POST /api/pick              {"camera", "pixel"}: the surface there, or null
 //   POST /api/decal             {"camera", "decal", "size"}: the camera whose picture the decal is, or null
 //   POST /api/mask              {"camera", "part" or "token"}: PNG
+//   POST /api/step              {"camera", "samples", "done"}: PNG of the object after so many edits
 //   POST /api/undo redo toggle goto rename restore forget
 //   POST /api/export            {"file", ...}; then GET /api/download/FILE
 //   POST /api/turntable         {"file", "turntable", ...}: its frames in a .zip; then the same
@@ -93,6 +95,7 @@ class Editor : public HttpApp, private JobListener {
   void pick(JsonReader&, const HttpRequest&, Reply);
   void decal(JsonReader&, const HttpRequest&, Reply);
   void mask(JsonReader&, const HttpRequest&, Reply);
+  void step(JsonReader&, const HttpRequest&, Reply);
   void undo(JsonReader&, const HttpRequest&, Reply);
   void redo(JsonReader&, const HttpRequest&, Reply);
   void toggle(JsonReader&, const HttpRequest&, Reply);
@@ -128,16 +131,22 @@ class Editor : public HttpApp, private JobListener {
   void show_library();
   void show_making(const Image&);
   void publish(Session&);  // the present state, to everybody
-  void publish(Json state);
-  Json state() const;
+  // grows: members that grow with the history.
+  void publish(Json state, Json grows = Json::object());
+  Json state() const;              // without the members that grow
+  std::string state_text() const;  // JSON of the whole state
+  std::string revision() const;    // of the history; empty: nothing is open
+  void give_back_memory();         // at times, when nothing else is to do
   std::filesystem::path object_folder() const;
 
-  // packs.cpp: what the page draws. The last pack of each kind is kept.
+  // packs.cpp: what the page draws. The last pack of each kind is kept. Those that an object needs at first
+  // wait for its first frame, where that is quick.
   struct KeptPack {
     std::string key;
     std::shared_ptr<const std::string> bytes;
   };
   void prepare_packs();  // in the background, before a page asks for them
+  void release_packs();  // that wait
   std::shared_ptr<const std::string> pack_of(Session&, const std::string& kind);
   std::shared_ptr<const std::string> kept_pack(const std::string& kind, const std::string& key) const;
 
@@ -155,6 +164,7 @@ class Editor : public HttpApp, private JobListener {
   std::atomic<bool> read_only_ = false;
   mutable std::mutex mutex_;  // of the members below
   Json state_, object_;
+  std::string state_text_;
   std::string making_;  // PNG
   std::deque<std::pair<std::string, std::shared_ptr<const EditPreview>>> previews_;
   std::set<std::string> exports_;  // names of files that may be downloaded
@@ -164,8 +174,11 @@ class Editor : public HttpApp, private JobListener {
   uint64_t event_ = 0;                                 // number of the last of the news
   std::deque<std::string> news_;                       // the last ones, in order
   std::map<std::string, KeptPack> packs_;              // by kind
+  bool first_frame_ = false;                           // the object that is open has had no frame yet
+  std::vector<std::function<void()>> held_packs_;      // requests that wait for it
   std::atomic<uint64_t> tokens_ = 0;
-  std::unique_ptr<Worker> worker_;  // last: it uses the others
+  std::atomic<uint64_t> memory_used_ = 0;  // changes and windows that left holes in it
+  std::unique_ptr<Worker> worker_;         // last: it uses the others
 };
 
 }  // namespace cei3d

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <thread>
 
 #include "apps/server/edit_json.h"
 #include "apps/server/test_editor.h"
@@ -163,6 +164,46 @@ TEST_F(EditorTest, APreviewIsShownAndThenKeptOrNot) {
   EXPECT_EQ(state()["parts"][0]["name"], "cap");
   EXPECT_EQ(post("/api/commit", {{"token", token}}).status, 422);  // the history is another one
   EXPECT_EQ(post("/api/commit", {{"token", "preview999"}}).status, 400);
+}
+
+TEST_F(EditorTest, APageBeginsByOneRequest) {
+  const Json start = Json::parse(get("/api/start").body);
+  EXPECT_EQ(start["state"], state());
+  EXPECT_EQ(start["object"], Json::parse(get("/api/object").body));
+}
+
+// Packs that a window asks for before it has seen anything come after a frame, or when they are made anyway.
+TEST_F(EditorTest, PacksArriveWithAndWithoutAFrame) {
+  get("/api/pack/vertex_light");  // its light is kept in a file now: the first frame is quick
+  for (const bool looks : {false, true}) {
+    editor_.reset();
+    EditorOptions options;
+    options.path = folder();
+    options.device = "cpu";
+    options.threads = 2;
+    editor_ = std::make_unique<Editor>(options, Guard(kTestToken));
+    const auto socket = std::make_shared<FakeSocket>();
+    editor_->opened(socket);
+    editor_->received(socket, Json{{"type", "hello"}, {"token", kTestToken}}.dump());
+    while (state()["mode"] != "project") std::this_thread::yield();
+    if (looks) editor_->received(socket, Json{{"type", "view"}, {"seq", 1}, {"camera", camera(0)}}.dump());
+    for (const char* kind : {"shape", "look", "light"})
+      EXPECT_EQ(get(std::string("/api/pack/") + kind).status, 200);
+    editor_->wait_until_idle();
+    EXPECT_EQ(socket->count("frame"), looks ? 1u : 0u);
+  }
+}
+
+TEST_F(EditorTest, AStepOfTheHistoryHasAPicture) {
+  post("/api/edit", {{"op", "light"}, {"params", {{"scale", 0.25}}}});
+  const Json step = {{"camera", camera(0)}, {"done", 0}};
+  const HttpResponse first = post("/api/step", step, state()["revision"]);
+  ASSERT_EQ(first.type, "image/png") << first.body;
+  const auto middle = [&](const HttpResponse& r) { return decode_png(r.body, "step").at(24, 24)[0]; };
+  EXPECT_GT(middle(first), middle(post("/api/step", {{"camera", camera(0)}, {"done", 1}})));
+  EXPECT_EQ(state()["done"], 1);
+  EXPECT_EQ(post("/api/step", step, "another").status, 409);
+  EXPECT_EQ(post("/api/step", {{"camera", camera(0)}, {"done", 2}}).status, 400);
 }
 
 TEST_F(EditorTest, TellsWhatIsUnderThePointer) {

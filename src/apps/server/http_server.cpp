@@ -101,6 +101,7 @@ class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> 
   void queue(Message message) {
     auto shared = std::make_shared<Message>(std::move(message));
     asio::dispatch(stream_.get_executor(), [self = shared_from_this(), shared] {
+      if (self->ended_) return;
       std::deque<Message>& waiting = self->waiting_;
       if (!shared->text) {
         const auto old = [&](const Message& m) { return !m.text && m.group != shared->group; };
@@ -135,7 +136,8 @@ class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> 
   void read() {
     stream_.async_read(buffer_, [self = shared_from_this()](BoostError error, size_t) {
       self->silence_.cancel();
-      if (error) return self->end();
+      // Where writing has failed, what was still read is of a window that the app has forgotten.
+      if (error || self->ended_) return self->end();
       const std::string text = beast::buffers_to_string(self->buffer_.data());
       self->buffer_.consume(self->buffer_.size());
       self->app_.received(self, text);

@@ -24,12 +24,29 @@ void Editor::pack(const HttpRequest& request, Reply reply) {
   const bool keyed = key && !token, packed = request.parameter("packed").has_value();
   if (keyed)
     if (const auto ready = kept_pack(kind, *key)) return reply(pack_response(*ready, true, packed));
-  on_worker("pack", std::move(reply),
-            [=, this, made = token ? kept(*token) : nullptr](Session& session, Progress&) {
-              if (made) return pack_response(session.view_pack(kind, made.get()), false, packed);
-              const auto bytes = pack_of(session, kind);
-              return pack_response(*bytes, keyed && kept_pack(kind, *key), packed);
-            });
+  const auto made = token ? kept(*token) : nullptr;
+  const auto make = [=, this](Session& session, Progress&) {
+    if (made) return pack_response(session.view_pack(kind, made.get()), false, packed);
+    const auto bytes = pack_of(session, kind);
+    return pack_response(*bytes, keyed && kept_pack(kind, *key), packed);
+  };
+  {
+    constexpr size_t kMaxHeld = 32;
+    const std::lock_guard lock(mutex_);
+    if (first_frame_ && !made && held_packs_.size() < kMaxHeld)
+      return held_packs_.push_back([=, this] { on_worker("pack", reply, make); });
+  }
+  on_worker("pack", std::move(reply), make);
+}
+
+void Editor::release_packs() {
+  std::vector<std::function<void()>> held;
+  {
+    const std::lock_guard lock(mutex_);
+    first_frame_ = false;
+    held.swap(held_packs_);
+  }
+  for (const auto& ask : held) ask();
 }
 
 void Editor::prepare_packs() {
@@ -38,6 +55,10 @@ void Editor::prepare_packs() {
       guarded_response([&] { return pack_response(*pack_of(session, kind), false, false); });
       return false;
     });
+  worker_->background([this](Session&) {
+    release_packs();  // nobody looks at the object
+    return false;
+  });
 }
 
 std::shared_ptr<const std::string> Editor::pack_of(Session& session, const std::string& kind) {

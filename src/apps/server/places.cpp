@@ -2,6 +2,7 @@
 // What is open: a folder, a capture, a project; and what the page is told of it.
 #include "apps/server/edit_json.h"
 #include "apps/server/editor.h"
+#include "apps/server/guarded.h"
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/base/json.h"
@@ -74,6 +75,7 @@ void Editor::open_path(Session& session, const fs::path& path) {
   }
   if (!home_.empty()) options_.project.clear();  // it belonged to what was open
   worker_->drop_frames();                        // they are of the object that was open
+  release_packs();
   if (!Project::is_project(path)) return open_capture(session, path);
   open_project(session, path);
 }
@@ -114,6 +116,11 @@ void Editor::open_project(Session& session, const fs::path& path) {
               {"note", note},
               {"can_close", !home_.empty()},
               {"program", kVersion}};
+  }
+  {
+    const bool quick = session.frame_is_quick();
+    const std::lock_guard lock(mutex_);
+    first_frame_ = quick;
   }
   publish(session);
   prepare_packs();
@@ -156,25 +163,27 @@ void Editor::show_library() {
 }
 
 void Editor::publish(Session& session) {
-  Json state = this->state(), history = Json::array(), parts = Json::array();
+  Json state = this->state();
+  Json grows = {{"history", Json::array()}, {"parts", Json::array()}};
   size_t done = 0;
   for (const LogEntry& e : session.log()) {
-    history.push_back(entry_json(e));
+    grows["history"].push_back(entry_json(e));
     done += e.done && !e.set_aside;
   }
-  for (const PartInfo& p : session.parts()) parts.push_back(p.json());
-  state["revision"] = content_hash(history.dump()).substr(0, 12);
+  for (const PartInfo& p : session.parts()) grows["parts"].push_back(p.json());
+  state["revision"] = content_hash(grows["history"].dump()).substr(0, 12);
   state["done"] = done;
   state["packs"] = session.view_keys();
-  state["history"] = std::move(history);
-  state["parts"] = std::move(parts);
-  publish(std::move(state));
+  publish(std::move(state), std::move(grows));
 }
 
-void Editor::publish(Json state) {
+void Editor::publish(Json state, Json grows) {
+  grows.update(state);
+  std::string text = text_of(grows);
   {
     const std::lock_guard lock(mutex_);
     state_ = state;
+    state_text_ = std::move(text);
   }
   broadcast({{"type", "state"}, {"mode", state["mode"]}, {"revision", state.value("revision", "")}});
 }
@@ -219,7 +228,7 @@ void Editor::reconstruct(JsonReader& j, const HttpRequest&, Reply reply) {
       throw;
     }
     open_project(session, request.project);
-    return HttpResponse{200, "application/json", state().dump()};
+    return HttpResponse{200, "application/json", state_text()};
   });
 }
 

@@ -20,9 +20,8 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-HttpResponse json_response(const Json& j) {
-  return {200, "application/json", j.dump(-1, ' ', false, Json::error_handler_t::replace)};
-}
+HttpResponse text_response(std::string json) { return {200, "application/json", std::move(json)}; }
+HttpResponse json_response(const Json& j) { return text_response(text_of(j)); }
 
 bool is_number(const std::string& text) {
   return !text.empty() && text.size() < 6 && text.find_first_not_of("0123456789") == std::string::npos;
@@ -32,21 +31,25 @@ bool is_number(const std::string& text) {
 
 const std::map<std::string, Editor::Route>& Editor::routes() {
   static const std::map<std::string, Route> all = {
-      {"edit", &Editor::edit},          {"preview", &Editor::preview},
-      {"commit", &Editor::commit},      {"pick", &Editor::pick},
-      {"mask", &Editor::mask},          {"undo", &Editor::undo},
-      {"redo", &Editor::redo},          {"toggle", &Editor::toggle},
-      {"goto", &Editor::go_to},         {"rename", &Editor::rename},
-      {"restore", &Editor::restore},    {"forget", &Editor::forget},
-      {"export", &Editor::export_file}, {"open", &Editor::open},
-      {"close", &Editor::close},        {"reconstruct", &Editor::reconstruct},
-      {"cancel", &Editor::cancel},      {"decal", &Editor::decal},
-      {"turntable", &Editor::turntable}};
+      {"edit", &Editor::edit},           {"preview", &Editor::preview},
+      {"commit", &Editor::commit},       {"pick", &Editor::pick},
+      {"mask", &Editor::mask},           {"undo", &Editor::undo},
+      {"redo", &Editor::redo},           {"toggle", &Editor::toggle},
+      {"goto", &Editor::go_to},          {"rename", &Editor::rename},
+      {"restore", &Editor::restore},     {"forget", &Editor::forget},
+      {"export", &Editor::export_file},  {"open", &Editor::open},
+      {"close", &Editor::close},         {"reconstruct", &Editor::reconstruct},
+      {"cancel", &Editor::cancel},       {"decal", &Editor::decal},
+      {"turntable", &Editor::turntable}, {"step", &Editor::step}};
   return all;
 }
 
 void Editor::get(const HttpRequest& request, Reply reply) {
-  if (request.path == "/api/state") return reply(json_response(state()));
+  if (request.path == "/api/state") return reply(text_response(state_text()));
+  if (request.path == "/api/start") {
+    const std::lock_guard lock(mutex_);
+    return reply(text_response("{\"state\":" + state_text_ + ",\"object\":" + text_of(object_) + "}"));
+  }
   if (request.path == "/api/object") {
     const std::lock_guard lock(mutex_);
     return reply(json_response(object_));
@@ -149,6 +152,24 @@ void Editor::mask(JsonReader& j, const HttpRequest&, Reply reply) {
     const Image mask = session.part_picture(frame.camera, part, made.get());
     return HttpResponse{200, "image/png", encode_png(mask, 8)};
   });
+}
+
+void Editor::step(JsonReader& j, const HttpRequest& request, Reply reply) {
+  constexpr int kMaxSide = 512;  // it is computed at once
+  const FrameRequest frame = frame_request(j, uploads_);
+  const auto done = j.require<size_t>("done");
+  j.finish();
+  if (frame.camera.width > kMaxSide || frame.camera.height > kMaxSide)
+    fail_usage("A picture of a step has at most {} pixels a side.", kMaxSide);
+  worker_->background(
+      [this, reply = std::move(reply), frame, done, wanted = request.if_match](Session& session) {
+        reply(guarded_response([&] {
+          if (!wanted.empty() && wanted != revision())
+            return error_response(409, "The history is another one by now.");
+          return HttpResponse{200, "image/png", encode_png(session.step_picture(frame, done), 8)};
+        }));
+        return false;
+      });
 }
 
 void Editor::undo(JsonReader& j, const HttpRequest& request, Reply reply) {
@@ -277,13 +298,13 @@ void Editor::open(JsonReader& j, const HttpRequest&, Reply reply) {
   on_worker("open", std::move(reply), [this, id](Session& session, Progress&) {
     if (id == "sample" && sample_capture()) {
       open_path(session, *sample_capture());
-      return json_response(state());
+      return text_response(state_text());
     }
     for (const LibraryEntry& e : home_.empty() ? std::vector<LibraryEntry>() : entries_below(home_))
       if (e.name == id) {
         if (!e.problem.empty()) fail("{}", e.problem);  // the list stays, which says it, too
         open_path(session, e.path);
-        return json_response(state());
+        return text_response(state_text());
       }
     fail_usage("There is no '{}' here.", id);
   });
@@ -295,7 +316,7 @@ void Editor::close(JsonReader& j, const HttpRequest&, Reply reply) {
     if (home_.empty()) fail_usage("There is no folder to go back to.");
     session.close();
     show_library();
-    return json_response(state());
+    return text_response(state_text());
   });
 }
 

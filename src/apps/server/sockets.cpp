@@ -51,12 +51,13 @@ Json state_news(const Json& state) {
 class FrameJob {
  public:
   FrameJob(SocketPtr socket, FrameRequest request, std::shared_ptr<const EditPreview> preview, uint64_t seq,
-           bool packed)
+           bool packed, std::function<void()> ended)
       : socket_(std::move(socket)),
         request_(std::move(request)),
         preview_(std::move(preview)),
         seq_(seq),
-        packed_(packed) {}
+        packed_(packed),
+        ended_(std::move(ended)) {}
 
   bool step(Session& session) {
     try {
@@ -68,6 +69,7 @@ class FrameJob {
     } catch (const std::exception& e) {
       socket_->send(Json{{"type", "error"}, {"seq", seq_}, {"error", e.what()}}.dump());
     }
+    ended_();
     return false;
   }
 
@@ -77,6 +79,7 @@ class FrameJob {
   std::shared_ptr<const EditPreview> preview_;
   uint64_t seq_;
   bool packed_;
+  std::function<void()> ended_;
   std::shared_ptr<TiledFrame> frame_;
   double start_ = steady_seconds();
 };
@@ -111,6 +114,7 @@ void Editor::received(const SocketPtr& socket, const std::string& text) {
     if (type != "hello" || !j.contains("token") || !j["token"].is_string() ||
         !guard_.knows(j["token"].get<std::string>()))
       return socket->close();
+    give_back_memory();
     return welcome(socket, j);
   }
   if (type == "rest") return worker_->drop_frame(tab.name);
@@ -147,8 +151,8 @@ void Editor::show_view(const SocketPtr& socket, const std::string& tab, const Js
   const auto token = reader.optional<std::string>("preview");
   const bool packed = reader.optional("packed", false);
   reader.finish();
-  auto job =
-      std::make_shared<FrameJob>(socket, std::move(request), token ? kept(*token) : nullptr, seq, packed);
+  auto job = std::make_shared<FrameJob>(socket, std::move(request), token ? kept(*token) : nullptr, seq,
+                                        packed, [this] { release_packs(); });
   worker_->frame(tab, [job](Session& session) { return job->step(session); });
 }
 
@@ -165,7 +169,7 @@ void Editor::on_progress(const std::string& job, const ProgressReport& r) {
 void Editor::broadcast(Json message) {
   const std::lock_guard lock(mutex_);
   message["event"] = ++event_;
-  const std::string text = message.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string text = text_of(message);
   news_.push_back(text);
   if (news_.size() > options_.news_kept) news_.pop_front();
   for (const auto& [socket, tab] : tabs_)

@@ -21,7 +21,10 @@ class JobThread::JobProgress : public Progress {
 
 JobThread::JobThread(JobListener* listener) : listener_(listener), thread_([this] { work(); }) {}
 
-JobThread::~JobThread() {
+JobThread::~JobThread() { end(); }
+
+void JobThread::end() {
+  if (!thread_.joinable()) return;
   {
     const std::lock_guard lock(mutex_);
     ending_ = true;

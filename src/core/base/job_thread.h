@@ -32,7 +32,9 @@ class JobThread {
 
   // listener: must outlive this; may be null.
   explicit JobThread(JobListener* listener);
-  ~JobThread();  // cancels the running job, drops waiting ones
+  ~JobThread();  // end()
+  // Cancels the running job, drops waiting ones and waits; nothing runs afterwards.
+  void end();
 
   // name: for the listener and cancel().
   void add(const std::string& name, Job);

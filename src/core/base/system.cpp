@@ -96,6 +96,12 @@ void give_back_freed_memory() {
 #endif
 }
 
+void give_back_holes() {
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
+}
+
 std::optional<FileLock> FileLock::take(const fs::path& file) {
   FileLock lock(::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666));
   if (lock.descriptor_ < 0) fail("Cannot write {}: {}.", file.string(), std::strerror(errno));

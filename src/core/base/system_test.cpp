@@ -77,6 +77,20 @@ TEST(System, FreedMemoryGoesBack) {
   EXPECT_LT(resident_megabytes(), before + 10);
 }
 
+TEST(System, HolesGoBack) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "has an allocator of its own";
+#endif
+  const double before = resident_megabytes();
+  std::vector<std::unique_ptr<std::string>> blocks;
+  for (int i = 0; i < 100'000; ++i) blocks.push_back(std::make_unique<std::string>(1000, 'x'));
+  for (size_t i = 0; i < blocks.size(); ++i)
+    if (i % 100 < 99) blocks[i].reset();
+  EXPECT_GT(resident_megabytes(), before + 60);
+  give_back_holes();
+  EXPECT_LT(resident_megabytes(), before + 30);
+}
+
 TEST(TempFolder, GoesWithWhatIsInIt) {
   std::filesystem::path path;
   {

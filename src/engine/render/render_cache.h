@@ -33,6 +33,10 @@ class RenderCache {
   SceneLight light(const Scene&);  // must not outlive the cache
   // light(); that on the reconstructed shape is kept in a file, too.
   SceneLight light_to_keep(const Scene&);
+  // Whether light() reads from a file what would take seconds to compute.
+  bool light_is_stored(const Scene& scene) const {
+    return scene.shape_versions.size() <= 1 && files_.has(scene.light);
+  }
   // camera: unit frame. See trace_view().
   std::shared_ptr<TracedView> trace(const Scene&, const Camera& camera, int samples);
   // view: of the scene's present shape.

@@ -43,10 +43,14 @@ fs::path VertexLightFiles::file_of(const SgMixture& light) const {
   return folder_ / (kPrefix + key + ".safetensors");
 }
 
+bool VertexLightFiles::has(const SgMixture& light) const {
+  std::error_code error;
+  return !folder_.empty() && fs::exists(file_of(light), error);
+}
+
 std::optional<VertexLight> VertexLightFiles::find(const SgMixture& light,
                                                   const VertexMaterials& made_of) const {
-  std::error_code error;
-  if (folder_.empty() || !fs::exists(file_of(light), error)) return std::nullopt;
+  if (!has(light)) return std::nullopt;
   try {
     const Tensors tensors = read_tensors(file_of(light));
     const size_t n = made_of.albedo.size();

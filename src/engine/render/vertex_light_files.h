@@ -20,6 +20,7 @@ class VertexLightFiles {
   VertexLightFiles(std::filesystem::path folder, std::string object, bool writable)
       : folder_(std::move(folder)), object_(std::move(object)), writable_(writable) {}
 
+  bool has(const SgMixture&) const;
   // made_of: of the vertices.
   std::optional<VertexLight> find(const SgMixture&, const VertexMaterials& made_of) const;
   void put(const SgMixture&, const VertexLight&) const;

@@ -95,13 +95,12 @@ SgMixture environment_light(const Device& device, const LightChoice& choice, Vec
 }
 
 SgMixture with_sun(const SgMixture& light, const Sun& sun) {
-  constexpr float kSharpness = 1000;  // a glow of some three degrees: highlights and soft shadows
   Vec3f power{0, 0, 0};
   for (const SgLobe& lobe : light.lobes) power += lobe.mu * sg_integral(lobe.lambda);
   const float received = (power.x + power.y + power.z) / 3 / 4;  // mean over all normals
-  const float peak = float(sun.strength) * received / sg_integral(kSharpness);
+  const float peak = float(sun.strength) * received / sg_integral(kSunSharpness);
   SgMixture out = light;
-  out.lobes.push_back({to_float(normalize(sun.direction)), kSharpness, Vec3f{1, 1, 1} * peak});
+  out.lobes.push_back({to_float(normalize(sun.direction)), kSunSharpness, Vec3f{1, 1, 1} * peak});
   return out;
 }
 

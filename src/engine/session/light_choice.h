@@ -20,6 +20,8 @@ SgMixture environment_light(const Device&, const LightChoice&, Vec3d up, const L
 
 // Light rotated about the up axis (degrees, counter-clockwise seen from above) and scaled.
 SgMixture turned_light(const SgMixture&, double degrees, double scale, Vec3d up);
+// Of the lobe of a sun: a glow of some three degrees, for highlights and soft shadows.
+inline constexpr float kSunSharpness = 1000;
 // The light and a white sun, which is one narrow lobe.
 SgMixture with_sun(const SgMixture&, const Sun&);
 // Usage errors: an angle that is not finite, a scale that is not positive, a sun without direction or with a

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <map>
 
@@ -97,6 +98,31 @@ TEST_F(LookTest, APreviewIsStoredAsTheEditItselfOrLeavesNothing) {
   EXPECT_EQ(bytes_of(session_.scene()), direct);
   EXPECT_THAT(message([&] { session_.commit(*dropped); }), HasSubstr("history has changed"));
   EXPECT_THAT(done(), ElementsAre("0002-material"));
+}
+
+TEST_F(LookTest, AStepOfTheHistoryIsSeenAsItWas) {
+  FrameRequest request;
+  request.camera = camera_of(0);
+  const int width = request.camera.width, height = request.camera.height;
+  std::vector<std::vector<uint8_t>> seen;
+  const auto look = [&] { seen.push_back(picture(*session_.frame(request), width, height)); };
+  look();
+  session_.change_material(rough(0.9), quiet_);
+  look();
+  LightChoice dimmed;
+  dimmed.scale = 0.5;
+  session_.change_light(dimmed, quiet_);
+  look();
+  EXPECT_NE(seen[1], seen[2]);
+  session_.undo(quiet_);
+  for (size_t step = 0; step < seen.size(); ++step) {
+    std::vector<uint8_t> bytes;
+    for (const float v : session_.step_picture(request, step).data)
+      bytes.push_back(uint8_t(std::lround(255 * v)));
+    EXPECT_EQ(bytes, seen[step]) << step;
+  }
+  EXPECT_THAT(message([&] { session_.step_picture(request, 3); }), HasSubstr("no step 3"));
+  EXPECT_EQ(done().size(), 1u);
 }
 
 TEST_F(LookTest, ASliderThatIsDraggedIsOneStep) {

@@ -96,6 +96,10 @@ class Session {
   // A frame that is computed tile by tile; on_top: with this edit, too. It shows the object as it is now,
   // whatever is edited meanwhile, and must not outlive the open project.
   std::unique_ptr<TiledFrame> frame(const FrameRequest&, const EditPreview* on_top = nullptr);
+  bool frame_is_quick() const;  // no light has to be computed for it that takes seconds
+  // The object after the first `done` edits of the history: RGBA, sRGB, straight alpha. Errors: there are not
+  // so many; an edit would have to be remade.
+  Image step_picture(const FrameRequest&, size_t done);
   // The surface seen at a pixel (column, row); none: the background. camera: capture frame.
   std::optional<PickedPoint> pick(const Camera& camera, Vec2<double> pixel) const;
   // The camera, capture frame, whose picture is a decal of width x height pixels that is laid where `camera`
@@ -105,7 +109,8 @@ class Session {
   Image part_picture(const Camera&, const std::string& part, const EditPreview* preview = nullptr);
   std::vector<View> views() const;  // of the capture
   // The object as a page draws it: packs of engine/view by kind, "shape", "coarse", "look", "vertex_light",
-  // "light" or "tables". view_keys(): a key for each kind, which changes when the pack does.
+  // "light" or "tables". view_keys(): a key for each of these, which changes when the pack does. "sun" is
+  // what a sun of a LightChoice adds to any light.
   std::string view_pack(const std::string& kind, const EditPreview* on_top = nullptr);
   Json view_keys() const;
   // The photograph of a view on white, sRGB, 3 channels, at 1/n of its size so that it is at least `width`
@@ -125,6 +130,7 @@ class Session {
   EditPlan plan(const PartCommand&) const;
   PaintStroke laid_decal(const PaintStroke&) const;  // with camera and scribble instead of the decal
   void move_to(const Stack& next, Json event, Progress&);
+  std::unique_ptr<TiledFrame> frame_of(const FrameRequest&, Scene);
   const Appearance& look_of_vertices(const Scene&);
   ReconstructReport run_reconstruction(const ReconstructRequest&, Progress&);
 

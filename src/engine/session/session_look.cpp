@@ -13,6 +13,7 @@
 #include "engine/io/image_file.h"
 #include "engine/metrics/psnr.h"
 #include "engine/project/project.h"
+#include "engine/project/stack.h"
 #include "engine/render/render_cache.h"
 #include "engine/session/cameras.h"
 #include "engine/session/edit_plan.h"
@@ -54,18 +55,41 @@ Json PickedPoint::json() const {
           {"parts", parts}};
 }
 
+std::unique_ptr<TiledFrame> Session::frame_of(const FrameRequest& request, Scene scene) {
+  check_camera(request.camera, "The camera of the frame");
+  scene.light = chosen_light(*device_, request.light, scene.light, scene.up, {project().folder() / "cache"});
+  if (!request.light.is_own()) scene.residual = nullptr;
+  if (request.as_photographed && request.light.env.empty()) scene = in_view(scene, request.camera);
+  const Camera camera = scene.normalization.unit_from_capture(request.camera);
+  return std::make_unique<TiledFrame>(*threads_, *frames_, std::move(scene), camera, request.samples,
+                                      request.channel);
+}
+
 std::unique_ptr<TiledFrame> Session::frame(const FrameRequest& request, const EditPreview* on_top) {
   return threads_->run([&]() -> std::unique_ptr<TiledFrame> {
-    check_camera(request.camera, "The camera of the frame");
-    Scene scene = on_top ? on_top->scene() : project().scene();
-    scene.light =
-        chosen_light(*device_, request.light, scene.light, scene.up, {project().folder() / "cache"});
-    if (!request.light.is_own()) scene.residual = nullptr;
-    if (request.as_photographed && request.light.env.empty()) scene = in_view(scene, request.camera);
-    const Camera camera = scene.normalization.unit_from_capture(request.camera);
-    return std::make_unique<TiledFrame>(*threads_, *frames_, std::move(scene), camera, request.samples,
-                                        request.channel);
+    return frame_of(request, on_top ? on_top->scene() : project().scene());
   });
+}
+
+bool Session::frame_is_quick() const {
+  return threads_->run([&] { return frames_->light_is_stored(project().scene()); });
+}
+
+Image Session::step_picture(const FrameRequest& request, size_t done) {
+  Stack stack = project().stack();
+  stack.go_to(done);
+  if (const auto stale = project().first_stale(stack))
+    fail("Edit {} would have to be remade; go to that step.", *stale);
+  const auto frame = threads_->run([&]() -> std::unique_ptr<TiledFrame> {
+    return frame_of(request, project().scene_below(stack, ""));  // below no edit: with all that are done
+  });
+  Image picture(request.camera.width, request.camera.height, 4);
+  while (const auto tile = frame->next())
+    for (int y = 0; y < tile->box.height; ++y)
+      for (int i = 0; i < 4 * tile->box.width; ++i)
+        picture.at(tile->box.x0, tile->box.y0 + y)[i] =
+            float(tile->rgba[size_t(4 * y * tile->box.width + i)]) / 255;
+  return picture;
 }
 
 std::optional<PickedPoint> Session::pick(const Camera& camera, Vec2<double> pixel) const {

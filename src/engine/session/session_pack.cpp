@@ -7,6 +7,7 @@
 #include "engine/project/project.h"
 #include "engine/render/render_cache.h"
 #include "engine/session/edit_plan.h"
+#include "engine/session/light_choice.h"
 #include "engine/session/session.h"
 #include "engine/session/version.h"
 #include "engine/session/vertex_look.h"
@@ -36,6 +37,7 @@ const Appearance& Session::look_of_vertices(const Scene& scene) {
 std::string Session::view_pack(const std::string& kind, const EditPreview* on_top) {
   return threads_->run([&]() -> std::string {
     if (kind == "tables") return view_tables();
+    if (kind == "sun") return view_sun(kSunSharpness);
     const Scene scene = on_top ? on_top->scene() : project().scene();
     if (kind == "light") return view_light(*device_, scene.light);
     const ViewMesh mesh = view_mesh(scene);

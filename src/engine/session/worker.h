@@ -19,6 +19,8 @@ class Worker {
   // listener: must outlive this; may be null.
   Worker(std::unique_ptr<Session> session, JobListener* listener)
       : session_(std::move(session)), thread_(listener) {}
+  // Cancels the running job and waits for it; nothing runs afterwards.
+  void end() { thread_.end(); }
 
   void edit(const std::string& name, Job job) {
     thread_.add(name, [s = session_.get(), job = std::move(job)](Progress& p) { job(*s, p); });

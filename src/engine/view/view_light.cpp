@@ -10,6 +10,7 @@
 #include "core/math/lobe_triple.h"
 #include "core/math/reflection_axis.h"
 #include "core/math/roughness.h"
+#include "core/math/sg.h"
 #include "engine/render/irradiance_map.h"
 #include "engine/render/lobe_frames.h"
 #include "engine/render/lobe_planes.h"
@@ -114,6 +115,26 @@ std::string view_light(const Device& device, const SgMixture& light) {
   pack["reflection_levels"] = kReflectionLevels;
   pack.add("irradiance", irradiance_nodes(device, lobes), 1);
   pack.add("reflection", reflection_nodes(device, lobes), 1);
+  return pack.bytes();
+}
+
+std::string view_sun(float sharpness) {
+  constexpr int kNodes = 512;
+  const float unit = 1 / sg_integral(sharpness);
+  const auto share = [](int node) { return float(node) / (kNodes - 1); };
+  std::vector<float> irradiance, reflection;
+  for (int i = 0; i < kNodes; ++i) irradiance.push_back(unit * sg_irradiance(sharpness, 2 * share(i) - 1));
+  for (int level = 0; level < kReflectionLevels; ++level) {
+    const StretchedLobe<float> lobe = stretched_lobe(reflection_level_roughness(level), 1.0f);
+    for (int i = 0; i < kNodes; ++i) {
+      const float distance = 2 * share(i) * share(i);
+      reflection.push_back(unit * sg_reflected(sharpness, lobe, distance * distance, 0.0f));
+    }
+  }
+  Pack pack("sun");
+  pack["nodes"] = kNodes;
+  pack.add("irradiance", irradiance, 1);
+  pack.add("reflection", reflection, 1);
   return pack.bytes();
 }
 

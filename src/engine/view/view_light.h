@@ -29,4 +29,10 @@ std::string view_light(const Device&, const SgMixture&);
 // Head: columns, rows, min_roughness, middle_share, dielectric_f0, metal_f0.
 std::string view_tables();
 
+// "sun": what a round lobe of the light of that sharpness, whose integral over the sphere is 1, adds to both
+// maps of view_light(), at equal distances of what they depend on. irradiance f32 [nodes, 1]: by the cosine
+// of normal and lobe, from -1 to 1; slightly negative beyond the horizon. reflection f32 [levels nodes, 1]:
+// by the square root of half the distance of the two axes on the unit sphere, from 0 to 1. Head: nodes.
+std::string view_sun(float sharpness);
+
 }  // namespace cei3d

@@ -5,11 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/compute/kernels/shade.h"
 #include "core/math/lobe_triple.h"
 #include "core/math/reflection_axis.h"
 #include "core/math/rng.h"
+#include "core/math/sg.h"
 #include "engine/render/lobe_frames.h"
 #include "engine/render/lobe_planes.h"
 #include "engine/render/test_balls.h"
@@ -122,6 +124,40 @@ TEST(ViewLight, ReflectionsAreThoseOfTheClosedForm) {
   EXPECT_LT(errors[1500], 0.02 * mean);
   EXPECT_LT(errors[2850], 0.08 * mean);
   EXPECT_LT(errors.back(), 0.3 * mean);
+}
+
+// The maps of a sky with a sun in it are those of the sky and what the tables say of the sun.
+TEST(ViewLight, ASunIsAddedByItsTables) {
+  const Device device = make_device();
+  constexpr float kSharpness = 1000, kPeak = 500;
+  const Vec3f to = normalize(Vec3f{0.3f, -0.5f, 0.8f});
+  SgMixture sky = some_sky();
+  const ReadPack without(view_light(device, sky)), sun(view_sun(kSharpness));
+  sky.lobes.push_back({to, kSharpness, Vec3f{1, 1, 1} * kPeak});
+  const ReadPack with(view_light(device, sky));
+  const int count = sun.head.at("nodes");
+  const auto looked_up = [&](const std::vector<float>& table, int first, float at) {
+    const float x = clamp(at, 0.0f, 1.0f) * float(count - 1);
+    const int i = std::min(int(x), count - 2);
+    const float* t = &table[size_t(first + i)];
+    return kPeak * sg_integral(kSharpness) * (t[0] + (t[1] - t[0]) * (x - float(i)));
+  };
+  const auto expect_sum = [&](const char* map, int side, int levels, auto more) {
+    const std::vector<uint32_t> before = without.array<uint32_t>(map), after = with.array<uint32_t>(map);
+    const std::vector<float> table = sun.array<float>(map);
+    for (int i = 0; i < levels * side * side; ++i) {
+      const float want = from_shared_exponent(after[size_t(i)]).y,
+                  got = from_shared_exponent(before[size_t(i)]).y +
+                        more(table, octahedral_node(i % (side * side), side), i / (side * side));
+      ASSERT_NEAR(got, want, 0.01f * want + 0.01f) << map << " " << i;
+    }
+  };
+  expect_sum("irradiance", with.head.at("irradiance_side"), 1,
+             [&](const auto& table, Vec3f n, int) { return looked_up(table, 0, 0.5f + 0.5f * dot(n, to)); });
+  expect_sum("reflection", with.head.at("reflection_side"), kReflectionLevels,
+             [&](const auto& table, Vec3f axis, int level) {
+               return looked_up(table, level * count, std::sqrt(length(axis - to) / 2));
+             });
 }
 
 TEST(ViewLight, LevelsAreTheInverseOfTheirRoughness) {

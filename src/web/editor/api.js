@@ -55,8 +55,8 @@ const post = (route, body = {}, revision = '') => request(`/api/${route}`, {
 });
 /** @param {string} route @param {object} [body] @param {string} [revision] @returns {Promise<any>} */
 export const postJson = async (route, body, revision) => (await post(route, body, revision)).json();
-/** @param {string} route @param {object} [body] @returns {Promise<Blob>} */
-export const postForBlob = async (route, body) => (await post(route, body)).blob();
+/** @param {string} route @param {object} [body] @param {string} [revision] @returns {Promise<Blob>} */
+export const postForBlob = async (route, body, revision) => (await post(route, body, revision)).blob();
 
 /** @param {Blob} file @param {string} name @returns {Promise<string>} id of the upload */
 export async function upload(file, name) {
@@ -81,7 +81,7 @@ async function unpacked(tile) {
   return { ...tile, pixels: new Uint8ClampedArray(await new Response(stream).arrayBuffer()) };
 }
 
-const kFar = 15;  // milliseconds there and back from which what is sent is packed
+export const kFar = 15;  // milliseconds there and back from which what is sent is packed
 
 /** The WebSocket; opens itself again after 1, 2, 4 seconds. */
 export class Line extends EventTarget {

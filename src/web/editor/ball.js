@@ -2,6 +2,7 @@
 // @ts-check
 /** A mirror ball in which the light is seen. Places on it: x right, y down, from its middle, 1 at its rim. */
 import { add, dot, mul, sub, unit } from './camera.js';
+import { onOctahedron } from './octahedron.js';
 
 /** @typedef {import('./camera.js').Vec} Vec */
 /** @typedef {[Vec, Vec, Vec]} Axes right, down, forward of the camera */
@@ -21,9 +22,7 @@ export function placeOnBall(direction, axes) {
 
 /** The radiance of a map on the octahedron, nearest node. @param {Uint32Array} map @param {number} side @param {Vec} d @returns {Vec} */
 export function radianceOf(map, side, d) {
-  const sum = Math.abs(d[0]) + Math.abs(d[1]) + Math.abs(d[2]);
-  let [x, y] = [d[0] / sum, d[1] / sum];
-  if (d[2] < 0) [x, y] = [(1 - Math.abs(y)) * (x < 0 ? -1 : 1), (1 - Math.abs(x)) * (y < 0 ? -1 : 1)];
+  const [x, y] = onOctahedron(...d);
   const at = (/** @type {number} */ v) => Math.round((v * 0.5 + 0.5) * (side - 1));
   const bits = map[at(y) * side + at(x)], scale = 2 ** ((bits >>> 27) - 24);
   return [(bits & 511) * scale, (bits >>> 9 & 511) * scale, (bits >>> 18 & 511) * scale];

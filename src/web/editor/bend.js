@@ -4,8 +4,8 @@
 import { add, dot, mul, pointAt, seen, sub, length } from './camera.js';
 import { complain, el, toast } from './dom.js';
 import { postJson } from './api.js';
-import { Newest } from './newest.js';
 import { ring } from './paint.js';
+import { ShapeTrial } from './trial.js';
 
 /** @typedef {import('./camera.js').Vec} Vec */
 /** @typedef {{pin: boolean, from: Vec, to: Vec, axis: Vec, degrees: number}} BendPoint */
@@ -27,8 +27,7 @@ export class BendTool {
     /** @type {BendPoint | null} */
     this.selected = null;
     this.dragging = false;
-    this.number = 0;
-    this.previews = new Newest(() => this.previewNow());
+    this.trial = new ShapeTrial(stage, () => (this.changes() ? this.params() : null), () => this.pulled());
   }
 
   /** Whether there is something to keep or discard. */
@@ -133,16 +132,12 @@ export class BendTool {
       radius: this.reach * this.store.object.radius, ...(this.store.part ? { part: this.store.part } : {}) };
   }
 
-  preview() { return this.previews.run(); }
-
-  async previewNow() {
-    if (!this.changes()) return;
-    const number = this.number;
-    try {
-      const made = await postJson('preview', { op: 'deform', params: this.params() });
-      if (number === this.number) await this.stage.tryEdit(made.token);
-    } catch (error) { if (number === this.number) complain(error); }
+  pulled() {
+    const handles = this.points.map((p) => (moves(p) ? p : { ...p, to: p.from, degrees: 0 }));
+    return { handles, reach: this.reach * this.store.object.radius };
   }
+
+  preview() { if (this.changes()) this.trial.moved(); }
 
   async keep() {
     if (!this.changes()) return;
@@ -159,7 +154,7 @@ export class BendTool {
   }
 
   forget() {
-    ++this.number;
+    this.trial.end();
     this.dragging = false;
     this.points = [];
     this.select(null);
@@ -174,7 +169,10 @@ export class BendTool {
     this.points = this.points.filter((p) => p !== point);
     this.select(this.points.at(-1) ?? null);
     if (this.changes()) this.preview();
-    else if (this.stage.preview) this.stage.tryEdit(null);
+    else if (this.stage.preview || this.stage.pulling) {
+      this.trial.end();
+      this.stage.tryEdit(null);
+    }
     return true;
   }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Grab and bend: a point of the surface is dragged in the plane of the picture, its surroundings follow. */
-import { complain, el } from './dom.js';
+import { pointAt, seen } from './camera.js';
+import { el } from './dom.js';
 import { postJson } from './api.js';
-import { Newest } from './newest.js';
 import { ring } from './paint.js';
+import { ShapeTrial } from './trial.js';
 
 export class GrabTool {
   /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store */
@@ -19,8 +20,9 @@ export class GrabTool {
     this.start = null;
     /** @type {any} */
     this.at = null;
-    this.number = 0;
-    this.previews = new Newest(() => this.previewNow());
+    /** @type {import('./camera.js').Vec | null} the point of the surface where the drag began, once it is known */
+    this.from = null;
+    this.trial = new ShapeTrial(stage, () => (this.start ? this.params() : null), () => this.pulled());
   }
 
   options() {
@@ -41,6 +43,8 @@ export class GrabTool {
     this.start = p;
     this.camera = this.stage.json();
     this.moved = false;
+    this.from = null;
+    postJson('pick', { camera: this.camera, pixel: [p.x, p.y] }).then((found) => { if (this.start === p) this.from = found?.position ?? null; }).catch(() => {});
   }
   /** @param {any} p */
   move(p) {
@@ -48,7 +52,7 @@ export class GrabTool {
     if (!this.start) return;
     this.moved ||= Math.hypot(p.x - this.start.x, p.y - this.start.y) > 4;
     this.stage.redraw();
-    if (this.moved) this.preview();
+    if (this.moved) this.trial.moved();
   }
 
   params() {
@@ -56,22 +60,17 @@ export class GrabTool {
       radius: this.reach * this.store.object.radius, ...(this.store.part ? { part: this.store.part } : {}) };
   }
 
-  preview() { return this.previews.run(); }
-
-  async previewNow() {
-    if (!this.start) return;
-    const number = this.number;
-    try {
-      const made = await postJson('preview', { op: 'deform', params: this.params() });
-      if (number === this.number) await this.stage.tryEdit(made.token);
-    } catch (error) { if (number === this.number) complain(error); }
+  pulled() {
+    const { from, camera, at } = this;
+    if (!from || !camera) return null;
+    return { handles: [{ from, to: pointAt(camera, at.x, at.y, seen(camera, from).depth), axis: /** @type {import('./camera.js').Vec} */ ([0, 0, 1]), degrees: 0 }], reach: this.reach * this.store.object.radius };
   }
 
   /** @param {any} p */
   async up(p) {
     if (!this.start) return;
     this.at = p;
-    ++this.number;
+    this.trial.end();
     const params = this.params(), moved = this.moved;
     this.start = null;
     if (moved) await this.store.change('edit', { op: 'deform', params });
@@ -79,7 +78,7 @@ export class GrabTool {
   }
 
   cancel() {
-    ++this.number;
+    this.trial.end();
     if (!this.start) return;
     this.start = null;
     this.stage.tryEdit(null);

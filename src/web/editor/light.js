@@ -107,7 +107,7 @@ export class LightTool {
 
   drawBall() {
     if (!this.ball?.isConnected) return;
-    const { light, camera, live } = this.stage, pack = light.env ? null : live.light;
+    const { light, camera, live } = this.stage, pack = live.mapsOf(light);
     const turn = rotation(unit(this.store.object.up), -light.rotate * Math.PI / 180);
     const level = pack ? pack.arrays.reflection.subarray(0, pack.head.reflection_side ** 2) : null;
     drawBall(this.ball, camera.axes, (d) => {
@@ -119,7 +119,10 @@ export class LightTool {
 
   update() { for (const id of ['light-keep', 'light-drop']) { const b = /** @type {any} */ (document.getElementById(id)); if (b) b.disabled = !this.differs(); } }
 
-  enter() { this.update(); }
+  enter() {
+    this.update();
+    this.stage.live.prepareSun();
+  }
 
   /** @param {Partial<Light>} values */
   show(values) {
@@ -155,6 +158,7 @@ export class LightTool {
       this.file = file.name;
       this.env = file;
       this.set({ env });
+      this.stage.live.lookUnder(env).then(() => this.drawBall());
       toast(`Looking under ${file.name}; Keep makes it the object’s light.`);
     } catch (error) { complain(error); }
   }
@@ -171,6 +175,7 @@ export class LightTool {
 
   drop() {
     this.stage.light = { rotate: 0, scale: 1 };
+    this.stage.live.lookUnder(undefined);
     this.file = '';
     this.stage.moved();
     this.changed();

@@ -1,17 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** The object drawn in the page, with the program's own shading. Without WebGL 2 it shows nothing, and the program's frames do. */
-import { getBytes } from './api.js';
+import { getBytes, postJson } from './api.js';
 import { partBall, partLooks } from './looks.js';
 import { Pace, steps } from './pace.js';
+import { Pull } from './pull.js';
+import { onItsWay } from './start.js';
+import { Sky } from './sun.js';
 
 /** @typedef {import('./light.js').Light} Light */
+/** @typedef {import('../pack.js').Pack} Pack */
 
 /** @type {Record<string, string>} channels of the program that the renderer knows */
 const kChannels = { rgb: 'lit', albedo: 'albedo', normal: 'normal', roughness: 'roughness' };
 const kLate = 1200;  // milliseconds
 const kCoarse = 'coarse';  // triangles for quick pictures: come last, and only where pictures take long
-const kSurface = ['shape', 'look'], kLight = ['tables', 'light', 'vertex_light'];
+const kLit = ['light', 'vertex_light'], kSurface = ['shape', 'look'], kLight = ['tables', ...kLit];
 
 export class Live {
   /** @param {HTMLCanvasElement} canvas @param {import('./store.js').Store} store @param {() => void} ready called when there is something new to draw */
@@ -27,9 +31,21 @@ export class Live {
     this.have = {};
     /** @type {Set<string>} names of parts that are not shown */
     this.hidden = new Set();
-    /** @type {import('../pack.js').Pack | null} maps of the light */
-    this.light = null;
-    /** @type {Record<string, import('../pack.js').Pack>} those that say where parts are, by kind */
+    /** @type {Record<string, Pack>} the light of the object and what arrives of it, by kind */
+    this.own = {};
+    /** @type {{env: string, light?: Pack, vertex_light?: Pack} | null} the same of an environment that is looked under */
+    this.other = null;
+    /** @type {Pack | null} what a sun adds */
+    this.sun = null;
+    this.sunComes = false;
+    /** @type {{sky: Sky, of: Pack[]} | null} the light that a sun was last added to */
+    this.sky = null;
+    /** @type {{of: Pack[], sun: string}} the light that the renderer has */
+    this.lit = { of: [], sun: '' };
+    /** @type {Pull | null} of the shape that was last pulled */
+    this.puller = null;
+    this.pulled = false;  // the renderer has a shape that is pulled by handles
+    /** @type {Record<string, Pack>} those that say where the surface and parts are, by kind */
     this.surface = {};
     /** @type {Map<string, import('./looks.js').Look>} how parts look, by name */
     this.looks = new Map();
@@ -51,6 +67,12 @@ export class Live {
   async begin() {
     this.have = {};
     this.surface = {};
+    this.own = {};
+    this.other = null;
+    this.sky = null;
+    this.puller = null;
+    this.pulled = false;
+    this.lit = { of: [], sun: '' };
     this.previewed = null;
     this.hidden.clear();
     if (this.off) return;
@@ -106,7 +128,7 @@ export class Live {
   fetchPack(kind, key) {
     const before = this.underway.get(kind);
     if (before?.key === key) return before.bytes;
-    const bytes = getBytes(`/api/pack/${kind}?key=${key}${this.packed()}`);
+    const bytes = onItsWay(kind, key) ?? getBytes(`/api/pack/${kind}?key=${key}${this.packed()}`);
     bytes.catch(() => this.underway.delete(kind));  // refresh() awaits each, if those before it arrive
     this.underway.set(kind, { key, bytes });
     return bytes;
@@ -118,12 +140,90 @@ export class Live {
   set(kind, bytes, key) {
     const pack = this.modules[1].readPack(bytes, kind);
     this.renderer.set(pack);
-    if (kind === 'light') this.light = pack;
+    if (kLit.includes(kind)) {
+      this.own[kind] = pack;
+      this.lit = { of: [], sun: '' };
+    }
     if (kSurface.includes(kind)) this.surface[kind] = pack;
     if (kind === 'look') this.looks = partLooks(pack);
-    if (kind === 'shape') delete this.have[kCoarse];
+    if (kind === 'shape') {
+      delete this.have[kCoarse];
+      this.sky = null;
+      this.puller = null;
+      this.pulled = false;
+      if (this.other) this.lookUnder(this.other.env);  // other light arrives at other vertices
+    }
     this.have[kind] = key;
     this.underway.delete(kind);
+  }
+
+  /**
+   * Draws the surface as handles pull it, nearly, until another shape comes or it is let go.
+   * @param {import('./pull.js').Handle[]} handles @param {number} reach @param {string | null} part what alone may move @returns {boolean} whether it can
+   */
+  pull(handles, reach, part) {
+    const { shape, look } = this.surface;
+    if (!this.current()) return false;
+    if (this.puller?.shape !== shape) this.puller = new Pull(shape);
+    const index = look.head.parts.indexOf(part), { material } = look.arrays, may = part ? (/** @type {number} */ v) => material[4 * v + 3] === index : () => true;
+    const { positions, normals, min, size } = this.puller.moved(handles, reach, part ?? '', may);
+    this.place(positions, normals, { ...shape.head, min, size });
+    this.pulled = true;
+    return true;
+  }
+
+  letGo() {
+    const { shape } = this.surface;
+    if (this.pulled && shape) this.place(shape.arrays.positions, shape.arrays.normals, shape.head);
+    this.pulled = false;
+  }
+
+  /** @param {import('../pack.js').Numbers} positions @param {import('../pack.js').Numbers} normals @param {any} head */
+  place(positions, normals, head) {
+    this.renderer.setAttributes([[0, 'positions', positions, true], [1, 'normals', normals, true]]);
+    this.renderer.heads.set('shape', head);
+  }
+
+  /** Fetches what a sun adds to a light, once. */
+  async prepareSun() {
+    if (this.sunComes || !this.renderer) return;
+    this.sunComes = true;
+    const bytes = await getBytes('/api/pack/sun').catch(() => null);  // else the program's frames show it
+    this.sunComes = bytes !== null;
+    if (bytes) this.sun = this.modules[1].readPack(bytes, 'sun');
+  }
+
+  /**
+   * Fetches the light of an environment that is not kept. Until it is there, the program's frames show it.
+   * @param {string | undefined} env id of the upload; none: only the object's own light is needed
+   */
+  async lookUnder(env) {
+    this.other = env && this.renderer && !this.store.state.read_only ? { env } : null;
+    const { other } = this;
+    if (!other) return;
+    await this.fetchOther(other).catch(() => {});
+  }
+
+  /** @param {{env: string, light?: Pack, vertex_light?: Pack}} other */
+  async fetchOther(other) {
+    const { token } = await postJson('preview', { op: 'light', params: { env: other.env } });
+    const [light, arriving] = await Promise.all(kLit.map(async (kind) => this.modules[1].readPack(await getBytes(`/api/pack/${kind}?preview=${token}${this.packed()}`), kind)));
+    other.light = light;
+    other.vertex_light = arriving;
+  }
+
+  /** The maps of the light that is looked under, without its turn and its sun, if they are here. @param {Light} light @returns {Pack | null} */
+  mapsOf(light) { return (light.env ? (this.other?.env === light.env ? this.other.light : null) : this.own.light) ?? null; }
+
+  /** Gives the renderer the light that is looked under. @param {Light} light @param {number[][]} turn */
+  shine(light, turn) {
+    const from = light.env ? this.other : this.own, sun = light.sun && this.sun ? JSON.stringify([light.sun, light.rotate]) : '';
+    if (!from?.light || !from.vertex_light) return;
+    const of = [from.light, from.vertex_light], same = (/** @type {Pack[]} */ packs) => of.every((p, i) => p === packs[i]);
+    if (same(this.lit.of) && this.lit.sun === sun) return;
+    if (sun && !(this.sky && same(this.sky.of))) this.sky = { sky: new Sky(of[0], of[1], this.surface.shape, /** @type {Pack} */ (this.sun)), of };
+    for (const pack of sun && this.sky && light.sun ? this.sky.sky.with(light.sun, turn) : of) this.renderer.set(pack);
+    this.lit = { of, sun };
   }
 
   /** Shows an edit of the look that is not kept. @param {string} token @returns {Promise<boolean>} whether it can */
@@ -151,12 +251,13 @@ export class Live {
   /** @param {string} channel @param {Light} light @param {string | null} preview @param {string | null} photo */
   shows(channel, light, preview, photo) {
     const still = photo === null || this.store.object?.material?.light?.motion === 'world';
-    return channel in kChannels && !light.env && !light.sun && preview === this.previewed && still && this.current();
+    return channel in kChannels && this.mapsOf(light) !== null && (!light.sun || this.sun !== null) && (preview === this.previewed || this.pulled) && still && this.current();
   }
 
   /** @param {any} camera @param {string} channel @param {Light} light @param {import('./pace.js').Step} [step] */
   draw(camera, channel, light, { scale, rough, coarse } = steps[0]) {
     const turn = this.modules[2].rotation(this.store.object.up, -light.rotate * Math.PI / 180);
+    if (this.renderer.complete) this.shine(light, turn);
     const small = this.modules[2].resized(camera, Math.ceil(scale * camera.width), Math.ceil(scale * camera.height));
     this.renderer.draw({ camera: small, channel: this.renderer.complete ? kChannels[channel] : 'albedo', room_from_object: turn, strength: light.scale, samples: 1, rough, coarse, highlight: 0, hidden: this.hiddenIndices() });
   }

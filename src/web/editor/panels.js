@@ -2,10 +2,11 @@
 // @ts-check
 /** Lists beside the view: parts, history, photographs. */
 import { byId, el, glyph, nameInPlace, toast } from './dom.js';
-import { getBlob } from './api.js';
+import { getBlob, postForBlob } from './api.js';
+import { resized } from '../camera.js';
 import { lookText, swatch } from './looks.js';
 import { partColors } from './select.js';
-import { Thumbs } from './thumbs.js';
+import { kHeight, kWidth, Thumbs } from './thumbs.js';
 
 /** @type {Record<string, string>} */
 const opNames = { paint: 'Paint', material: 'Material', light: 'Light', deform: 'Bend', remove: 'Remove', part: 'Part' };
@@ -89,10 +90,49 @@ export class HistoryPanel {
   /** @param {import('./store.js').Store} store @param {import('./stage.js').Stage} stage */
   constructor(store, stage) {
     this.store = store;
+    this.stage = stage;
     this.thumbs = new Thumbs();
+    /** @type {Set<string>} steps of which there is no picture, by key and what it would be of */
+    this.without = new Set();
+    this.fetching = false;
     store.on('state', () => this.draw());
-    store.on('mode', () => this.thumbs.clear());  // another object
+    store.on('mode', () => { this.thumbs.clear(); this.without.clear(); });  // another object
     stage.addEventListener('exact', () => this.keepThumb(stage));
+    stage.addEventListener('settled', () => this.fetchThumbs());
+    byId('history').addEventListener('scroll', () => this.fetchThumbs(), true);
+  }
+
+  /** The first step in sight without a picture: made by a command or in another window. @returns {{edit: import('./store.js').Edit | null, done: number} | undefined} */
+  missing() {
+    const steps = this.store.state.history.filter((e) => !e.set_aside);
+    const rows = [...byId('history').querySelectorAll('li[data-step]')], list = byId('history').querySelector('ul')?.getBoundingClientRect();
+    const inSight = rows.filter((row) => { const r = row.getBoundingClientRect(); return list && r.bottom > list.top && r.top < list.bottom; });
+    return inSight.map((row) => Number(/** @type {HTMLElement} */ (row).dataset.step)).map((done) => ({ edit: steps[done - 1] ?? null, done }))
+      .find(({ edit }) => !this.thumbOf(edit) && !this.without.has(this.thumbKey(edit).join()));
+  }
+
+  /** One after the other, while nothing else is to do. */
+  async fetchThumbs() {
+    if (this.fetching || !this.stage.settled()) return;
+    this.fetching = true;
+    for (let step = this.missing(); step && this.stage.settled(); step = this.missing()) if (!await this.fetchThumb(step)) break;
+    this.fetching = false;
+  }
+
+  /** @param {{edit: import('./store.js').Edit | null, done: number}} step @returns {Promise<boolean>} whether the history is still the same */
+  async fetchThumb({ edit, done }) {
+    const key = this.thumbKey(edit), { revision } = this.store.state;
+    this.without.add(key.join());  // not again, whatever comes
+    try {
+      const camera = resized(this.stage.camera.home.lens, kWidth, kHeight);
+      this.thumbs.keep(...key, await createImageBitmap(await postForBlob('step', { camera, samples: 2, done }, revision)));
+      byId('history').querySelector(`li[data-step="${done}"] .thumb`)?.replaceWith(this.thumb(edit, ''));  // the list stays where it was scrolled to
+    } catch (error) {
+      if (/** @type {any} */ (error).status !== 409) return true;
+      this.without.delete(key.join());
+      return false;
+    }
+    return true;
   }
 
   /** @param {import('./stage.js').Stage} stage */
@@ -122,7 +162,7 @@ export class HistoryPanel {
   row(e, index) {
     const { store } = this, text = describe(e), locked = store.state.read_only;
     const now = index === store.state.done - 1 && e.done;
-    return el('li', { class: [now ? 'on' : '', e.enabled ? '' : 'off', e.done ? '' : 'undone'].join(' ') }, el('div', { class: 'row' },
+    return el('li', { class: [now ? 'on' : '', e.enabled ? '' : 'off', e.done ? '' : 'undone'].join(' '), 'data-step': index + 1 }, el('div', { class: 'row' },
       this.thumb(e, opGlyphs[e.op] ?? 'paint'),
       el('button', { class: 'label', disabled: locked, title: e.done ? 'Go back to this step' : 'Go forward to this step', 'aria-current': now ? 'step' : undefined,
         onclick: () => store.change('goto', { done: index + 1 }) }, e.name || `${opNames[e.op] ?? e.op}`, ' ', el('span', { class: 'quiet' }, text)),
@@ -141,7 +181,7 @@ export class HistoryPanel {
     const { store } = this, all = store.state.history;
     const steps = all.filter((e) => !e.set_aside), aside = all.filter((e) => e.set_aside);
     const rows = steps.map((e, i) => this.row(e, i)).reverse();
-    const start = el('li', { class: store.state.done === 0 ? 'on' : '' }, el('div', { class: 'row' }, this.thumb(null, 'look'),
+    const start = el('li', { class: store.state.done === 0 ? 'on' : '', 'data-step': 0 }, el('div', { class: 'row' }, this.thumb(null, 'look'),
       el('button', { class: 'label', disabled: store.state.read_only, title: 'Go back to the object before all edits', 'aria-current': store.state.done === 0 ? 'step' : undefined,
         onclick: () => store.change('goto', { done: 0 }) }, 'As reconstructed')));
     byId('history').replaceChildren(el('h2', { id: 'history-title' }, 'History'),

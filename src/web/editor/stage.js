@@ -36,6 +36,7 @@ export class Stage extends EventTarget {
     this.light = { rotate: 0, scale: 1 };
     /** @type {string | null} token of the edit that is previewed */
     this.preview = null;
+    this.pulling = false;  // the page shows a shape that the program does not know yet
     /** @type {string | null} view whose photograph the camera stands at */
     this.photo = null;
     this.seq = 0;
@@ -62,6 +63,7 @@ export class Stage extends EventTarget {
     this.camera.home = { lens: this.camera.json(o.start.camera.width, o.start.camera.height), target: o.center };
     this.light = { rotate: 0, scale: 1 };
     this.preview = null;
+    this.pulling = false;
     this.photo = null;
     byId('cover').classList.remove('done');
     this.picture.getContext('2d')?.clearRect(0, 0, this.picture.width, this.picture.height);
@@ -132,9 +134,20 @@ export class Stage extends EventTarget {
   /** Shows an edit that is not kept, or none. @param {string | null} token @param {boolean} [look] whether it changes nothing but the look */
   async tryEdit(token, look = false) {
     this.preview = token;
+    this.pulling = false;
+    if (!token) this.live.letGo();
     if (token && look) await this.live.preview(token).catch(() => false);
     else if (!token) await this.live.refresh().catch(() => {});
     this.moved();
+  }
+
+  /** Shows at once nearly how handles pull the surface; the program's own shape comes by tryEdit(). @param {import('./pull.js').Handle[]} handles @param {number} reach @returns {boolean} whether it can */
+  pull(handles, reach) {
+    if (!this.live.shows(this.channel, this.light, null, this.photo) || !this.live.pull(handles, reach, this.store.part)) return false;
+    this.preview = null;
+    this.pulling = true;
+    this.moved();
+    return true;
   }
 
   /** The camera or what it sees has changed. */
@@ -168,6 +181,7 @@ export class Stage extends EventTarget {
     if (this.store.state.mode !== 'project') return;
     clearTimeout(this.timer);
     this.exact = null;
+    this.pulling = false;
     const kept = [...this.live.hidden].filter((name) => this.store.state.parts.some((p) => p.name === name));
     if (kept.length < this.live.hidden.size) this.hide(kept);
     this.live.refresh().catch(() => {});
@@ -176,6 +190,7 @@ export class Stage extends EventTarget {
   }
 
   rest() {
+    if (this.pulling) return;
     const own = this.live.hidden.size > 0 && this.live.renderer;
     if (this.isLive() && (own || !this.store.line.ready)) this.restLive(own ? 'some parts hidden' : '');
     if (own && (this.isLive() || !this.live.current())) return;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** What the page knows of the program: its state, and how to change it. One change at a time, in order. */
-import { ApiError, getJson, Line, postJson } from './api.js';
+import { ApiError, getJson, hasKey, Line, postJson } from './api.js';
 import { complain } from './dom.js';
+import { Newest } from './newest.js';
+import { started } from './start.js';
 
 /** @typedef {import('./messages.js').ProjectState} State of an open project; of other places it has `mode`, and what they show */
 /** @typedef {import('./messages.js').ObjectInfo} ObjectInfo */
@@ -23,16 +25,21 @@ export class Store extends EventTarget {
     this.lost = false;
     this.line = new Line();
     this.stranger = false;  // a program answers that does not know this page's key
+    let before = false;
     this.line.on('welcome', ({ complete }) => {
       this.stranger = false;
       this.setLost(false);
-      if (!complete) this.refresh();  // else the news that were missed say what is to be done
+      if (before && !complete) this.refresh();  // else the news that come now say what is to be done
+      before = true;
     });
     this.line.on('stranger', () => { this.stranger = true; this.setLost(true); });
     this.line.on('lost', () => this.setLost(true));
     this.line.on('state', (news) => this.hear(news));
     /** @type {Promise<any>} */
     this.queue = Promise.resolve();
+    this.begun = false;
+    this.refreshing = new Newest(() => this.refreshNow());
+    if (hasKey()) this.refresh();
   }
 
   /** @param {string} type @param {(detail: any) => void} listener */
@@ -49,22 +56,32 @@ export class Store extends EventTarget {
   /** The answer to a change of this window, which may be on its way, brings the same state. @param {{mode: string, revision: string}} news */
   async hear({ mode, revision }) {
     await this.queue;
+    await this.refreshing.running;
     if (mode !== 'project' || this.state.mode !== mode || this.state.revision !== revision) await this.refresh();
   }
 
-  async refresh() {
+  /** One after the other: two that take the same state would both open the object. */
+  refresh() { return this.refreshing.run(); }
+
+  async refreshNow() {
     try {
-      await this.take(await getJson('/api/state'));
+      const first = !this.begun;
+      this.begun = true;
+      if (!first) return await this.take(await getJson('/api/state'));
+      const got = await started;
+      if (!got) return;
+      this.line.far ||= got.far;
+      await this.take(got.state, got.object);
     } catch (error) {
       if (/** @type {any} */ (error).status !== 0) complain(error);
     }
   }
 
-  /** @param {any} state */
-  async take(state) {
+  /** @param {any} state @param {ObjectInfo} [object] that is open then */
+  async take(state, object) {
     const before = this.state;
     if (state.mode === 'project' && (before.mode !== 'project' || before.folder !== state.folder)) {
-      this.object = await getJson('/api/object');
+      this.object = object ?? await getJson('/api/object');
       this.part = null;
     }
     state.history ??= [];

@@ -2,7 +2,7 @@
 // @ts-check
 /** Small pictures of what edits did. The browser keeps them while the window is open, so that a reload of the page does not lose them. */
 
-const kWidth = 80, kHeight = 60;
+export const kWidth = 80, kHeight = 60;
 
 export class Thumbs {
   constructor() {
@@ -19,7 +19,7 @@ export class Thumbs {
     return stored && stored_of === of ? this.show(key, of, picture) : undefined;
   }
 
-  /** @param {string} key @param {string} of @param {HTMLCanvasElement} picture of any size */
+  /** @param {string} key @param {string} of @param {HTMLCanvasElement | ImageBitmap} picture of any size */
   keep(key, of, picture) {
     const small = document.createElement('canvas'), { width: w, height: h } = picture, s = Math.max(kWidth / w, kHeight / h);
     small.width = kWidth;
