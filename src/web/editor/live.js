@@ -4,12 +4,12 @@
 import { getBytes, postJson } from './api.js';
 import { partBall, partLooks } from './looks.js';
 import { Pace, steps } from './pace.js';
-import { Pull } from './pull.js';
 import { onItsWay } from './start.js';
-import { Sky } from './sun.js';
 
 /** @typedef {import('./light.js').Light} Light */
 /** @typedef {import('../pack.js').Pack} Pack */
+/** @typedef {import('./pull.js').Pull} Pull */
+/** @typedef {import('./sun.js').Sky} Sky */
 
 /** @type {Record<string, string>} channels of the program that the renderer knows */
 const kChannels = { rgb: 'lit', albedo: 'albedo', normal: 'normal', roughness: 'roughness' };
@@ -42,8 +42,12 @@ export class Live {
     this.sky = null;
     /** @type {{of: Pack[], sun: string}} the light that the renderer has */
     this.lit = { of: [], sun: '' };
+    /** @type {typeof import('./sun.js') | null} loaded with the first sun */
+    this.suns = null;
     /** @type {Pull | null} of the shape that was last pulled */
     this.puller = null;
+    /** @type {typeof import('./pull.js') | null} loaded when it is first pulled */
+    this.pulls = null;
     this.pulled = false;  // the renderer has a shape that is pulled by handles
     /** @type {Record<string, Pack>} those that say where the surface and parts are, by kind */
     this.surface = {};
@@ -164,7 +168,9 @@ export class Live {
   pull(handles, reach, part) {
     const { shape, look } = this.surface;
     if (!this.current()) return false;
-    if (this.puller?.shape !== shape) this.puller = new Pull(shape);
+    if (!this.pulls) import('./pull.js').then((module) => { this.pulls = module; }, () => {});
+    if (!this.pulls) return false;
+    if (this.puller?.shape !== shape) this.puller = new this.pulls.Pull(shape);
     const index = look.head.parts.indexOf(part), { material } = look.arrays, may = part ? (/** @type {number} */ v) => material[4 * v + 3] === index : () => true;
     const { positions, normals, min, size } = this.puller.moved(handles, reach, part ?? '', may);
     this.place(positions, normals, { ...shape.head, min, size });
@@ -188,9 +194,13 @@ export class Live {
   async prepareSun() {
     if (this.sunComes || !this.renderer) return;
     this.sunComes = true;
-    const bytes = await getBytes('/api/pack/sun').catch(() => null);  // else the program's frames show it
-    this.sunComes = bytes !== null;
-    if (bytes) this.sun = this.modules[1].readPack(bytes, 'sun');
+    try {
+      const [bytes, suns] = await Promise.all([getBytes('/api/pack/sun'), import('./sun.js')]);
+      this.suns = suns;
+      this.sun = this.modules[1].readPack(bytes, 'sun');
+    } catch {
+      this.sunComes = false;  // the program's frames show it
+    }
   }
 
   /**
@@ -221,7 +231,7 @@ export class Live {
     if (!from?.light || !from.vertex_light) return;
     const of = [from.light, from.vertex_light], same = (/** @type {Pack[]} */ packs) => of.every((p, i) => p === packs[i]);
     if (same(this.lit.of) && this.lit.sun === sun) return;
-    if (sun && !(this.sky && same(this.sky.of))) this.sky = { sky: new Sky(of[0], of[1], this.surface.shape, /** @type {Pack} */ (this.sun)), of };
+    if (sun && this.suns && !(this.sky && same(this.sky.of))) this.sky = { sky: new this.suns.Sky(of[0], of[1], this.surface.shape, /** @type {Pack} */ (this.sun)), of };
     for (const pack of sun && this.sky && light.sun ? this.sky.sky.with(light.sun, turn) : of) this.renderer.set(pack);
     this.lit = { of, sun };
   }

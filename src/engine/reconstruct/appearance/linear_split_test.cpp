@@ -6,6 +6,7 @@
 
 #include "core/base/error.h"
 #include "core/math/color.h"
+#include "core/math/quantile.h"
 #include "engine/reconstruct/appearance/find_light_frame.h"
 #include "engine/reconstruct/appearance/test_drawn.h"
 #include "model/light/envmap.h"
@@ -200,6 +201,21 @@ TEST(LinearSplit, TellsAMetalFromADielectric) {
 Vec3f gold_and_copper(Vec3f p) {
   const bool stripe = std::sin(9 * p.x + 4 * p.z) > 0;
   return stripe ? Vec3f{0.95f, 0.64f, 0.54f} : Vec3f{1.0f, 0.77f, 0.34f};
+}
+
+// The search begins at one roughness and must get far away from it in both directions.
+TEST(LinearSplit, FindsPorcelainBesideDullCopper) {
+  const Material above{0.5f, 0.5f, 1}, below{0.14f, 0.5f, 0};
+  const Drawn d = draw([&](Vec3f p) { return p.z > 0 ? above : below; },
+                       [](Vec3f p) { return p.z > 0 ? gold_and_copper(p) : paint(p); });
+  Progress quiet;
+  const LinearSplit split = linear_split(*d.transport, d.samples(), small(), quiet);
+  ASSERT_EQ(split.materials.size(), d.base.size());
+  std::vector<float> copper, porcelain;
+  for (const uint32_t v : seen(d))
+    (d.surface->mesh().positions[v].z > 0 ? copper : porcelain).push_back(split.materials[v].roughness);
+  EXPECT_NEAR(value_of_rank(copper, copper.size() / 2), above.roughness, 0.06);
+  EXPECT_NEAR(value_of_rank(porcelain, porcelain.size() / 2), below.roughness, 0.06);
 }
 
 // A body whose upper half is of metals and whose lower half is a rougher dielectric.

@@ -16,8 +16,10 @@ namespace {
 
 // Rounds of materials and light. A light that is too sharp and surfaces that are too rough explain the
 // photographs nearly as well as the truth, and each round takes off a fifth of what is wrong; but the
-// strength of the light creeps, too (docs/notebook/0022).
+// strength of the light creeps, too (docs/notebook/0022). So all but the last extend the change of the
+// roughness by kExtended, as in over-relaxation (docs/notebook/0035).
 constexpr int kRounds = 6;
+constexpr float kExtended = 2.5f;
 // Rounds of linearization for a turning light: without a guess, and with one.
 constexpr int kFirstTurns = 3, kTurns = 2;
 constexpr int kDiffusion = 20;     // steps, of evidence over the surface
@@ -147,7 +149,8 @@ LitSamples SplitSolver::lit_samples(const SplitUnknowns& x) {
 }
 
 // A vertex far from all samples keeps its material.
-void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, SplitMaterials& materials) {
+void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, float extended,
+                                   SplitMaterials& materials) {
   const std::vector<Vec3f> white = white_radiance({x, materials, 0}, max_albedo);
   MaterialEvidence evidence = lit_samples(x).evidence(white);
   diffuse_evidence(mesh_, mean_colors(mesh_.positions.size(), rows_), kDiffusion, evidence);
@@ -155,8 +158,11 @@ void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, Spl
     if (evidence.samples[v] <= 0) continue;
     const BestMaterials b = best_materials(evidence.of(v));
     const bool metal = b.metal_error < kMetalBy * b.dielectric_error;
-    materials.of[v] = {metal ? b.metal_roughness : b.dielectric_roughness, kUsualSpecular,
-                       metal ? 1.0f : 0.0f};
+    float roughness = metal ? b.metal_roughness : b.dielectric_roughness;
+    if (const float before = materials.of[v].roughness; metal == materials.is_metal(uint32_t(v)))
+      roughness = clamp(before * std::pow(roughness / before, extended), BlurLadder::roughness(0),
+                        BlurLadder::roughness(BlurLadder::kLevels - 1));
+    materials.of[v] = {roughness, kUsualSpecular, metal ? 1.0f : 0.0f};
   }
 }
 
@@ -233,7 +239,8 @@ SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {
   for (int round = 0; round < kRounds; ++round) {
     check_cancelled(progress_);
     system_.set_materials(s.materials);
-    choose_materials(s.x, round + 1 < kRounds ? kFirstWhite : kLastWhite, s.materials);
+    const bool last = round + 1 == kRounds;
+    choose_materials(s.x, last ? kLastWhite : kFirstWhite, last ? 1 : kExtended, s.materials);
     fix_scale(s);
     s = solved(std::move(s), 2, 8);
     system_.set_materials(s.materials);

@@ -61,7 +61,8 @@ class SplitSolver {
   SplitSolution with_fitted_metals(SplitSolution, int rounds, int steps);
   SplitSolution finish(SplitSolution, bool metal, float roughness);
   LitSamples lit_samples(const SplitUnknowns&);
-  void choose_materials(const SplitUnknowns&, float max_albedo, SplitMaterials&);
+  // extended: by which the change of a roughness is multiplied, over its logarithm.
+  void choose_materials(const SplitUnknowns&, float max_albedo, float extended, SplitMaterials&);
   void fix_scale(SplitSolution&);
   std::vector<Vec3f> white_radiance(const SplitSolution&, float albedo) const;
 
