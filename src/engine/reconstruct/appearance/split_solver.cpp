@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/base/cancel.h"
 #include "core/base/error.h"
@@ -14,12 +15,15 @@
 namespace cei3d {
 namespace {
 
-// Rounds of materials and light. A light that is too sharp and surfaces that are too rough explain the
-// photographs nearly as well as the truth, and each round takes off a fifth of what is wrong; but the
-// strength of the light creeps, too (docs/notebook/0022). So all but the last extend the change of the
-// roughness by kExtended, as in over-relaxation (docs/notebook/0035).
-constexpr int kRounds = 6;
-constexpr float kExtended = 2.5f;
+// Rounds of materials and light: as many as lower the residual, from one plain round to the next below this
+// share of it. A light that is too sharp and surfaces that are too rough explain the photographs nearly as
+// well as the truth, and a round takes off a fifth of what is wrong or less (docs/notebook/0022). So every
+// second round multiplies the change of the roughness by kExtended; the plain ones between take back what it
+// overshoots where a round would have arrived at once (docs/notebook/0035). They also decide on the strength
+// of the light, which would creep with more of them where dielectrics say little.
+constexpr int kMinRounds = 6, kMaxRounds = 14;
+constexpr double kArrived = 0.98;
+constexpr float kExtended = 4;
 // Rounds of linearization for a turning light: without a guess, and with one.
 constexpr int kFirstTurns = 3, kTurns = 2;
 constexpr int kDiffusion = 20;     // steps, of evidence over the surface
@@ -213,9 +217,7 @@ float colored_metal_peak(const SplitMaterials& materials) {
 void SplitSolver::fix_scale(SplitSolution& s) {
   constexpr float kPeak = 0.94f;
   constexpr float kPeakError = 0.2f, kDielectricError = 0.1f;  // standard deviations of the logarithms
-  system_.set_materials(s.materials);
-  s.materials.color = system_.fit_metal_color(s.x);
-  if (s.materials.metal_share() > 1 - kFewVertices) return;  // decided after the separation
+  if (s.materials.metal_share() > 1 - kFewVertices) return;    // decided after the separation
   const Vec3f of_dielectrics = lit_samples(s.x).light_scale(s.materials, mesh_.positions).factor;
   scale(s, of_dielectrics);
   const float peak = colored_metal_peak(s.materials);
@@ -236,17 +238,24 @@ LightScale SplitSolver::light_correction(const SplitSolution& s) {
 }
 
 SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {
-  for (int round = 0; round < kRounds; ++round) {
+  double before = std::numeric_limits<double>::infinity();
+  for (int round = 0; round < kMaxRounds; ++round) {
     check_cancelled(progress_);
+    const bool extended = round % 2 == 0;
     system_.set_materials(s.materials);
-    const bool last = round + 1 == kRounds;
-    choose_materials(s.x, last ? kLastWhite : kFirstWhite, last ? 1 : kExtended, s.materials);
-    fix_scale(s);
+    choose_materials(s.x, round + 1 < kMinRounds ? kFirstWhite : kLastWhite, extended ? kExtended : 1,
+                     s.materials);
+    system_.set_materials(s.materials);
+    s.materials.color = system_.fit_metal_color(s.x);
+    if (!extended) fix_scale(s);
     s = solved(std::move(s), 2, 8);
     system_.set_materials(s.materials);
     s.residual = system_.residual(s.x);
     progress_.log(Json{{"stage", "materials"}, {"round", round}, {"residual", s.residual}}.dump());
+    if (extended) continue;
     if (s.residual > max_residual) return s;
+    if (round + 1 >= kMinRounds && s.residual > kArrived * before) break;
+    before = s.residual;
   }
   remember(s.x);
   return s;
@@ -255,7 +264,7 @@ SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {
 SplitSolution SplitSolver::with_materials(const SplitMaterials& materials) {
   SplitSolution s = guess(materials);
   for (int round = 0; round < 3; ++round) {
-    s = solved(std::move(s), 3, 8);
+    s = with_fitted_metals(std::move(s), 3, 8);
     fix_scale(s);
   }
   system_.set_materials(s.materials);
