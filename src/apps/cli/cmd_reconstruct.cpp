@@ -125,7 +125,7 @@ void add_view_options(CLI::App* verb, Options& o) {
 
 void add_fit_options(CLI::App* verb, Options& o) {
   verb->add_option("--poses", o.poses,
-                   "Poses of the training cameras, and their focal length. auto: aligned with the object "
+                   "Poses of the training cameras. auto: aligned with the object "
                    "where that explains the photographs better. given: as the capture has them")
       ->check(CLI::IsMember({"auto", "given"}))
       ->capture_default_str();

@@ -65,13 +65,10 @@ export class Store extends EventTarget {
 
   async refreshNow() {
     try {
-      const first = !this.begun;
+      const got = this.begun ? null : await started;
       this.begun = true;
-      if (!first) return await this.take(await getJson('/api/state'));
-      const got = await started;
-      if (!got) return;
-      this.line.far ||= got.far;
-      await this.take(got.state, got.object);
+      this.line.far ||= got?.far ?? false;
+      await this.take(got?.state ?? await getJson('/api/state'), got?.object);
     } catch (error) {
       if (/** @type {any} */ (error).status !== 0) complain(error);
     }
