@@ -249,7 +249,6 @@ SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {
     s.materials.color = system_.fit_metal_color(s.x);
     if (!extended) fix_scale(s);
     s = solved(std::move(s), 2, 8);
-    system_.set_materials(s.materials);
     s.residual = system_.residual(s.x);
     progress_.log(Json{{"stage", "materials"}, {"round", round}, {"residual", s.residual}}.dump());
     if (extended) continue;
