@@ -166,7 +166,7 @@ std::string Editor::revision() const {
 
 void Editor::give_back_memory() {
   constexpr uint64_t kOften = 16;
-  if (++memory_used_ % kOften == 0)
+  if (++holes_left_ % kOften == 0)
     worker_->background([](Session&) {
       give_back_holes();
       return false;

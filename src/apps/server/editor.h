@@ -177,8 +177,8 @@ class Editor : public HttpApp, private JobListener {
   bool first_frame_ = false;                           // the object that is open has had no frame yet
   std::vector<std::function<void()>> held_packs_;      // requests that wait for it
   std::atomic<uint64_t> tokens_ = 0;
-  std::atomic<uint64_t> memory_used_ = 0;  // changes and windows that left holes in it
-  std::unique_ptr<Worker> worker_;         // last: it uses the others
+  std::atomic<uint64_t> holes_left_ = 0;  // changes and closed windows, whose memory has holes
+  std::unique_ptr<Worker> worker_;        // last: it uses the others
 };
 
 }  // namespace cei3d
