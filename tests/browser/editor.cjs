@@ -195,6 +195,7 @@ async function distinctNames(page) {
 
 async function exports(page) {
   await page.click('#export');
+  await page.waitForSelector('#dialog[open]');
   await accessible(page, 'export');
   await picture(page, '9-export');
   check('an export arrives', (await exported(page, 'PLY')).bytes.subarray(0, 3).toString() === 'ply');
@@ -220,6 +221,7 @@ async function exports(page) {
   check('what cannot be exported is said in the dialog', true);
   await page.keyboard.press('Escape');
   await page.keyboard.press('?');
+  await page.waitForSelector('#dialog[open]');
   await picture(page, '10-help');
   await accessible(page, 'help');
   await page.keyboard.press('Escape');
@@ -328,6 +330,7 @@ async function keyboardOnly(page) {
   check('light by keys alone', (await state(page)).history[done + 2].params.rotate_degrees === 5);
   await settled(page);
   await keyboard.press('Control+s');
+  await page.waitForSelector('#dialog[open]');
   await tabTo(page, '[data-export="PLY"]');
   const [download] = await Promise.all([page.waitForEvent('download'), keyboard.press('Enter')]);
   check('export by keys alone', download.suggestedFilename() === 'spot.ply');

@@ -7,7 +7,7 @@ const [program, project, pictures, executablePath] = process.argv.slice(2);
 fs.mkdirSync(pictures, { recursive: true });
 const picture = picturesIn(pictures);
 
-const mode = (page, name) => page.waitForFunction((m) => globalThis.cei3d?.store.state.mode === m, name, { timeout: 60000 });
+const mode = (page, name) => page.waitForFunction((m) => globalThis.cei3d?.store.state.mode === m && document.querySelector('#place .column'), name, { timeout: 60000 });
 const seen = (page) => page.waitForFunction(() => document.getElementById('making-picture')?.naturalWidth > 50, null, { timeout: 60000 });
 
 /** How many pixels of the picture are not its white ground. */

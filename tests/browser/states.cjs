@@ -10,7 +10,7 @@ const [program, folder, pictures, executablePath] = process.argv.slice(2);
 fs.mkdirSync(pictures, { recursive: true });
 const picture = picturesIn(pictures);
 const opened = (name, flags, test) => withPage({ program, project: path.join(folder, name), executablePath, picture, flags }, test);
-const mode = (page, name) => page.waitForFunction((m) => globalThis.cei3d?.store.state.mode === m, name, { timeout: 30000 });
+const mode = (page, name) => page.waitForFunction((m) => globalThis.cei3d?.store.state.mode === m && document.querySelector('#place .column'), name, { timeout: 30000 });
 
 async function explainsItself({ page, context, server }) {
   await context.grantPermissions(['clipboard-read', 'clipboard-write']);
@@ -85,6 +85,7 @@ async function onlyLooks({ page, server }) {
   check('the brush stays where it is', await page.evaluate(() => document.querySelector('[data-tool="look"]').getAttribute('aria-checked')) === 'true');
   await accessible(page, 'looking only');
   await page.click('#export');
+  await page.waitForSelector('#dialog[open]');
   check('nothing but the picture can be saved', (await page.locator('[data-export]').evaluateAll((list) => list.map((b) => b.dataset.export))).join() === 'Picture');
   await accessible(page, 'looking only, export');
 }

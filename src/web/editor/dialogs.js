@@ -1,13 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Export and help. */
-import { byId, el, openDialog } from './dom.js';
+/** Export and help; loaded with the first of them. */
+import { byId, el } from './dom.js';
 import { getBlob, postJson } from './api.js';
 import { gestures, keyTable, written } from './keys.js';
 import { setSingleKeys, singleKeys } from './settings.js';
 
+/** Opens the one dialog. @param {string} title @param {...(Node | string)} content */
+function openDialog(title, ...content) {
+  const dialog = byId('dialog');
+  dialog.replaceChildren(el('div', { class: 'inside' }, el('h2', { id: 'dialog-title' }, title), ...content));
+  if (!dialog.open) dialog.showModal();
+  dialog.scrollTop = 0;
+}
+
 /** @param {Blob} blob @param {string} name */
-export function save(blob, name) {
+function save(blob, name) {
   const a = el('a', { href: URL.createObjectURL(blob), download: name });
   document.body.append(a);
   a.click();

@@ -92,14 +92,3 @@ export function nameInPlace(node, name, label, done) {
   input.focus();
   input.select();
 }
-
-/**
- * Opens the one dialog. @param {string} title @param {...(Node | string)} content @returns {HTMLDialogElement}
- */
-export function openDialog(title, ...content) {
-  const dialog = byId('dialog');
-  dialog.replaceChildren(el('div', { class: 'inside' }, el('h2', { id: 'dialog-title' }, title), ...content));
-  if (!dialog.open) dialog.showModal();
-  dialog.scrollTop = 0;
-  return dialog;
-}

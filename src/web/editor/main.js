@@ -3,7 +3,6 @@
 /** The editor: puts its pieces together. */
 import { hasKey, postJson } from './api.js';
 import { byId, complain, el, glyph, toast } from './dom.js';
-import { exportDialog, helpDialog } from './dialogs.js';
 import { BendTool } from './bend.js';
 import { DecalTool } from './decal.js';
 import { GrabTool } from './grab.js';
@@ -12,7 +11,6 @@ import { actionOf, isSingle, keyOf } from './keys.js';
 import { LightTool } from './light.js';
 import { PaintTool } from './paint.js';
 import { HistoryPanel, PartsPanel, PhotoStrip } from './panels.js';
-import { Places } from './places.js';
 import { MaterialTool, objectPanel } from './properties.js';
 import { PartOverlay, PartTool } from './select.js';
 import { singleKeys } from './settings.js';
@@ -107,6 +105,17 @@ function goToPhoto(name) {
   stage.moved();
 }
 
+/** @type {typeof import('./dialogs.js') | null} loaded with the first one */
+let dialogs = null;
+
+/** @param {'exportDialog' | 'helpDialog'} name */
+async function openDialog(name) {
+  // Not asked for while nobody answers: a browser may remember that a module did not come.
+  if (!store.lost || store.stranger) dialogs ??= await import('./dialogs.js').catch(() => null);
+  if (dialogs) dialogs[name](store, stage);
+  else complain('The program does not answer.');
+}
+
 const strip = new PhotoStrip(store, stage, goToPhoto);
 let comparing = false, holding = false;
 
@@ -155,7 +164,7 @@ function drawActions() {
       ...channels.map(([value, text]) => el('option', { value, selected: value === stage.channel }, text))),
     el('button', { id: 'compare', 'aria-pressed': String(comparing), disabled: !strip.views.length,
       title: strip.views.length ? `Compare with a photograph (${keyOf('compare')})` : 'The photographs are not where they were when the object was made', onclick: compare }, 'Compare'),
-    el('button', { class: 'primary', id: 'export', title: `Export (${keyOf('export')})`, onclick: () => exportDialog(store, stage) }, 'Export'));
+    el('button', { class: 'primary', id: 'export', title: `Export (${keyOf('export')})`, onclick: () => openDialog('exportDialog') }, 'Export'));
 }
 
 function drawSaved() {
@@ -206,7 +215,7 @@ const actions = {
   'next-photo': () => strip.next(1), 'previous-photo': () => strip.next(-1),
   'hold-photo': () => { if (!stage.photo && strip.views.length) strip.next(1); holding = true; drawPhoto(); },
   channel: nextChannel, reticle: () => input.toggleReticle(), hold, bare: () => { document.body.classList.toggle('bare'); },
-  export: () => exportDialog(store, stage), help: helpDialog,
+  export: () => openDialog('exportDialog'), help: () => openDialog('helpDialog'),
 };
 
 window.addEventListener('keydown', (e) => {
@@ -241,12 +250,18 @@ function take(file, at) {
 stage.addEventListener('options', () => { drawOptions(); drawProperties(); });
 stage.addEventListener('hidden', () => { if (stage.live.hidden.size && tool.down) choose('look'); });
 
-new Places(store);
 const partsPanel = new PartsPanel(store, stage, { newPart: () => choose('part'), remove });
 new HistoryPanel(store, stage);
-byId('help').addEventListener('click', helpDialog);
+byId('help').addEventListener('click', () => openDialog('helpDialog'));
 byId('back').addEventListener('click', async () => { try { await store.take(await postJson('close')); } catch (error) { complain(error); } });
 byId('job-stop').addEventListener('click', () => postJson('cancel').catch(complain));
+
+/** @type {Promise<void> | null} */
+let places = null;
+function showPlaces() {
+  byId('hint').textContent = '';
+  places ??= import('./places.js').then(({ Places }) => { new Places(store); }, complain);
+}
 
 let jobTimer = 0;
 store.line.on('progress', (p) => {
@@ -264,7 +279,7 @@ store.on('state', (state) => {
   document.title = state.name ? `${state.name} · CEI-3D` : 'CEI-3D';
   byId('name').textContent = state.name ?? '';
   byId('back').hidden = !state.can_close;
-  if (state.mode !== 'project') byId('hint').textContent = '';
+  if (state.mode !== 'project') showPlaces();
   drawActions();
   drawSaved();
   drawTools();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** What is shown when no object is open: a folder, a capture with what its check found, a reconstruction that runs. */
+/** What is shown when no object is open: a folder, a capture with what its check found, a reconstruction that runs. Loaded then. */
 import { byId, complain, el, toast } from './dom.js';
 import { getBlob, postJson } from './api.js';
 
@@ -31,8 +31,8 @@ export class Places {
   /** @param {import('./store.js').Store} store */
   constructor(store) {
     this.store = store;
-    this.seen = '';
     store.on('state', (state) => this.draw(state));
+    this.draw(store.state);
     store.line.on('making', () => this.show());
     store.line.on('progress', (p) => { if (p.job === 'reconstruct') this.progress(p); });
   }
@@ -100,7 +100,6 @@ export class Places {
 
   /** @param {number} seconds @param {boolean} resume */
   async start(seconds, resume) {
-    this.seen = '';
     try {
       await postJson('reconstruct', resume ? { resume: true } : { seconds });
     } catch (error) { complain(error); }
