@@ -160,21 +160,20 @@ export class HistoryPanel {
 
   /** @param {import('./store.js').Edit} e @param {number} index */
   row(e, index) {
-    const { store } = this, text = describe(e), locked = store.state.read_only;
+    const { store } = this, locked = store.state.read_only;
     const now = index === store.state.done - 1 && e.done;
+    const label = el('button', { class: 'label', disabled: locked, title: e.done ? 'Go back to this step' : 'Go forward to this step', 'aria-current': now ? 'step' : undefined,
+      onclick: () => store.change('goto', { done: index + 1 }) }, e.name || (opNames[e.op] ?? e.op), ' ', el('span', { class: 'quiet' }, describe(e)));
     return el('li', { class: [now ? 'on' : '', e.enabled ? '' : 'off', e.done ? '' : 'undone'].join(' '), 'data-step': index + 1 }, el('div', { class: 'row' },
-      this.thumb(e, opGlyphs[e.op] ?? 'paint'),
-      el('button', { class: 'label', disabled: locked, title: e.done ? 'Go back to this step' : 'Go forward to this step', 'aria-current': now ? 'step' : undefined,
-        onclick: () => store.change('goto', { done: index + 1 }) }, e.name || `${opNames[e.op] ?? e.op}`, ' ', el('span', { class: 'quiet' }, text)),
-      el('button', { 'aria-label': `Rename ${e.id}`, title: 'Rename', disabled: locked, onclick: () => this.rename(e) }, glyph('pencil')),
+      this.thumb(e, opGlyphs[e.op] ?? 'paint'), label,
+      el('button', { 'aria-label': `Rename ${e.id}`, title: 'Rename', disabled: locked, onclick: () => this.rename(e, label) }, glyph('pencil')),
       el('button', { 'aria-label': e.enabled ? `Switch ${e.id} off` : `Switch ${e.id} on`, title: e.enabled ? 'Switch off' : 'Switch on', 'aria-pressed': String(!e.enabled), disabled: locked,
         onclick: () => store.change('toggle', { id: e.id }) }, glyph(e.enabled ? 'eye' : 'hidden'))));
   }
 
-  /** @param {import('./store.js').Edit} e */
-  rename(e) {
-    const label = [...byId('history').querySelectorAll('.label')].find((r) => r.dataset.id === e.id);
-    if (label) nameInPlace(label, e.name ?? '', `Name of ${e.id}`, (name) => { if (name === null) this.draw(); else this.store.change('rename', { id: e.id, name }); });
+  /** @param {import('./store.js').Edit} e @param {Element} label */
+  rename(e, label) {
+    nameInPlace(label, e.name ?? '', `Name of ${e.id}`, (name) => { if (name === null) this.draw(); else this.store.change('rename', { id: e.id, name }); });
   }
 
   draw() {
@@ -186,7 +185,6 @@ export class HistoryPanel {
         onclick: () => store.change('goto', { done: 0 }) }, 'As reconstructed')));
     byId('history').replaceChildren(el('h2', { id: 'history-title' }, 'History'),
       el('ul', { class: 'list tall' }, ...rows, start, ...(aside.length ? [this.aside(aside)] : [])));
-    [...byId('history').querySelectorAll('li .label')].forEach((node, i) => { if (i < steps.length) node.dataset.id = steps[steps.length - 1 - i].id; });
   }
 
   /** @param {import('./store.js').Edit[]} aside */
