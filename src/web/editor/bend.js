@@ -2,7 +2,7 @@
 // @ts-check
 /** Bend with several handles at once, which are moved and turned, and with pins that hold the surface where it is. */
 import { add, dot, mul, pointAt, seen, sub, length } from './camera.js';
-import { complain, el, toast } from './dom.js';
+import { complain, el, field, select, slider, toast } from './dom.js';
 import { postJson } from './api.js';
 import { ring } from './paint.js';
 import { ShapeTrial } from './trial.js';
@@ -35,10 +35,8 @@ export class BendTool {
 
   options() {
     return [
-      el('label', {}, 'A click sets', el('select', { id: 'bend-sets', onchange: (/** @type {any} */ e) => { this.sets = e.target.value; } },
-        ...[['handle', 'a handle'], ['pin', 'a pin']].map(([v, t]) => el('option', { value: v, selected: this.sets === v }, t)))),
-      el('label', {}, 'Reach', el('input', { type: 'range', min: '0.03', max: '1', step: 'any', value: String(this.reach), id: 'bend-reach',
-        oninput: (/** @type {any} */ e) => { this.reach = Number(e.target.value); this.preview(); } })),
+      el('label', {}, 'A click sets', select({ id: 'bend-sets' }, [['handle', 'a handle'], ['pin', 'a pin']], this.sets, (sets) => { this.sets = sets; })),
+      el('label', {}, 'Reach', slider('bend-reach', [0.03, 1], this.reach, (reach) => { this.reach = reach; this.preview(); })),
       el('button', { class: 'primary of-trial', id: 'bend-keep', onclick: () => this.keep() }, 'Keep'),
       el('button', { class: 'of-trial', onclick: () => this.drop() }, 'Discard'),
     ];
@@ -49,16 +47,13 @@ export class BendTool {
     const p = this.selected;
     if (!p || p.pin) return [el('p', {}, this.points.length ? 'Select a handle to move and turn it.' : 'Click on the object to set handles and pins.')];
     const [right, down] = this.stage.camera.axes, size = this.store.object.radius, moved = sub(p.to, p.from);
-    const slider = (/** @type {string} */ id, /** @type {string} */ label, /** @type {number} */ most, /** @type {number} */ value, /** @type {(v: number) => void} */ set) => {
-      const out = el('output', {}, value.toFixed(2));
-      return el('label', { class: 'field' }, label, el('input', { type: 'range', id, min: String(-most), max: String(most), step: 'any', value: String(value),
-        oninput: (/** @type {any} */ e) => { set(Number(e.target.value)); out.textContent = Number(e.target.value).toFixed(2); this.stage.redraw(); this.preview(); } }), out);
-    };
+    const move = (/** @type {string} */ id, /** @type {string} */ label, /** @type {number} */ most, /** @type {number} */ value, /** @type {(v: number) => void} */ set) =>
+      field(label, id, [-most, most], value, (v) => v.toFixed(2), (v) => { set(v); this.stage.redraw(); this.preview(); });
     const along = (/** @type {Vec} */ axis) => (/** @type {number} */ v) => { p.to = add(p.to, mul(axis, v * size - dot(sub(p.to, p.from), axis))); };
     return [
-      slider('bend-right', 'Right', 1, dot(moved, right) / size, along(right)),
-      slider('bend-up', 'Up', 1, -dot(moved, down) / size, along(mul(down, -1))),
-      slider('bend-turn', 'Turned', 180, p.degrees, (v) => { p.axis = this.stage.camera.axes[2]; p.degrees = v; }),
+      move('bend-right', 'Right', 1, dot(moved, right) / size, along(right)),
+      move('bend-up', 'Up', 1, -dot(moved, down) / size, along(mul(down, -1))),
+      move('bend-turn', 'Turned', 180, p.degrees, (v) => { p.axis = this.stage.camera.axes[2]; p.degrees = v; }),
     ];
   }
 

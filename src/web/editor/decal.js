@@ -2,7 +2,7 @@
 // @ts-check
 /** A picture that lies on the object: moved, turned, scaled, and then pressed into its color. */
 import { cornersOf, ontoCorners } from './camera.js';
-import { complain, el, toast } from './dom.js';
+import { complain, el, slider, toast } from './dom.js';
 import { postJson, upload } from './api.js';
 import { Newest } from './newest.js';
 import { dashed, polygon } from './paint.js';
@@ -35,11 +35,10 @@ export class DecalTool {
   tries() { return this.place !== null; }
 
   options() {
-    const slider = (/** @type {string} */ label, /** @type {'width' | 'turn'} */ key, /** @type {number} */ min, /** @type {number} */ max) =>
-      el('label', {}, label, el('input', { type: 'range', id: `decal-${key}`, min: String(min), max: String(max), step: 'any', value: String(this[key]),
-        oninput: (/** @type {any} */ e) => { this[key] = Number(e.target.value); this.locate(); }, onchange: () => this.preview() }));
+    const row = (/** @type {string} */ label, /** @type {'width' | 'turn'} */ key, /** @type {number} */ min, /** @type {number} */ max) =>
+      el('label', {}, label, slider(`decal-${key}`, [min, max], this[key], (value) => { this[key] = value; this.locate(); }, { onchange: () => this.preview() }));
     return [
-      el('button', { id: 'decal-choose', onclick: () => this.choose() }, 'Picture…'), slider('Size', 'width', 0.02, 2), slider('Turned', 'turn', -180, 180),
+      el('button', { id: 'decal-choose', onclick: () => this.choose() }, 'Picture…'), row('Size', 'width', 0.02, 2), row('Turned', 'turn', -180, 180),
       el('button', { class: 'primary of-trial', id: 'decal-keep', onclick: () => this.keep() }, 'Press in'), el('button', { class: 'of-trial', onclick: () => this.drop() }, 'Discard'),
     ];
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Export and help; loaded with the first of them. */
-import { byId, el } from './dom.js';
+import { byId, el, select } from './dom.js';
 import { getBlob, postJson } from './api.js';
 import { gestures, keyTable, written } from './keys.js';
 import { setSingleKeys, singleKeys } from './settings.js';
@@ -55,8 +55,7 @@ export const formats = [
 const kTurntableSide = 1024;  // pixels
 
 /** @param {string} key @param {string} label @param {[string, string][]} list of value and text */
-const choose = (key, label, list) => el('label', { class: 'field' }, label,
-  el('select', { id: `export-${key}` }, ...list.map(([value, text]) => el('option', { value }, text))));
+const choose = (key, label, list) => el('label', { class: 'field' }, label, select({ id: `export-${key}` }, list, ''));
 /** @param {string} key @param {string} label @param {object} attributes */
 const number = (key, label, attributes) => el('label', { class: 'field wide' }, label, el('input', { type: 'number', id: `export-${key}`, ...attributes }));
 

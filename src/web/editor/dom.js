@@ -21,6 +21,23 @@ export function el(tag, attributes = {}, ...children) {
   return node;
 }
 
+/** A choice. @param {Record<string, any>} attributes @param {string[][]} list of value and text @param {string} value that is chosen @param {(value: string) => void} [set] */
+export const select = (attributes, list, value, set) => el('select', { ...attributes, onchange: set && ((/** @type {any} */ e) => set(e.target.value)) },
+  ...list.map(([v, text]) => el('option', { value: v, selected: v === value }, text)));
+
+/** @param {string} id @param {[number, number, (number | string)?]} range least, most, step @param {number} value @param {(value: number) => void} set @param {Record<string, any>} [more] attributes */
+export const slider = (id, [min, max, step = 'any'], value, set, more) => el('input', { type: 'range', id, min, max, step: String(step), value: String(value),
+  oninput: (/** @type {any} */ e) => set(Number(e.target.value)), ...more });
+
+/**
+ * A slider of a panel, and what it says. @param {string} label @param {string} id @param {[number, number, (number | string)?]} range @param {number} value
+ * @param {(value: number) => string} text @param {(value: number) => void} set @param {Record<string, any>} [more] attributes of the slider
+ */
+export function field(label, id, range, value, text, set, more) {
+  const out = el('output', {}, text(value));
+  return el('label', { class: 'field' }, label, slider(id, range, value, (v) => { set(v); out.textContent = text(v); }, more), out);
+}
+
 /** @param {string} id @returns {any} */
 export const byId = (id) => document.getElementById(id);
 

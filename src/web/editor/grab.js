@@ -2,7 +2,7 @@
 // @ts-check
 /** Grab and bend: a point of the surface is dragged in the plane of the picture, its surroundings follow. */
 import { pointAt, seen } from './camera.js';
-import { el } from './dom.js';
+import { el, slider } from './dom.js';
 import { postJson } from './api.js';
 import { ring } from './paint.js';
 import { ShapeTrial } from './trial.js';
@@ -28,8 +28,7 @@ export class GrabTool {
   options() {
     const part = this.store.part;
     return [
-      el('label', {}, 'Reach', el('input', { type: 'range', min: '0.03', max: '1', step: 'any', value: String(this.reach), id: 'grab-reach',
-        oninput: (/** @type {any} */ e) => { this.reach = Number(e.target.value); this.stage.redraw(); } })),
+      el('label', {}, 'Reach', slider('grab-reach', [0.03, 1], this.reach, (reach) => { this.reach = reach; this.stage.redraw(); })),
       el('span', {}, part ? `Only the part ${part} moves.` : 'The whole object can move.'),
     ];
   }

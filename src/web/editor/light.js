@@ -3,7 +3,7 @@
 /** Light: turned, scaled, replaced by an environment, with a sun. It is looked under at once; Keep makes it an edit. */
 import { drawBall, mirrored, radianceOf } from './ball.js';
 import { add, cross, dot, mul, unit } from './camera.js';
-import { complain, el, toast } from './dom.js';
+import { complain, el, field, toast } from './dom.js';
 import { upload } from './api.js';
 import { rotation } from '../camera.js';
 
@@ -12,11 +12,7 @@ import { rotation } from '../camera.js';
 
 const kBall = 120;  // pixels
 
-/** @param {string} label @param {object} attributes of the slider @param {string} text */
-function field(label, attributes, text) {
-  const out = el('output', {}, text);
-  return { out, node: el('label', { class: 'field' }, label, el('input', { type: 'range', ...attributes }), out) };
-}
+const degreesOf = (/** @type {number} */ v) => `${Math.round(v)}°`;
 
 export class LightTool {
   /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store @param {() => void} changed */
@@ -40,14 +36,12 @@ export class LightTool {
 
   panel() {
     const l = this.stage.light;
-    const number = (/** @type {any} */ e) => Number(e.target.value);
-    const turned = field('Turned', { min: '-180', max: '180', step: '1', value: String(l.rotate), id: 'light-rotate',
-      oninput: (/** @type {any} */ e) => { this.show({ rotate: number(e) }); turned.out.textContent = `${e.target.value}°`; }, ondblclick: () => this.set({ rotate: 0 }) }, `${Math.round(l.rotate)}°`);
-    const bright = field('Strength', { min: '-2', max: '2', step: '0.05', value: String(Math.log2(l.scale)), id: 'light-scale',
-      oninput: (/** @type {any} */ e) => { this.show({ scale: 2 ** number(e) }); bright.out.textContent = this.stage.light.scale.toFixed(2); }, ondblclick: () => this.set({ scale: 1 }) }, l.scale.toFixed(2));
     return [
       el('p', {}, this.file && l.env ? `Looking under ${this.file}.` : 'The object’s light, as edited so far.'),
-      this.makeBall(), turned.node, bright.node, ...this.sunFields(),
+      this.makeBall(),
+      field('Turned', 'light-rotate', [-180, 180, 1], l.rotate, degreesOf, (rotate) => this.show({ rotate }), { ondblclick: () => this.set({ rotate: 0 }) }),
+      field('Strength', 'light-scale', [-2, 2, 0.05], Math.log2(l.scale), (v) => (2 ** v).toFixed(2), (v) => this.show({ scale: 2 ** v }), { ondblclick: () => this.set({ scale: 1 }) }),
+      ...this.sunFields(),
       el('div', { class: 'buttons' },
         el('button', { onclick: () => this.choose() }, 'Environment…'),
         el('button', { class: 'primary', id: 'light-keep', onclick: () => this.keep() }, 'Keep'),
@@ -73,13 +67,11 @@ export class LightTool {
       const [a, b, up] = this.upright(), t = angles.around * Math.PI / 180, h = angles.height * Math.PI / 180;
       this.putSun(add(mul(add(mul(a, Math.cos(t)), mul(b, Math.sin(t))), Math.cos(h)), mul(up, Math.sin(h))));
     };
-    const around = field('Sun around', { min: '-180', max: '180', step: '1', value: String(angles.around), id: 'sun-around',
-      oninput: (/** @type {any} */ e) => { angles.around = Number(e.target.value); put(); around.out.textContent = `${e.target.value}°`; } }, `${Math.round(angles.around)}°`);
-    const height = field('Sun height', { min: '-90', max: '90', step: '1', value: String(angles.height), id: 'sun-height',
-      oninput: (/** @type {any} */ e) => { angles.height = Number(e.target.value); put(); height.out.textContent = `${e.target.value}°`; } }, `${Math.round(angles.height)}°`);
-    const power = field('Sun', { min: '0', max: '8', step: '0.1', value: String(strength), id: 'sun-strength', title: 'In units of what the rest of the light gives; 0: no sun',
-      oninput: (/** @type {any} */ e) => { this.strengthen(Number(e.target.value)); power.out.textContent = Number(e.target.value).toFixed(1); }, ondblclick: () => this.strengthen(0) }, strength.toFixed(1));
-    return [power.node, around.node, height.node];
+    return [
+      field('Sun', 'sun-strength', [0, 8, 0.1], strength, (v) => v.toFixed(1), (v) => this.strengthen(v), { title: 'In units of what the rest of the light gives; 0: no sun', ondblclick: () => this.strengthen(0) }),
+      field('Sun around', 'sun-around', [-180, 180, 1], angles.around, degreesOf, (v) => { angles.around = v; put(); }),
+      field('Sun height', 'sun-height', [-90, 90, 1], angles.height, degreesOf, (v) => { angles.height = v; put(); }),
+    ];
   }
 
   /** @param {Vec} direction */

@@ -2,7 +2,7 @@
 // @ts-check
 /** The editor: puts its pieces together. */
 import { hasKey, postJson } from './api.js';
-import { byId, complain, el, glyph, toast } from './dom.js';
+import { byId, complain, el, glyph, select, toast } from './dom.js';
 import { BendTool } from './bend.js';
 import { DecalTool } from './decal.js';
 import { GrabTool } from './grab.js';
@@ -160,8 +160,7 @@ function drawActions() {
   byId('actions').replaceChildren(
     el('button', { class: 'icon', id: 'undo', 'aria-label': 'Undo', title: `Undo (${keyOf('undo')})`, disabled: locked || !(store.canUndo() || tool.unsaved?.()), onclick: undo }, glyph('undo')),
     el('button', { class: 'icon', id: 'redo', 'aria-label': 'Redo', title: `Redo (${keyOf('redo')})`, disabled: locked || !store.canRedo(), onclick: redo }, glyph('redo')),
-    el('select', { 'aria-label': 'Channel', title: `What the picture shows (${keyOf('channel')})`, id: 'channel', onchange: (/** @type {any} */ e) => setChannel(e.target.value) },
-      ...channels.map(([value, text]) => el('option', { value, selected: value === stage.channel }, text))),
+    select({ 'aria-label': 'Channel', title: `What the picture shows (${keyOf('channel')})`, id: 'channel' }, channels, stage.channel, setChannel),
     el('button', { id: 'compare', 'aria-pressed': String(comparing), disabled: !strip.views.length,
       title: strip.views.length ? `Compare with a photograph (${keyOf('compare')})` : 'The photographs are not where they were when the object was made', onclick: compare }, 'Compare'),
     el('button', { class: 'primary', id: 'export', title: `Export (${keyOf('export')})`, onclick: () => openDialog('exportDialog') }, 'Export'));

@@ -5,7 +5,7 @@
  * Strokes that follow each other closely become one edit; until then each is undone by itself.
  */
 import { cornersOf, ontoCorners, seen } from './camera.js';
-import { complain, el } from './dom.js';
+import { complain, el, select, slider } from './dom.js';
 import { postJson, upload } from './api.js';
 
 const kIdle = 900;  // milliseconds after the last stroke until they are kept
@@ -48,23 +48,21 @@ export class PaintTool {
   leave() { this.keep(); this.at = null; }
 
   options() {
-    const change = () => this.stage.redraw();
-    const slider = (/** @type {string} */ label, /** @type {'size' | 'hardness' | 'opacity'} */ key, /** @type {number} */ min, /** @type {number} */ max) =>
-      el('label', {}, label, el('input', { type: 'range', min: String(min), max: String(max), step: 'any', value: String(brush[key]), id: `brush-${key}`,
-        oninput: (/** @type {any} */ e) => { brush[key] = Number(e.target.value); change(); } }));
-    const sliders = [slider('Size', 'size', 2, 160), slider('Hardness', 'hardness', 0, 1)];
+    const row = (/** @type {string} */ label, /** @type {'size' | 'hardness' | 'opacity'} */ key, /** @type {number} */ min, /** @type {number} */ max) =>
+      el('label', {}, label, slider(`brush-${key}`, [min, max], brush[key], (value) => { brush[key] = value; this.stage.redraw(); }));
+    const sliders = [row('Size', 'size', 2, 160), row('Hardness', 'hardness', 0, 1)];
     if (this.erase) return sliders;
     return [
       el('label', {}, 'Color', el('input', { type: 'color', id: 'brush-color', value: brush.color, oninput: (/** @type {any} */ e) => this.setColor(e.target.value) })),
       el('button', { class: 'small', title: 'Swap the two colors (X)', onclick: () => this.swap() }, el('span', { class: 'swatch', id: 'other-color' }), ' Swap'),
-      ...sliders, slider('Opacity', 'opacity', 0.05, 1),
+      ...sliders, row('Opacity', 'opacity', 0.05, 1),
       el('button', { class: 'small', id: 'brush-pick', title: 'The next click takes the color there (I: at once)', 'aria-pressed': String(this.picking), onclick: () => { this.picking = !this.picking; this.stage.emit('options'); } }, 'Take color'),
-      el('label', {}, 'Pen', el('select', { id: 'brush-pen', title: 'What the pressure of a pen changes', onchange: (/** @type {any} */ e) => { brush.pen = e.target.value; } },
-        ...[['size', 'size'], ['opacity', 'opacity'], ['both', 'both'], ['none', 'nothing']].map(([v, t]) => el('option', { value: v, selected: brush.pen === v }, t)))),
-      el('label', {}, 'As', el('select', { id: 'brush-target', onchange: (/** @type {any} */ e) => { this.keep(); brush.target = e.target.value; } },
-        ...[['albedo', 'its own color'], ['appearance', 'seen color'], ['radiance', 'glow']].map(([v, t]) => el('option', { value: v, selected: brush.target === v }, t)))),
-      el('label', {}, 'Material', el('select', { id: 'brush-material', onchange: (/** @type {any} */ e) => { this.keep(); brush.material = e.target.value; } },
-        el('option', { value: '' }, 'as it is'), ...(this.store.object?.presets ?? []).map((/** @type {string} */ n) => el('option', { value: n, selected: brush.material === n }, n)))),
+      el('label', {}, 'Pen', select({ id: 'brush-pen', title: 'What the pressure of a pen changes' },
+        [['size', 'size'], ['opacity', 'opacity'], ['both', 'both'], ['none', 'nothing']], brush.pen, (pen) => { brush.pen = pen; })),
+      el('label', {}, 'As', select({ id: 'brush-target' }, [['albedo', 'its own color'], ['appearance', 'seen color'], ['radiance', 'glow']], brush.target,
+        (target) => { this.keep(); brush.target = target; })),
+      el('label', {}, 'Material', select({ id: 'brush-material' }, [['', 'as it is'], ...(this.store.object?.presets ?? []).map((name) => [name, name])], brush.material,
+        (material) => { this.keep(); brush.material = material; })),
     ];
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** What is shown when no object is open: a folder, a capture with what its check found, a reconstruction that runs. Loaded then. */
-import { byId, complain, el, toast } from './dom.js';
+import { byId, complain, el, select, toast } from './dom.js';
 import { getBlob, postJson } from './api.js';
 
 /** @type {[string, string][]} first words of the program's stages, and what they are for */
@@ -82,7 +82,7 @@ export class Places {
     const usable = state.resume || check?.usable;
     const cards = findings.map((/** @type {any} */ f) => el('div', { class: `card ${f.severity}` },
       el('span', { class: 'kind' }, { error: 'must be mended', warning: 'may cost quality', note: 'note' }[/** @type {string} */ (f.severity)] ?? f.severity), el('b', {}, f.what), el('small', {}, f.fix)));
-    const minutes = el('select', { id: 'minutes', 'aria-label': 'Time' }, ...[['60', '1 minute: a first look'], ['300', '5 minutes: good'], ['900', '15 minutes: better'], ['3600', '1 hour: best']].map(([v, t]) => el('option', { value: v, selected: v === '300' }, t)));
+    const minutes = select({ id: 'minutes', 'aria-label': 'Time' }, [['60', '1 minute: a first look'], ['300', '5 minutes: good'], ['900', '15 minutes: better'], ['3600', '1 hour: best']], '300');
     const go = el('button', { class: 'big primary', id: 'make', disabled: !usable, onclick: () => this.start(Number(minutes.value), state.resume) }, state.resume ? 'Go on where it stopped' : 'Make the object');
     return [el('h2', {}, state.name), ...(check ? this.facts(check) : [el('p', {}, 'This object is not finished. What was done so far is kept.')]),
       el('div', { class: 'cards' }, ...cards),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Material: a tool whose controls are in the panel. What is tried is shown at once; letting go keeps it. */
-import { complain, el } from './dom.js';
+import { complain, el, field, select } from './dom.js';
 import { postJson } from './api.js';
 import { Newest } from './newest.js';
 
@@ -44,15 +44,11 @@ export class MaterialTool {
 
   panel() {
     const values = this.values(), params = this.own()?.params ?? {};
-    const row = (/** @type {[string, string, string]} */ [key, label, help]) => {
-      const output = el('output', {}, values[key]?.toFixed(2) ?? '');
-      return el('label', { class: 'field', title: help }, label, el('input', {
-        type: 'range', min: '0', max: '1', step: '0.01', value: String(values[key] ?? 0.5), 'data-key': key,
-        oninput: (/** @type {any} */ e) => { output.textContent = Number(e.target.value).toFixed(2); this.try({ [key]: Number(e.target.value) }); },
-        onchange: (/** @type {any} */ e) => this.keep({ [key]: Number(e.target.value) }),
+    const row = (/** @type {[string, string, string]} */ [key, label, title]) => field(label, `material-${key}`, [0, 1, 0.01], values[key] ?? 0.5, (v) => v.toFixed(2),
+      (v) => this.try({ [key]: v }), {
+        title, 'data-key': key, onchange: (/** @type {any} */ e) => this.keep({ [key]: Number(e.target.value) }),
         ondblclick: () => this.keep({ [key]: /** @type {Record<string, any>} */ (this.store.object.material)[key] }),
-      }), output);
-    };
+      });
     const tint = params.color ?? '#b0b0b0';
     return [
       el('p', {}, this.store.part ? `Of the part ${this.store.part}.` : 'Of the whole object; select a part to change only that.'),
@@ -60,8 +56,8 @@ export class MaterialTool {
       el('label', { class: 'field wide' }, 'Color', el('span', { class: 'inline' }, el('input', { type: 'color', value: tint, id: 'material-color',
         oninput: (/** @type {any} */ e) => this.try({ color: e.target.value, ...this.replaced() }), onchange: (/** @type {any} */ e) => this.keep({ color: e.target.value, ...this.replaced() }) }),
         el('label', { title: 'The color takes the place of the texture; else it tints it' }, el('input', { type: 'checkbox', id: 'material-replace', checked: params.replace === true }), ' no texture'))),
-      el('label', { class: 'field' }, 'Preset', el('select', { id: 'material-preset', onchange: (/** @type {any} */ e) => { if (e.target.value) this.keep({ material: e.target.value }, true); } },
-        el('option', { value: '' }, 'choose'), ...(this.store.object?.presets ?? []).map((/** @type {string} */ n) => el('option', { value: n, selected: params.material === n }, n)))),
+      el('label', { class: 'field' }, 'Preset', select({ id: 'material-preset' }, [['', 'choose'], ...(this.store.object?.presets ?? []).map((name) => [name, name])], params.material,
+        (material) => { if (material) this.keep({ material }, true); })),
     ];
   }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Parts by clicks, and the overlay that shows a part. */
-import { complain, el, toast } from './dom.js';
+import { complain, el, select, toast } from './dom.js';
 import { postForBlob, postJson, upload } from './api.js';
 import { Newest } from './newest.js';
 import { dashed, polygon, ring } from './paint.js';
@@ -131,14 +131,12 @@ export class PartTool {
     const selected = this.store.part;
     const modes = [['new', 'New part'], ...(selected ? [['add', `Add to ${selected}`], ['subtract', `Take from ${selected}`], ['intersect', `Cut with ${selected}`]] : [])];
     return [
-      el('label', {}, 'By', el('select', { id: 'part-by', onchange: (/** @type {any} */ e) => { this.by = e.target.value; this.drop(); this.stage.emit('options'); } },
-        ...[['click', 'clicks'], ['lasso', 'lasso']].map(([v, t]) => el('option', { value: v, selected: this.by === v }, t)))),
+      el('label', {}, 'By', select({ id: 'part-by' }, [['click', 'clicks'], ['lasso', 'lasso']], this.by, (by) => { this.by = by; this.drop(); this.stage.emit('options'); })),
       ...(this.by === 'lasso' ? [el('label', {}, el('input', { type: 'checkbox', id: 'part-through', checked: this.through,
         onchange: (/** @type {any} */ e) => { this.through = e.target.checked; this.preview(); } }), 'also what is not seen')] : []),
-      el('label', {}, 'Makes', el('select', { id: 'part-how', onchange: (/** @type {any} */ e) => { this.how = e.target.value; this.preview(); } },
-        ...modes.map(([v, t]) => el('option', { value: v, selected: this.how === v }, t)))),
-      ...(this.store.object?.segment && this.by === 'click' ? [el('label', {}, 'Found by', el('select', { onchange: (/** @type {any} */ e) => { this.segmenter = e.target.value; this.preview(); } },
-        el('option', { value: 'grow' }, 'color and creases'), el('option', { value: 'sam' }, 'network')))] : []),
+      el('label', {}, 'Makes', select({ id: 'part-how' }, modes, this.how, (how) => { this.how = how; this.preview(); })),
+      ...(this.store.object?.segment && this.by === 'click' ? [el('label', {}, 'Found by', select({}, [['grow', 'color and creases'], ['sam', 'network']], this.segmenter,
+        (segmenter) => { this.segmenter = segmenter; this.preview(); }))] : []),
       el('label', {}, 'Name', el('input', { type: 'text', id: 'part-name', placeholder: 'part', maxlength: '60', autocomplete: 'off' })),
       el('button', { class: 'primary of-trial', id: 'part-keep', onclick: () => this.keep() }, 'Keep'),
       el('button', { class: 'of-trial', onclick: () => this.drop() }, 'Discard'),
