@@ -172,6 +172,7 @@ async function shines(page) {
   await page.keyboard.press('l');
   const ball = await page.locator('#light-ball').boundingBox();
   const light = () => page.evaluate(() => globalThis.cei3d.stage.light);
+  await page.waitForFunction(() => document.getElementById('light-ball').getContext('2d').getImageData(60, 60, 1, 1).data[3] > 0);  // it is drawn
   await page.mouse.click(ball.x + 0.35 * ball.width, ball.y + 0.3 * ball.height);
   await settled(page);
   const { sun } = await light();

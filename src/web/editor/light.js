@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Light: turned, scaled, replaced by an environment, with a sun. It is looked under at once; Keep makes it an edit. */
-import { drawBall, mirrored, radianceOf } from './ball.js';
 import { add, cross, dot, mul, unit } from './camera.js';
 import { complain, el, field, toast } from './dom.js';
 import { upload } from './api.js';
@@ -28,6 +27,8 @@ export class LightTool {
     this.env = null;
     /** @type {HTMLCanvasElement | null} */
     this.ball = null;
+    /** @type {typeof import('./ball.js') | null} loaded with the first ball */
+    this.balls = null;
     stage.addEventListener('moved', () => this.drawBall());
     stage.addEventListener('exact', () => this.drawBall());
   }
@@ -86,26 +87,27 @@ export class LightTool {
   makeBall() {
     const at = (/** @type {PointerEvent} */ e) => {
       const r = /** @type {HTMLCanvasElement} */ (this.ball).getBoundingClientRect();
-      this.putSun(mirrored(2 * (e.clientX - r.left) / r.width - 1, 2 * (e.clientY - r.top) / r.height - 1, this.stage.camera.axes));
+      if (this.balls) this.putSun(this.balls.mirrored(2 * (e.clientX - r.left) / r.width - 1, 2 * (e.clientY - r.top) / r.height - 1, this.stage.camera.axes));
     };
     const ball = el('canvas', { class: 'ball', id: 'light-ball', width: kBall, height: kBall, 'aria-hidden': 'true', title: 'A mirror ball; a click puts the sun where it is seen',
       onpointerdown: (/** @type {PointerEvent} */ e) => { ball.setPointerCapture(e.pointerId); at(e); },
       onpointermove: (/** @type {PointerEvent} */ e) => { if (e.buttons & 1) at(e); },
       onpointerup: () => this.changed() });
     this.ball = ball;
-    requestAnimationFrame(() => this.drawBall());
+    import('./ball.js').then((balls) => { this.balls = balls; this.drawBall(); }, () => {});  // the sliders do the same
     return ball;
   }
 
   drawBall() {
-    if (!this.ball?.isConnected) return;
+    const { ball, balls } = this;
+    if (!balls || !ball?.isConnected) return;
     const { light, camera, live } = this.stage, pack = live.mapsOf(light);
     const turn = rotation(unit(this.store.object.up), -light.rotate * Math.PI / 180);
     const level = pack ? pack.arrays.reflection.subarray(0, pack.head.reflection_side ** 2) : null;
-    drawBall(this.ball, camera.axes, (d) => {
+    balls.drawBall(ball, camera.axes, (d) => {
       if (!level || !pack) return [0.25, 0.25, 0.25];  // no map of it is here
       const room = /** @type {Vec} */ (turn.map((row) => dot(/** @type {Vec} */ (row), d)));
-      return mul(radianceOf(/** @type {Uint32Array} */ (level), pack.head.reflection_side, room), light.scale);
+      return mul(balls.radianceOf(/** @type {Uint32Array} */ (level), pack.head.reflection_side, room), light.scale);
     }, light.sun?.direction ?? null);
   }
 
