@@ -41,6 +41,12 @@ export function field(label, id, range, value, text, set, more) {
 /** @param {string} id @returns {any} */
 export const byId = (id) => document.getElementById(id);
 
+/** Says a value that was changed elsewhere in its field, if that is shown. @param {string} id @param {number | string} value */
+export function showValue(id, value) {
+  const input = byId(id);
+  if (input) input.value = String(value);
+}
+
 const NS = 'http://www.w3.org/2000/svg';
 /** @type {Record<string, string>} paths on a grid of 24 */
 const GLYPHS = {

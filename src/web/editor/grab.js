@@ -2,7 +2,7 @@
 // @ts-check
 /** Grab and bend: a point of the surface is dragged in the plane of the picture, its surroundings follow. */
 import { pointAt, seen } from './camera.js';
-import { el, slider } from './dom.js';
+import { el, showValue, slider } from './dom.js';
 import { postJson } from './api.js';
 import { ring } from './paint.js';
 import { ShapeTrial } from './trial.js';
@@ -87,8 +87,7 @@ export class GrabTool {
   /** @param {number} factor */
   size(factor) {
     this.reach = Math.max(0.03, Math.min(1, this.reach * factor));
-    const input = /** @type {HTMLInputElement | null} */ (document.getElementById('grab-reach'));
-    if (input) input.value = String(this.reach);
+    showValue('grab-reach', this.reach);
     this.stage.redraw();
   }
 

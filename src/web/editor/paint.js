@@ -5,7 +5,7 @@
  * Strokes that follow each other closely become one edit; until then each is undone by itself.
  */
 import { cornersOf, ontoCorners, seen } from './camera.js';
-import { complain, el, select, slider } from './dom.js';
+import { complain, el, select, showValue, slider } from './dom.js';
 import { postJson, upload } from './api.js';
 
 const kIdle = 900;  // milliseconds after the last stroke until they are kept
@@ -75,8 +75,7 @@ export class PaintTool {
   setColor(color) {
     if (this.pending) this.keep();
     brush.color = color;
-    const input = /** @type {HTMLInputElement | null} */ (document.getElementById('brush-color'));
-    if (input) input.value = color;
+    showValue('brush-color', color);
     this.stage.redraw();
   }
 
@@ -262,8 +261,7 @@ export class PaintTool {
   /** @param {'size' | 'hardness' | 'opacity'} key @param {number} value */
   set(key, value) {
     brush[key] = value;
-    const input = /** @type {HTMLInputElement | null} */ (document.getElementById(`brush-${key}`));
-    if (input) input.value = String(value);
+    showValue(`brush-${key}`, value);
     this.stage.redraw();
   }
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Parts by clicks, and the overlay that shows a part. */
-import { complain, el, select, toast } from './dom.js';
+import { complain, el, select, showValue, toast } from './dom.js';
 import { postForBlob, postJson, upload } from './api.js';
 import { Newest } from './newest.js';
 import { dashed, polygon, ring } from './paint.js';
@@ -147,8 +147,7 @@ export class PartTool {
   chooseHow(p) {
     if (!this.store.part || !(p.shift || p.ctrl)) return;
     this.how = p.shift && p.ctrl ? 'intersect' : p.shift ? 'add' : 'subtract';
-    const select = /** @type {HTMLSelectElement | null} */ (document.getElementById('part-how'));
-    if (select) select.value = this.how;
+    showValue('part-how', this.how);
   }
 
   /** @param {any} p */
