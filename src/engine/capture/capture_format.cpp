@@ -110,7 +110,8 @@ std::filesystem::path own_file(const std::filesystem::path& root, const std::fil
   std::filesystem::path home = std::filesystem::absolute(root / ".").lexically_normal().parent_path();
   if (home.parent_path() != home.root_path()) home = home.parent_path();
   const std::filesystem::path normal = file.lexically_normal(),
-                              way = std::filesystem::absolute(normal).lexically_relative(home);
+                              way =
+                                  std::filesystem::absolute(file).lexically_normal().lexically_relative(home);
   if (way.empty() || *way.begin() == "..")
     fail(
         "{} names {}, which lies outside of the capture's folder and of the one that holds it. Move that "

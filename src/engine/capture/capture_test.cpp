@@ -327,6 +327,14 @@ TEST(Capture, FilesElsewhereAreNotOpened) {
   EXPECT_EQ(load(frames_of(beside.string()), "transforms.json").image_path, beside);
 }
 
+TEST(Capture, IsFoundByAPathThatLeadsUpFromTheCurrentFolder) {
+  const TempFolder temp;
+  write_file_atomic(temp.path() / "transforms.json", frames_of("images/a.png").dump());
+  const fs::path relative = fs::relative(temp.path());
+  ASSERT_EQ(*relative.begin(), "..");
+  EXPECT_EQ(load_capture(relative).views[0].image_path, relative / "images/a.png");
+}
+
 TEST(Capture, NanInJsonIsReadAsNan) {
   const TempFolder temp;
   std::string text =
