@@ -12,11 +12,12 @@ namespace cei3d {
 namespace {
 
 // Costs of work that is not measured, in multiples of measured rates; from runs on spot.
-constexpr double kMesh = 1.6;          // surface of an object over that of the sphere of Rates::mesh
-constexpr double kGeometryStep = 13;   // a step of the geometry stage, in Rates::sdf_step
-constexpr double kStartShapes = 3500;  // carving and stereo, in Rates::trial_step
-constexpr double kPolishStep = 68;     // a step of polishing, in Rates::sdf_step
-constexpr double kResidualStep = 8;    // a training step of the correction network, in Rates::sdf_step
+constexpr double kMesh = 1.6;           // surface of an object over that of the sphere of Rates::mesh
+constexpr double kGeometryStep = 13;    // a step of the geometry stage, in Rates::sdf_step
+constexpr double kFirstLight = 4500;    // how the light turns, found on the hull, in Rates::trial_step
+constexpr double kStartShapes = 20000;  // that, carving, stereo and poses, in Rates::trial_step
+constexpr double kPolishStep = 68;      // a step of polishing, in Rates::sdf_step
+constexpr double kResidualStep = 8;     // a training step of the correction network, in Rates::sdf_step
 constexpr double kFullSplit = 2e7, kBriefSplit = 1.2e7;  // the linear separation, in Rates::hit_shaded
 // Fit of lobes and descents, in Rates::albedo_step.
 constexpr double kFullDescent = 7000, kBriefDescent = 750;
@@ -49,8 +50,14 @@ constexpr double kTrialsShare = 0.25;  // comparison of start shapes, as a share
 
 constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // minimum shares of the whole time
 
+// Steps that the geometry stage gets before there is a polishing, a refinement or a correction network,
+// unless they take more than a share of the whole time.
+constexpr double kMinGeometrySteps = 4000, kMaxGeometryShare = 0.65;
+
 // Seconds.
 struct Costs {
+  double first_light;     // how it turns
+  double geometry_step;   // of the stage itself
   double trial_step;      // of the three trials
   double trials_besides;  // start shapes and the first fits to them
   double brief_surface;   // with brief_hits
@@ -68,6 +75,8 @@ Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
   const auto mesh = [&](const MeshingOptions& m) { return kMesh * r.mesh * square(double(m.resolution)); };
   const TrialOptions& trial = preset.trial;
   Costs c{};
+  c.first_light = kFirstLight * r.trial_step;
+  c.geometry_step = kGeometryStep * r.sdf_step;
   c.trial_step = r.trial_step * 3 * kGeometryStep;
   c.trials_besides = r.trial_step * (3 * trial.geometry.prefit_steps + kStartShapes);
   c.surface = mesh(preset.meshing) + hits * r.hit_traced;
@@ -201,7 +210,9 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, b
   p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
   p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
   p.reserve = std::max(kReserve * c.surface, kReserveShare * t);
-  while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
+  const double min_geometry = std::clamp(c.first_light + kMinGeometrySteps * c.geometry_step,
+                                         kMinGeometryShare * t, kMaxGeometryShare * t);
+  while (rest_of(p) > t - min_geometry && leave_one_out(c, p)) continue;
   p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
   if (preset.start == StartChoice::trials)
     p.trial_steps = affordable_trial_steps(kTrialsShare * p.geometry, preset.trial.steps, c);

@@ -91,6 +91,19 @@ TEST(Plan, ASlowerMachineTriesStartsMoreBriefly) {
   EXPECT_GT(std::set<int>(steps.begin(), none).size(), 4u);
 }
 
+TEST(Plan, PolishesNoSurfaceThatWasTrainedBriefly) {
+  constexpr double kSteps = 4000, kStep = 13 * kTestRates.sdf_step;  // of the geometry stage, seconds
+  int polished = 0, not_polished = 0;
+  for (double seconds = 30; seconds < 1000; seconds *= 1.1) {
+    const Plan p = plan_for("fast", seconds, 3000000, 1);
+    ++(p.polish_rounds > 0 ? polished : not_polished);
+    if (p.polish_rounds == 0) continue;
+    EXPECT_GE(p.geometry, std::min(kSteps * kStep, 0.65 * seconds)) << seconds;
+  }
+  EXPECT_GT(polished, 0);
+  EXPECT_GT(not_polished, 0);
+}
+
 TEST(Plan, ByStepsKnowsNoClock) {
   ReconstructOptions options;
   options.iterations = 2000;
