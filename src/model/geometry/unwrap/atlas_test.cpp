@@ -63,6 +63,14 @@ TEST(Atlas, Box) { expect_good(box_mesh(20, 10, 5, 0.1f), {0.65, 1.0001}); }
 TEST(Atlas, Ring) { expect_good(torus(80, 30, 1, 0.3f), {0.6, 1.15}); }
 TEST(Atlas, OpenSheet) { expect_good(plane_mesh(40, 20, 0.1f), {0.3, 1.0001}); }
 
+// 40 s of one core: cei3d_model_geometry_test --gtest_also_run_disabled_tests --gtest_filter=Atlas.*Million*
+TEST(Atlas, DISABLED_AMillionFacesWithBumps) {
+  Mesh m = torus(1000, 500, 1, 0.3f);
+  for (Vec3f& p : m.positions)
+    p = p * (1 + 0.02f * std::sin(30 * p.x) * std::sin(25 * p.y) * std::sin(20 * p.z));
+  expect_good(m, {0.6, 1.15}, 4096);
+}
+
 TEST(Atlas, TwoComponentsOfDifferentSize) {
   Mesh m = sphere_mesh(1, 4);
   add(m, box_mesh(3, 3, 3, 0.02f), {3, 0, 0});
