@@ -28,7 +28,7 @@ constexpr double kReserve = 3;         // reading and writing files, in times of
 
 // Minimum shares of all steps; fewer are not worth the time.
 constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinResidualShare = 0.13,
-                 kMinJointShare = 0.25, kMinTrialShare = 0.25;
+                 kMinJointShare = 0.25, kMinTrialShare = 0.4;
 constexpr size_t kUntimedResidualHits = 1000000;
 
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
@@ -46,7 +46,7 @@ constexpr double kFinerMeshShare = 1.0 / 40;
 constexpr double kCoupledShare = 0.3;   // of the network of a coupled color, in place of all that is left out
 constexpr double kResidualShare = 0.1;  // training of the correction network
 constexpr double kResidualShadingShare = 0.018;  // shading of the pixels of the correction network
-constexpr double kTrialsShare = 0.25;  // comparison of start shapes, as a share of the geometry stage
+constexpr double kTrialsShare = 0.3;  // comparison of start shapes, as a share of the geometry stage
 
 constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // minimum shares of the whole time
 
