@@ -50,8 +50,8 @@ constexpr double kTrialsShare = 0.3;  // comparison of start shapes, as a share 
 
 constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // minimum shares of the whole time
 
-// Steps that the geometry stage gets before there is a polishing, a refinement or a correction network,
-// unless they take more than a share of the whole time.
+// Steps that the geometry stage gets before anything is polished or refined, unless they take more than a
+// share of the whole time.
 constexpr double kMinGeometrySteps = 4000, kMaxGeometryShare = 0.65;
 
 // Seconds.
@@ -210,9 +210,11 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, b
   p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
   p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
   p.reserve = std::max(kReserve * c.surface, kReserveShare * t);
-  const double min_geometry = std::clamp(c.first_light + kMinGeometrySteps * c.geometry_step,
-                                         kMinGeometryShare * t, kMaxGeometryShare * t);
-  while (rest_of(p) > t - min_geometry && leave_one_out(c, p)) continue;
+  const double enough = std::clamp(c.first_light + kMinGeometrySteps * c.geometry_step, kMinGeometryShare * t,
+                                   kMaxGeometryShare * t);
+  const auto refines = [&] { return p.polish_rounds + p.refinements + p.joint_steps > 0; };
+  while (rest_of(p) > t - enough && refines()) leave_one_out(c, p);
+  while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
   p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
   if (preset.start == StartChoice::trials)
     p.trial_steps = affordable_trial_steps(kTrialsShare * p.geometry, preset.trial.steps, c);

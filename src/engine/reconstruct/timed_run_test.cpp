@@ -66,7 +66,7 @@ void expect_complete(const Scene& scene, const std::string& where) {
 TEST(TimedRun, EveryPresetEndsInTimeWithTheStagesOfItsPlan) {
   const BoxCapture capture;
   const std::vector<std::pair<std::string, double>> runs{
-      {"fast", 30}, {"fast", 400}, {"balanced", 60}, {"paper", 400}};
+      {"fast", 30}, {"fast", 400}, {"balanced", 100}, {"paper", 400}};
   for (const auto& [name, limit] : runs) {
     const std::string where = name + " " + std::to_string(limit);
     TimedRun r(capture, preset_for_time(name), limit);
@@ -76,7 +76,7 @@ TEST(TimedRun, EveryPresetEndsInTimeWithTheStagesOfItsPlan) {
     const bool ours = name != "paper";
     EXPECT_EQ(r.has("geometry"), ours) << where;
     EXPECT_TRUE(ours || r.has("joint")) << where;
-    EXPECT_EQ(r.has("polish 1"), ours && limit >= 60) << where;
+    EXPECT_EQ(r.has("polish 1"), ours && limit >= 100) << where;
     EXPECT_EQ(r.has("polish 2"), ours && limit >= 400) << where;
     EXPECT_EQ(r.has("residual"), ours && limit >= 400) << where;
     EXPECT_EQ(r.has("finer mesh"), ours) << where;
