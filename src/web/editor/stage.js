@@ -204,7 +204,10 @@ export class Stage extends EventTarget {
   /** The page's own picture, where no other comes. @param {string} badge */
   async restLive(badge) {
     const { timer } = this;
+    cancelAnimationFrame(this.waiting);  // where frames come late, it would be drawn over this, more coarsely
     await this.live.drawSoon(this.json(), this.channel, this.light, true);
+    byId('cover').classList.add('done');
+    this.liveDrawn();
     if (timer === this.timer) byId('badge').textContent = badge;
   }
 
