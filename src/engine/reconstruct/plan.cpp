@@ -11,11 +11,12 @@ namespace cei3d {
 
 namespace {
 
-// Costs of work that is not measured, in multiples of measured rates; from runs on spot.
+// Costs of work that is not measured, in multiples of measured rates; from runs on spot, those of the start
+// also on lego400.
 constexpr double kMesh = 1.6;           // surface of an object over that of the sphere of Rates::mesh
 constexpr double kGeometryStep = 13;    // a step of the geometry stage, in Rates::sdf_step
-constexpr double kFirstLight = 4500;    // how the light turns, found on the hull, in Rates::trial_step
-constexpr double kStartShapes = 20000;  // that, carving, stereo and poses, in Rates::trial_step
+constexpr double kFirstLight = 4500;    // finding out how the light turns, in Rates::trial_step
+constexpr double kStartShapes = 20000;  // that, start shapes and poses, in Rates::trial_step
 constexpr double kPolishStep = 68;      // a step of polishing, in Rates::sdf_step
 constexpr double kResidualStep = 8;     // a training step of the correction network, in Rates::sdf_step
 constexpr double kFullSplit = 2e7, kBriefSplit = 1.2e7;  // the linear separation, in Rates::hit_shaded
@@ -56,8 +57,8 @@ constexpr double kMinGeometrySteps = 4000, kMaxGeometryShare = 0.65;
 
 // Seconds.
 struct Costs {
-  double first_light;     // how it turns
-  double geometry_step;   // of the stage itself
+  double first_light;     // finding out how the light turns, without trials
+  double geometry_step;   // one training step of the geometry stage
   double trial_step;      // of the three trials
   double trials_besides;  // start shapes and the first fits to them
   double brief_surface;   // with brief_hits
