@@ -108,10 +108,13 @@ void Session::open(const fs::path& folder, Access access) {
   const auto mode = access == Access::write ? Project::Mode::write : Project::Mode::read;
   project_ = std::make_unique<Project>(Project::open(folder, mode));
   say_address(address_);
-  if (project_->has_base())
-    frames_ = std::make_unique<RenderCache>(
-        *device_, RenderCacheLimits(),
-        VertexLightFiles(folder / "cache", project_->base_key(), access == Access::write));
+  if (project_->has_base()) begin_frames(access);
+}
+
+void Session::begin_frames(Access access) {
+  frames_ = std::make_unique<RenderCache>(
+      *device_, RenderCacheLimits(),
+      VertexLightFiles(project().folder() / "cache", project().base_key(), access == Access::write));
 }
 
 void Session::say_address(const std::string& address) {

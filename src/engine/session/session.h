@@ -133,6 +133,7 @@ class Session {
   std::unique_ptr<TiledFrame> frame_of(const FrameRequest&, Scene);
   const Appearance& look_of_vertices(const Scene&);
   ReconstructReport run_reconstruction(const ReconstructRequest&, Progress&);
+  void begin_frames(Access);  // of the open project, with nothing remembered
 
   std::unique_ptr<Device> device_;
   std::unique_ptr<Threads> threads_;

@@ -10,6 +10,7 @@
 #include "engine/project/dataset.h"
 #include "engine/project/project.h"
 #include "engine/reconstruct/preset_settings.h"
+#include "engine/render/render_cache.h"
 #include "engine/session/object_summary.h"
 #include "engine/session/photograph_size.h"
 #include "engine/session/run_log.h"
@@ -167,6 +168,8 @@ ReconstructReport Session::run_reconstruction(const ReconstructRequest& request,
         cei3d::reconstruct(*device_, project().capture(), CaptureImages(options.downscale),
                            project().head().normalization, options, checkpoints, log, request.show);
     project().save_base(scene);
+    begin_frames(Access::write);
+    frames_->light_to_keep(project().scene());  // so that the first picture of the object need not wait for it
     return report_of(*device_, project(), scene, steady_seconds() - start);
   } catch (...) {
     project().discard_if_empty();
