@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Checks what comments and documents refer to: [Author Year] has an entry in docs/references.md, a link to a file or
-to a heading leads somewhere, and nothing cites a document outside the repository. Prints each fault; exit code 1."""
+to a heading leads somewhere, nothing cites a document outside the repository, and the figures in README.md are those of
+docs/results.md. Prints each fault; exit code 1."""
 import re
 import sys
 from pathlib import Path
@@ -17,6 +18,10 @@ OUTSIDE = re.compile(r'\barchitecture \d\.\d|reference-facts|prototype-findings|
 HEADING_LINK = re.compile(r'(docs/[\w/-]+\.md)(#[\w-]+)?')
 NUMBERED = re.compile(r'\b(decisions|notebook)/(\d{4})')
 MARKDOWN_LINK = re.compile(r'\]\(([^)#\s]*)(#[^)\s]*)?\)')
+NUMBER = re.compile(r'\d*\.\d+|\d+')
+# What the rows of README's table begin with, and the row or column of docs/results.md that has their figures.
+README_ROWS = {'spot': 'spot', 'kettle': 'kettle', 'DTU scan 24': 'dtu24', 'paint edit': 'paint',
+               'change of roughness': 'roughness, on white'}
 
 
 def anchor(heading):
@@ -69,10 +74,40 @@ def document_faults(path):
     yield from numbered_faults(text)
 
 
+def tables(path):
+    """Rows of each table: lists of cells, the column heads first."""
+    for block in re.findall(r'(?:^\|.*\n)+', path.read_text(), re.M):
+        yield [[cell.strip() for cell in line.strip().strip('|').split('|')] for line in block.splitlines()]
+
+
+def figures_of(name, results):
+    """All numbers in the rows and columns of that name."""
+    for heads, _, *rows in results:
+        for row in rows:
+            cells = row[1:] if row[0] == name else [c for head, c in zip(heads, row) if head == name]
+            yield from NUMBER.findall(' '.join(cells))
+
+
+def figure_faults():
+    """Each number of README's table is one that docs/results.md gives of the same thing, rounded to as many decimals."""
+    results = list(tables(ROOT / 'docs/results.md'))
+    for label, text in [(row[0], ' '.join(row)) for row in next(tables(ROOT / 'README.md'))[2:]]:
+        name = next((n for n in README_ROWS if label.startswith(n)), None)
+        if not name:
+            yield f'no row or column of docs/results.md is known for {label!r} (README_ROWS in tools/check_docs.py)'
+            continue
+        known = list(figures_of(README_ROWS[name], results))
+        for number in NUMBER.findall(text.removeprefix(name)):
+            decimals = len(number.partition('.')[2])
+            if float(number) not in [round(float(k), decimals) for k in known]:
+                yield f'{number} is no figure of {README_ROWS[name]!r} in docs/results.md'
+
+
 def main():
     keys = set(re.findall(r'^\*\*\[([^]]+)\]\*\*', (ROOT / 'docs/references.md').read_text(), re.M))
     faults = [f'{p.relative_to(ROOT)}: {f}' for p in SOURCES for f in source_faults(p, keys)]
     faults += [f'{p.relative_to(ROOT)}: {f}' for p in DOCUMENTS for f in document_faults(p)]
+    faults += [f'README.md: {f}' for f in figure_faults()]
     print('\n'.join(sorted(set(faults))) or 'docs: fine')
     return 1 if faults else 0
 
