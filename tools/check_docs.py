@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """Checks what comments and documents refer to: [Author Year] has an entry in docs/references.md, a link to a file or
-to a heading leads somewhere, nothing cites a document outside the repository, and the figures in README.md are those of
-docs/results.md. Prints each fault; exit code 1."""
+to a heading leads somewhere, nothing cites a document outside the repository, the figures in README.md are those of
+docs/results.md, and lines of documents are not too long. Prints each fault; exit code 1."""
 import re
 import sys
 from pathlib import Path
@@ -10,7 +10,8 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 SOURCES = [p for folder in ('src', 'tests', 'tools', 'bench', 'cmake') for p in (ROOT / folder).rglob('*')
            if p.suffix in ('.h', '.cpp', '.cu', '.py', '.sh', '.cmake') and p.resolve() != Path(__file__).resolve()]
-DOCUMENTS = [*ROOT.glob('*.md'), *(ROOT / 'docs').rglob('*.md'), *(ROOT / 'samples').rglob('*.md')]
+DOCUMENTS = [*ROOT.glob('*.md'), *(ROOT / 'docs').rglob('*.md'), *(ROOT / 'samples').rglob('*.md'),
+             *(ROOT / '.github').rglob('*.md')]
 
 CITATION = re.compile(r'\[([^][(){}]*\b(?:1[89]|20)\d\d\b[^][]*)\]')
 KEY = re.compile(r"[A-Z][\w'-]+(?: et al\.| and [A-Z][\w'-]+)? (?:1[89]|20)\d\d")
@@ -18,6 +19,9 @@ OUTSIDE = re.compile(r'\barchitecture \d\.\d|reference-facts|prototype-findings|
 HEADING_LINK = re.compile(r'(docs/[\w/-]+\.md)(#[\w-]+)?')
 NUMBERED = re.compile(r'\b(decisions|notebook)/(\d{4})')
 MARKDOWN_LINK = re.compile(r'\]\(([^)#\s]*)(#[^)\s]*)?\)')
+COLUMNS = 130  # at most, except in tables, pictures and indented code
+# Of .github because GitHub shows each line of a template as a line.
+WIDER = ['docs/notebook', 'docs/results.md', 'docs/limits.md', '.github']
 NUMBER = re.compile(r'\d*\.\d+|\d+')
 # What the rows of README's table begin with, and the row or column of docs/results.md that has their figures.
 README_ROWS = {'spot': 'spot', 'kettle': 'kettle', 'DTU scan 24': 'dtu24', 'paint edit': 'paint',
@@ -72,6 +76,10 @@ def document_faults(path):
     for match in OUTSIDE.findall(text):
         yield f'{match!r} is not in the repository'
     yield from numbered_faults(text)
+    if not any(path.is_relative_to(ROOT / wider) for wider in WIDER):
+        for number, line in enumerate(text.splitlines(), 1):
+            if len(line) > COLUMNS and not line.startswith(('|', '![', '    ')):
+                yield f'line {number} has {len(line)} columns, more than {COLUMNS}'
 
 
 def tables(path):
