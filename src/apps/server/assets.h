@@ -14,8 +14,8 @@ struct Asset {
   std::string_view bytes;
 };
 
-// By name; none: there is no such file. folder: read from there instead, for work on the page; empty:
-// embedded.
+// The file of that name; none: there is no such file. folder: where to read it from, for work on the page;
+// empty: the embedded file.
 std::optional<std::string> asset(const std::string& name, const std::filesystem::path& folder = {});
 std::string asset_type(const std::string& name);  // for Content-Type
 

@@ -30,7 +30,7 @@ void read_place(JsonReader& j, std::string& view, std::optional<Camera>& camera)
 }
 
 template <class Enum>
-std::optional<Enum> named_if_there(JsonReader& j, const char* key,
+std::optional<Enum> optional_named(JsonReader& j, const char* key,
                                    std::optional<Enum> (*from_name)(const std::string&)) {
   const auto name = j.optional<std::string>(key);
   if (!name) return std::nullopt;
@@ -42,7 +42,7 @@ std::optional<Enum> named_if_there(JsonReader& j, const char* key,
 template <class Enum>
 Enum named(JsonReader& j, const char* key, std::optional<Enum> (*from_name)(const std::string&),
            const char* otherwise) {
-  return named_if_there(j, key, from_name).value_or(*from_name(otherwise));
+  return optional_named(j, key, from_name).value_or(*from_name(otherwise));
 }
 
 Vec2<double> pixel_from(JsonReader& j, const char* key) {
@@ -61,15 +61,13 @@ std::vector<Vec2<double>> pixels_from(JsonReader& j, const char* key) {
   return pixels;
 }
 
-// A scribble or mask. Skies may be larger: /api/upload, which cannot tell them apart, has the limit for
-// those.
+// A scribble or mask. Its limit is lower than that of /api/upload, which must let environments through, too.
 InputFile sent_picture(const Uploads& uploads, const std::string& id) {
   constexpr uintmax_t kMiB = 1 << 20, kMaxMiB = 64;
   const uintmax_t bytes = std::filesystem::file_size(uploads.path(id));
   if (bytes > kMaxMiB * kMiB)
-    fail_usage(
-        "A picture to paint with or to select by has at most {} MiB, not {} bytes; send a smaller one.",
-        kMaxMiB, bytes);
+    fail_usage("A scribble, decal or mask has at most {} MiB, not {} bytes; send a smaller one.", kMaxMiB,
+               bytes);
   InputFile file;
   file.bytes = uploads.bytes(id);
   return file;
@@ -86,7 +84,7 @@ PaintCommand paint_from(JsonReader& j, const Uploads& uploads) {
     reader.finish();
     c.strokes.push_back(std::move(stroke));
   }
-  if (c.strokes.empty()) fail_usage("There is no stroke to paint.");
+  if (c.strokes.empty()) fail_usage("The request has no strokes to paint.");
   c.seed = j.optional<uint64_t>("seed", 1);
   c.target = named(j, "target", paint_target_from_name, "albedo");
   c.routing = named(j, "routing", routing_from_name, "both");
@@ -228,10 +226,10 @@ FrameRequest frame_request(JsonReader& j, const Uploads& uploads) {
 ExportRequest export_request(JsonReader& j) {
   ExportRequest r;
   r.out = {plain_file_name(j.require<std::string>("file"))};
-  r.purpose = named_if_there(j, "for", export_for_from_name).value_or(ExportFor::any);
+  r.purpose = optional_named(j, "for", export_for_from_name).value_or(ExportFor::any);
   r.faces = j.optional<int>("faces");
   r.texture = j.optional<int>("texture");
-  r.image = named_if_there(j, "image", export_image_from_name);
+  r.image = optional_named(j, "image", export_image_from_name);
   if (const auto origin = j.optional<std::string>("origin")) {
     if (*origin != "input" && *origin != "base")
       fail_usage("{}: there is no origin '{}'.", j.what(), *origin);

@@ -21,10 +21,10 @@ DecalPlace decal_place(JsonReader&);
 LightChoice light_choice(JsonReader&, const Uploads&);
 // Keys "camera", "channel", "samples", "light", "as_photographed".
 FrameRequest frame_request(JsonReader&, const Uploads&);
-// Keys "file", of which the name alone counts, "for", "faces", "texture", "image", "origin", "size" (meters),
-// "unit_scale", "points", "light".
+// Keys "file" (a name; folders in it are ignored), "for", "faces", "texture", "image", "origin", "size"
+// (meters), "unit_scale", "points", "light".
 ExportRequest export_request(JsonReader&);
-// Keys "turntable" (frames), "samples", "size": [width, height]. Without a folder.
+// Keys "turntable" (number of frames), "samples", "size": [width, height]. The caller sets the folder.
 RenderRequest turntable_request(JsonReader&);
 
 }  // namespace cei3d

@@ -71,7 +71,7 @@ void Editor::say_address(const std::string& address) {
 }
 
 void Editor::stop() {
-  if (worker_) worker_->end();  // its last job may still ask it for more
+  if (worker_) worker_->end();  // before worker_ becomes null, because the last job may still use it
   worker_.reset();
   const std::lock_guard lock(mutex_);
   held_packs_.clear();
@@ -108,8 +108,8 @@ void Editor::answer(HttpRequest request, Reply reply) {
 }
 
 void Editor::on_worker(const std::string& job, Reply reply, Work work) {
-  constexpr size_t kMaxWaiting = 16;    // each may hold files that were sent
-  constexpr size_t kMaxWithPacks = 32;  // windows that load while changes wait get what they draw
+  constexpr size_t kMaxWaiting = 16;    // requests, each of which may hold uploaded files
+  constexpr size_t kMaxWithPacks = 32;  // so that windows get their packs although changes wait
   if (worker_->edits_waiting() >= (job == "pack" ? kMaxWithPacks : kMaxWaiting))
     return reply(error_response(503, "Too many requests wait; try again when some are done."));
   worker_->edit(job,
@@ -120,7 +120,7 @@ void Editor::on_worker(const std::string& job, Reply reply, Work work) {
 
 void Editor::change(const HttpRequest& request, Reply reply, std::function<Json(Session&, Progress&)> make) {
   if (read_only_)
-    return reply(error_response(403, "This object is open for looking only.",
+    return reply(error_response(403, "This object is open read-only.",
                                 "Open it without --read-only, once no other program changes it."));
   on_worker("edit", std::move(reply),
             [this, wanted = request.if_match, make = std::move(make)](Session& session, Progress& progress) {
@@ -129,7 +129,7 @@ void Editor::change(const HttpRequest& request, Reply reply, std::function<Json(
                                       "It is shown now; make your change again.");
               const Json result = make(session, progress);
               publish(session);
-              give_back_memory();
+              trim_memory();
               return HttpResponse{200, "application/json",
                                   "{\"result\":" + text_of(result) + ",\"state\":" + state_text() + "}"};
             });
@@ -164,11 +164,12 @@ std::string Editor::revision() const {
   return state_.value("revision", "");
 }
 
-void Editor::give_back_memory() {
-  constexpr uint64_t kOften = 16;
-  if (++holes_left_ % kOften == 0)
+// Changes, and windows that come and go, fragment the heap.
+void Editor::trim_memory() {
+  constexpr uint64_t kTrimInterval = 16;  // calls
+  if (++trims_asked_ % kTrimInterval == 0)
     worker_->background([](Session&) {
-      give_back_holes();
+      trim_heap();
       return false;
     });
 }

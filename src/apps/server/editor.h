@@ -3,26 +3,27 @@
 //
 //   GET  /                      the page; its modules below /app/
 //   GET  /api/state             what is open: history, parts, findings, jobs
-//   GET  /api/start             {"state", "object"}: this and the next, for a page that begins
-//   GET  /api/object            what does not change while it is open: views, cameras, frame
+//   GET  /api/start             {"state", "object"}: both at once, for a page that is being loaded
+//   GET  /api/object            what does not change while an object is open: views, cameras, frame
 //   GET  /api/photo/VIEW?width= a photograph, JPEG
-//   GET  /api/making            the object that is being made, PNG
+//   GET  /api/making            the object that is being reconstructed, PNG
 //   GET  /api/pack/KIND?key=    what the page draws, by a key of the state; or ?preview=TOKEN
 //                               &packed: by gzip
 //   POST /api/upload?name=      bytes in, {"id"} out
 //   POST /api/edit              {"op", "params", "amend"}
-//   POST /api/preview           the same, not stored: {"token", "report"}; then /api/commit {"token"}
+//   POST /api/preview           makes an edit and does not store it: {"token", "report"}; /api/commit
+//                               {"token"} stores it
 //   POST /api/pick              {"camera", "pixel"}: the surface there, or null
 //   POST /api/decal             {"camera", "decal", "size"}: the camera whose picture the decal is, or null
 //   POST /api/mask              {"camera", "part" or "token"}: PNG
-//   POST /api/step              {"camera", "samples", "done"}: PNG of the object after so many edits
+//   POST /api/step              {"camera", "samples", "done"}: PNG of the object after the first `done` edits
 //   POST /api/undo redo toggle goto rename restore forget
 //   POST /api/export            {"file", ...}; then GET /api/download/FILE
-//   POST /api/turntable         {"file", "turntable", ...}: its frames in a .zip; then the same
+//   POST /api/turntable         {"file", "turntable", ...}: the frames in a .zip; then GET /api/download/FILE
 //   POST /api/open close reconstruct cancel
-//   /socket                     frames and news, see sockets.cpp
+//   /socket                     frames, and messages to all windows; see sockets.cpp
 //
-// A change may carry If-Match: REVISION and is refused with 409 when the history is another one by now.
+// A change may carry If-Match: REVISION; it is refused with 409 when the history has changed since.
 #pragma once
 
 #include <atomic>
@@ -47,7 +48,7 @@ struct EditorOptions {
   std::filesystem::path path;     // a project, a capture, or a folder of them
   std::filesystem::path project;  // where a capture's object goes; empty: NAME-object beside the capture
   bool read_only = false;
-  std::filesystem::path app;  // folder to read the page from; empty: the embedded one
+  std::filesystem::path app;  // folder to read the page from; empty: the page that is embedded in the program
   std::string device = "auto";
   int threads = 0;
   size_t news_kept = 1000;  // messages to all windows, for those that were not connected when they were sent
@@ -66,10 +67,11 @@ class Editor : public HttpApp, private JobListener {
   void received(const SocketPtr&, const std::string& text) override;
   void closed(const SocketPtr&) override;
 
-  // Where it is found, without the key: who else wants to change the project is told.
+  // The address of the editor, without its key, for the error that another program gets when it wants to
+  // change the open project.
   void say_address(const std::string& address);
-  // Ends the work that is running, after its state was saved, and drops all tabs and the replies that are
-  // still owed. To be called before the server is destroyed, whose connections these refer to.
+  // Cancels the running job, which saves its state, and drops all tabs and all replies that were not sent.
+  // Must be called before the server is destroyed, because tabs and replies refer to its connections.
   void stop();
   void wait_until_idle() { worker_->wait_until_idle(); }  // for tests
 
@@ -110,16 +112,17 @@ class Editor : public HttpApp, private JobListener {
   void reconstruct(JsonReader&, const HttpRequest&, Reply);
   void cancel(JsonReader&, const HttpRequest&, Reply);
 
-  // Files below `folder`, and what is said of them.
+  // Files that were written below a folder, and the report about them.
   struct Exports {
     std::vector<std::filesystem::path> files;
     Json report;
   };
-  // Has them written and lets them be downloaded; usage error: read-only.
+  // Writes files on the worker and allows their download. Usage error: read-only.
   void write_exports(Reply, std::function<Exports(Session&, Progress&, const std::filesystem::path& folder)>);
-  // Runs the work on the worker; errors become responses. Refused when too much waits.
+  // Runs the work on the worker; errors become responses. Replies 503 when too many requests wait.
   void on_worker(const std::string& job, Reply, Work);
-  // A change of the history: refused when read-only or at another revision; the answer has the new state.
+  // A change of the history; the reply has the new state. Refused when the project is read-only or when the
+  // request names another revision than the present one.
   void change(const HttpRequest&, Reply, std::function<Json(Session&, Progress&)>);
   void keep(const std::string& token, std::shared_ptr<const EditPreview>);
   std::shared_ptr<const EditPreview> kept(const std::string& token);  // usage error: it is gone
@@ -127,26 +130,31 @@ class Editor : public HttpApp, private JobListener {
   // places.cpp: what is open. On the worker's thread.
   void open_path(Session&, const std::filesystem::path&);
   void open_project(Session&, const std::filesystem::path&);
+  // Opens for writing if possible, else read-only. Returns why it is read-only; empty: as the user wants it.
+  std::string open_for_access(Session&, const std::filesystem::path&);
+  void show_unfinished(Session&, const std::filesystem::path&, const ProjectInfo&);  // without its object
+  // note: what the user is told about the project when it opens.
+  void show_object(Session&, const std::filesystem::path&, const ProjectInfo&, const std::string& note);
   void open_capture(Session&, const std::filesystem::path&);
   void show_library();
   void show_making(const Image&);
-  void publish(Session&);  // the present state, to everybody
-  // grows: members that grow with the history.
+  void publish(Session&);  // the present state, to all windows
+  // grows: members of the state that grow with the history.
   void publish(Json state, Json grows = Json::object());
   Json state() const;              // without the members that grow
   std::string state_text() const;  // JSON of the whole state
   std::string revision() const;    // of the history; empty: nothing is open
-  void give_back_memory();         // at times, when nothing else is to do
+  void trim_memory();              // calls trim_heap() now and then, when the worker has nothing else to do
   std::filesystem::path object_folder() const;
 
-  // packs.cpp: what the page draws. The last pack of each kind is kept. Those that an object needs at first
-  // wait for its first frame, where that is quick.
+  // packs.cpp: what the page draws. The last pack of each kind is kept. Requests for packs of an object that
+  // was just opened wait for its first frame, if that is quick.
   struct KeptPack {
     std::string key;
     std::shared_ptr<const std::string> bytes;
   };
   void prepare_packs();  // in the background, before a page asks for them
-  void release_packs();  // that wait
+  void release_packs();  // lets the requests that wait for the first frame go on
   std::shared_ptr<const std::string> pack_of(Session&, const std::string& kind);
   std::shared_ptr<const std::string> kept_pack(const std::string& kind, const std::string& key) const;
 
@@ -171,14 +179,14 @@ class Editor : public HttpApp, private JobListener {
   std::filesystem::path exports_folder_;
   std::map<SocketPtr, Tab> tabs_;
   const std::string run_ = new_token().substr(0, 16);  // names this run of the program
-  uint64_t event_ = 0;                                 // number of the last of the news
-  std::deque<std::string> news_;                       // the last ones, in order
+  uint64_t event_ = 0;                                 // number of the last message to all windows
+  std::deque<std::string> news_;                       // the last of these messages, oldest first
   std::map<std::string, KeptPack> packs_;              // by kind
-  bool first_frame_ = false;                           // the object that is open has had no frame yet
-  std::vector<std::function<void()>> held_packs_;      // requests that wait for it
+  bool first_frame_ = false;                           // packs wait for the object's first frame
+  std::vector<std::function<void()>> held_packs_;      // requests for packs that wait for that frame
   std::atomic<uint64_t> tokens_ = 0;
-  std::atomic<uint64_t> holes_left_ = 0;  // changes and closed windows, whose memory has holes
-  std::unique_ptr<Worker> worker_;        // last: it uses the others
+  std::atomic<uint64_t> trims_asked_ = 0;  // calls of trim_memory()
+  std::unique_ptr<Worker> worker_;         // last: it uses the others
 };
 
 }  // namespace cei3d

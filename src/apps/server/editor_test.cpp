@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+// Edits, their history, and questions about the object.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <thread>
 
 #include "apps/server/edit_json.h"
 #include "apps/server/test_editor.h"
@@ -33,7 +33,7 @@ std::vector<std::string> result_objects(const std::filesystem::path& project) {
   return objects;
 }
 
-// The edits of the editor in the test below, by the commands of the session. file: the scribble.
+// The same edits as in the test below, made by the commands of the session. file: the scribble.
 void edit_by_commands(Session& session, const std::filesystem::path& file) {
   Progress quiet;
   session.paint({{{"train/r_0", file}}}, quiet);
@@ -162,36 +162,8 @@ TEST_F(EditorTest, APreviewIsShownAndThenKeptOrNot) {
   EXPECT_EQ(decode_png(mask.body, "mask").at(24, 24)[0], 1);
   EXPECT_EQ(post("/api/commit", {{"token", token}}).status, 200);
   EXPECT_EQ(state()["parts"][0]["name"], "cap");
-  EXPECT_EQ(post("/api/commit", {{"token", token}}).status, 422);  // the history is another one
+  EXPECT_EQ(post("/api/commit", {{"token", token}}).status, 422);  // the history has changed
   EXPECT_EQ(post("/api/commit", {{"token", "preview999"}}).status, 400);
-}
-
-TEST_F(EditorTest, APageBeginsByOneRequest) {
-  const Json start = Json::parse(get("/api/start").body);
-  EXPECT_EQ(start["state"], state());
-  EXPECT_EQ(start["object"], Json::parse(get("/api/object").body));
-}
-
-// Packs that a window asks for before it has seen anything come after a frame, or when they are made anyway.
-TEST_F(EditorTest, PacksArriveWithAndWithoutAFrame) {
-  get("/api/pack/vertex_light");  // its light is kept in a file now: the first frame is quick
-  for (const bool looks : {false, true}) {
-    editor_.reset();
-    EditorOptions options;
-    options.path = folder();
-    options.device = "cpu";
-    options.threads = 2;
-    editor_ = std::make_unique<Editor>(options, Guard(kTestToken));
-    const auto socket = std::make_shared<FakeSocket>();
-    editor_->opened(socket);
-    editor_->received(socket, Json{{"type", "hello"}, {"token", kTestToken}}.dump());
-    while (state()["mode"] != "project") std::this_thread::yield();
-    if (looks) editor_->received(socket, Json{{"type", "view"}, {"seq", 1}, {"camera", camera(0)}}.dump());
-    for (const char* kind : {"shape", "look", "light"})
-      EXPECT_EQ(get(std::string("/api/pack/") + kind).status, 200);
-    editor_->wait_until_idle();
-    EXPECT_EQ(socket->count("frame"), looks ? 1u : 0u);
-  }
 }
 
 TEST_F(EditorTest, AStepOfTheHistoryHasAPicture) {
@@ -210,43 +182,6 @@ TEST_F(EditorTest, TellsWhatIsUnderThePointer) {
   const Json on = Json::parse(post("/api/pick", {{"camera", camera(0)}, {"pixel", {24, 24}}}).body);
   EXPECT_EQ(on["albedo"].get<std::string>().size(), 7u);
   EXPECT_EQ(post("/api/pick", {{"camera", camera(0)}, {"pixel", {0, 0}}}).body, "null");
-}
-
-TEST_F(EditorTest, APackIsKeptByItsKeyAlone) {
-  const Json keys = state()["packs"];
-  const auto pack = [&](const std::string& key) {
-    HttpRequest r;
-    r.method = "GET";
-    r.path = "/api/pack/look";
-    r.query = "key=" + key;
-    return ask(std::move(r));
-  };
-  const HttpResponse before = pack(keys["look"]);
-  EXPECT_EQ(before.headers.size(), 1u);  // may be kept
-  post("/api/edit", {{"op", "material"}, {"params", {{"roughness", 0.9}}}});
-  EXPECT_NE(state()["packs"]["look"], keys["look"]);
-  const HttpResponse now = pack(state()["packs"]["look"]), late = pack(keys["look"]);
-  EXPECT_EQ(now.headers.size(), 1u);
-  EXPECT_TRUE(late.headers.empty());  // the look of that key is gone
-  EXPECT_TRUE(late.body == now.body && late.body != before.body);
-  EXPECT_EQ(get("/api/pack/color").status, 400);
-}
-
-TEST_F(EditorTest, OverALongLineItSendsLess) {
-  HttpRequest r;
-  r.method = "GET";
-  r.path = "/api/pack/shape";
-  const HttpResponse plain = ask(r);
-  r.query = "packed=1";
-  const HttpResponse packed = ask(r);
-  EXPECT_TRUE(std::any_of(packed.headers.begin(), packed.headers.end(), [](const auto& h) {
-    return h == std::pair<std::string, std::string>("Content-Encoding", "gzip");
-  }));
-  EXPECT_EQ(packed.body.substr(0, 2), "\x1f\x8b");
-  EXPECT_LT(packed.body.size(), 0.8 * double(plain.body.size()));
-  // The last four bytes are the size of what is packed.
-  const auto* end = reinterpret_cast<const unsigned char*>(packed.body.data() + packed.body.size() - 4);
-  EXPECT_EQ(end[0] + (end[1] << 8) + (end[2] << 16) + (size_t(end[3]) << 24), plain.body.size());
 }
 
 TEST_F(EditorTest, ADecalIsSeenByItsCamera) {
@@ -296,7 +231,7 @@ TEST_F(EditorTest, BadRequestsAreSentencesAndChangeNothing) {
   EXPECT_EQ(files_of(folder()), before);
 }
 
-TEST_F(EditorTest, PicturesToPaintWithAreLimited) {
+TEST_F(EditorTest, ScribblesAndMasksAreLimitedInSize) {
   Uploads uploads;
   const std::string id = uploads.add("scribble.png", "a picture");
   const Json paint = paint_params(camera(0), id);
@@ -315,7 +250,7 @@ TEST_F(EditorTest, ExportsGoToTheProjectAndCanBeFetched) {
   EXPECT_EQ(get("/api/download/ball.ply").body, read_file(folder() / "exports" / "ball.ply"));
 }
 
-TEST_F(EditorTest, ReadOnlyLooksAndChangesNothing) {
+TEST_F(EditorTest, ReadOnlyShowsAndChangesNothing) {
   start(true);
   EXPECT_EQ(state()["read_only"], true);
   EXPECT_EQ(post("/api/edit", {{"op", "material"}, {"params", {{"roughness", 0.3}}}}).status, 403);
@@ -323,7 +258,7 @@ TEST_F(EditorTest, ReadOnlyLooksAndChangesNothing) {
   EXPECT_EQ(post("/api/pick", {{"camera", camera(0)}, {"pixel", {24, 24}}}).status, 200);
 }
 
-TEST_F(EditorTest, AProjectThatAnotherProgramChangesIsOpenedForLooking) {
+TEST_F(EditorTest, AProjectThatAnotherProgramChangesIsOpenedReadOnly) {
   editor_.reset();
   Project other = Project::open(folder(), Project::Mode::write);
   start();
@@ -339,88 +274,6 @@ TEST_F(EditorTest, HoldsTheLockWhileItIsOpen) {
               HasSubstr("the editor at http://127.0.0.1:7861"));
   editor_.reset();
   EXPECT_NO_THROW(Project::open(folder(), Project::Mode::write));
-}
-
-TEST_F(EditorTest, AWindowGetsItsFrameInTilesAndHearsOfChanges) {
-  const auto socket = std::make_shared<FakeSocket>();
-  editor_->opened(socket);
-  editor_->received(socket, Json{{"type", "hello"}, {"token", kTestToken}}.dump());
-  EXPECT_EQ(socket->count("welcome"), 1u);
-  editor_->received(socket, Json{{"type", "view"}, {"seq", 7}, {"camera", camera(0)}, {"samples", 2}}.dump());
-  editor_->wait_until_idle();
-  ASSERT_EQ(socket->count("frame"), 1u);
-  ASSERT_EQ(socket->pictures.size(), 1u);
-  const std::string& bytes = socket->pictures[0];
-  const size_t head = size_t((unsigned char)bytes[0]) + 256 * size_t((unsigned char)bytes[1]);
-  EXPECT_EQ(Json::parse(bytes.substr(4, head))["seq"], 7);
-  EXPECT_EQ(bytes.size(), 4 + head + 4 * kSize * kSize);
-  EXPECT_EQ((unsigned char)bytes[4 + head + 4 * (24 * kSize + 24) + 3], 255);  // the ball is opaque
-  post("/api/edit", {{"op", "material"}, {"params", {{"roughness", 0.3}}}});
-  EXPECT_EQ(socket->count("state"), 2u);  // the first with the welcome
-  editor_->received(socket, "{\"type\": \"view\"}");
-  EXPECT_EQ(socket->count("error"), 1u);
-  editor_->closed(socket);
-}
-
-// A window that says hello; what it got before, if it was there: the run and the number of the last of the
-// news.
-std::shared_ptr<FakeSocket> window(Editor& editor, const Json& before = Json::object()) {
-  const auto socket = std::make_shared<FakeSocket>();
-  Json hello = {{"type", "hello"}, {"token", kTestToken}};
-  hello.update(before);
-  editor.opened(socket);
-  editor.received(socket, hello.dump());
-  return socket;
-}
-
-Json last_news(const FakeSocket& socket, const Json& run) {
-  return {{"run", run}, {"after", socket.texts.back()["event"]}};
-}
-
-TEST_F(EditorTest, AWindowThatWasAwayGetsWhatItMissed) {
-  const auto there = window(*editor_), leaves = window(*editor_);
-  const Json run = leaves->texts[0]["run"];
-  EXPECT_EQ(leaves->texts[0]["complete"], false);
-  EXPECT_EQ(leaves->texts[1]["type"], "state");
-  post("/api/edit", {{"op", "material"}, {"params", {{"roughness", 0.3}}}});
-  editor_->closed(leaves);
-  for (const double scale : {2.0, 3.0}) post("/api/edit", {{"op", "light"}, {"params", {{"scale", scale}}}});
-  const auto back = window(*editor_, last_news(*leaves, run));
-  EXPECT_EQ(back->texts[0]["complete"], true);
-  std::vector<Json> all = leaves->texts, others = there->texts;
-  all.insert(all.end(), back->texts.begin() + 1, back->texts.end());
-  EXPECT_EQ(std::vector<Json>(all.begin() + 2, all.end()),
-            std::vector<Json>(others.begin() + 2, others.end()));
-  EXPECT_GE(back->texts.size(), 3u);
-  EXPECT_EQ(window(*editor_, last_news(*back, run))->texts.size(), 1u);  // nothing was missed
-  EXPECT_EQ(window(*editor_, last_news(*back, "another"))->texts[0]["complete"], false);
-  for (const Json& after : {Json(-1), Json("x"), Json(1e30)})
-    EXPECT_EQ(window(*editor_, {{"run", run}, {"after", after}})->texts[0]["complete"], false) << after;
-}
-
-TEST_F(EditorTest, AWindowThatWasAwayForLongIsToldTheState) {
-  start(false, 2);
-  const auto leaves = window(*editor_);
-  const Json run = leaves->texts[0]["run"];
-  post("/api/edit", {{"op", "light"}, {"params", {{"scale", 2}}}});
-  editor_->closed(leaves);
-  for (int i = 0; i < 3; ++i)
-    post("/api/edit", {{"op", "light"}, {"params", {{"scale", 3}}}, {"amend", true}});
-  const auto back = window(*editor_, last_news(*leaves, run));
-  EXPECT_EQ(back->texts[0]["complete"], false);
-  ASSERT_EQ(back->texts.size(), 2u);
-  EXPECT_EQ(back->texts[1]["revision"], state()["revision"]);
-}
-
-TEST_F(EditorTest, AWindowWithoutTheKeyIsClosed) {
-  for (const char* first : {R"({"type": "hello", "token": "0123456789abcdee"})", R"({"type": "hello"})",
-                            R"({"type": "view", "seq": 1})", "nonsense"}) {
-    const auto socket = std::make_shared<FakeSocket>();
-    editor_->opened(socket);
-    editor_->received(socket, first);
-    EXPECT_TRUE(socket->closed) << first;
-    editor_->closed(socket);
-  }
 }
 
 }  // namespace

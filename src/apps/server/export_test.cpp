@@ -21,7 +21,7 @@ class ExportTest : public EditorTest {
     EXPECT_EQ(file.body, read_file(folder() / "exports" / name));
     return file.body;
   }
-  // By the facade alone, once the editor is closed.
+  // The file that a Session writes, without the editor, which is closed before.
   std::string written(ExportRequest request) {
     editor_.reset();
     Session session("cpu", 2);

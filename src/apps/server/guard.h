@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may talk to the editor: only pages that it served itself, to whoever knows its token. Any page in the
-// same browser can send requests to this machine, and so can its other users.
+// Who may use the editor: only pages that it served itself, and only with its token. The check is needed
+// because any page in the same browser, and any user of this machine, can send requests to the editor.
 #pragma once
 
 #include <string>
@@ -13,10 +13,11 @@ namespace cei3d {
 
 class Guard {
  public:
-  // allowed_hosts: names besides the loopback's that the browser may know this machine by.
+  // allowed_hosts: names of this machine, besides those of the loopback, that may stand in the address.
   Guard(std::string token, std::vector<std::string> allowed_hosts = {});
 
-  // 403: a foreign Host or Origin, or no token; 405, 415: a method or type of content that is never used.
+  // The refusal, if there is one. 403: a foreign Host or Origin, or no token; 405, 415: a method or type of
+  // content that the page never uses.
   std::optional<HttpResponse> refuse(const HttpRequest&) const;
   bool knows(std::string_view token) const;  // takes the same time for every token of one length
   const std::string& token() const { return token_; }
@@ -33,7 +34,8 @@ std::string new_token();  // 256 random bits, as 64 hexadecimal digits
 // An error as the client shows it: {"error": sentence, "hint": what to do}.
 HttpResponse error_response(int status, const std::string& sentence, const std::string& hint = {});
 
-// Headers of every response: nothing but the program's own files is loaded, shown or sent anywhere.
+// Headers of every response. With them the browser lets the page load files from the program alone, and lets
+// no other page embed or read it.
 const std::vector<std::pair<std::string, std::string>>& safety_headers();
 
 }  // namespace cei3d

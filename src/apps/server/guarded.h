@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where results and exceptions of the server's work become what is sent.
+// Turns results and exceptions of the server's work into text and responses.
 #pragma once
 
 #include <functional>
@@ -9,10 +9,10 @@
 
 namespace cei3d {
 
-// Bytes that are no UTF-8 are replaced.
+// JSON as text. Bytes that are not UTF-8 are replaced.
 std::string text_of(const Json&);
 
-// The response of the work; errors become responses with their sentence.
+// The response of the work, or, if it throws, an error response with the message of the exception.
 HttpResponse guarded_response(const std::function<HttpResponse()>& work);
 
 }  // namespace cei3d

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// HTTP messages and sockets as the editor sees them; apps/server/http_server.h carries them.
+// HTTP messages and sockets as the editor sees them; HttpServer (apps/server/http_server.h) transfers them.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@ struct HttpRequest {
   std::string host, origin, fetch_site, authorization, content_type, if_match, if_none_match;  // headers
   std::string body;
 
-  // Value of a key of the query, decoded; none: not there.
+  // Decoded value of a key of the query; none: the key is missing, or its value is malformed.
   std::optional<std::string> parameter(const std::string& key) const;
 };
 
@@ -27,7 +27,7 @@ struct HttpResponse {
   std::vector<std::pair<std::string, std::string>> headers = {};
 };
 
-// Percent-encoding; none: malformed.
+// Text without its percent-encoding; none: malformed.
 std::optional<std::string> decoded(const std::string& text);
 
 // One WebSocket. Its methods may be called from any thread, also after it has closed.
@@ -35,21 +35,21 @@ class Socket {
  public:
   virtual ~Socket() = default;
   virtual void send(std::string text) = 0;
-  // Bytes of a picture. group: those of another group that still wait are dropped, because a newer picture
-  // takes their place.
+  // Bytes of a picture. group: names the picture. Queued bytes of other groups are dropped, because this
+  // newer picture replaces theirs.
   virtual void send_picture(std::string bytes, uint64_t group) = 0;
   virtual void close() = 0;
 };
 using SocketPtr = std::shared_ptr<Socket>;
 
-// What answers. Called from the server's threads.
+// The application behind an HttpServer, called from the threads of the server.
 class HttpApp {
  public:
   virtual ~HttpApp() = default;
-  // Before the body is read: the answer, if the request is refused.
+  // Called before the body is read. The answer, if the request is refused.
   virtual std::optional<HttpResponse> refuse(const HttpRequest& head) = 0;
   virtual size_t body_limit(const HttpRequest& head) = 0;  // bytes
-  // May reply later, from any thread, once.
+  // Calls `reply` once, now or later, from any thread.
   virtual void answer(HttpRequest, std::function<void(HttpResponse)> reply) = 0;
   virtual void opened(const SocketPtr&) = 0;
   virtual void received(const SocketPtr&, const std::string& text) = 0;

@@ -31,12 +31,12 @@ using tcp = asio::ip::tcp;
 using Seconds = std::chrono::seconds;
 using BoostError = beast::error_code;
 
-constexpr int kThreads = 2;  // they only carry bytes
+constexpr int kThreads = 2;  // enough, because they only transfer bytes
 constexpr int kMaxConnections = 64;
 constexpr size_t kMaxHeader = size_t(16) << 10;    // bytes
 constexpr size_t kMaxMessage = size_t(256) << 10;  // bytes, from a WebSocket
 constexpr Seconds kIdle{60}, kBodyTime{300}, kLinger{2};
-constexpr Seconds kFirstMessage{2};  // a WebSocket that says nothing for so long is closed
+constexpr Seconds kFirstMessage{2};  // a WebSocket without a message after this time is closed
 
 std::string text_of(beast::string_view v) { return {v.data(), v.size()}; }
 
@@ -60,7 +60,7 @@ HttpRequest head_of(const Message& m) {
 
 HttpResponse too_large() { return error_response(413, "This is more than the editor takes."); }
 
-// One WebSocket: reads messages, writes what waits in its queue one after the other.
+// One WebSocket: reads messages, and writes those of its queue one after the other.
 class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> {
  public:
   WebSocket(tcp::socket socket, HttpApp& app, std::shared_ptr<std::atomic<int>> count)
@@ -77,7 +77,7 @@ class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> 
       if (error) return;
       self->app_.opened(self);
       self->open_ = true;
-      self->end_if_silent();
+      self->close_if_silent();
       self->read();
     });
   }
@@ -125,8 +125,9 @@ class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> 
     });
   }
 
-  // Who has no key has nothing to say, and must not keep a place for a window that has one.
-  void end_if_silent() {
+  // Closes a socket whose first message does not come in time, so that those who have no key cannot use up
+  // the connections.
+  void close_if_silent() {
     silence_.expires_after(kFirstMessage);
     silence_.async_wait([self = shared_from_this()](BoostError error) {
       if (!error) self->close();
@@ -136,7 +137,7 @@ class WebSocket : public Socket, public std::enable_shared_from_this<WebSocket> 
   void read() {
     stream_.async_read(buffer_, [self = shared_from_this()](BoostError error, size_t) {
       self->silence_.cancel();
-      // Where writing has failed, what was still read is of a window that the app has forgotten.
+      // After a failed write the app has dropped this window, so what is still read is ignored.
       if (error || self->ended_) return self->end();
       const std::string text = beast::buffers_to_string(self->buffer_.data());
       self->buffer_.consume(self->buffer_.size());
@@ -226,7 +227,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     });
   }
 
-  // The connection ends.
+  // Sends the response and ends the connection.
   void refuse(HttpResponse response) {
     keep_alive_ = false;
     write(std::move(response));
@@ -251,8 +252,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     });
   }
 
-  // What the other side still sends is read and dropped for a while: else the system would throw away what it
-  // has not yet read of the answer.
+  // Reads and drops what the other side still sends for a while. If the socket were closed at once, the
+  // system would discard the part of the answer that the other side has not read yet.
   void close() {
     BoostError ignored;
     stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);

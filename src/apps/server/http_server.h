@@ -13,18 +13,18 @@ namespace cei3d {
 struct HttpOptions {
   std::string host = "127.0.0.1";  // address to listen at
   int port = 7861;                 // 0: any free one
-  bool next_if_taken = true;       // tries the ports after it
+  bool next_if_taken = true;       // if the port is taken, try those after it
 };
 
 class HttpServer {
  public:
-  // Listens. app: must outlive this. Errors: the address cannot be used, the port is taken; a build without
-  // Boost.
+  // Starts to listen. app: must outlive this. Errors: the address cannot be used, the port is taken, the
+  // program was built without Boost.
   HttpServer(HttpApp& app, const HttpOptions&);
   ~HttpServer();  // closes everything
 
   int port() const;
-  // Serves until stop() is true, which is asked ten times a second.
+  // Serves until stop(), which is called ten times a second, returns true.
   void run(const std::function<bool()>& stop);
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a path holds: a project, a capture, or a folder of them.
+// Finds out what a path holds: a project, a capture, or a folder of them.
 #pragma once
 
 #include <filesystem>
@@ -15,12 +15,12 @@ struct LibraryEntry {
   enum class Kind { project, capture } kind = Kind::project;
   std::filesystem::path path;
   std::string name;
-  bool finished = true;      // of a project
+  bool finished = true;      // of a project: its object is made
   std::string problem = {};  // why a capture cannot be loaded; empty: it can
   Json json() const;         // id: its name
 };
 
-// None: neither a project nor a capture. A damaged capture is one, with its problem.
+// The project or capture at a path; none: it holds neither. A damaged capture is returned with its problem.
 std::optional<LibraryEntry> entry_at(const std::filesystem::path&);
 // The entries directly below a folder, by name; symbolic links that lead out of it are left out.
 std::vector<LibraryEntry> entries_below(const std::filesystem::path&);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The types of what the program sends, as the page's modules use them, are made here from messages that it
-// sends: src/web/editor/messages.js fails this test when it is another one.
+// Makes the types of the program's messages, which the modules of the page use, from examples of these
+// messages. The test fails if src/web/editor/messages.js differs from them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr const char* kFile = "src/web/editor/messages.js";
 
-// Whose keys depend on the kind of edit.
+// Members that are objects whose keys depend on the kind of edit.
 const std::set<std::string> kOpen = {"params", "report", "result"};
 
 std::string type_of(const std::vector<Json>& examples);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page draws. Packs are made once, before a page asks for them where there is time, and those that
-// are ready never wait for the worker.
+// What the page draws. A pack is made once for each key, if there is time even before a page asks for it. A
+// request for a pack that is ready is answered at once, without the worker.
 #include "apps/server/editor.h"
 #include "apps/server/guarded.h"
 #include "core/base/json.h"
@@ -56,7 +56,7 @@ void Editor::prepare_packs() {
       return false;
     });
   worker_->background([this](Session&) {
-    release_packs();  // nobody looks at the object
+    release_packs();  // for pages that ask for packs and for no frame
     return false;
   });
 }

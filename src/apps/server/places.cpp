@@ -21,7 +21,8 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-// As the page shows it: without the pictures and cameras of strokes.
+// An edit as the history of the page shows it: without cameras, and with the number of strokes instead of the
+// strokes.
 Json entry_json(const LogEntry& e) {
   Json j = e.json();
   if (j["params"].contains("strokes")) {
@@ -50,9 +51,8 @@ Json presets_json() {
 }
 
 // What does not change while a project is open.
-Json object_json(const Session& session) {
+Json object_json(const Session& session, const ProjectInfo& info) {
   const Scene scene = session.scene();
-  const ProjectInfo info = session.info();
   const NamedCamera start = session.start_camera();
   return {{"views", views_json(session.views())},
           {"start", {{"view", start.name}, {"camera", camera_json(start.camera)}}},
@@ -73,37 +73,50 @@ void Editor::open_path(Session& session, const fs::path& path) {
     const std::lock_guard lock(mutex_);
     previews_.clear();
   }
-  if (!home_.empty()) options_.project.clear();  // it belonged to what was open
-  worker_->drop_frames();                        // they are of the object that was open
+  if (!home_.empty()) options_.project.clear();  // it was given for the capture that was open before
+  worker_->drop_frames();                        // of the object that was open before
   release_packs();
   if (!Project::is_project(path)) return open_capture(session, path);
   open_project(session, path);
 }
 
 void Editor::open_project(Session& session, const fs::path& path) {
-  std::string note;
+  const std::string note = open_for_access(session, path);
+  const ProjectInfo info = session.info();
+  if (info.finished)
+    show_object(session, path, info, note);
+  else
+    show_unfinished(session, path, info);
+}
+
+std::string Editor::open_for_access(Session& session, const fs::path& path) {
   read_only_ = options_.read_only;
   try {
     session.open(path, read_only_ ? Session::Access::read : Session::Access::write);
+    return "";
   } catch (const InUseError&) {
     session.open(path, Session::Access::read);
     read_only_ = true;
-    note = "Another cei3d is changing this object, so it is open for looking only.";
+    return "Another cei3d is changing this object, so it is open read-only.";
   }
-  const ProjectInfo info = session.info();
-  if (!info.finished) {
-    const fs::path capture = info.capture_root;
-    session.close();
-    capture_ = capture;
-    options_.project = path;
-    return publish(Json{{"mode", "capture"},
-                        {"name", path.filename().string()},
-                        {"resume", true},
-                        {"project", path.string()},
-                        {"can_close", !home_.empty()},
-                        {"program", kVersion}});
-  }
-  const Json object = object_json(session);
+}
+
+// Like its capture, from which the page can resume the reconstruction.
+void Editor::show_unfinished(Session& session, const fs::path& path, const ProjectInfo& info) {
+  session.close();
+  capture_ = info.capture_root;
+  options_.project = path;
+  publish(Json{{"mode", "capture"},
+               {"name", path.filename().string()},
+               {"resume", true},
+               {"project", path.string()},
+               {"can_close", !home_.empty()},
+               {"program", kVersion}});
+}
+
+void Editor::show_object(Session& session, const fs::path& path, const ProjectInfo& info,
+                         const std::string& note) {
+  const Json object = object_json(session, info);
   {
     const std::lock_guard lock(mutex_);
     object_ = object;
@@ -205,7 +218,7 @@ void Editor::reconstruct(JsonReader& j, const HttpRequest&, Reply reply) {
   j.finish();
   if (!(request.options.seconds >= kMin && request.options.seconds <= kMax))
     fail_usage("A reconstruction takes {} seconds to {} days.", kMin, int(kMax / 86400));
-  if (options_.read_only) fail_usage("This folder is open for looking only.");
+  if (options_.read_only) fail_usage("This folder is open read-only.");
   on_worker("reconstruct", std::move(reply), [this, request](Session& session, Progress& progress) mutable {
     if (state().value("mode", "") != "capture") fail_usage("There is no capture open to make an object of.");
     if (!request.resume) request.capture = capture_;

@@ -155,7 +155,7 @@ void Editor::mask(JsonReader& j, const HttpRequest&, Reply reply) {
 }
 
 void Editor::step(JsonReader& j, const HttpRequest& request, Reply reply) {
-  constexpr int kMaxSide = 512;  // it is computed at once
+  constexpr int kMaxSide = 512;  // small, because edits wait until the whole picture is computed
   const FrameRequest frame = frame_request(j, uploads_);
   const auto done = j.require<size_t>("done");
   j.finish();
@@ -165,7 +165,7 @@ void Editor::step(JsonReader& j, const HttpRequest& request, Reply reply) {
       [this, reply = std::move(reply), frame, done, wanted = request.if_match](Session& session) {
         reply(guarded_response([&] {
           if (!wanted.empty() && wanted != revision())
-            return error_response(409, "The history is another one by now.");
+            return error_response(409, "The history has changed since.");
           return HttpResponse{200, "image/png", encode_png(session.step_picture(frame, done), 8)};
         }));
         return false;
@@ -235,7 +235,7 @@ void Editor::export_file(JsonReader& j, const HttpRequest&, Reply reply) {
   });
 }
 
-// Frames are many: the page gets them in one archive.
+// There are many frames, so the page gets them in one archive.
 void Editor::turntable(JsonReader& j, const HttpRequest&, Reply reply) {
   const std::string name = plain_file_name(j.require<std::string>("file"));
   const RenderRequest request = turntable_request(j);
@@ -260,7 +260,7 @@ void Editor::turntable(JsonReader& j, const HttpRequest&, Reply reply) {
 
 void Editor::write_exports(Reply reply,
                            std::function<Exports(Session&, Progress&, const fs::path& folder)> write) {
-  if (read_only_) fail_usage("This object is open for looking only.");
+  if (read_only_) fail_usage("This object is open read-only.");
   on_worker("export", std::move(reply),
             [this, write = std::move(write)](Session& session, Progress& progress) {
               const Exports made = write(session, progress, exports_folder_);
@@ -302,7 +302,7 @@ void Editor::open(JsonReader& j, const HttpRequest&, Reply reply) {
     }
     for (const LibraryEntry& e : home_.empty() ? std::vector<LibraryEntry>() : entries_below(home_))
       if (e.name == id) {
-        if (!e.problem.empty()) fail("{}", e.problem);  // the list stays, which says it, too
+        if (!e.problem.empty()) fail("{}", e.problem);  // the page keeps its list, which has the problem, too
         open_path(session, e.path);
         return text_response(state_text());
       }

@@ -14,7 +14,7 @@ namespace cei3d {
 struct ServeOptions {
   EditorOptions editor;
   HttpOptions http;
-  std::vector<std::string> allowed_hosts;  // names that the browser may know this machine by
+  std::vector<std::string> allowed_hosts;  // names of this machine that may stand in the address
 };
 
 struct Address {
@@ -22,8 +22,9 @@ struct Address {
   std::string tunnel;  // the command that makes the address work on another machine
 };
 
-// announce: called once, when the address can be opened. stop: asked ten times a second. Errors: those of
-// Editor and HttpServer; an address beyond this machine without allowed hosts.
+// announce: called once, when the address can be opened. stop: called ten times a second; true ends the
+// editor. Errors: those of Editor and HttpServer; an address that other machines can reach, without
+// allowed_hosts.
 void serve(const ServeOptions&, const std::function<void(const Address&)>& announce,
            const std::function<bool()>& stop);
 

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The WebSocket of a window. In, as JSON: {"type": "hello", "token", "run", "after"}, first; {"type": "view",
-// "seq", "camera", "samples", "channel", "light", "as_photographed", "preview", "packed"}, which asks for a
-// frame in place of the one before; {"type": "rest"}, which asks for none. Out, as JSON: "welcome", news,
-// "frame" when one is complete, "error"; and tiles, as bytes: length of the head (4 bytes, little-endian),
-// head (JSON, filled with spaces to a multiple of 4), RGBA, by gzip where the window asks for it: over a long
-// line.
+// The WebSocket of a window.
 //
-// News go to all windows: "state", "progress", "making" when there is a new picture of the object that is
-// being made. They have numbers, "event". A window that comes back names the run of the program and the last
-// number that it got, and is sent what it missed; where that is not there any more ("complete": false) it is
-// told the present state.
+// The window sends JSON: first {"type": "hello", "token", "run", "after"}; then {"type": "view", "seq",
+// "camera", "samples", "channel", "light", "as_photographed", "preview", "packed"} to get a frame, which
+// replaces the one that it asked for before, and {"type": "rest"} when it wants no frame any more.
+//
+// The program sends JSON: "welcome", "frame" when a frame is complete, "error", and the news. Tiles of a
+// frame are bytes: length of the head (4 bytes, little-endian), head (JSON, padded with spaces to a multiple
+// of 4), RGBA. "packed": RGBA is compressed by gzip, which windows with a slow connection ask for.
+//
+// News are messages to all windows: "state", "progress", and "making" when there is a new picture of the
+// object that is being reconstructed. They are numbered by "event". A window that reconnects names the run of
+// the program and the last number that it got, and is sent the news that it missed. If these are not kept any
+// more, "complete" is false, and it is sent the present state instead.
 #include <algorithm>
 
 #include "apps/server/edit_json.h"
@@ -114,7 +117,7 @@ void Editor::received(const SocketPtr& socket, const std::string& text) {
     if (type != "hello" || !j.contains("token") || !j["token"].is_string() ||
         !guard_.knows(j["token"].get<std::string>()))
       return socket->close();
-    give_back_memory();
+    trim_memory();
     return welcome(socket, j);
   }
   if (type == "rest") return worker_->drop_frame(tab.name);

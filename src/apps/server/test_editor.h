@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: an editor on a project that holds a sphere, asked without a network.
+// For tests: an editor of a project that holds a sphere. Requests are made without a network.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -69,7 +69,7 @@ class EditorTest : public ::testing::Test {
   std::unique_ptr<Editor> editor_;
 };
 
-// What a window would have received.
+// Keeps what a window would have received.
 class FakeSocket : public Socket {
  public:
   void send(std::string text) override {

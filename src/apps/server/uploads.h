@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that the browser sent: scribbles, masks, environments. Named by their content; gone with the program.
+// Files that the browser sent: scribbles, masks, environments. Named by a hash of their content, and deleted
+// when the program ends.
 #pragma once
 
 #include <deque>
@@ -13,14 +14,14 @@ namespace cei3d {
 
 class Uploads {
  public:
-  // name: of the user's file; only its last part and plain letters of it are kept. Returns the id.
+  // name: of the user's file; see plain_file_name(). Returns the id.
   std::string add(const std::string& name, const std::string& bytes);
-  // Usage error: there is no such upload (any more).
+  // Usage error: there is no such upload, or it was deleted because newer ones took its place.
   std::filesystem::path path(const std::string& id) const;
   std::string bytes(const std::string& id) const;
 
  private:
-  static constexpr size_t kMax = 200;  // files; the oldest go first
+  static constexpr size_t kMax = 200;  // files; the oldest are deleted first
   TempFolder folder_;
   mutable std::mutex mutex_;
   std::deque<std::pair<std::string, std::string>> files_;  // id, name

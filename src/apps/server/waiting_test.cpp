@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What waits for the worker is limited.
+// The number of requests that wait for the worker is limited.
 #include "apps/server/test_editor.h"
 
 namespace cei3d {
@@ -15,7 +15,7 @@ class WaitingTest : public EditorTest {
     if (method == "POST") r.body = body.dump();
     editor_->answer(std::move(r), std::move(reply));
   }
-  // 0: it waits.
+  // The status of the reply; 0: there is no reply yet, because the request waits.
   int status_now(const std::string& method, const std::string& path, const Json& body = {}) {
     const auto status = std::make_shared<std::atomic<int>>(0);
     send(method, path, body, [status](HttpResponse r) { *status = r.status; });

@@ -96,7 +96,7 @@ void give_back_freed_memory() {
 #endif
 }
 
-void give_back_holes() {
+void trim_heap() {
 #ifdef __GLIBC__
   ::malloc_trim(0);
 #endif

@@ -87,7 +87,7 @@ TEST(System, HolesGoBack) {
   for (size_t i = 0; i < blocks.size(); ++i)
     if (i % 100 < 99) blocks[i].reset();
   EXPECT_GT(resident_megabytes(), before + 60);
-  give_back_holes();
+  trim_heap();
   EXPECT_LT(resident_megabytes(), before + 30);
 }
 
