@@ -83,7 +83,7 @@ void JobThread::wait_until_idle() {
   idle_.wait(lock, [&] { return !busy_ && jobs_.empty() && frames_.empty() && background_.empty(); });
 }
 
-// The viewer after the one that had its turn last.
+// A step of a frame of the next viewer, in the order of their names.
 std::function<void()> JobThread::next_frame() {
   auto it = frames_.upper_bound(last_viewer_);
   if (it == frames_.end()) it = frames_.begin();
@@ -133,7 +133,7 @@ void JobThread::work() {
     }
     lock.unlock();
     job();
-    job = nullptr;  // what it holds goes away without the lock
+    job = nullptr;  // destroys what it holds before the mutex is locked
     lock.lock();
   }
 }

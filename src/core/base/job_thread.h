@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One thread that works on behalf of several others, which never wait for it. Jobs run in their order and are
-// never dropped. Frames run step by step in between; of each viewer only the newest is wanted. What may wait
-// runs last.
+// One thread that works on behalf of several others, which never wait for it. Jobs run first, in their order,
+// and all of them are run. Frames are computed step by step when no job waits; a new frame of a viewer
+// replaces its previous one. Background work runs when there is nothing else to do.
 #pragma once
 
 #include <atomic>
@@ -18,7 +18,7 @@
 
 namespace cei3d {
 
-// Listens to the job that runs; called on the thread of the jobs and those that it computes on.
+// Gets the progress of the running job. Called from the job's thread and from threads that compute for it.
 class JobListener {
  public:
   virtual ~JobListener() = default;
@@ -33,17 +33,17 @@ class JobThread {
   // listener: must outlive this; may be null.
   explicit JobThread(JobListener* listener);
   ~JobThread();  // end()
-  // Cancels the running job, drops waiting ones and waits; nothing runs afterwards.
+  // Cancels the running job, drops those that wait, and returns when the thread has ended.
   void end();
 
   // name: for the listener and cancel().
   void add(const std::string& name, Job);
-  // Replaces the viewer's frame, also one that has begun.
+  // Replaces the viewer's frame, even if its computation has begun.
   void frame(const std::string& viewer, Step);
   void drop_frame(const std::string& viewer);
   void drop_frames();  // of every viewer
   void background(Step);
-  void cancel(const std::string& name);  // the running job of that name: its Progress says so
+  void cancel(const std::string& name);  // the running job, if it has that name, through its Progress
 
   size_t jobs_waiting() const;  // including the one that runs
   void wait_until_idle();       // for tests
@@ -55,7 +55,7 @@ class JobThread {
   };
   class JobProgress;
   void work();
-  std::function<void()> next();  // empty: nothing to do. With the mutex locked.
+  std::function<void()> next();  // what to run next; empty: nothing. Called with the mutex locked.
   std::function<void()> next_frame();
   void run_job(const NamedJob&);
 
@@ -65,10 +65,10 @@ class JobThread {
   std::deque<NamedJob> jobs_;
   struct Frame {
     Step step;
-    uint64_t number;  // of the request; a newer one of the same viewer has another
+    uint64_t number;  // of the request, to tell a frame from a newer one of the same viewer
   };
   std::map<std::string, Frame> frames_;
-  std::string last_viewer_;  // viewers take turns
+  std::string last_viewer_;  // whose frame was computed last; viewers take turns
   std::deque<std::shared_ptr<Step>> background_;
   std::string running_;  // name of the job that runs; empty: none
   std::atomic<bool> cancelled_ = false;

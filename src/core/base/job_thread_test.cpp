@@ -8,7 +8,7 @@
 namespace cei3d {
 namespace {
 
-// Holds the thread until it is let go, so that what is asked for meanwhile waits.
+// Blocks the job thread until open() is called, so that everything that is added meanwhile waits.
 class Gate {
  public:
   explicit Gate(JobThread& jobs) {

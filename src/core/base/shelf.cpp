@@ -43,22 +43,22 @@ void Shelf::keep(const std::string& name) {
     }
     try {
       slot->get();
-    } catch (const Error&) {  // it is said when somebody needs the value
+    } catch (const Error&) {  // reported at the next get()
     }
   }
 }
 
-// A slot that was used since the last look gets another round.
+// Considers the slots in turn, at most twice each: a slot that was used since it was last considered stays,
+// and loses its mark, so that the second time it can be dropped.
 void Shelf::add(Slot& slot) {
-  std::vector<std::shared_ptr<const void>> dropped;  // goes away without the lock
+  std::vector<std::shared_ptr<const void>> dropped;  // destroyed after the lock is released
   const std::lock_guard lock(mutex_);
   if (!slot.resident_) {
     resident_.push_back(&slot);
     bytes_ += slot.bytes_;
     slot.resident_ = true;
   }
-  for (size_t looks = 2 * resident_.size(); bytes_ > max_bytes_ && resident_.size() > 1 && looks > 0;
-       --looks) {
+  for (size_t left = 2 * resident_.size(); bytes_ > max_bytes_ && resident_.size() > 1 && left > 0; --left) {
     Slot& oldest = *resident_.front();
     const std::lock_guard slot_lock(oldest.mutex_);
     if (oldest.kept_ || oldest.used_ || &oldest == &slot) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values that can be read again, in memory within a number of bytes: what was not used lately is dropped, and
-// read when it is needed. For any number of threads.
+// A cache of values that can be read again, for example from files, with a limit of bytes. Beyond the limit
+// it drops values that were not used lately; they are read again when they are needed. Safe for several
+// threads.
 #pragma once
 
 #include <atomic>
@@ -20,32 +21,34 @@ class Shelf {
   class Slot;
   explicit Shelf(size_t max_bytes) : max_bytes_(max_bytes) {}
 
-  // A value that is in memory now. name: of what it is read from; bytes: that it takes. read: makes the same
-  // value again.
+  // Adds a value. name: of what it is read from, for keep(); bytes: its size in memory. read: returns an
+  // equal value.
   static std::shared_ptr<Slot> put(std::shared_ptr<Shelf>, std::string name, size_t bytes,
                                    std::shared_ptr<const void> value,
                                    std::function<std::shared_ptr<const void>()> read);
-  // Keeps all values of that name in memory for as long as they are used: what they are read from goes away.
+  // Keeps all values of that name in memory for as long as their slots live; call it before what they are
+  // read from is deleted.
   void keep(const std::string& name);
 
-  size_t bytes() const;  // of the values in memory
-  size_t reads() const { return reads_; }
+  size_t bytes() const;                    // of the values in memory
+  size_t reads() const { return reads_; }  // how often a dropped value was read again
 
  private:
-  void add(Slot&);
-  void remove(Slot&);
+  void add(Slot&);     // its value is in memory now; may drop others
+  void remove(Slot&);  // the slot is destroyed
 
   size_t max_bytes_, bytes_ = 0;
   std::atomic<size_t> reads_ = 0;
   mutable std::mutex mutex_;
-  std::list<Slot*> resident_;  // the one that came last is last
-  std::multimap<std::string, std::weak_ptr<Slot>> all_;
+  std::list<Slot*> resident_;  // slots with their value in memory; the first is considered for dropping first
+  std::multimap<std::string, std::weak_ptr<Slot>> all_;  // by name
 };
 
+// The place of one value.
 class Shelf::Slot {
  public:
   ~Slot();
-  std::shared_ptr<const void> get();
+  std::shared_ptr<const void> get();  // reads the value if it was dropped; throws what `read` throws
 
  private:
   friend class Shelf;
@@ -53,18 +56,18 @@ class Shelf::Slot {
   std::multimap<std::string, std::weak_ptr<Slot>>::iterator place_;
   size_t bytes_ = 0;
   std::function<std::shared_ptr<const void>()> read_;
-  std::mutex mutex_;                   // of the members below; never taken before the shelf's
+  std::mutex mutex_;                   // of value_, used_, kept_; if both are locked, after the shelf's mutex
   std::shared_ptr<const void> value_;  // null: dropped
-  bool used_ = false;                  // since it was last looked at
-  bool kept_ = false;
-  bool resident_ = false;  // in the shelf's list; with the shelf's mutex
+  bool used_ = false;                  // since add() last considered dropping it
+  bool kept_ = false;                  // never dropped
+  bool resident_ = false;              // in the list of the shelf; guarded by the shelf's mutex
 };
 
-// A value in memory, or one on a shelf. Copies share it.
+// A value in memory that is never dropped, or a value on a shelf. Copies share it.
 template <class T>
 class Shelved {
  public:
-  // Keeps the value in memory for as long as it lives, and not longer than the Shelved.
+  // Access to the value, which is not dropped meanwhile. Must not outlive the Shelved.
   class Use {
    public:
     Use(const T* value, std::shared_ptr<const void> owner) : value_(value), owner_(std::move(owner)) {}
@@ -73,14 +76,14 @@ class Shelved {
 
    private:
     const T* value_;
-    std::shared_ptr<const void> owner_;  // null: the Shelved
+    std::shared_ptr<const void> owner_;  // of the value; null: the Shelved owns it
   };
 
   Shelved() = default;
   Shelved(std::nullptr_t) {}
   template <class U>
   Shelved(std::shared_ptr<U> value) : value_(std::move(value)) {}
-  // value: is what `read` gives.
+  // On a shelf, see Shelf::put(). value: equal to what `read` returns.
   Shelved(std::shared_ptr<Shelf> shelf, const std::string& name, size_t bytes, std::shared_ptr<const T> value,
           std::function<std::shared_ptr<const T>()> read)
       : slot_(Shelf::put(std::move(shelf), name, bytes, std::move(value), std::move(read))) {}

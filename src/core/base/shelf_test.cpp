@@ -30,7 +30,7 @@ TEST(Shelf, DropsWhatWasNotUsedAndReadsItAgain) {
   std::vector<Shelved<int>> all;
   for (int i = 0; i < 5; ++i) {
     all.push_back(numbers.make(i));
-    all[0].use();  // in use all the time
+    all[0].use();  // so that it is never dropped
   }
   EXPECT_EQ(numbers.shelf->bytes(), 30u);
   EXPECT_EQ(numbers.shelf->reads(), 0u);
@@ -52,7 +52,7 @@ TEST(Shelf, WhatIsInUseStaysWhereItIs) {
   EXPECT_LE(numbers.shelf->bytes(), 30u);
 }
 
-TEST(Shelf, ForgetsWhatNobodyHas) {
+TEST(Shelf, ForgetsValuesThatAreNotReferenced) {
   const Numbers numbers;
   {
     const Shelved<int> a = numbers.make(0), b = a;
@@ -84,7 +84,7 @@ TEST(Shelf, ReadingMayFail) {
   const Shelved<int> other(shelf, "other", 10, std::make_shared<const int>(2), read);
   const Shelved<int> third(shelf, "third", 10, std::make_shared<const int>(3), read);
   EXPECT_THROW(lost.use(), Error);
-  shelf->keep("lost");  // says nothing
+  shelf->keep("lost");  // ignores the error
   EXPECT_THROW(lost.use(), Error);
 }
 
