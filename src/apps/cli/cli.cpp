@@ -77,7 +77,8 @@ void add_common(CLI::App& app, CommonOptions& o) {
       ->group("Everywhere");
 }
 
-// The command line with those options of every command that were given here; --json is its caller's.
+// Adds those options that every command has, as they were given to this command, to another command line. Not
+// --json, because the caller prints the result.
 std::vector<std::string> with_common(std::vector<std::string> line, const CommonOptions& o) {
   if (o.quiet) line.push_back("--quiet");
   line.insert(line.end(),
@@ -107,7 +108,7 @@ void wrap_help(CLI::App& app) {
   for (CLI::App* verb : app.get_subcommands({})) wrap_help(*verb);
 }
 
-// The help of the command that was typed.
+// The advice to call the help of the command that was typed.
 std::string help_to_call(const CLI::App& app) {
   std::string verb;
   const CLI::App* at = &app;

@@ -82,7 +82,7 @@ Json words(const std::string& text) {
   return out;
 }
 
-// What holds for all lines of the manifest that do not say otherwise.
+// The values for all lines of the manifest that set no values of their own.
 Json defaults_of(const RunOptions& o) {
   Json out = Json::object();
   if (!o.preset.empty()) out["options"]["preset"] = o.preset;
@@ -99,7 +99,8 @@ Json defaults_of(const RunOptions& o) {
   return out;
 }
 
-// The objects that are still to be made, those that need twice the memory apart.
+// Indices of the objects that are still to be made: first those that get the given memory, then those that
+// need more, because an attempt ran out of it.
 std::vector<std::vector<size_t>> open_lines(const BatchCatalog& catalog, const BatchManifest& manifest) {
   std::vector<std::vector<size_t>> out(2);
   const std::vector<BatchItemStatus> items = batch_item_states(catalog, manifest);
@@ -293,7 +294,7 @@ std::vector<BatchWorkReport> reports_of(const WorkOptions& o, Session& session, 
   return out;
 }
 
-// The exit code is that of the object that most needs another attempt.
+// Ends with the highest exit code among the objects.
 void work(const WorkOptions& o, Session& session, Console& console) {
   if (int(!o.index.empty()) + int(!o.id.empty()) + int(o.claim) != 1)
     fail_usage("Say which objects: --index I, --id ID or --claim.");
@@ -319,17 +320,18 @@ void work(const WorkOptions& o, Session& session, Console& console) {
 
 void add_work(Commands& commands, CLI::App* batch) {
   auto o = std::make_shared<WorkOptions>();
-  CLI::App* verb = commands.add("work",
-                                "Make one object, whoever asks and however often: what schedulers call. Exit "
-                                "codes: 0 done, 1 failed and would fail again, 75 try again later, 130 "
-                                "interrupted and saved",
-                                batch);
+  CLI::App* verb =
+      commands.add("work",
+                   "Make one object; safe to call from several schedulers at once and repeatedly. Exit "
+                   "codes: 0 done, 1 failed and would fail again, 75 try again later, 130 "
+                   "interrupted and saved",
+                   batch);
   verb->add_option("manifest", o->manifest, "Manifest")->required()->check(CLI::ExistingFile);
   verb->add_option("-o,--output", o->catalog, "Folder of the catalog")->required();
   verb->add_option("--index", o->index,
                    "Line of the manifest, from 0; FIRST:COUNT: several, one after another");
   verb->add_option("--id", o->id, "Id of the object");
-  verb->add_flag("--claim", o->claim, "Every object that nobody else works on, until none is left");
+  verb->add_flag("--claim", o->claim, "Every object that no other worker is making, until none is left");
   commands.on(verb, o, work);
 }
 

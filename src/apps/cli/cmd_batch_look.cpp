@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// batch status, retry, cancel, index: what has become of a catalog.
+// batch status, retry, cancel, index: look after a catalog that is being made.
 #include <chrono>
 #include <thread>
 
@@ -47,9 +47,9 @@ void status(const Options& o, Session& session, Console& console) {
         [&] { return batch_status(catalog, BatchManifest::read(catalog.manifest_file())); });
     console.answer(s.json(), status_text(s, o.failed));
     if (!o.watch || s.done + s.failed == s.objects) return;
-    constexpr int kPause = 100;  // number of pauses of 0.1 s
-    for (int i = 0; i < kPause; ++i) {
-      check_cancelled(console, "No longer watched; the catalog goes on.");
+    constexpr int kPauses = 100;  // of 0.1 s, so that Ctrl-C is noticed at once
+    for (int i = 0; i < kPauses; ++i) {
+      check_cancelled(console, "Stopped watching; the work on the catalog goes on.");
       std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
   }
@@ -64,7 +64,7 @@ void retry(const Options& o, Session& session, Console& console) {
 
 void cancel(const Options& o, Session&, Console& console) {
   const BatchCatalog catalog(o.catalog);
-  catalog.manifest_file();  // is it a catalog?
+  catalog.manifest_file();  // throws if the folder is not a catalog
   write_file_atomic(batch_cancel_file(catalog.folder()), "");
   const size_t jobs = cancel_slurm_jobs(catalog.folder());
   console.done({{"slurm_jobs", jobs}},

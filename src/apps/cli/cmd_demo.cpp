@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// demo: photographs to an object, a painted edit, another light, a model file, as the commands that a user
+// demo: makes an object from photographs, paints it, relights it and exports it, by the commands that a user
 // would type.
 #include <algorithm>
 #include <filesystem>
@@ -27,7 +27,7 @@ struct Step {
   Line line;
 };
 
-// What the finished object is exported as.
+// The files that the finished object is exported to.
 const std::vector<DemoFile> kFiles = {
     {"spot.html", "the object, live, in one file for any browser"},
     {"spot.glb", "textured, in one file: Blender, game engines, the web"},
@@ -58,7 +58,7 @@ std::vector<Step> steps_of(const std::string& sample, const std::string& out, co
       {"Painting on one view",
        {"edit", object, "paint", "--view", "train/r_055", "--scribble",
         sample + "/edits/paint/scribble.png"}},
-      {"The painted object in views nobody painted on",
+      {"The painted object in other views",
        {"render", object, "-o", out + "/painted", "--cameras", held_out, "--channels", "rgb,albedo"}},
       {"Another light", {"render", object, "-o", out + "/relit", "--cameras", held_out, "--env", sky}},
       {"The same light, turned",
@@ -78,7 +78,7 @@ void run_steps(const std::vector<Step>& steps, const Commands& commands, Console
   }
 }
 
-// kFiles and what lies beside them, with their sizes.
+// kFiles and the files that belong to them, such as textures, with their sizes.
 std::vector<DemoFile> files_in(const fs::path& out) {
   std::vector<DemoFile> files = kFiles, beside;
   for (const auto& entry : fs::directory_iterator(out)) {

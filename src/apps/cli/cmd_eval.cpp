@@ -62,7 +62,7 @@ void add_eval(Commands& commands) {
   verb->add_option("project", o->project, "Project folder")->required();
   verb->add_option("capture", o->capture,
                    "CAPTURE or CAPTURE:split (default: the project's own held-out views)");
-  // Here --json may name a file; without one it is the same flag as in other commands.
+  // In this command --json may name a file. Without one it is the same flag as in other commands.
   verb->add_option_function<std::vector<std::string>>(
           "--json",
           [o](const std::vector<std::string>& values) {

@@ -99,7 +99,7 @@ EvaluationRequest request_of(const Options& o) {
   return r;
 }
 
-// Where there are several captures, smaller objects are made only if they are asked for.
+// With several captures, objects from fewer or smaller photographs are made only if the user asks for them.
 EvaluationSetRequest set_of(const Options& o) {
   EvaluationSetRequest set;
   set.each = request_of(o);

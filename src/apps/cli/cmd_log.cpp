@@ -17,7 +17,7 @@ std::string state_of(const LogEntry& e) {
   return !e.done ? "undone" : e.enabled ? "on" : "off";
 }
 
-// "128,96" of a pixel or a point; empty for lists of lists and the like.
+// A pixel or a point as "128,96"; empty if the list holds anything but numbers.
 std::string numbers_text(const Json& list) {
   std::string text;
   for (const Json& j : list) {
@@ -32,7 +32,7 @@ std::string value_text(const Json& value) {
   return value.is_structured() ? numbers_text(value) : value.dump();
 }
 
-// The edit's parameters: "part ear, roughness 0.5".
+// The name of the edit and its parameters: "part ear, roughness 0.5".
 std::string what_of(const LogEntry& e) {
   std::string text = e.name.empty() ? "" : '"' + e.name + '"';
   for (const auto& [key, value] : e.params.items()) {
@@ -118,7 +118,8 @@ CLI::App* add_verb(Commands& commands, const char* name, const char* help, F run
     verb->add_option("id", o->id, "Id of the edit, as `log` lists it")->required();
   if (verb_name == "rename") verb->add_option("name", o->name, "Its new name; '' for none")->required();
   if (verb_name == "goto")
-    verb->add_option("done", o->done, "Number of edits that shall be done; 0: none")->required();
+    verb->add_option("done", o->done, "Number of edits to keep active, from the first on; 0: none")
+        ->required();
   if (verb_name == "replay")
     verb->add_option("--on", o->on,
                      "Project to make the edits on: another reconstruction of the same capture")

@@ -63,7 +63,7 @@ void add_open(Commands& commands) {
                    "Name that the browser may use for this machine, besides localhost");
   verb->add_flag_callback(
       "--no-browser", [o] { o->browser = false; }, "Only print the address; do not open the browser");
-  verb->add_flag("--read-only", o->serve.editor.read_only, "Look, change nothing");
+  verb->add_flag("--read-only", o->serve.editor.read_only, "Show the object; changes are refused");
   verb->add_option("--app", o->app, "Folder to read the page from, for work on it")->group("");
   commands.on(verb, o, [&commands](const Options& options, Session&, Console& console) {
     run_open(options, commands.common(), console);

@@ -21,7 +21,7 @@ void list_settings(const Options& o, Console& console) {
   console.answer(r.json(), r.text());
 }
 
-// The session's result; what to type to go on is said where it was interrupted.
+// Reconstructs; adds the command that resumes the run to the error of an interrupted one.
 ReconstructReport reconstructed(const ReconstructRequest& r, Session& session, Console& console) {
   try {
     return session.reconstruct(r, console);

@@ -32,7 +32,7 @@ class Commands {
   // Adds a command. parent: the command that it belongs to; null: the program.
   CLI::App* add(const std::string& name, const std::string& help, CLI::App* parent = nullptr) {
     CLI::App* verb = (parent ? parent : &app_)->add_subcommand(name, help);
-    verb->fallthrough();  // --quiet, --json, ... may follow the command
+    verb->fallthrough();  // so that --quiet, --json, ... may follow the command
     return verb;
   }
   // Sets what the command does. options: filled by CLI11, kept alive by the command.
@@ -47,7 +47,8 @@ class Commands {
   }
   const CLI::App& app() const { return app_; }
   const CommonOptions& common() const { return common_; }
-  // With the options of every command as they are here.
+  // Runs another command line with the options that every command has, such as --threads, as given to this
+  // one.
   int run_line(const std::vector<std::string>& line) const { return run_line_(line); }
   bool chosen() const { return bool(run_); }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands and options of the program as plain data, for what is written about them: manual page and
-// completions of shells.
+// The commands and options of the program as plain data, from which the manual page and the completions of
+// shells are written.
 #pragma once
 
 #include <string>
@@ -30,7 +30,7 @@ struct CommandNode {
   std::string name() const;  // "edit paint"
 };
 
-// Without what the help hides. The options of every command stand at the program only.
+// Leaves out what the help hides. Options that every command has are listed for the program only.
 CommandNode command_tree(const CLI::App&);
 
 // The node, then all below it, in the order of the help.

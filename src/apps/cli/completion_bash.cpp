@@ -5,8 +5,8 @@
 namespace cei3d {
 namespace {
 
-// Three tables by command, and a function that finds the command in the words before the cursor. Bash makes
-// words of `=` and `:`, too.
+// The function that completes: it finds the command in the words before the cursor, and takes the candidates
+// from three tables by command. Bash makes separate words of `=` and `:`.
 constexpr const char* kFunction = R"sh(
 _cei3d() {
   local command='' taking='' word kinds i
@@ -34,7 +34,7 @@ _cei3d() {
   _cei3d_reply "$word" "$kinds"
 }
 
-# WORD KINDS: words to choose from, or @file, @folder, @number, which stand for what cannot be listed.
+# WORD KINDS: KINDS are words to choose from, or @file, @folder, @number for values that cannot be listed here.
 _cei3d_reply() {
   mapfile -t COMPREPLY < <(compgen -W "${2//@*/}" -- "$1")
   case $2 in

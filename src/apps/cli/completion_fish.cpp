@@ -23,7 +23,7 @@ std::string quoted(const std::string& text) {
   return out + "'";
 }
 
-// What follows an option: -r: a value; -x: a value that is no file.
+// The flags of `complete` for the value of an option: -r: it has one; -x: it has one, which is not a file.
 std::string values(const OptionNode& option) {
   if (option.kind == ValueKind::none || option.optional_value) return "";
   if (option.kind == ValueKind::choice) return " -xa " + quoted(joined(option.choices, " "));

@@ -39,7 +39,7 @@ std::string specification(const OptionNode& option) {
   return out + "'";
 }
 
-// Whether an option is the program's: the command has none of that name of its own.
+// Whether an option of the program goes with the command, which has no option of that name itself.
 bool is_common(const OptionNode& option, const CommandNode& command) {
   const std::string& name = option.names.back();
   return name != "--version" && std::none_of(command.options.begin(), command.options.end(),
@@ -62,7 +62,7 @@ std::string arguments(const CommandNode& program, const CommandNode& command) {
   return out;
 }
 
-// The function of a command that has commands goes on with the one of these that was typed.
+// The function of a command with subcommands; it calls the function of the one that was typed.
 std::string dispatch(const CommandNode& command) {
   std::string out = fmt::format(
       "  [[ $state == below ]] || return\n  local below=$line[{}]\n  words=($below $words)\n  (( ++CURRENT "

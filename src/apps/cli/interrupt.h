@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C and SIGTERM as a question that a running command asks now and then.
+// Catches Ctrl-C and SIGTERM, so that a running command can ask whether one has come.
 #pragma once
 
 namespace cei3d {

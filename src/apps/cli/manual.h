@@ -8,7 +8,7 @@
 
 namespace cei3d {
 
-// program: its help is the name and one sentence, then examples. footer: what is said below the help.
+// program: its help is the name and one sentence, then examples. footer: the text at the end of the help.
 std::string manual_page(const CommandNode& program, const std::string& footer, const std::string& version);
 
 }  // namespace cei3d
