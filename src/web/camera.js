@@ -3,7 +3,7 @@
 // Pinhole cameras as render.json has them: OpenCV axes (x right, y down, z into the scene), pixel centers at +0.5.
 
 /**
- * @typedef {number[]} Vec3
+ * @typedef {[number, number, number]} Vec3
  * @typedef {object} Camera
  * @property {number} width pixels, as all numbers up to skew
  * @property {number} height
@@ -22,9 +22,11 @@ export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
 /** @param {Vec3} a @param {Vec3} b @param {number} [share] of b @returns {Vec3} */
 export const plus = (a, b, share = 1) => [a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]];
-/** @param {Vec3} a @returns {Vec3} */
+/** @param {Vec3} a @param {number} s @returns {Vec3} */
+export const mul = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+/** @param {Vec3} a @returns {Vec3} of length 1, or 0 where `a` is 0 */
 export const unit = (a) => {
-  const size = Math.hypot(a[0], a[1], a[2]);
+  const size = Math.hypot(a[0], a[1], a[2]) || 1;
   return [a[0] / size, a[1] / size, a[2] / size];
 };
 
@@ -32,7 +34,7 @@ export const unit = (a) => {
  * The rotation about an axis, counter-clockwise seen from its tip, in rows.
  * @param {Vec3} axis unit
  * @param {number} angle radians
- * @returns {number[][]}
+ * @returns {Vec3[]}
  */
 export function rotation(axis, angle) {
   const [x, y, z] = axis;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 // A camera that goes round an object.
-import { cross, dot, plus, unit } from './camera.js';
+import { cross, dot, mul, plus, unit } from './camera.js';
 
 /** @typedef {import('./camera.js').Camera} Camera */
 /** @typedef {import('./camera.js').Vec3} Vec3 */
@@ -21,6 +21,7 @@ export class Orbit {
     this.center = center;
     this.radius = radius;
     this.up = up;
+    /** @type {Vec3} */
     const side = Math.abs(dot(up, unit(from))) < 0.99 ? from : [up[1], up[2], up[0]];
     this.right = unit(cross(up, side));  // with `front`, the axes of the azimuth
     this.front = cross(this.right, up);
@@ -64,9 +65,9 @@ export class Orbit {
   /** Right, down and forward of the camera. @returns {Vec3[]} */
   axes() {
     const c = Math.cos(this.elevation), s = Math.sin(this.elevation);
-    const level = plus(this.front.map((v) => v * Math.cos(this.azimuth)), this.right, Math.sin(this.azimuth));
-    const away = plus(level.map((v) => v * c), this.up, s);
-    const forward = away.map((v) => -v);
+    const level = plus(mul(this.front, Math.cos(this.azimuth)), this.right, Math.sin(this.azimuth));
+    const away = plus(mul(level, c), this.up, s);
+    const forward = mul(away, -1);
     const right = unit(cross(forward, this.up));
     return [right, cross(forward, right), forward];
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 // The page that `cei3d export -o object.html` writes: an object, its light, and controls.
-import { rotation, unit } from './camera.js';
+import { plus, rotation, unit } from './camera.js';
 import { Controls } from './controls.js';
 import { Orbit } from './orbit.js';
 import { readPack } from './pack.js';
@@ -59,7 +59,7 @@ class Page {
     /** @type {string[]} */
     this.parts = ofKind('look').head.parts;
     const shape = ofKind('shape'), {min, size} = shape.head;
-    const middle = [0, 1, 2].map((k) => min[k] + size[k] / 2);
+    const middle = plus(min, size, 0.5);
     this.orbit = new Orbit(middle, radiusOf(shape), this.up, this.about.from);
     this.renderer = this.makeRenderer();
     this.controls = new Controls(this.canvas, this.orbit, {

@@ -65,7 +65,7 @@ function uniformsOf(gl, program) {
 
 /** The nearest and the farthest distance along the axis of a camera of the corners of a box. @param {Camera} camera @param {any} box */
 function depthRange(camera, box) {
-  const forward = camera.world_from_cam.map((row) => row[2]);
+  const forward = /** @type {import('./camera.js').Vec3} */ (camera.world_from_cam.map((row) => row[2]));
   const middle = plus(box.min, box.size, 0.5), radius = Math.hypot(...box.size) / 2;
   const depth = dot(plus(middle, camera.center, -1), forward);
   const far = Math.max(depth + radius, radius);

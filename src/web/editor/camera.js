@@ -4,30 +4,21 @@
  * The camera of the view, in the capture's frame. Axes are OpenCV's: x right, y down, z into the scene; pixels
  * have their centers at +0.5. It keeps the lens of a photograph, fitted into the canvas.
  */
+import { cross, dot, mul, plus, rotation, unit } from '../camera.js';
 
-/** @typedef {[number, number, number]} Vec */
+export { cross, dot, mul, rotation, unit };
+
+/** @typedef {import('../camera.js').Vec3} Vec */
 /** @typedef {{width: number, height: number, fx: number, fy: number, cx: number, cy: number, skew: number, world_from_cam: Vec[], center: Vec}} CameraJson */
 
-/** @param {Vec} a @param {Vec} b @returns {Vec} */
-export const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-/** @param {Vec} a @param {Vec} b @returns {Vec} */
-export const sub = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-/** @param {Vec} a @param {number} s @returns {Vec} */
-export const mul = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
 /** @param {Vec} a @param {Vec} b */
-export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-/** @param {Vec} a @param {Vec} b @returns {Vec} */
-export const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+export const add = (a, b) => plus(a, b);
+/** @param {Vec} a @param {Vec} b */
+export const sub = (a, b) => plus(a, b, -1);
 /** @param {Vec} a */
 export const length = (a) => Math.hypot(...a);
-/** @param {Vec} a @returns {Vec} */
-export const unit = (a) => mul(a, 1 / (length(a) || 1));
-
-/** Turns v about a unit axis, counter-clockwise seen from its tip. @param {Vec} v @param {Vec} axis @param {number} angle @returns {Vec} */
-export function turned(v, axis, angle) {
-  const c = Math.cos(angle), s = Math.sin(angle);
-  return add(add(mul(v, c), mul(cross(axis, v), s)), mul(axis, dot(axis, v) * (1 - c)));
-}
+/** A matrix times a vector. @param {Vec[]} rows @param {Vec} v @returns {Vec} */
+export const times = (rows, v) => [dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)];
 
 export class ViewCamera {
   /** @param {CameraJson} lens a photograph's camera @param {Vec} target what the view turns about @param {Vec} up unit @param {number} radius of the object */
@@ -68,7 +59,8 @@ export class ViewCamera {
     const tilt = Math.asin(Math.max(-1, Math.min(1, dot(this.axes[2], this.up))));
     const limit = 1.5;
     const allowed = Math.max(-limit, Math.min(limit, tilt - over)) - tilt;
-    const move = (/** @type {Vec} */ v) => turned(turned(v, this.axes[0], -allowed), this.up, around);
+    const tilting = rotation(this.axes[0], -allowed), turning = rotation(this.up, around);
+    const move = (/** @type {Vec} */ v) => times(turning, times(tilting, v));
     const arm = move(sub(this.center, this.target));
     this.axes = /** @type {[Vec, Vec, Vec]} */ (this.axes.map(move));
     this.center = add(this.target, arm);

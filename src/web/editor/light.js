@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** Light: turned, scaled, replaced by an environment, with a sun. It is looked under at once; Keep makes it an edit. */
-import { add, cross, dot, mul, unit } from './camera.js';
+import { add, cross, dot, mul, rotation, times, unit } from './camera.js';
 import { complain, el, field, toast } from './dom.js';
 import { upload } from './api.js';
-import { rotation } from '../camera.js';
 
 /** @typedef {import('./camera.js').Vec} Vec */
 /** @typedef {{rotate: number, scale: number, env?: string, sun?: {direction: Vec, strength: number}}} Light what is looked under; sun: towards it, capture frame */
@@ -106,8 +105,7 @@ export class LightTool {
     const level = pack ? pack.arrays.reflection.subarray(0, pack.head.reflection_side ** 2) : null;
     balls.drawBall(ball, camera.axes, (d) => {
       if (!level || !pack) return [0.25, 0.25, 0.25];  // no map of it is here
-      const room = /** @type {Vec} */ (turn.map((row) => dot(/** @type {Vec} */ (row), d)));
-      return mul(balls.radianceOf(/** @type {Uint32Array} */ (level), pack.head.reflection_side, room), light.scale);
+      return mul(balls.radianceOf(/** @type {Uint32Array} */ (level), pack.head.reflection_side, times(turn, d)), light.scale);
     }, light.sun?.direction ?? null);
   }
 

@@ -225,7 +225,7 @@ export class Live {
   /** The maps of the light that is looked under, without its turn and its sun, if they are here. @param {Light} light @returns {Pack | null} */
   mapsOf(light) { return (light.env ? (this.other?.env === light.env ? this.other.light : null) : this.own.light) ?? null; }
 
-  /** Gives the renderer the light that is looked under. @param {Light} light @param {number[][]} turn */
+  /** Gives the renderer the light that is looked under. @param {Light} light @param {import('./camera.js').Vec[]} turn */
   shine(light, turn) {
     const from = light.env ? this.other : this.own, sun = light.sun && this.sun ? JSON.stringify([light.sun, light.rotate]) : '';
     if (!from?.light || !from.vertex_light) return;

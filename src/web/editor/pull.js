@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** How handles pull the surface, nearly: what is within their reach along the surface follows them, less the farther away it is. */
-import { add, sub, turned } from './camera.js';
+import { add, rotation, sub, times } from './camera.js';
 import { fromOctahedron, onOctahedron } from './octahedron.js';
 
 /** @typedef {import('./camera.js').Vec} Vec */
@@ -125,12 +125,12 @@ export class Pull {
   moved(handles, reach, part, may) {
     const key = JSON.stringify([handles.map((h) => [h.from, moves(h)]), reach, part]);
     if (this.last?.key !== key) this.last = { key, plan: this.plan(handles, reach, may) };
-    const { plan } = this.last, p = this.positions.slice();
+    const { plan } = this.last, p = this.positions.slice(), turns = handles.map((h) => rotation(h.axis, h.degrees * Math.PI / 180));
     plan.vertices.forEach((v, i) => {
       const from = this.at(v);
       handles.forEach((h, k) => {
         if (!moves(h) || plan.shares[k][i] === 0) return;
-        const to = add(h.to, turned(sub(from, h.from), h.axis, h.degrees * Math.PI / 180));
+        const to = add(h.to, times(turns[k], sub(from, h.from)));
         for (let c = 0; c < 3; ++c) p[3 * v + c] += plan.shares[k][i] * (to[c] - from[c]);
       });
     });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /** A sun in the light that the page draws under: added to the maps of the light, and to what arrives of it at each vertex. */
-import { dot } from './camera.js';
+import { times } from './camera.js';
 import { fromOctahedron, onOctahedron } from './octahedron.js';
 
 /** @typedef {import('./camera.js').Vec} Vec */
@@ -90,11 +90,11 @@ export class Sky {
   falls(cosine, power) { return power * look(this.tables.arrays.irradiance, 0, this.tables.head.nodes, 0.5 + 0.5 * cosine); }
 
   /**
-   * @param {Sun} sun @param {number[][]} turn directions of the light from those of the object, rows
+   * @param {Sun} sun @param {Vec[]} turn directions of the light from those of the object, rows
    * @returns {Pack[]} the light and what arrives of it
    */
   with(sun, turn) {
-    const power = sun.strength * this.received, room = /** @type {Vec} */ (turn.map((row) => dot(/** @type {Vec} */ (row), sun.direction)));
+    const power = sun.strength * this.received, room = times(turn, sun.direction);
     return [{ head: this.light.head, arrays: { irradiance: this.falling(room, power), reflection: this.mirrored(room, power) } }, this.reaching(sun, turn, power)];
   }
 
@@ -125,7 +125,7 @@ export class Sky {
   /**
    * The share of the light that arrives at the vertices: of the sun as far as the surface leaves its direction free. What the surface gives
    * itself grows as what arrives does on the whole.
-   * @param {Sun} sun @param {number[][]} turn @param {number} power @returns {Pack}
+   * @param {Sun} sun @param {Vec[]} turn @param {number} power @returns {Pack}
    */
   reaching({ direction: [x, y, z] }, turn, power) {
     const { visibility: seen, bounce } = this.arriving.arrays, n = bounce.length, out = new Uint8Array(seen), { normals, irradiance: sky } = this;
