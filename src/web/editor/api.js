@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Talks to the program: requests by fetch, frames and news by one WebSocket. */
+/** Talks to the program: requests by fetch; frames and messages to all windows by one WebSocket. */
 
 const KEY = 'cei3d-key';
 
-/** The key comes behind the # of the address and leaves it, so that it is in no history and no picture. */
+/** Takes the key from behind the # of the address, and removes it there, so that no history and no screenshot shows it. */
 function takeKey() {
   const match = /[#&]k=([0-9a-f]+)/.exec(location.hash);
   if (match) {
@@ -36,7 +36,7 @@ async function request(path, options = {}) {
   if (response.ok) return response;
   const text = await response.text();
   let answer = { error: text || `The program refused (${response.status}).`, hint: '' };
-  try { answer = JSON.parse(text); } catch { /* plain text */ }
+  try { answer = JSON.parse(text); } catch { /* the answer is plain text */ }
   throw new ApiError(response.status, answer.error, answer.hint ?? '');
 }
 
@@ -68,22 +68,22 @@ export async function upload(file, name) {
 
 /** @typedef {import('./messages.js').TileHead & {pixels: Uint8ClampedArray<ArrayBuffer>}} Tile */
 
-/** @param {ArrayBuffer} bytes @returns {Tile} whose pixels may be packed */
+/** @param {ArrayBuffer} bytes @returns {Tile} whose pixels are still compressed if it is `packed` */
 function readTile(bytes) {
   const length = new DataView(bytes).getUint32(0, true);
   const head = JSON.parse(new TextDecoder().decode(new Uint8Array(bytes, 4, length)));
   return { ...head, pixels: new Uint8ClampedArray(bytes, 4 + length) };
 }
 
-/** @param {Tile} tile @returns {Promise<Tile>} */
+/** The tile with its pixels uncompressed. @param {Tile} tile @returns {Promise<Tile>} */
 async function unpacked(tile) {
   const stream = new Blob([tile.pixels]).stream().pipeThrough(new DecompressionStream('gzip'));
   return { ...tile, pixels: new Uint8ClampedArray(await new Response(stream).arrayBuffer()) };
 }
 
-export const kFar = 15;  // milliseconds there and back from which what is sent is packed
+export const kSlowRoundTrip = 15;  // milliseconds; from here on compressing packs and frames saves time
 
-/** The WebSocket; opens itself again after 1, 2, 4 seconds. */
+/** The WebSocket. When it closes it is opened again, after 1, 2, 4, 4, ... seconds. */
 export class Line extends EventTarget {
   constructor() {
     super();
@@ -92,14 +92,14 @@ export class Line extends EventTarget {
     this.socket = null;
     this.ready = false;
     this.timer = 0;
-    /** What is known of the program's news: the run of the program and the number of the last one. @type {{run: string, after: number} | null} */
+    /** The last message to all windows that arrived here: the run of the program and the number of the message. @type {{run: string, after: number} | null} */
     this.heard = null;
-    this.far = false;  // over a long line
-    /** @type {Promise<void>} messages that wait for a tile ahead of them */
+    this.slow = false;  // compressing what is sent saves time
+    /** @type {Promise<void>} done when all messages so far are passed on */
     this.order = Promise.resolve();
-    this.packed = 0;  // tiles that are being unpacked
+    this.packed = 0;  // number of tiles that are being uncompressed
     this.open();
-    // The address of a program that was started anew, pasted into the same window.
+    // The program may have been restarted, and its new address pasted into this window.
     window.addEventListener('hashchange', () => {
       key = takeKey();
       this.wait = 1000;
@@ -117,12 +117,12 @@ export class Line extends EventTarget {
       socket.send(JSON.stringify({ type: 'hello', token: key, ...this.heard }));
     };
     socket.onmessage = ({ data }) => {
-      if (!this.ready) this.far = performance.now() - asked > kFar;
+      if (!this.ready) this.slow = performance.now() - asked > kSlowRoundTrip;
       this.take(data);
     };
     socket.onclose = () => {
       if (this.ready) this.emit('lost', null);
-      else if (opened) this.emit('stranger', null);
+      else if (opened) this.emit('unknownServer', null);
       this.ready = false;
       clearTimeout(this.timer);
       this.timer = window.setTimeout(() => this.open(), this.wait);
@@ -131,7 +131,7 @@ export class Line extends EventTarget {
     this.socket = socket;
   }
 
-  /** Messages are passed on in their order. @param {string | ArrayBuffer} data */
+  /** Passes messages on in their order, although some tiles have to be uncompressed first. @param {string | ArrayBuffer} data */
   take(data) {
     if (typeof data === 'string') {
       const message = JSON.parse(data);

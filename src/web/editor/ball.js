@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** A mirror ball in which the light is seen. Places on it: x right, y down, from its middle, 1 at its rim. */
+/** A mirror ball that shows the light. Places on the ball: x to the right, y down, (0, 0) in the middle, at distance 1 its rim. */
 import { add, dot, mul, sub, unit } from './camera.js';
 import { onOctahedron } from './octahedron.js';
 
 /** @typedef {import('./camera.js').Vec} Vec */
 /** @typedef {[Vec, Vec, Vec]} Axes right, down, forward of the camera */
 
-/** The direction from which light is seen at a place on the ball. @param {number} x @param {number} y @param {Axes} axes @returns {Vec} */
+/** The direction of the light that is reflected at a place on the ball. @param {number} x @param {number} y @param {Axes} axes @returns {Vec} */
 export function mirrored(x, y, axes) {
   const r = Math.max(1, Math.hypot(x, y)), u = x / r, v = y / r, z = Math.sqrt(Math.max(0, 1 - u * u - v * v));
   const normal = sub(add(mul(axes[0], u), mul(axes[1], v)), mul(axes[2], z));
   return add(mul(normal, 2 * z), axes[2]);
 }
 
-/** Where on the ball light from a direction is seen. @param {Vec} direction unit @param {Axes} axes @returns {{x: number, y: number}} */
+/** The place on the ball where light from a direction is reflected. @param {Vec} direction unit @param {Axes} axes @returns {{x: number, y: number}} */
 export function placeOnBall(direction, axes) {
   const half = unit(sub(direction, axes[2]));
   return { x: dot(half, axes[0]), y: dot(half, axes[1]) };
 }
 
-/** The radiance of a map on the octahedron, nearest node. @param {Uint32Array} map @param {number} side @param {Vec} d @returns {Vec} */
+/** The radiance of a map on the octahedron, at the node nearest to a direction. @param {Uint32Array} map @param {number} side @param {Vec} d @returns {Vec} */
 export function radianceOf(map, side, d) {
   const [x, y] = onOctahedron(...d);
   const at = (/** @type {number} */ v) => Math.round((v * 0.5 + 0.5) * (side - 1));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Bend with several handles at once, which are moved and turned, and with pins that hold the surface where it is. */
+/** Bends the surface by several handles, which are moved and turned, and by pins, which hold it in place. */
 import { add, dot, mul, pointAt, seen, sub, length } from './camera.js';
 import { complain, el, field, select, slider, toast } from './dom.js';
 import { postJson } from './api.js';
@@ -10,7 +10,7 @@ import { ShapeTrial } from './trial.js';
 /** @typedef {import('./camera.js').Vec} Vec */
 /** @typedef {{pin: boolean, from: Vec, to: Vec, axis: Vec, degrees: number}} BendPoint */
 
-const kNear = 14;  // pixels of the screen at which a point is hit
+const kNear = 14;  // pixels of the screen within which a press hits a handle or pin
 
 export class BendTool {
   /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store */
@@ -19,7 +19,7 @@ export class BendTool {
     this.store = store;
     this.name = 'bend';
     this.label = 'Bend';
-    this.hint = 'Click to set handles and pins, then drag handles or use the sliders. Enter keeps it, Esc discards it, Delete takes a point away.';
+    this.hint = 'Click to set handles and pins, then drag handles or use the sliders. Enter keeps it, Esc discards it, Delete removes a point.';
     this.reach = 0.25;  // of the object's radius
     this.sets = 'handle';
     /** @type {BendPoint[]} */
@@ -59,7 +59,7 @@ export class BendTool {
 
   leave() { this.drop(); }
 
-  /** @param {any} p @returns {BendPoint | null} */
+  /** The handle or pin at a place of the pointer. @param {any} p @returns {BendPoint | null} */
   at(p) {
     const camera = this.stage.json(), { scale } = this.stage.size();
     const near = (/** @type {BendPoint} */ b) => { const s = seen(camera, b.to); return Math.hypot(s.x - p.x, s.y - p.y); };
@@ -67,7 +67,7 @@ export class BendTool {
     return best && near(best) < kNear * scale ? best : null;
   }
 
-  /** Handles lie beside the object, too. @param {any} p */
+  /** Whether a press is for this tool although it is beside the object: handles may lie there. @param {any} p */
   takes(p) { return this.at(p) !== null; }
 
   /** @param {any} p */
@@ -99,7 +99,7 @@ export class BendTool {
 
   /** @param {any} p */
   async addAt(p) {
-    if (this.changes()) return toast('Set all points before you move one; or keep this, and go on.');
+    if (this.changes()) return toast('Set all points before you move one, or keep this edit and then set more.');
     try {
       const found = await postJson('pick', { camera: this.stage.json(), pixel: [p.x, p.y] });
       if (!found) return;
@@ -116,10 +116,10 @@ export class BendTool {
     this.stage.redraw();
   }
 
-  /** Whether anything moves. */
+  /** Whether a handle is moved or turned. */
   changes() { return this.points.some(moves); }
 
-  /** A handle that stays where it is holds the surface as a pin does. */
+  /** Parameters of the edit. A handle that is neither moved nor turned becomes a pin. */
   params() {
     const [first, ...more] = this.points.filter(moves).map(({ from, to, axis, degrees }) => ({ from, to, ...(degrees ? { turn: mul(axis, degrees) } : {}) }));
     const pins = this.points.filter((p) => !moves(p)).map((p) => p.from);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /**
- * The camera of the view, in the capture's frame. Axes are OpenCV's: x right, y down, z into the scene; pixels
- * have their centers at +0.5. It keeps the lens of a photograph, fitted into the canvas.
+ * The camera of the view, in the capture frame. Axes are OpenCV's: x right, y down, z into the scene; pixels
+ * have their centers at +0.5. It has the field of view of a photograph, whose rectangle is fitted into the canvas.
  */
 import { cross, dot, mul, plus, rotation, unit } from '../camera.js';
 
@@ -21,7 +21,7 @@ export const length = (a) => Math.hypot(...a);
 export const times = (rows, v) => [dot(rows[0], v), dot(rows[1], v), dot(rows[2], v)];
 
 export class ViewCamera {
-  /** @param {CameraJson} lens a photograph's camera @param {Vec} target what the view turns about @param {Vec} up unit @param {number} radius of the object */
+  /** @param {CameraJson} lens a photograph's camera @param {Vec} target point that the view turns about @param {Vec} up unit @param {number} radius of the object */
   constructor(lens, target, up, radius) {
     this.home = { lens, target };
     /** @type {Vec} */
@@ -42,19 +42,19 @@ export class ViewCamera {
     this.target = this.home.target;
   }
 
-  /** Stands where a photograph was taken. @param {CameraJson} c */
+  /** Moves to the camera of a photograph. @param {CameraJson} c */
   take(c) {
     this.lens = c;
     this.center = c.center;
     const r = c.world_from_cam;
     this.axes = [[r[0][0], r[1][0], r[2][0]], [r[0][1], r[1][1], r[2][1]], [r[0][2], r[1][2], r[2][2]]];
     const ahead = dot(sub(this.target, this.center), this.axes[2]);
-    if (ahead > 0) this.target = add(this.center, mul(this.axes[2], ahead));  // the point in front nearest to the old one
+    if (ahead > 0) this.target = add(this.center, mul(this.axes[2], ahead));  // the point on the axis nearest to the previous target
   }
 
   distance() { return length(sub(this.target, this.center)); }
 
-  /** Angles in radians: about the up axis, and up or down. @param {number} around @param {number} over */
+  /** Turns about the target. Angles in radians: about the up axis, and up or down. @param {number} around @param {number} over */
   orbit(around, over) {
     const tilt = Math.asin(Math.max(-1, Math.min(1, dot(this.axes[2], this.up))));
     const limit = 1.5;
@@ -66,7 +66,7 @@ export class ViewCamera {
     this.center = add(this.target, arm);
   }
 
-  /** By pixels of a canvas. @param {number} dx @param {number} dy @param {number} width @param {number} height */
+  /** Moves the camera and its target, by pixels of a canvas. @param {number} dx @param {number} dy @param {number} width @param {number} height */
   pan(dx, dy, width, height) {
     const c = this.json(width, height);
     const s = this.distance() / c.fx;
@@ -75,7 +75,7 @@ export class ViewCamera {
     this.target = add(this.target, shift);
   }
 
-  /** Nearer (factor < 1) or farther, towards a pixel. @param {number} factor @param {number} x @param {number} y @param {number} width @param {number} height */
+  /** Moves nearer (factor < 1) to what is seen at a pixel, or farther from it. @param {number} factor @param {number} x @param {number} y @param {number} width @param {number} height */
   zoom(factor, x, y, width, height) {
     const near = 0.05 * this.radius, far = 60 * this.radius, d = this.distance();
     const s = Math.max(near, Math.min(far, d * factor)) / d;
@@ -85,7 +85,7 @@ export class ViewCamera {
     this.target = add(at, mul(sub(this.target, at), s));
   }
 
-  /** Shows a ball whole. @param {Vec} center @param {number} radius */
+  /** Moves so that a whole ball is seen. @param {Vec} center @param {number} radius */
   frame(center, radius) {
     const c = this.lens, half = Math.min(c.width / c.fx, c.height / c.fy) / 2;
     const d = 1.15 * radius / Math.sin(Math.atan(half));
@@ -94,14 +94,14 @@ export class ViewCamera {
     this.lens = { ...c, cx: c.width / 2, cy: c.height / 2 };
   }
 
-  /** Where the photograph's picture lies in a canvas. @param {number} width @param {number} height */
+  /** The rectangle of a canvas that the photograph fills. @param {number} width @param {number} height */
   rectangle(width, height) {
     const s = Math.min(width / this.lens.width, height / this.lens.height);
     const w = s * this.lens.width, h = s * this.lens.height;
     return { x: (width - w) / 2, y: (height - h) / 2, width: w, height: h, scale: s };
   }
 
-  /** The camera of a canvas. @param {number} width @param {number} height @returns {CameraJson} */
+  /** The camera with the size of a canvas. @param {number} width @param {number} height @returns {CameraJson} */
   json(width, height) {
     const r = this.rectangle(width, height), l = this.lens, [x, y, z] = this.axes;
     return {
@@ -113,25 +113,25 @@ export class ViewCamera {
   }
 }
 
-/** Where a camera sees a point; depth: along its axis. @param {CameraJson} c @param {Vec} p @returns {{x: number, y: number, depth: number}} */
+/** The pixel where a camera sees a point; depth: of the point, along the axis of the camera. @param {CameraJson} c @param {Vec} p @returns {{x: number, y: number, depth: number}} */
 export function seen(c, p) {
   const away = sub(p, c.center), r = c.world_from_cam;
   const [x, y, z] = [0, 1, 2].map((k) => r[0][k] * away[0] + r[1][k] * away[1] + r[2][k] * away[2]);
   return { x: (c.fx * x + c.skew * y) / z + c.cx, y: c.fy * y / z + c.cy, depth: z };
 }
 
-/** The point that a camera sees at a pixel. @param {CameraJson} c @param {number} x @param {number} y @param {number} depth @returns {Vec} */
+/** The point at a pixel of a camera, at a depth along its axis. @param {CameraJson} c @param {number} x @param {number} y @param {number} depth @returns {Vec} */
 export function pointAt(c, x, y, depth) {
   const v = (y - c.cy) / c.fy, u = (x - c.cx - c.skew * v) / c.fx;
   const r = c.world_from_cam;
   return /** @type {Vec} */ ([0, 1, 2].map((k) => c.center[k] + depth * (r[k][0] * u + r[k][1] * v + r[k][2])));
 }
 
-/** Corners of a camera's picture that lies across its view at a depth, as another one sees them: left above, right above, right below, left below. @param {CameraJson} over @param {number} depth @param {CameraJson} camera */
+/** Where a camera sees the corners of the picture of another one, `over`, that stands at a depth before `over`: upper left, upper right, lower right, lower left. @param {CameraJson} over @param {number} depth @param {CameraJson} camera */
 export const cornersOf = (over, depth, camera) => [[0, 0], [over.width, 0], [over.width, over.height], [0, over.height]].map(([x, y]) => seen(camera, pointAt(over, x, y, depth)));
 
 /**
- * Pixels of a picture onto its corners, as a canvas transforms them: exact at three.
+ * The transform of a canvas that draws a picture between four corners. It is affine, so it misses the lower right corner a little.
  * @param {{x: number, y: number}[]} corners @param {number} width @param {number} height @returns {[number, number, number, number, number, number]}
  */
 export const ontoCorners = ([a, b, , d], width, height) => [(b.x - a.x) / width, (b.y - a.y) / width, (d.x - a.x) / height, (d.y - a.y) / height, a.x, a.y];

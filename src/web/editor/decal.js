@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** A picture that lies on the object: moved, turned, scaled, and then pressed into its color. */
+/** A picture that is laid onto the object: it is moved, turned and scaled, and then painted into the color of the object. */
 import { cornersOf, ontoCorners } from './camera.js';
 import { complain, el, slider, toast } from './dom.js';
 import { postJson, upload } from './api.js';
@@ -16,14 +16,14 @@ export class DecalTool {
     this.store = store;
     this.name = 'decal';
     this.label = 'Decal';
-    this.hint = 'Drop a picture on the object, or choose one and click where it shall lie. Drag moves it, [ ] scale it, Enter presses it in, Esc discards it.';
+    this.hint = 'Drop a picture on the object, or choose one and click where it should lie. Drag moves it, [ ] scale it, Enter presses it in, Esc discards it.';
     this.width = 0.5;  // of the object's radius
     this.turn = 0;  // degrees, clockwise
     /** @type {{id: string, file: Blob, name: string, bitmap: ImageBitmap} | null} */
     this.picture = null;
-    /** @type {{camera: CameraJson, pixel: [number, number]} | null} where its middle lies */
+    /** @type {{camera: CameraJson, pixel: [number, number]} | null} the camera and the pixel at which its middle lies */
     this.place = null;
-    /** @type {CameraJson | null} whose picture the decal is */
+    /** @type {CameraJson | null} the camera whose picture the decal is */
     this.over = null;
     this.number = 0;
     this.locations = new Newest(() => this.locateNow());
@@ -57,7 +57,7 @@ export class DecalTool {
       const bitmap = await createImageBitmap(file), known = ['image/png', 'image/jpeg'].includes(file.type);
       const picture = known ? file : await pngOf(bitmap);
       this.picture = { id: await upload(picture, file.name), file: picture, name: file.name, bitmap };
-      if (!at) return toast('Click on the object where it shall lie.');
+      if (!at) return toast('Click on the object where the picture should lie.');
       this.put(at);
       await this.preview();
     } catch (error) { complain(error); }
@@ -73,7 +73,7 @@ export class DecalTool {
 
   locate() { return this.locations.run(); }
 
-  /** Asks where it lies. */
+  /** Asks the program for the camera whose picture the decal is. */
   async locateNow() {
     if (!this.place || !this.picture) return;
     const { width, height } = this.picture.bitmap;
@@ -86,7 +86,7 @@ export class DecalTool {
 
   params() { return { strokes: [{ camera: this.place?.camera, scribble: this.picture?.id, decal: this.decal() }] }; }
 
-  /** As it will be. */
+  /** Shows the object with the decal in its color. */
   async preview() {
     if (!this.place || !this.picture) return;
     const number = ++this.number;
@@ -153,7 +153,7 @@ export class DecalTool {
     this.timer = window.setTimeout(() => this.preview(), 250);
   }
 
-  /** @param {CameraJson} over */
+  /** Corners of the decal, in pixels of the frame. @param {CameraJson} over */
   corners(over) { return cornersOf(over, over.fx * this.width * this.store.object.radius / over.width, this.stage.json()); }
 
   /** @param {CanvasRenderingContext2D} c */

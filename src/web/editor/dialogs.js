@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Export and help; loaded with the first of them. */
+/** The dialogs for export and help; loaded when one of them is first opened. */
 import { byId, el, select } from './dom.js';
 import { getBlob, postJson } from './api.js';
 import { gestures, keyTable, written } from './keys.js';
 import { setSingleKeys, singleKeys } from './settings.js';
 
-/** Opens the one dialog. @param {string} title @param {...(Node | string)} content */
+/** Fills the dialog of the page and opens it. @param {string} title @param {...(Node | string)} content */
 function openDialog(title, ...content) {
   const dialog = byId('dialog');
   dialog.replaceChildren(el('div', { class: 'inside' }, el('h2', { id: 'dialog-title' }, title), ...content));
@@ -23,7 +23,7 @@ function save(blob, name) {
   setTimeout(() => URL.revokeObjectURL(a.href), 10000);
 }
 
-/** What sizes are chosen for, as `export --for`. @type {[string, string][]} */
+/** What the object is exported for, as in `export --for`; sizes and formats follow from it. @type {[string, string][]} */
 const purposes = [
   ['', 'Any use: 50,000 faces, textures of 2048 texels'],
   ['web', 'The web: 30,000 faces, 1024 texels, JPEG'],
@@ -34,8 +34,8 @@ const purposes = [
 const kTextured = ['for', 'faces', 'texture', 'image', 'origin', 'size', 'unit_scale', 'light'];
 
 /**
- * One format. ending: of the name, distinct where files would overwrite each other. options: those of the fields below that it has.
- * more: what else is asked for.
+ * A format. ending: of the file's name, distinct where files would overwrite each other. options: the fields below that apply to it.
+ * more: members of the request besides those of the fields.
  * @typedef {{title: string, text: string, ending: string, options: string[], more?: object}} Format
  * @type {Format[]}
  */
@@ -59,7 +59,7 @@ const choose = (key, label, list) => el('label', { class: 'field' }, label, sele
 /** @param {string} key @param {string} label @param {object} attributes */
 const number = (key, label, attributes) => el('label', { class: 'field wide' }, label, el('input', { type: 'number', id: `export-${key}`, ...attributes }));
 
-/** All fields are optional. */
+/** The fields of the options, each of which may be left empty. */
 function exportFields() {
   return [choose('for', 'For', purposes), el('details', {}, el('summary', {}, 'More'), el('div', { class: 'two' },
     number('faces', 'Faces', { min: '4', step: '1', placeholder: 'as many as fit the use' }),
@@ -72,7 +72,7 @@ function exportFields() {
     number('turntable', 'Turntable', { min: '1', step: '1', value: '36', title: 'How many frames' })))];
 }
 
-/** What the fields say. @param {string[]} keys @returns {Record<string, any>} */
+/** The values of the fields that are not empty. @param {string[]} keys @returns {Record<string, any>} */
 export function chosen(keys) {
   /** @type {Record<string, any>} */
   const out = {};
@@ -93,7 +93,7 @@ function turntableSize(store) {
 export function exportDialog(store, stage) {
   const name = store.state.name.replace(/[^A-Za-z0-9._-]/g, '_') || 'object';
   const note = el('p', { role: 'status', id: 'export-note' }, `Files are also kept in ${store.state.folder}/exports.`);
-  /** @param {string} title @param {string} text @param {() => Promise<string>} work returns what was done */
+  /** @param {string} title @param {string} text @param {() => Promise<string>} work returns the text to show when it is done */
   const choice = (title, text, work) => el('button', { 'data-export': title, onclick: async () => {
     const buttons = [...byId('dialog').querySelectorAll('.choices button')];
     buttons.forEach((b) => { b.disabled = true; });

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Small helpers for elements. Text is always set as text, never as markup. */
+/** Makes and changes elements of the page. Text is always set as text, never as markup. */
 
 /**
+ * A new element.
  * @param {string} tag
  * @param {Record<string, any>} [attributes] "class", "on..." functions, properties or attributes
  * @param {...(Node | string | null | undefined)} children
@@ -21,16 +22,16 @@ export function el(tag, attributes = {}, ...children) {
   return node;
 }
 
-/** A choice. @param {Record<string, any>} attributes @param {string[][]} list of value and text @param {string} value that is chosen @param {(value: string) => void} [set] */
+/** A list to choose from. @param {Record<string, any>} attributes @param {string[][]} list of value and text @param {string} value that is chosen @param {(value: string) => void} [set] */
 export const select = (attributes, list, value, set) => el('select', { ...attributes, onchange: set && ((/** @type {any} */ e) => set(e.target.value)) },
   ...list.map(([v, text]) => el('option', { value: v, selected: v === value }, text)));
 
-/** @param {string} id @param {[number, number, (number | string)?]} range least, most, step @param {number} value @param {(value: number) => void} set @param {Record<string, any>} [more] attributes */
+/** @param {string} id @param {[number, number, (number | string)?]} range minimum, maximum, step @param {number} value @param {(value: number) => void} set @param {Record<string, any>} [more] attributes */
 export const slider = (id, [min, max, step = 'any'], value, set, more) => el('input', { type: 'range', id, min, max, step: String(step), value: String(value),
   oninput: (/** @type {any} */ e) => set(Number(e.target.value)), ...more });
 
 /**
- * A slider of a panel, and what it says. @param {string} label @param {string} id @param {[number, number, (number | string)?]} range @param {number} value
+ * A slider of a panel with its label, and its value as text. @param {string} label @param {string} id @param {[number, number, (number | string)?]} range @param {number} value
  * @param {(value: number) => string} text @param {(value: number) => void} set @param {Record<string, any>} [more] attributes of the slider
  */
 export function field(label, id, range, value, text, set, more) {
@@ -41,7 +42,7 @@ export function field(label, id, range, value, text, set, more) {
 /** @param {string} id @returns {any} */
 export const byId = (id) => document.getElementById(id);
 
-/** Says a value that was changed elsewhere in its field, if that is shown. @param {string} id @param {number | string} value */
+/** Updates an input to a value that was changed elsewhere, if the page has that input now. @param {string} id @param {number | string} value */
 export function showValue(id, value) {
   const input = byId(id);
   if (input) input.value = String(value);
@@ -78,7 +79,7 @@ export function glyph(name) {
 }
 
 /**
- * A message that goes away by itself; errors stay longer.
+ * Shows a message for a few seconds; errors stay longer.
  * @param {string} text @param {{bad?: boolean, more?: string}} [options]
  */
 export function toast(text, { bad = false, more = '' } = {}) {
@@ -88,15 +89,15 @@ export function toast(text, { bad = false, more = '' } = {}) {
   setTimeout(() => node.remove(), bad ? 9000 : 4000);
 }
 
-/** @param {any} error */
+/** Shows an error. @param {any} error */
 export function complain(error) {
   if (error?.status === 499) return;  // the user stopped it
   toast(error?.message ?? String(error), { bad: true, more: error?.hint ?? '' });
 }
 
 /**
- * A field for a new name in the place of a node. Enter and leaving it keep the name, Esc does not.
- * @param {Element} node @param {string} name @param {string} label @param {(name: string | null) => void} done null: it stays as it is
+ * Replaces a node by an input for a new name. Enter, or leaving the input, keeps the name; Esc does not.
+ * @param {Element} node @param {string} name @param {string} label @param {(name: string | null) => void} done null: the name stays as it is
  */
 export function nameInPlace(node, name, label, done) {
   const input = el('input', { type: 'text', value: name, maxlength: '80', 'aria-label': label });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Grab and bend: a point of the surface is dragged in the plane of the picture, its surroundings follow. */
+/** Grab: a point of the surface is dragged parallel to the plane of the picture, and its surroundings follow. */
 import { pointAt, seen } from './camera.js';
 import { el, showValue, slider } from './dom.js';
 import { postJson } from './api.js';
@@ -14,7 +14,7 @@ export class GrabTool {
     this.store = store;
     this.name = 'grab';
     this.label = 'Grab';
-    this.hint = 'Drag a point of the object; what lies within the circle follows. [ ] change the circle.';
+    this.hint = 'Drag a point of the object; the surface within the circle follows. [ ] change the circle.';
     this.reach = 0.25;  // of the object's radius
     /** @type {any} */
     this.start = null;

@@ -1,35 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Pointers on the view: navigation here, the rest to the tool. */
+/** Pointers and arrow keys on the view: moves the camera itself, and passes everything else to the tool. */
 import { toast } from './dom.js';
 
 /**
  * @typedef {{x: number, y: number, pressure: number, shift: boolean, alt: boolean, ctrl: boolean, onObject: boolean, erase: boolean}} Point
- * Pixels of the exact frame.
+ * A place of the pointer, in pixels of the exact frame.
  */
 
-const kTap = 6;  // pixels that a click may move
+const kTap = 6;  // pixels by which the pointer may move during a click
 const kTurn = 0.0065;  // radians a pixel
-const kPalm = 500;  // milliseconds after a pen in which a touch is of the hand that holds it
+const kPalm = 500;  // milliseconds after the pen is lifted in which touches count as those of the hand that holds it
 
 export class Input {
-  /** @param {import('./stage.js').Stage} stage @param {(p?: Point) => any} tool that a point is for @param {{undo: () => void, redo: () => void, turnLight: (degrees: number, done: boolean) => void, size: (factor: number) => void}} actions */
+  /** @param {import('./stage.js').Stage} stage @param {(p?: Point) => any} tool the tool for a press at a point @param {{undo: () => void, redo: () => void, turnLight: (degrees: number, done: boolean) => void, size: (factor: number) => void}} actions */
   constructor(stage, tool, actions) {
     this.stage = stage;
     this.tool = tool;
     this.actions = actions;
     /** @type {Map<number, {x: number, y: number}>} */
     this.down = new Map();
-    /** @type {string | null} what the pressed pointer does */
+    /** @type {string | null} what the drag does */
     this.doing = null;
     this.space = false;
     /** @type {any} the tool of the pressed pointer */
     this.used = null;
-    /** @type {{x: number, y: number} | null} pointer by keys, pixels of the frame */
+    /** @type {{x: number, y: number} | null} place of the pointer that is moved by keys, pixels of the frame; null: there is none */
     this.reticle = null;
-    /** @type {any} the tool of the pointer by keys while its button is held */
+    /** @type {any} the tool that is dragged by keys; null: none is */
     this.held = null;
-    this.touches = { most: 0, moved: 0 };
+    this.touches = { most: 0, moved: 0 };  // number of fingers that were down at once; pixels that they moved
     /** @type {number | null} pointer of the pen that is down */
     this.pen = null;
     this.penLifted = -Infinity;  // when, in milliseconds
@@ -79,10 +79,10 @@ export class Input {
     if (this.doing === 'tool') this.used.down?.(p);
   }
 
-  /** @param {PointerEvent} e */
+  /** Whether a touch is that of the hand that holds the pen. @param {PointerEvent} e */
   isPalm(e) { return e.pointerType === 'touch' && (this.pen !== null || e.timeStamp - this.penLifted < kPalm); }
 
-  /** What is down already is the hand that comes with the pen. @param {PointerEvent} e */
+  /** The pen goes down. Cancels what other pointers do, because they are the hand that holds the pen. @param {PointerEvent} e */
   takePen(e) {
     if (this.doing === 'tool') this.used.cancel?.();
     this.doing = null;
@@ -90,7 +90,7 @@ export class Input {
     this.pen = e.pointerId;
   }
 
-  /** @param {PointerEvent} e @param {Point} p */
+  /** What a drag does that begins with this press. @param {PointerEvent} e @param {Point} p */
   choose(e, p) {
     if (e.button === 1) return e.shiftKey ? 'pan' : 'orbit';
     if (e.button === 2) return e.shiftKey ? 'light' : e.ctrlKey ? 'size' : 'pan';
@@ -168,13 +168,14 @@ export class Input {
     this.stage.moved();
   }
 
+  /** The camera is no longer that of a photograph. */
   leavePhoto() {
     if (this.stage.photo === null) return;
     this.stage.photo = null;
     this.stage.emit('photo');
   }
 
-  /** Arrow keys: the pointer by keys, or the camera. @param {KeyboardEvent} e */
+  /** Moves the pointer by an arrow key, if it is moved by keys; otherwise the camera. @param {KeyboardEvent} e */
   arrows(e) {
     const dx = { ArrowLeft: -1, ArrowRight: 1 }[e.key] ?? 0, dy = { ArrowUp: -1, ArrowDown: 1 }[e.key] ?? 0;
     const { width, height } = this.stage.size();
@@ -193,7 +194,7 @@ export class Input {
     this.stage.moved();
   }
 
-  /** @param {{alt?: boolean, shift?: boolean}} [keys] @returns {Point} */
+  /** The pointer that is moved by keys. @param {{alt?: boolean, shift?: boolean}} [keys] that are held @returns {Point} */
   keyPoint({ alt = false, shift = false } = {}) {
     const { x, y } = this.reticle ?? { x: 0, y: 0 };
     return { x, y, pressure: 1, shift, alt, ctrl: false, onObject: this.stage.onObject(x, y), erase: false };
@@ -206,7 +207,7 @@ export class Input {
     this.stage.redraw();
   }
 
-  /** A click of the pointer by keys; lets go of its button if that is held. @param {{alt: boolean, shift: boolean}} keys */
+  /** Clicks at the pointer that is moved by keys, or ends its drag. @param {{alt: boolean, shift: boolean}} keys */
   clickReticle(keys) {
     if (!this.reticle) return false;
     if (this.releaseReticle()) return true;
@@ -218,20 +219,20 @@ export class Input {
     return true;
   }
 
-  /** Holds the button of the pointer by keys, so that arrows drag, or lets go of it. Where there is no pointer, one appears. */
+  /** Begins a drag by keys, or ends it. Shows the pointer that is moved by keys, if it is not shown. */
   holdReticle() {
     if (!this.reticle) this.toggleReticle();
     if (this.releaseReticle()) return;
     const p = this.keyPoint(), tool = this.tool();
-    if (!tool.down) return toast('This tool drags nothing; choose another one.');
-    if (!p.onObject && !tool.takes?.(p)) return toast('Move the pointer onto the object first: the arrows do.');
+    if (!tool.down) return toast('This tool drags nothing. Choose another one.');
+    if (!p.onObject && !tool.takes?.(p)) return toast('Move the pointer onto the object first, with the arrow keys.');
     this.held = tool;
     tool.down(p);
-    toast('Held: the arrows drag, Enter lets go, Esc cancels.');
+    toast('The arrow keys drag now. Enter ends the drag, Esc cancels it.');
     this.stage.redraw();
   }
 
-  /** @returns {boolean} whether the button was held */
+  /** Ends the drag by keys. @returns {boolean} whether there was one */
   releaseReticle() {
     const tool = this.held;
     this.held = null;
@@ -240,7 +241,7 @@ export class Input {
     return tool !== null;
   }
 
-  /** Ends what is dragged by keys as the tool does when a second finger comes. @returns {boolean} whether something was */
+  /** Cancels the drag by keys. @returns {boolean} whether there was one */
   cancelReticle() {
     const tool = this.held;
     if (!tool) return false;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /**
- * Every key and gesture, once: the editor's keys, the help and docs/editor.md are made from this table.
+ * All keys and gestures. The editor's keys, its help and docs/editor.md are made from these tables.
  * "Mod" is Ctrl, or Cmd on a Mac.
  */
 
@@ -90,7 +90,7 @@ export function actionOf(e) {
   return undefined;
 }
 
-/** Whether a key types a character: dictated words and slips of the hand press such keys, too. @param {KeyboardEvent} e */
+/** Whether a key types a character. Such keys are also pressed by dictation and by accident. @param {KeyboardEvent} e */
 export const isSingle = (e) => e.key.length === 1 && !e.ctrlKey && !e.metaKey;
 
 /** @param {string} action @returns {string} its first key, as written */

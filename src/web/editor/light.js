@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Light: turned, scaled, replaced by an environment, with a sun. It is looked under at once; Keep makes it an edit. */
+/** Turns, scales and replaces the light, and adds a sun. The page shows the object in that light at once; Keep makes it an edit. */
 import { add, cross, dot, mul, rotation, times, unit } from './camera.js';
 import { complain, el, field, toast } from './dom.js';
 import { upload } from './api.js';
 
 /** @typedef {import('./camera.js').Vec} Vec */
-/** @typedef {{rotate: number, scale: number, env?: string, sun?: {direction: Vec, strength: number}}} Light what is looked under; sun: towards it, capture frame */
+/** @typedef {{rotate: number, scale: number, env?: string, sun?: {direction: Vec, strength: number}}} Light that is previewed; env: id of an upload; sun: direction towards it, capture frame */
 
-const kBall = 120;  // pixels
+const kBall = 120;  // pixels a side
 
 const degreesOf = (/** @type {number} */ v) => `${Math.round(v)}°`;
 
@@ -20,13 +20,13 @@ export class LightTool {
     this.changed = changed;
     this.name = 'light';
     this.label = 'Light';
-    this.hint = 'Click on the ball to put a sun; turn with Shift and the right button; drop an .hdr or .exr on the view. Nothing is changed before Keep.';
+    this.hint = 'Click on the ball to add a sun; turn the light with Shift and the right button; drop an .hdr or .exr on the view. Keep stores the light.';
     this.file = '';
     /** @type {File | null} */
     this.env = null;
     /** @type {HTMLCanvasElement | null} */
     this.ball = null;
-    /** @type {typeof import('./ball.js') | null} loaded with the first ball */
+    /** @type {typeof import('./ball.js') | null} loaded when a ball is first shown */
     this.balls = null;
     stage.addEventListener('moved', () => this.drawBall());
     stage.addEventListener('exact', () => this.drawBall());
@@ -37,7 +37,7 @@ export class LightTool {
   panel() {
     const l = this.stage.light;
     return [
-      el('p', {}, this.file && l.env ? `Looking under ${this.file}.` : 'The object’s light, as edited so far.'),
+      el('p', {}, this.file && l.env ? `Previewing ${this.file}.` : 'The object’s light, as edited so far.'),
       this.makeBall(),
       field('Turned', 'light-rotate', [-180, 180, 1], l.rotate, degreesOf, (rotate) => this.show({ rotate }), { ondblclick: () => this.set({ rotate: 0 }) }),
       field('Strength', 'light-scale', [-2, 2, 0.05], Math.log2(l.scale), (v) => (2 ** v).toFixed(2), (v) => this.show({ scale: 2 ** v }), { ondblclick: () => this.set({ scale: 1 }) }),
@@ -49,7 +49,7 @@ export class LightTool {
     ];
   }
 
-  /** Height above the horizon and turn about the up axis of the sun, degrees. */
+  /** Direction of the sun: angle about the up axis, and height above the horizon, degrees. */
   sunAngles() {
     const [a, b, up] = this.upright(), d = unit(this.stage.light.sun?.direction ?? add(a, up)), degrees = 180 / Math.PI;
     return { around: Math.atan2(dot(d, b), dot(d, a)) * degrees, height: Math.asin(Math.max(-1, Math.min(1, dot(d, up)))) * degrees };
@@ -68,7 +68,7 @@ export class LightTool {
       this.putSun(add(mul(add(mul(a, Math.cos(t)), mul(b, Math.sin(t))), Math.cos(h)), mul(up, Math.sin(h))));
     };
     return [
-      field('Sun', 'sun-strength', [0, 8, 0.1], strength, (v) => v.toFixed(1), (v) => this.strengthen(v), { title: 'In units of what the rest of the light gives; 0: no sun', ondblclick: () => this.strengthen(0) }),
+      field('Sun', 'sun-strength', [0, 8, 0.1], strength, (v) => v.toFixed(1), (v) => this.strengthen(v), { title: 'Relative to the rest of the light; 0: no sun', ondblclick: () => this.strengthen(0) }),
       field('Sun around', 'sun-around', [-180, 180, 1], angles.around, degreesOf, (v) => { angles.around = v; put(); }),
       field('Sun height', 'sun-height', [-90, 90, 1], angles.height, degreesOf, (v) => { angles.height = v; put(); }),
     ];
@@ -88,12 +88,12 @@ export class LightTool {
       const r = /** @type {HTMLCanvasElement} */ (this.ball).getBoundingClientRect();
       if (this.balls) this.putSun(this.balls.mirrored(2 * (e.clientX - r.left) / r.width - 1, 2 * (e.clientY - r.top) / r.height - 1, this.stage.camera.axes));
     };
-    const ball = el('canvas', { class: 'ball', id: 'light-ball', width: kBall, height: kBall, 'aria-hidden': 'true', title: 'A mirror ball; a click puts the sun where it is seen',
+    const ball = el('canvas', { class: 'ball', id: 'light-ball', width: kBall, height: kBall, 'aria-hidden': 'true', title: 'A mirror ball: click to place the sun where its reflection should be',
       onpointerdown: (/** @type {PointerEvent} */ e) => { ball.setPointerCapture(e.pointerId); at(e); },
       onpointermove: (/** @type {PointerEvent} */ e) => { if (e.buttons & 1) at(e); },
       onpointerup: () => this.changed() });
     this.ball = ball;
-    import('./ball.js').then((balls) => { this.balls = balls; this.drawBall(); }, () => {});  // the sliders do the same
+    import('./ball.js').then((balls) => { this.balls = balls; this.drawBall(); }, () => {});  // without the ball there are still the sliders
     return ball;
   }
 
@@ -104,7 +104,7 @@ export class LightTool {
     const turn = rotation(unit(this.store.object.up), -light.rotate * Math.PI / 180);
     const level = pack ? pack.arrays.reflection.subarray(0, pack.head.reflection_side ** 2) : null;
     balls.drawBall(ball, camera.axes, (d) => {
-      if (!level || !pack) return [0.25, 0.25, 0.25];  // no map of it is here
+      if (!level || !pack) return [0.25, 0.25, 0.25];  // gray, while the map of this light is not fetched
       return mul(balls.radianceOf(/** @type {Uint32Array} */ (level), pack.head.reflection_side, times(turn, d)), light.scale);
     }, light.sun?.direction ?? null);
   }
@@ -116,14 +116,14 @@ export class LightTool {
     this.stage.live.prepareSun();
   }
 
-  /** @param {Partial<Light>} values */
+  /** Previews a light. @param {Partial<Light>} values to change */
   show(values) {
     Object.assign(this.stage.light, values);
     this.stage.moved();
     this.update();
   }
 
-  /** @param {Partial<Light>} values */
+  /** The same, and updates the sliders. @param {Partial<Light>} values to change */
   set(values) {
     this.show(values);
     this.changed();
@@ -150,8 +150,8 @@ export class LightTool {
       this.file = file.name;
       this.env = file;
       this.set({ env });
-      this.stage.live.lookUnder(env).then(() => this.drawBall());
-      toast(`Looking under ${file.name}; Keep makes it the object’s light.`);
+      this.stage.live.prepareEnvironment(env).then(() => this.drawBall());
+      toast(`Previewing ${file.name}; Keep makes it the object’s light.`);
     } catch (error) { complain(error); }
   }
 
@@ -167,7 +167,7 @@ export class LightTool {
 
   drop() {
     this.stage.light = { rotate: 0, scale: 1 };
-    this.stage.live.lookUnder(undefined);
+    this.stage.live.prepareEnvironment(undefined);
     this.file = '';
     this.stage.moved();
     this.changed();

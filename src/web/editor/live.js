@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** The object drawn in the page, with the program's own shading. Without WebGL 2 it shows nothing, and the program's frames do. */
+/** Draws the object in the page, by the same shading as the program's. Without WebGL 2 it draws nothing, and the stage shows the program's frames only. */
 import { getBytes, postJson } from './api.js';
 import { partBall, partLooks } from './looks.js';
 import { Pace, steps } from './pace.js';
-import { onItsWay } from './start.js';
+import { takePack } from './start.js';
 
 /** @typedef {import('./light.js').Light} Light */
 /** @typedef {import('../pack.js').Pack} Pack */
@@ -13,12 +13,12 @@ import { onItsWay } from './start.js';
 
 /** @type {Record<string, string>} channels of the program that the renderer knows */
 const kChannels = { rgb: 'lit', albedo: 'albedo', normal: 'normal', roughness: 'roughness' };
-const kLate = 1200;  // milliseconds
-const kCoarse = 'coarse';  // triangles for quick pictures: come last, and only where pictures take long
+const kLate = 1200;  // milliseconds after which the surface is shown without light, if the light is not there
+const kCoarse = 'coarse';  // pack of fewer triangles for quick pictures; fetched last, and only where pictures take long
 const kLit = ['light', 'vertex_light'], kSurface = ['shape', 'look'], kLight = ['tables', ...kLit];
 
 export class Live {
-  /** @param {HTMLCanvasElement} canvas @param {import('./store.js').Store} store @param {() => void} ready called when there is something new to draw */
+  /** @param {HTMLCanvasElement} canvas @param {import('./store.js').Store} store @param {() => void} ready called when a new picture can be drawn */
   constructor(canvas, store, ready) {
     this.canvas = canvas;
     this.store = store;
@@ -27,47 +27,48 @@ export class Live {
     this.renderer = null;
     /** @type {any} */
     this.modules = null;
-    /** @type {Record<string, string>} keys of what the renderer has */
+    /** @type {Record<string, string>} keys of the packs that the renderer has, by kind */
     this.have = {};
     /** @type {Set<string>} names of parts that are not shown */
     this.hidden = new Set();
-    /** @type {Record<string, Pack>} the light of the object and what arrives of it, by kind */
+    /** @type {Record<string, Pack>} the light of the object and how it arrives at the vertices, by kind */
     this.own = {};
-    /** @type {{env: string, light?: Pack, vertex_light?: Pack} | null} the same of an environment that is looked under */
+    /** @type {{env: string, light?: Pack, vertex_light?: Pack} | null} the same for an environment that is previewed */
     this.other = null;
-    /** @type {Pack | null} what a sun adds */
+    /** @type {Pack | null} tables of what a sun adds to a light */
     this.sun = null;
-    this.sunComes = false;
+    this.sunAsked = false;
     /** @type {{sky: Sky, of: Pack[]} | null} the light that a sun was last added to */
     this.sky = null;
-    /** @type {{of: Pack[], sun: string}} the light that the renderer has */
+    /** @type {{of: Pack[], sun: string}} the packs and the sun of the light that the renderer has */
     this.lit = { of: [], sun: '' };
-    /** @type {typeof import('./sun.js') | null} loaded with the first sun */
+    /** @type {typeof import('./sun.js') | null} loaded when the light tool is first chosen */
     this.suns = null;
-    /** @type {Pull | null} of the shape that was last pulled */
+    /** @type {Pull | null} for the shape that was last pulled */
     this.puller = null;
-    /** @type {typeof import('./pull.js') | null} loaded when it is first pulled */
+    /** @type {typeof import('./pull.js') | null} loaded when a shape is first pulled */
     this.pulls = null;
-    this.pulled = false;  // the renderer has a shape that is pulled by handles
-    /** @type {Record<string, Pack>} those that say where the surface and parts are, by kind */
+    this.pulled = false;  // the renderer shows a shape that handles pull
+    /** @type {Record<string, Pack>} the packs in kSurface, which hold the surface and its parts, by kind */
     this.surface = {};
-    /** @type {Map<string, import('./looks.js').Look>} how parts look, by name */
+    /** @type {Map<string, import('./looks.js').Look>} color and material of parts, by name */
     this.looks = new Map();
-    /** @type {string | null} the preview whose look the renderer has */
+    /** @type {string | null} token of the preview whose look the renderer has */
     this.previewed = null;
-    /** @type {{keys: Record<string, string>, packs: Map<string, Promise<ArrayBuffer>>} | null} packs that were asked for ahead */
+    /** @type {{keys: Record<string, string>, packs: Map<string, Promise<ArrayBuffer>>} | null} packs that were asked for before the renderer was ready */
     this.ahead = null;
-    /** @type {Map<string, {key: string, bytes: Promise<ArrayBuffer>}>} packs that are on their way, by kind */
+    /** @type {Map<string, {key: string, bytes: Promise<ArrayBuffer>}>} packs that are being fetched, by kind */
     this.underway = new Map();
     this.pace = new Pace(false);
-    /** @type {{draw: () => void, rest: boolean} | null} the picture that comes next */
+    /** @type {{draw: () => void, rest: boolean} | null} the picture that is drawn next */
     this.next = null;
-    /** @type {Promise<void> | null} the one that is being drawn, and those after it */
+    /** @type {Promise<void> | null} done when the picture that is being drawn, and all after it, are drawn */
     this.drawing = null;
     this.off = new URLSearchParams(location.search).has('frames');  // for tests: only the program's frames
-    this.prepared = this.off ? Promise.resolve() : this.prepare();  // before there is an object: it takes a while
+    this.prepared = this.off ? Promise.resolve() : this.prepare();  // at once, because it takes a while
   }
 
+  /** Another object is open. */
   async begin() {
     this.have = {};
     this.surface = {};
@@ -94,7 +95,7 @@ export class Live {
     } catch { /* there is no WebGL 2 */ }
   }
 
-  /** Fetches what has changed, all at once. Where there is nothing yet and the light is late, the surface comes first. @returns {Promise<void>} */
+  /** Fetches all packs that have changed. Shows them together; but a new object is shown without light first if its light is late. @returns {Promise<void>} */
   async refresh() {
     /** @type {Record<string, string>} */
     const keys = this.store.state.packs;
@@ -114,14 +115,15 @@ export class Live {
     this.refreshCoarse();
   }
 
+  /** Fetches the coarse triangles if pictures take so long that they are needed. */
   async refreshCoarse() {
     const key = this.store.state.packs?.[kCoarse];
     if (!key || !this.pace.step.coarse || this.have[kCoarse] === key || !this.has(['shape'])) return;
-    const bytes = await this.fetchPack(kCoarse, key).catch(() => null);  // the fine ones do
+    const bytes = await this.fetchPack(kCoarse, key).catch(() => null);  // without them all triangles are drawn
     if (bytes && this.store.state.packs?.[kCoarse] === key && this.has(['shape'])) this.set(kCoarse, bytes, key);
   }
 
-  /** @returns {Map<string, Promise<ArrayBuffer>>} packs on their way, by kind */
+  /** Starts to fetch packs that have changed. @returns {Map<string, Promise<ArrayBuffer>>} by kind */
   fetchMissing() {
     /** @type {Record<string, string>} */
     const keys = this.store.state.packs ?? {};
@@ -132,15 +134,15 @@ export class Live {
   fetchPack(kind, key) {
     const before = this.underway.get(kind);
     if (before?.key === key) return before.bytes;
-    const bytes = onItsWay(kind, key) ?? getBytes(`/api/pack/${kind}?key=${key}${this.packed()}`);
-    bytes.catch(() => this.underway.delete(kind));  // refresh() awaits each, if those before it arrive
+    const bytes = takePack(kind, key) ?? getBytes(`/api/pack/${kind}?key=${key}${this.packed()}`);
+    bytes.catch(() => this.underway.delete(kind));  // refresh() handles the error
     this.underway.set(kind, { key, bytes });
     return bytes;
   }
 
-  packed() { return this.store.line.far ? '&packed=1' : ''; }
+  packed() { return this.store.line.slow ? '&packed=1' : ''; }
 
-  /** @param {string} kind @param {ArrayBuffer} bytes @param {string} key */
+  /** Gives a pack to the renderer. @param {string} kind @param {ArrayBuffer} bytes @param {string} key */
   set(kind, bytes, key) {
     const pack = this.modules[1].readPack(bytes, kind);
     this.renderer.set(pack);
@@ -155,15 +157,16 @@ export class Live {
       this.sky = null;
       this.puller = null;
       this.pulled = false;
-      if (this.other) this.lookUnder(this.other.env);  // other light arrives at other vertices
+      if (this.other) this.prepareEnvironment(this.other.env);  // for the new vertices
     }
     this.have[kind] = key;
     this.underway.delete(kind);
   }
 
   /**
-   * Draws the surface as handles pull it, nearly, until another shape comes or it is let go.
-   * @param {import('./pull.js').Handle[]} handles @param {number} reach @param {string | null} part what alone may move @returns {boolean} whether it can
+   * Draws the surface approximately as handles pull it, until letGo() or until the pack of another shape comes.
+   * @param {import('./pull.js').Handle[]} handles @param {number} reach @param {string | null} part that alone may move; null: everything may
+   * @returns {boolean} whether it can
    */
   pull(handles, reach, part) {
     const { shape, look } = this.surface;
@@ -178,36 +181,37 @@ export class Live {
     return true;
   }
 
+  /** Draws the surface without pull() again. */
   letGo() {
     const { shape } = this.surface;
     if (this.pulled && shape) this.place(shape.arrays.positions, shape.arrays.normals, shape.head);
     this.pulled = false;
   }
 
-  /** @param {import('../pack.js').Numbers} positions @param {import('../pack.js').Numbers} normals @param {any} head */
+  /** Moves the vertices in the renderer. @param {import('../pack.js').Numbers} positions @param {import('../pack.js').Numbers} normals @param {any} head */
   place(positions, normals, head) {
     this.renderer.setAttributes([[0, 'positions', positions, true], [1, 'normals', normals, true]]);
     this.renderer.heads.set('shape', head);
   }
 
-  /** Fetches what a sun adds to a light, once. */
+  /** Fetches what is needed to add a sun to a light, once. */
   async prepareSun() {
-    if (this.sunComes || !this.renderer) return;
-    this.sunComes = true;
+    if (this.sunAsked || !this.renderer) return;
+    this.sunAsked = true;
     try {
       const [bytes, suns] = await Promise.all([getBytes('/api/pack/sun'), import('./sun.js')]);
       this.suns = suns;
       this.sun = this.modules[1].readPack(bytes, 'sun');
     } catch {
-      this.sunComes = false;  // the program's frames show it
+      this.sunAsked = false;  // the program's frames show the sun meanwhile
     }
   }
 
   /**
-   * Fetches the light of an environment that is not kept. Until it is there, the program's frames show it.
-   * @param {string | undefined} env id of the upload; none: only the object's own light is needed
+   * Fetches the light of an environment that is previewed. Until it arrives, the program's frames show it.
+   * @param {string | undefined} env id of the upload; undefined: only the object's own light is needed
    */
-  async lookUnder(env) {
+  async prepareEnvironment(env) {
     this.other = env && this.renderer && !this.store.state.read_only ? { env } : null;
     const { other } = this;
     if (!other) return;
@@ -222,11 +226,11 @@ export class Live {
     other.vertex_light = arriving;
   }
 
-  /** The maps of the light that is looked under, without its turn and its sun, if they are here. @param {Light} light @returns {Pack | null} */
+  /** The maps of a light, without its rotation and its sun; null: they are not fetched. @param {Light} light @returns {Pack | null} */
   mapsOf(light) { return (light.env ? (this.other?.env === light.env ? this.other.light : null) : this.own.light) ?? null; }
 
-  /** Gives the renderer the light that is looked under. @param {Light} light @param {import('./camera.js').Vec[]} turn */
-  shine(light, turn) {
+  /** Gives a light to the renderer. @param {Light} light @param {import('./camera.js').Vec[]} turn rotation of directions of the object to those of the light */
+  setLight(light, turn) {
     const from = light.env ? this.other : this.own, sun = light.sun && this.sun ? JSON.stringify([light.sun, light.rotate]) : '';
     if (!from?.light || !from.vertex_light) return;
     const of = [from.light, from.vertex_light], same = (/** @type {Pack[]} */ packs) => of.every((p, i) => p === packs[i]);
@@ -236,7 +240,7 @@ export class Live {
     this.lit = { of, sun };
   }
 
-  /** Shows an edit of the look that is not kept. @param {string} token @returns {Promise<boolean>} whether it can */
+  /** Shows a previewed edit that changes only color and material. @param {string} token @returns {Promise<boolean>} whether it can */
   async preview(token) {
     if (!this.current()) return false;
     const bytes = await getBytes(`/api/pack/look?preview=${token}${this.packed()}`);
@@ -245,20 +249,20 @@ export class Live {
     return true;
   }
 
-  /** @param {string[]} kinds */
+  /** Whether the renderer has the present packs of these kinds. @param {string[]} kinds */
   has(kinds) {
     /** @type {Record<string, string>} */
     const keys = this.store.state.packs;
     return Boolean(this.renderer && keys && kinds.every((kind) => this.have[kind] === keys[kind] || (kind === 'look' && this.previewed)));
   }
 
-  /** Whether what is drawn is the object as it is now. */
+  /** Whether all packs that pictures need are those of the present object. */
   current() { return this.has([...kSurface, ...kLight]); }
 
-  /** Whether it has the surface and waits for the light: it can draw the albedo. */
+  /** Whether it has the surface but not the light, so that it can draw the albedo only. */
   unlit() { return Boolean(this.renderer && !this.renderer.complete && this.has(kSurface)); }
 
-  /** @param {string} channel @param {Light} light @param {string | null} preview @param {string | null} photo */
+  /** Whether it can draw a picture as asked for. @param {string} channel @param {Light} light @param {string | null} preview token @param {string | null} photo view whose light is shown */
   shows(channel, light, preview, photo) {
     const still = photo === null || this.store.object?.material?.light?.motion === 'world';
     return channel in kChannels && this.mapsOf(light) !== null && (!light.sun || this.sun !== null) && (preview === this.previewed || this.pulled) && still && this.current();
@@ -267,16 +271,16 @@ export class Live {
   /** @param {any} camera @param {string} channel @param {Light} light @param {import('./pace.js').Step} [step] */
   draw(camera, channel, light, { scale, rough, coarse } = steps[0]) {
     const turn = this.modules[2].rotation(this.store.object.up, -light.rotate * Math.PI / 180);
-    if (this.renderer.complete) this.shine(light, turn);
+    if (this.renderer.complete) this.setLight(light, turn);
     const small = this.modules[2].resized(camera, Math.ceil(scale * camera.width), Math.ceil(scale * camera.height));
     this.renderer.draw({ camera: small, channel: this.renderer.complete ? kChannels[channel] : 'albedo', room_from_object: turn, strength: light.scale, samples: 1, rough, coarse, highlight: 0, hidden: this.hiddenIndices() });
   }
 
   /**
-   * Draws as finely as there is time for, or, at rest, as well as it can. Of the pictures that are asked for while one is drawn only the
-   * last is.
+   * Draws with the quality that there is time for, or, at rest, with the best. Of the pictures that are asked for while another one is
+   * drawn, only the last is drawn.
    * @param {any} camera @param {string} channel @param {Light} light @param {boolean} [rest]
-   * @returns {Promise<void>} when it, or one after it, is drawn
+   * @returns {Promise<void>} done when this picture, or a later one instead, is drawn
    */
   drawSoon(camera, channel, light, rest = false) {
     this.next = { draw: () => this.draw(camera, channel, light, rest ? steps[0] : this.pace.step), rest };
@@ -303,12 +307,12 @@ export class Live {
     return [...this.hidden].map((name) => names.indexOf(name)).filter((index) => index > 0);
   }
 
-  /** Where a part is, if the page knows. @param {string} name */
+  /** A ball around a part; null: the page does not have it. @param {string} name */
   ballOf(name) {
     const { shape, look } = this.surface;
     return this.has(kSurface) ? partBall(shape, look, name) : null;
   }
 
-  /** Whether the object is at a pixel. @param {any} camera @param {number} x @param {number} y */
+  /** Whether a pixel shows the object. @param {any} camera @param {number} x @param {number} y */
   onObject(camera, x, y) { return this.renderer?.partAt(camera, x, y, this.hiddenIndices()) >= 0; }
 }

@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** How parts look, the mean color and material of their vertices, for the swatches of the list; and where they are. */
+/** The look of each part, which is the mean color and material of its vertices, for the list of parts; and the place of each part. */
 
-/** @typedef {{color: string, roughness: number, metalness: number}} Look color: as CSS has it */
+/** @typedef {{color: string, roughness: number, metalness: number}} Look color: in CSS */
 
-/** Display-encoded from linear, 0 to 255. @param {number} v */
+/** A linear value, encoded as sRGB, 0 to 255. @param {number} v */
 const byteOf = (v) => Math.round(255 * (v <= 0.0031308 ? 12.92 * v : 1.055 * v ** (1 / 2.4) - 0.055));
 
-/** By name of the part; parts that later ones cover wholly have none. @param {import('../pack.js').Pack} pack "look" @returns {Map<string, Look>} */
+/** Looks by name of the part. A part that is covered by later ones has none. @param {import('../pack.js').Pack} pack "look" @returns {Map<string, Look>} */
 export function partLooks({ head, arrays }) {
   const names = /** @type {string[]} */ (head.parts), { albedo, material } = arrays;
   const sums = names.map(() => ({ n: 0, rgb: [0, 0, 0], roughness: 0, metalness: 0 }));
   for (let v = 0; v < material.length / 4; ++v) {
     const sum = sums[material[4 * v + 3]];
     ++sum.n;
-    for (let c = 0; c < 3; ++c) sum.rgb[c] += (albedo[4 * v + c] / 65535) ** 2;  // its square roots are sent
+    for (let c = 0; c < 3; ++c) sum.rgb[c] += (albedo[4 * v + c] / 65535) ** 2;  // the pack holds square roots
     sum.roughness += material[4 * v] / 255;
     sum.metalness += material[4 * v + 2] / 255;
   }
@@ -27,7 +27,7 @@ export function partLooks({ head, arrays }) {
 }
 
 /**
- * A ball around a part, about the middle of its box, in the capture's frame. null: nothing is seen of the part.
+ * A ball around a part, about the middle of its box, in the capture frame; null: no vertex belongs to the part.
  * @param {import('../pack.js').Pack} shape @param {import('../pack.js').Pack} look @param {string} name
  * @returns {{center: [number, number, number], radius: number} | null}
  */
@@ -47,7 +47,7 @@ export function partBall(shape, look, name) {
   return { center, radius };
 }
 
-/** A small ball: the highlight is as wide as the surface is rough, and of a metal it has the metal's color. @param {Look} look @returns {string} CSS */
+/** A picture of a ball: its highlight is the wider, the rougher the surface is, and has the color of a metal. @param {Look} look @returns {string} CSS */
 export function swatch({ color, roughness, metalness }) {
   const shine = metalness > 0.5 ? `color-mix(in srgb, ${color} 45%, white)` : 'white';
   return `radial-gradient(circle at 35% 30%, ${shine}, ${color} ${Math.round(12 + 70 * roughness)}%)`;

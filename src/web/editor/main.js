@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** The editor: puts its pieces together. */
+/** The editor: makes its tools and panels and connects them. */
 import { hasKey, postJson } from './api.js';
 import { byId, complain, el, glyph, select, toast } from './dom.js';
 import { BendTool } from './bend.js';
@@ -36,7 +36,7 @@ function choose(name) {
   input.cancelReticle();
   if (next !== tool) tool.leave?.();
   tool = next;
-  if (tool.down) stage.hide([]);  // the program works on the whole object
+  if (tool.down) stage.hide([]);  // the tool works on the whole object, hidden parts included
   drawTools();
   drawOptions();
   drawProperties();
@@ -45,7 +45,7 @@ function choose(name) {
   stage.redraw();
 }
 
-/** The eraser of a pen erases, whatever was painted before it is kept. @param {import('./input.js').Point} [p] */
+/** The tool for a press; the eraser of a pen erases, after the strokes before it are stored. @param {import('./input.js').Point} [p] */
 function toolFor(p) {
   if (!p?.erase || tool !== paint) return tool;
   paint.keep();
@@ -105,13 +105,13 @@ function goToPhoto(name) {
   stage.moved();
 }
 
-/** @type {typeof import('./dialogs.js') | null} loaded with the first one */
+/** @type {typeof import('./dialogs.js') | null} loaded when a dialog is first opened */
 let dialogs = null;
 
 /** @param {'exportDialog' | 'helpDialog'} name */
 async function openDialog(name) {
-  // Not asked for while nobody answers: a browser may remember that a module did not come.
-  if (!store.lost || store.stranger) dialogs ??= await import('./dialogs.js').catch(() => null);
+  // Not loaded while no server answers, because a browser may remember the failure of a module for good.
+  if (!store.lost || store.unknownServer) dialogs ??= await import('./dialogs.js').catch(() => null);
   if (dialogs) dialogs[name](store, stage);
   else complain('The program does not answer.');
 }
@@ -170,13 +170,13 @@ function drawSaved() {
   const node = byId('saved'), unsaved = tools.some((t) => t.unsaved?.()) || store.saving > 0;
   const editing = store.state.mode === 'project';
   node.className = `saved ${store.lost ? 'lost' : unsaved ? 'busy' : ''}`;
-  node.textContent = !editing ? '' : store.lost ? 'Not connected' : store.state.read_only ? 'Looking only' : unsaved ? 'Saving…' : 'All changes saved';
-  byId('banner').hidden = !store.lost || !hasKey();  // without a key the page itself says what to do
-  byId('banner').textContent = store.stranger ? 'The program was started anew: paste the address that it printed into this window. What you did meanwhile is kept here.'
+  node.textContent = !editing ? '' : store.lost ? 'Not connected' : store.state.read_only ? 'Read-only' : unsaved ? 'Saving…' : 'All changes saved';
+  byId('banner').hidden = !store.lost || !hasKey();  // the page explains a missing key itself
+  byId('banner').textContent = store.unknownServer ? 'The program was restarted. Paste the address that it printed into this window; what you did meanwhile is kept here.'
     : 'The program does not answer; trying again. What you do meanwhile is kept here.';
 }
 
-/** Shows the selected part, or all; a small part with what is around it. */
+/** Moves the camera so that the selected part, or the whole object, fills the view. Parts are shown with a minimum size. */
 function frame() {
   const { center, radius } = store.object, ball = store.part ? stage.live.ballOf(store.part) : null;
   stage.camera.frame(ball?.center ?? center, ball ? Math.max(ball.radius, radius / 10) : radius);
@@ -187,11 +187,11 @@ function frame() {
 /** @param {KeyboardEvent} e */
 function hold(e) {
   if (e.repeat) return;
-  stage.view.focus({ preventScroll: true });  // the arrows are for it
+  stage.view.focus({ preventScroll: true });  // so that it gets the arrow keys
   input.holdReticle();
 }
 
-/** What keys do while one drags by them: others could change the view or the tool below it. */
+/** Actions that are allowed while keys drag; the others could change the view or the tool during the drag. */
 const whileHeld = ['arrows', 'keep', 'drop', 'hold', 'reticle', 'smaller', 'larger', 'help'];
 
 /** @type {Record<string, (e: KeyboardEvent) => void>} */
@@ -240,7 +240,7 @@ window.addEventListener('beforeunload', (e) => { if (tools.some((t) => t.unsaved
 for (const type of ['dragover', 'drop']) window.addEventListener(type, (e) => e.preventDefault());
 stage.view.addEventListener('drop', (/** @type {DragEvent} */ e) => { const file = e.dataTransfer?.files[0]; if (file && store.state.mode === 'project' && !store.state.read_only) take(file, input.point(e)); });
 
-/** A picture on the object is a decal, all else that is dropped a light. @param {File} file @param {import('./input.js').Point} at */
+/** A picture that is dropped on the object becomes a decal; everything else becomes the light. @param {File} file @param {import('./input.js').Point} at */
 function take(file, at) {
   const isDecal = at.onObject && file.type.startsWith('image/') && !/\.(hdr|exr)$/i.test(file.name);
   choose(isDecal ? 'decal' : 'light');
@@ -286,7 +286,7 @@ store.on('state', (state) => {
 });
 store.on('mode', (state) => {
   if (state.mode !== 'project') return;
-  const first = store.made && !state.read_only;  // who has just made an object wants to try it
+  const first = store.made && !state.read_only;  // select the paint tool after a reconstruction
   choose(first ? 'paint' : 'look');
   if (first) toast(`Drag on the object to paint; ${keyOf('undo')} takes anything back.`);
   if (state.note) toast(state.note, { bad: true });
@@ -296,5 +296,5 @@ if (!hasKey()) {
   byId('place').replaceChildren(el('div', { class: 'column' }, el('h2', {}, 'The key is missing'), el('p', {}, 'Open the whole address that cei3d printed, with what follows the #.')));
 }
 
-/** For tests: the pieces, and whether the picture is complete. */
+/** For tests: the parts of the editor, and whether the picture is complete and everything is stored. */
 Object.assign(window, { cei3d: { store, stage, paint, bend, keepPaint: () => paint.keep(), settled: () => stage.settled() && store.saving === 0 && !tools.some((t) => t.unsaved?.()) } });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 
-/** Does something once at a time. What is asked for meanwhile waits, and is then done once: as things stand by then. */
+/** Runs an action, one run at a time. However many calls come during a run, one more run follows it, with the state at that time. */
 export class Newest {
   /** @param {() => Promise<any>} work */
   constructor(work) {
@@ -11,7 +11,7 @@ export class Newest {
     this.running = null;
   }
 
-  /** @returns {Promise<void>} when nothing is left to do */
+  /** @returns {Promise<void>} done when no run is left */
   run() {
     this.again = true;
     this.running ??= this.all();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Directions on the square of an octahedron, as src/core/math/octahedron.h lays them. */
+/** Directions as points of a square, by the octahedral mapping of src/core/math/octahedron.h. */
 
 /** @param {number} x @param {number} y in [-1, 1] @returns {[number, number, number]} unit */
 export function fromOctahedron(x, y) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Material: a tool whose controls are in the panel. What is tried is shown at once; letting go keeps it. */
+/** Material: a tool whose controls are in the panel. Dragging a slider previews a change; releasing it stores the edit. */
 import { complain, el, field, select } from './dom.js';
 import { postJson } from './api.js';
 import { Newest } from './newest.js';
@@ -8,7 +8,7 @@ import { Newest } from './newest.js';
 /** @type {[string, string, string][]} key, label, what it means */
 const sliders = [
   ['roughness', 'Roughness', '0: mirror, 1: chalk'],
-  ['specular', 'Specular', 'strength of the reflection of what is no metal'],
+  ['specular', 'Specular', 'strength of the reflection where it is not a metal'],
   ['metalness', 'Metalness', '0: no metal, 1: metal'],
 ];
 
@@ -19,14 +19,14 @@ export class MaterialTool {
     this.store = store;
     this.name = 'material';
     this.label = 'Material';
-    this.hint = 'Move a slider: the picture follows. Letting go keeps it, as one step. Double-click a slider: as it was.';
+    this.hint = 'Drag a slider to preview a change; releasing it stores one step. Double-click a slider to reset it.';
     this.number = 0;
-    /** @type {object | null} the change that is to be tried */
+    /** @type {object | null} the change that the next preview shows */
     this.wanted = null;
     this.previews = new Newest(() => this.previewNow());
   }
 
-  /** The last edit, if it is one of the material of what is selected now. */
+  /** The last edit, if it changed the material of what is selected now: a further change then replaces it. */
   own() {
     const last = this.store.last();
     return last?.op === 'material' && last.enabled && (last.params.part ?? '') === (this.store.part ?? '') ? last : null;
@@ -55,7 +55,7 @@ export class MaterialTool {
       ...sliders.map(row),
       el('label', { class: 'field wide' }, 'Color', el('span', { class: 'inline' }, el('input', { type: 'color', value: tint, id: 'material-color',
         oninput: (/** @type {any} */ e) => this.try({ color: e.target.value, ...this.replaced() }), onchange: (/** @type {any} */ e) => this.keep({ color: e.target.value, ...this.replaced() }) }),
-        el('label', { title: 'The color takes the place of the texture; else it tints it' }, el('input', { type: 'checkbox', id: 'material-replace', checked: params.replace === true }), ' no texture'))),
+        el('label', { title: 'The color replaces the texture; otherwise it tints it' }, el('input', { type: 'checkbox', id: 'material-replace', checked: params.replace === true }), ' no texture'))),
       el('label', { class: 'field' }, 'Preset', select({ id: 'material-preset' }, [['', 'choose'], ...(this.store.object?.presets ?? []).map((name) => [name, name])], params.material,
         (material) => { if (material) this.keep({ material }, true); })),
     ];
@@ -63,7 +63,7 @@ export class MaterialTool {
 
   replaced() { return /** @type {any} */ (document.getElementById('material-replace'))?.checked ? { replace: true } : {}; }
 
-  /** What the edit says: of the last edit what this change leaves. @param {object} change @param {boolean} fresh */
+  /** Parameters of the edit: the change, and what the last edit set besides. @param {object} change @param {boolean} fresh nothing of the last edit */
   params(change, fresh = false) {
     const own = fresh ? {} : { ...(this.own()?.params ?? {}) };
     delete (/** @type {any} */ (own).part);
@@ -90,7 +90,7 @@ export class MaterialTool {
   async keep(change, fresh = false) {
     ++this.number;
     this.wanted = null;
-    // What it amends is known once the changes before it are made.
+    // A function, because the edit that it amends is known only when the changes before it are made.
     await this.store.change('edit', async () => ({ op: 'material', params: this.params(change, fresh), amend: this.own() !== null }));
     await this.stage.tryEdit(null);
   }
@@ -102,7 +102,7 @@ export class MaterialTool {
   }
 }
 
-/** What the object is, when no other tool needs the panel. @param {import('./store.js').Store} store */
+/** A summary of the object, shown when no tool needs the panel. @param {import('./store.js').Store} store */
 export function objectPanel(store) {
   const o = store.object;
   if (!o) return [];

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /**
- * The picture. At rest it is the program's own frame, in tiles, first with one sample a pixel and then with four.
- * While something moves it is drawn here, by WebGL 2; without that, by small frames of the program.
+ * The picture of the object. At rest it is the exact frame, which the program computes and sends in tiles, first with one sample a pixel
+ * and then with four. While something moves, the page draws the picture by WebGL 2 (live.js); without WebGL 2 the program sends small frames.
  */
 import { Live } from './live.js';
 import { ViewCamera } from './camera.js';
@@ -12,8 +12,8 @@ import { byId } from './dom.js';
 
 const kRest = 140;  // milliseconds without movement until the exact frame is asked for
 const kMaxSide = 1024;  // pixels of an exact frame
-const kQuickSide = 288;
-/** @type {[string, string][]} names of the program, and for people */
+const kQuickSide = 288;  // pixels of the program's frames while something moves
+/** @type {[string, string][]} names of the channels in requests, and in the page */
 export const channels = [['rgb', 'Lit'], ['albedo', 'Albedo'], ['diffuse', 'Diffuse'], ['specular', 'Shine'], ['normal', 'Normals'], ['roughness', 'Roughness']];
 
 export class Stage extends EventTarget {
@@ -27,24 +27,24 @@ export class Stage extends EventTarget {
     /** @type {HTMLCanvasElement} */
     this.overlay = byId('overlay');
     this.live = new Live(byId('live'), store, () => this.liveReady());
-    this.back = document.createElement('canvas');  // the frame that arrives
-    /** @type {HTMLCanvasElement | null} the last exact frame, for what lies under the pointer */
+    this.back = document.createElement('canvas');  // the frame that is arriving
+    /** @type {HTMLCanvasElement | null} the exact frame that is shown; null: another picture is */
     this.exact = null;
     this.camera = new ViewCamera({ width: 1, height: 1, fx: 1, fy: 1, cx: 0.5, cy: 0.5, skew: 0, world_from_cam: [[1, 0, 0], [0, 1, 0], [0, 0, 1]], center: [0, 0, -1] }, [0, 0, 0], [0, 0, 1], 1);
     this.channel = 'rgb';
-    /** @type {import('./light.js').Light} light that is looked under */
+    /** @type {import('./light.js').Light} light that the picture shows */
     this.light = { rotate: 0, scale: 1 };
     /** @type {string | null} token of the edit that is previewed */
     this.preview = null;
-    this.pulling = false;  // the page shows a shape that the program does not know yet
-    /** @type {string | null} view whose photograph the camera stands at */
+    this.pulling = false;  // handles pull the surface, and the program has not made that shape yet
+    /** @type {string | null} view from whose camera the object is seen; null: from another place */
     this.photo = null;
-    this.seq = 0;
-    /** @type {{seq: number, kind: 'quick' | 'rest', samples: number, stale: boolean} | null} */
+    this.seq = 0;  // number of the last frame that was asked for
+    /** @type {{seq: number, kind: 'quick' | 'rest', samples: number, stale: boolean} | null} the frame that is awaited; stale: another one is needed after it */
     this.asked = null;
-    this.timer = 0;
-    this.waiting = 0;
-    this.fresh = false;  // the page has not drawn the object yet
+    this.timer = 0;  // of rest()
+    this.waiting = 0;  // animation frame that draws the next picture
+    this.fresh = false;  // the page has not drawn this object yet
     /** @type {(context: CanvasRenderingContext2D) => void} */
     this.drawTool = () => {};
     store.line.on('tile', (tile) => this.takeTile(tile));
@@ -56,6 +56,7 @@ export class Stage extends EventTarget {
     new ResizeObserver(() => this.resized()).observe(this.view);
   }
 
+  /** Another object is open. */
   begin() {
     const o = this.store.object;
     this.camera = new ViewCamera(o.start.camera, o.center, o.up, o.radius);
@@ -102,7 +103,7 @@ export class Stage extends EventTarget {
 
   isLive() { return this.live.shows(this.channel, this.light, this.preview, this.photo); }
 
-  /** Shows all but some parts, which only the page's own picture can. @param {string[]} names */
+  /** Hides parts. Only the page's own picture can hide them, so it stays instead of the exact frame. @param {string[]} names of all hidden parts */
   hide(names) {
     if (names.length === this.live.hidden.size && names.every((name) => this.live.hidden.has(name))) return;
     this.live.hidden = new Set(names);
@@ -110,28 +111,28 @@ export class Stage extends EventTarget {
     this.moved();
   }
 
-  /** The page can draw the object anew: below the exact frame, if there is one. */
+  /** The page can draw a new picture, see Live. */
   async liveReady() {
     this.emit('looks');
     const first = !byId('cover').classList.contains('done');
     if (!this.isLive() && !(first && this.live.unlit())) return;
-    // A driver's first picture takes long where it draws in software; that of the program is on its way.
+    // The first picture of a driver that draws in software takes long. The program's frame arrives earlier.
     if (this.fresh && this.isLive()) return;
-    if (this.exact) return;  // it is under that
+    if (this.exact) return;  // the exact frame covers the page's picture
     await this.live.drawSoon(this.json(), this.channel, this.light);
     byId('cover').classList.add('done');
-    if (!this.exact && (first || this.isLive())) this.picture.style.opacity = '0';  // it is of the object before
+    if (!this.exact && (first || this.isLive())) this.picture.style.opacity = '0';  // it still shows the previous object
     this.liveDrawn();
     if (this.isLive() && (this.asked?.kind === 'quick' || (!this.asked && !this.exact))) this.moved();
   }
 
-  /** The page has drawn, the object as it is now if it has all of that. */
+  /** The page has drawn a picture: 'drawn' if it is complete. */
   liveDrawn() {
     if (this.isLive()) this.emit('drawn');
     this.redraw();
   }
 
-  /** Shows an edit that is not kept, or none. @param {string | null} token @param {boolean} [look] whether it changes nothing but the look */
+  /** Previews an edit, or none. @param {string | null} token of the preview @param {boolean} [look] whether it changes only color and material */
   async tryEdit(token, look = false) {
     this.preview = token;
     this.pulling = false;
@@ -141,7 +142,7 @@ export class Stage extends EventTarget {
     this.moved();
   }
 
-  /** Shows at once nearly how handles pull the surface; the program's own shape comes by tryEdit(). @param {import('./pull.js').Handle[]} handles @param {number} reach @returns {boolean} whether it can */
+  /** Shows at once approximately how handles pull the surface; the program's shape follows by tryEdit(). @param {import('./pull.js').Handle[]} handles @param {number} reach @returns {boolean} whether it can */
   pull(handles, reach) {
     if (!this.live.shows(this.channel, this.light, null, this.photo) || !this.live.pull(handles, reach, this.store.part)) return false;
     this.preview = null;
@@ -150,7 +151,7 @@ export class Stage extends EventTarget {
     return true;
   }
 
-  /** The camera or what it sees has changed. */
+  /** The camera, the light, the channel or the preview has changed. */
   moved() {
     if (this.store.state.mode !== 'project') return;
     this.emit('moved');
@@ -176,7 +177,7 @@ export class Stage extends EventTarget {
     byId('badge').textContent = '';
   }
 
-  /** The object has changed, seen by the same camera: the picture stays until the next one. */
+  /** The object was edited. The present picture stays until the next one arrives. */
   changed() {
     if (this.store.state.mode !== 'project') return;
     clearTimeout(this.timer);
@@ -189,29 +190,30 @@ export class Stage extends EventTarget {
     this.rest();
   }
 
+  /** Nothing moves any more: shows the exact frame, or what stands for it. */
   rest() {
     if (this.pulling) return;
     const own = this.live.hidden.size > 0 && this.live.renderer;
     if (this.isLive() && (own || !this.store.line.ready)) this.restLive(own ? 'some parts hidden' : '');
     if (own && (this.isLive() || !this.live.current())) return;
     if (this.asked?.kind === 'quick') {
-      this.timer = window.setTimeout(() => this.rest(), kRest);  // that one first
+      this.timer = window.setTimeout(() => this.rest(), kRest);  // after the quick frame
       return;
     }
     this.ask('rest', 1);
   }
 
-  /** The page's own picture, where no other comes. @param {string} badge */
+  /** Shows the page's own picture at its best, where no exact frame will replace it. @param {string} badge text */
   async restLive(badge) {
     const { timer } = this;
-    cancelAnimationFrame(this.waiting);  // where frames come late, it would be drawn over this, more coarsely
+    cancelAnimationFrame(this.waiting);  // else, if it came late, it would replace this picture by a coarser one
     await this.live.drawSoon(this.json(), this.channel, this.light, true);
     byId('cover').classList.add('done');
     this.liveDrawn();
     if (timer === this.timer) byId('badge').textContent = badge;
   }
 
-  /** @param {'quick' | 'rest'} kind @param {number} samples */
+  /** Asks the program for a frame. @param {'quick' | 'rest'} kind @param {number} samples per pixel and axis */
   ask(kind, samples) {
     if (!this.store.line.ready || this.store.state.mode !== 'project') return;
     let { width, height } = this.size();
@@ -225,7 +227,7 @@ export class Stage extends EventTarget {
     this.back.height = height;
     this.store.line.send({
       type: 'view', seq: this.seq, camera: this.camera.json(width, height), samples, channel: this.channel,
-      light: this.light, as_photographed: this.photo !== null, ...(this.preview ? { preview: this.preview } : {}), ...(this.store.line.far ? { packed: true } : {}),
+      light: this.light, as_photographed: this.photo !== null, ...(this.preview ? { preview: this.preview } : {}), ...(this.store.line.slow ? { packed: true } : {}),
     });
   }
 
@@ -263,19 +265,20 @@ export class Stage extends EventTarget {
     else this.settle();
   }
 
+  /** The picture is refined. */
   settle() {
-    if (this.fresh && this.isLive()) this.live.drawSoon(this.json(), this.channel, this.light);  // so that it moves at once
+    if (this.fresh && this.isLive()) this.live.drawSoon(this.json(), this.channel, this.light);  // so that the next movement is shown at once
     this.fresh = false;
     this.emit('settled');
   }
 
-  /** Whether a picture is complete and nothing is under way. */
+  /** Whether the picture is refined and no frame is awaited. */
   settled() {
     const badge = byId('badge').textContent ?? '';
     return this.asked === null && (this.exact !== null ? badge.startsWith('refined') : badge === 'some parts hidden');
   }
 
-  /** Whether the object is at a pixel of the frame. @param {number} x @param {number} y */
+  /** Whether a pixel of the frame shows the object. @param {number} x @param {number} y */
   onObject(x, y) {
     const { width, height } = this.picture;
     if (x < 0 || y < 0 || x >= width || y >= height) return false;
@@ -284,6 +287,7 @@ export class Stage extends EventTarget {
     return (pixel?.[3] ?? 0) > 127;
   }
 
+  /** Draws what the tool shows over the picture. */
   redraw() {
     const context = this.overlay.getContext('2d');
     if (!context) return;
@@ -291,7 +295,7 @@ export class Stage extends EventTarget {
     this.drawTool(context);
   }
 
-  /** What is seen of the object and the photograph, on white, as a PNG. @returns {Promise<Blob | null>} */
+  /** The object and the photograph as they are shown, on white, as a PNG. @returns {Promise<Blob | null>} */
   snapshot() {
     const { width, height } = this.picture, copy = document.createElement('canvas');
     Object.assign(copy, { width, height });
@@ -299,13 +303,13 @@ export class Stage extends EventTarget {
     c.fillStyle = '#fff';
     c.fillRect(0, 0, width, height);
     const own = this.picture.style.opacity === '0';
-    if (own) this.live.draw(this.json(), this.channel, this.light);  // a canvas of WebGL can be read only right after that
+    if (own) this.live.draw(this.json(), this.channel, this.light);  // a canvas of WebGL can be read only right after it was drawn
     c.drawImage(own ? this.live.canvas : this.picture, 0, 0, width, height);
     this.drawPhoto(c);
     return new Promise((resolve) => copy.toBlob(resolve, 'image/png'));
   }
 
-  /** The photograph as far as it is seen. @param {CanvasRenderingContext2D} c */
+  /** Draws the part of the photograph that is shown. @param {CanvasRenderingContext2D} c */
   drawPhoto(c) {
     const photo = byId('photo'), wipe = byId('wipe'), r = this.camera.rectangle(c.canvas.width, c.canvas.height);
     if (photo.hidden) return;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** What the page knows of the program: its state, and how to change it. One change at a time, in order. */
+/** The state of the program as the page knows it, and changes to it, which are sent one at a time, in order. */
 import { ApiError, getJson, hasKey, Line, postJson } from './api.js';
 import { complain } from './dom.js';
 import { Newest } from './newest.js';
 import { started } from './start.js';
 
-/** @typedef {import('./messages.js').ProjectState} State of an open project; of other places it has `mode`, and what they show */
+/** @typedef {import('./messages.js').ProjectState} State of an open project; in other modes it has `mode`, and what places.js shows */
 /** @typedef {import('./messages.js').ObjectInfo} ObjectInfo */
 /** @typedef {State['history'][number]} Edit */
 /** @typedef {State['parts'][number]} Part */
@@ -16,23 +16,23 @@ export class Store extends EventTarget {
     super();
     /** @type {State} */
     this.state = /** @type {any} */ ({ mode: 'opening', history: [], parts: [] });
-    /** @type {ObjectInfo} none before a project is open */
+    /** @type {ObjectInfo} null before a project is open */
     this.object = /** @type {any} */ (null);
     /** @type {string | null} name of the selected part */
     this.part = null;
-    this.made = false;  // the object that is open was made while this page looked on
+    this.made = false;  // the object was reconstructed while this page was open
     this.saving = 0;
     this.lost = false;
     this.line = new Line();
-    this.stranger = false;  // a program answers that does not know this page's key
+    this.unknownServer = false;  // a program with another key answers
     let before = false;
     this.line.on('welcome', ({ complete }) => {
-      this.stranger = false;
+      this.unknownServer = false;
       this.setLost(false);
-      if (before && !complete) this.refresh();  // else the news that come now say what is to be done
+      if (before && !complete) this.refresh();  // otherwise the missed messages follow
       before = true;
     });
-    this.line.on('stranger', () => { this.stranger = true; this.setLost(true); });
+    this.line.on('unknownServer', () => { this.unknownServer = true; this.setLost(true); });
     this.line.on('lost', () => this.setLost(true));
     this.line.on('state', (news) => this.hear(news));
     /** @type {Promise<any>} */
@@ -53,28 +53,28 @@ export class Store extends EventTarget {
     this.emit('saving');
   }
 
-  /** The answer to a change of this window, which may be on its way, brings the same state. @param {{mode: string, revision: string}} news */
+  /** Another window may have changed the state. Waits for the answer to a change of this window first, which may bring that state. @param {{mode: string, revision: string}} news */
   async hear({ mode, revision }) {
     await this.queue;
     await this.refreshing.running;
     if (mode !== 'project' || this.state.mode !== mode || this.state.revision !== revision) await this.refresh();
   }
 
-  /** One after the other: two that take the same state would both open the object. */
+  /** Fetches the state. One call at a time, because two calls that get the same state would both open the object. */
   refresh() { return this.refreshing.run(); }
 
   async refreshNow() {
     try {
       const got = this.begun ? null : await started;
       this.begun = true;
-      this.line.far ||= got?.far ?? false;
+      this.line.slow ||= got?.slow ?? false;
       await this.take(got?.state ?? await getJson('/api/state'), got?.object);
     } catch (error) {
       if (/** @type {any} */ (error).status !== 0) complain(error);
     }
   }
 
-  /** @param {any} state @param {ObjectInfo} [object] that is open then */
+  /** Makes a state the present one. @param {any} state @param {ObjectInfo} [object] that is open in it */
   async take(state, object) {
     const before = this.state;
     if (state.mode === 'project' && (before.mode !== 'project' || before.folder !== state.folder)) {
@@ -83,7 +83,7 @@ export class Store extends EventTarget {
     }
     state.history ??= [];
     state.parts ??= [];
-    if (JSON.stringify(state.packs) === JSON.stringify(before.packs)) state.packs = before.packs;  // the same object: nothing is new
+    if (JSON.stringify(state.packs) === JSON.stringify(before.packs)) state.packs = before.packs;  // the same object, by which Live sees that no pack changed
     this.state = state;
     if (before.mode !== state.mode) this.made = before.mode === 'reconstructing' && state.mode === 'project';
     if (this.part && !state.parts.some((/** @type {Part} */ p) => p.name === this.part)) this.part = null;
@@ -99,10 +99,10 @@ export class Store extends EventTarget {
   }
 
   /**
-   * Changes the object. Waits for the changes before it; where the connection is lost it tries again when it is back.
-   * @param {string} route @param {object | (() => Promise<object>)} [body] a function is called before each try: it sends the files that the body
-   * names, which a program that was started anew does not have
-   * @returns {Promise<any>} the result; undefined: it failed and the user knows
+   * Changes the object. Waits for the changes before it; if the connection is lost, tries again when it is back.
+   * @param {string} route @param {object | (() => Promise<object>)} [body] a function is called before each try and uploads the files that
+   * the body names, because a program that was restarted does not have them
+   * @returns {Promise<any>} the result; undefined: it failed, and the user was told
    */
   change(route, body = {}) {
     ++this.saving;
@@ -131,7 +131,7 @@ export class Store extends EventTarget {
         if (!(error instanceof ApiError)) throw error;
         if (error.status === 409) {
           await this.refresh();
-          // The first try arrived before the connection was lost: the history has grown by it.
+          // An earlier try arrived although its answer was lost: then the history has grown by this edit.
           const last = this.last();
           if (route === 'edit' && tries > 1 && last?.op === body.op && this.state.done === before.done + 1) return last;
           throw error;
