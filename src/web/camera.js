@@ -64,7 +64,7 @@ export function resized(camera, width, height) {
 }
 
 /**
- * The camera of one pixel of a picture.
+ * A camera whose picture is one pixel of the picture of another one.
  * @param {Camera} camera
  * @param {number} x
  * @param {number} y
@@ -77,7 +77,7 @@ export function ofPixel(camera, x, y) {
 /**
  * Clip coordinates from positions relative to the camera's center, in columns.
  * @param {Camera} camera
- * @param {number} near distances of the planes between which something is seen
+ * @param {number} near distances of the near and the far plane
  * @param {number} far
  */
 export function clipFromRelative(camera, near, far) {

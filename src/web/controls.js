@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-// Mouse, touch and keyboard move an Orbit.
+// Moves an Orbit by mouse, touch and keyboard.
 
 /** @typedef {import('./orbit.js').Orbit} Orbit */
 /**
@@ -11,8 +11,8 @@
  */
 
 const kTurn = 2.6;             // radians per shorter side of the element
-const kStep = Math.PI / 36;    // per key
-const kLightStep = 5, kLightTurn = 180;  // degrees per key, and per shorter side
+const kStep = Math.PI / 36;    // radians per key press
+const kLightStep = 5, kLightTurn = 180;  // degrees per key press, and per shorter side
 
 /** What a drag does. @param {PointerEvent} e */
 function dragOf(e) {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-// A camera that goes round an object.
+// A camera that moves around an object.
 import { cross, dot, mul, plus, unit } from './camera.js';
 
 /** @typedef {import('./camera.js').Camera} Camera */
 /** @typedef {import('./camera.js').Vec3} Vec3 */
 
 const kFieldOfView = 0.6;        // radians, along the shorter side
-const kMaxElevation = 1.55;     // radians: never quite from above, where left and right would swap
+const kMaxElevation = 1.55;     // radians; less than from straight above, where left and right would swap
 const kNearest = 1.05, kFarthest = 20;  // times the object's radius
 
 export class Orbit {
@@ -15,7 +15,7 @@ export class Orbit {
    * @param {Vec3} center of the object
    * @param {number} radius of a sphere around it
    * @param {Vec3} up unit
-   * @param {Vec3} from direction towards the first place of the camera
+   * @param {Vec3} from direction from the object towards the camera at the start
    */
   constructor(center, radius, up, from) {
     this.center = center;
@@ -33,7 +33,7 @@ export class Orbit {
     this.home();
   }
 
-  /** Back to where it began. */
+  /** Moves back to the start. */
   home() {
     this.azimuth = this.start.azimuth;
     this.elevation = Math.min(Math.max(this.start.elevation, -kMaxElevation), kMaxElevation);
@@ -41,7 +41,7 @@ export class Orbit {
     this.target = this.center;
   }
 
-  /** The camera moves right and up. @param {number} right radians @param {number} up */
+  /** Moves the camera to the right and up, around the target. @param {number} right radians @param {number} up */
   turn(right, up) {
     this.azimuth += right;
     this.elevation = Math.min(Math.max(this.elevation + up, -kMaxElevation), kMaxElevation);
@@ -52,7 +52,7 @@ export class Orbit {
     this.distance = Math.min(Math.max(this.distance * factor, kNearest * this.radius), kFarthest * this.radius);
   }
 
-  /** Moves what is looked at. @param {number} right shares of the shorter side of the picture @param {number} down */
+  /** Moves the target and the camera with it. @param {number} right shares of the shorter side of the picture @param {number} down */
   pan(right, down) {
     const size = 2 * this.distance * Math.tan(kFieldOfView / 2);
     const [x, y] = this.axes();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-// Reads packs of arrays, the form in which the program hands an object to a page (src/engine/view/pack.h).
+// Reads packs of arrays, the form in which a page gets an object from the program (src/engine/view/pack.h).
 
 /**
  * @typedef {Uint8Array | Int8Array | Uint16Array | Int16Array | Uint32Array | Float32Array} Numbers
@@ -11,7 +11,7 @@ const kArrayTypes = {u8: Uint8Array, i8: Int8Array, u16: Uint16Array, i16: Int16
 
 /**
  * @param {ArrayBuffer} buffer
- * @param {string} kind what it must hold, "shape" for example
+ * @param {string} kind that the pack must have, "shape" for example
  * @returns {Pack} arrays are views of the buffer
  */
 export function readPack(buffer, kind) {

@@ -11,7 +11,7 @@ import { Renderer, channels } from './renderer.js';
 /** @typedef {import('./pack.js').Pack} Pack */
 
 const kPacks = ['tables', 'light', 'shape', 'look', 'vertex_light', 'reflections'];
-const kRest = 150;             // milliseconds after the last change until the fine picture is drawn
+const kRest = 150;             // milliseconds after the last change until the smooth picture is drawn
 const kMaxPixels = 2600;      // of a side of the canvas
 
 /** @template {HTMLElement} T @param {string} id @param {new () => T} type @returns {T} */
@@ -158,13 +158,13 @@ class Page {
 
   /** @param {Camera} camera @param {number} samples */
   draw(camera, samples) {
-    // The light turns counter-clockwise, so what it was read by turns back.
+    // To turn the light counter-clockwise, the directions in which it is looked up are turned clockwise.
     const turn = rotation(this.up, (-Number(this.light.value) * Math.PI) / 180);
     const {channel, highlight} = this;
     this.renderer.draw({camera, channel, room_from_object: turn, samples, highlight});
   }
 
-  /** A coarse picture in the next frame, a fine one at rest. */
+  /** Draws with one sample in the next frame, and with four per pixel when nothing changes any more. */
   changed() {
     this.fine = false;
     window.clearTimeout(this.rest);
@@ -193,7 +193,7 @@ async function start() {
   }
 }
 
-/** For tests and scripts: pictures of the page by cameras of render.json. */
+/** For tests and scripts: pictures that the page draws for the cameras of a render.json. */
 Object.assign(globalThis, {
   cei3d: {
     page: start(),

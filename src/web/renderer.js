@@ -29,7 +29,7 @@ const kHighlight = [1.0, 0.55, 0.1];
 const kUnits = ['uIrradiance', 'uReflection', 'uSurface', 'uBase', 'uFresnel', 'uLobe'];
 export const noTurn = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 
-/** Has a program made, see madeProgram(). @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment */
+/** Starts to make a program; madeProgram() waits for it. @param {WebGL2RenderingContext} gl @param {string} vertex @param {string} fragment */
 function makeProgram(gl, vertex, fragment) {
   const program = gl.createProgram();
   for (const [type, source] of /** @type {[number, string][]} */ ([[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]])) {
@@ -43,7 +43,7 @@ function makeProgram(gl, vertex, fragment) {
   return program;
 }
 
-/** Waits for a program. Drivers make several at once, while nobody waits for one of them. @param {WebGL2RenderingContext} gl @param {WebGLProgram} program */
+/** Waits for a program. Start all programs before the first wait, because drivers make them at the same time. @param {WebGL2RenderingContext} gl @param {WebGLProgram} program */
 function madeProgram(gl, program) {
   if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
     const logs = (gl.getAttachedShaders(program) ?? []).map((s) => gl.getShaderInfoLog(s)).join('');
@@ -80,7 +80,7 @@ export class Renderer {
     this.canvas = canvas;
     this.gl = gl;
     const names = gl.getExtension('WEBGL_debug_renderer_info');
-    /** Whether a processor draws that is made for other things. */
+    /** Whether WebGL is rendered in software. */
     this.software = /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
     this.lit = makeProgram(gl, vertexShader, litShader);
     this.plain = makeProgram(gl, vertexShader, plainShader);
@@ -102,7 +102,7 @@ export class Renderer {
     this.targets = new Targets(gl);
     /** @type {Target | null} */
     this.pixel = null;
-    gl.vertexAttribI4ui(5, 0, 0, 0, 0);  // the bounce where there is none
+    gl.vertexAttribI4ui(5, 0, 0, 0, 0);  // the bounce of packs without one
   }
 
   /** Forgets the object. */
@@ -114,22 +114,22 @@ export class Renderer {
     gl.bindVertexArray(null);
   }
 
-  /** Whether all that a picture needs is there. */
+  /** Whether it has all packs that a lit picture needs. */
   get complete() {
     return this.hasSurface && ['vertex_light', 'light', 'tables'].every((kind) => this.heads.has(kind));
   }
 
-  /** Whether all is there that channels without light need. */
+  /** Whether it has all packs that channels without light need. */
   get hasSurface() { return this.heads.has('shape') && this.heads.has('look'); }
 
-  /** @param {Pack} pack of any kind; replaces what there is of that kind */
+  /** @param {Pack} pack of any kind; replaces the one of that kind */
   set(pack) {
     const {head, arrays} = pack;
     if (head.kind === 'shape') this.setShape(arrays);
     if (head.kind === 'coarse') this.setTriangles('coarse', arrays.triangles);
     if (head.kind === 'look') this.setAttributes([[2, 'albedo', arrays.albedo, true], [3, 'material', arrays.material, true]]);
     if (head.kind === 'vertex_light')
-      this.setAttributes([[4, 'sky', arrays.visibility, true], [5, 'bounce', arrays.bounce, false]]);  // 'visibility' is the shape's
+      this.setAttributes([[4, 'sky', arrays.visibility, true], [5, 'bounce', arrays.bounce, false]]);  // not 'visibility', which is the name of the shape's
     if (head.kind === 'reflections') this.setReflections(arrays);
     if (head.kind === 'light') this.setLight(head, arrays);
     if (head.kind === 'tables') this.setTables(head, arrays);
@@ -153,7 +153,7 @@ export class Renderer {
     this.corners[name] = corners.length;
   }
 
-  /** What is closer to the program's picture than the visibility of the shape: comes after it. @param {Object<string, Numbers>} arrays */
+  /** Visibility and reflections of the object in itself, more exact than the visibility of the shape, which must be set before. @param {Object<string, Numbers>} arrays */
   setReflections(arrays) {
     this.setBytes(6, 'visibility', arrays.visibility, 3);
     this.setBytes(9, 'object', arrays.object, 7);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-// The program's shading (docs/method.md#shading) as far as arrays by vertex and maps of the light can say it. Formulas
-// that depend on material and angle alone come as tables (src/engine/view/view_light.h).
+// The program's shading (docs/method.md#shading), approximated by values at vertices and by maps of the light. Formulas
+// that depend only on material and angle are read from tables (src/engine/view/view_light.h).
 
 export const vertexShader = `#version 300 es
 precision highp float;
@@ -91,7 +91,7 @@ void main() {
   outColor = vec4(color, 1.0);
 }`;
 
-// Channels that need no light. Drivers prepare this one in a fraction of the time of the other.
+// Channels that need no light. Drivers prepare this shader in a fraction of the time of the other one.
 export const plainShader = surfaceWith('', `
   if (uChannel == 1) color = vAlbedo.rgb;
   else if (uChannel == 2) color = n * 0.5 + 0.5;
@@ -104,7 +104,7 @@ uniform sampler3D uReflection;
 uniform float uIrradianceSide, uReflectionSide, uReflectionLevels;
 uniform vec2 uTableSize;
 uniform float uMinRoughness, uMiddleShare, uDielectricF0, uMetalF0, uStrength;
-uniform float uObjectScale;  // 0: what the surface reflects of itself is not known
+uniform float uObjectScale;  // 0: the reflections of the object in itself are not known
 const float kPi = 3.14159265;
 
 vec2 octahedral(vec3 d, float side) {
@@ -134,7 +134,7 @@ vec3 alongLobe(vec4 lobe, vec3 n, vec3 mirror, vec3 across, out vec3 axis) {
          (reflection(middle + side, lobe.y) + reflection(middle - side, lobe.y)) * (0.5 - 0.5 * uMiddleShare);
 }
 
-// What is reflected where the surface hides a part of the sky.
+// The reflection where the surface hides a part of the sky.
 vec3 withObject(vec3 sky, vec3 n, vec3 mirror, vec3 axis, vec2 smoothed) {
   if (uObjectScale > 0.0) return sky * visibility(mirror, vec2(1.0)) + vObject;
   float free = visibility(axis, smoothed);

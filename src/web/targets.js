@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-// What the renderer draws into before a picture is shown.
+// The buffers into which the renderer draws before a picture is shown.
 
 /** @typedef {{frame: WebGLFramebuffer, width: number, height: number, parts: (WebGLRenderbuffer | WebGLTexture)[]}} Target */
 
 const kMultisamples = 4;
 
-/** A picture to draw into: multisampled, or a texture. @param {WebGL2RenderingContext} gl @param {number} width @param {number} height @param {number} format @param {number} multisamples @returns {Target} */
+/** A new buffer: multisampled, or a texture if `multisamples` is 0. @param {WebGL2RenderingContext} gl @param {number} width @param {number} height @param {number} format @param {number} multisamples @returns {Target} */
 export function makeTarget(gl, width, height, format, multisamples) {
   const frame = gl.createFramebuffer(), depth = gl.createRenderbuffer();
   gl.bindFramebuffer(gl.FRAMEBUFFER, frame);
@@ -43,10 +43,10 @@ export class Targets {
   /** @param {WebGL2RenderingContext} gl */
   constructor(gl) {
     this.gl = gl;
-    // Light is averaged before it is cut off, as far as the hardware can.
+    // Half floats, where the hardware can draw into them, so that samples are averaged before they are clipped to 1.
     const float = gl.getExtension('EXT_color_buffer_half_float') || gl.getExtension('EXT_color_buffer_float');
     this.format = float ? gl.RGBA16F : gl.SRGB8_ALPHA8;
-    /** @type {{samples: Target | null, mean: Target} | null} samples: none of a rough picture */
+    /** @type {{samples: Target | null, mean: Target} | null} samples: null for a rough picture */
     this.now = null;
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// editor.cjs PROGRAM PROJECT PICTURES CHROMIUM: a first session in the live editor, in a browser, with what can go wrong.
+// editor.cjs PROGRAM PROJECT PICTURES CHROMIUM: a session with most tools of the live editor, in a browser, and with lost connections.
 const fs = require('node:fs');
 const { settled } = require('./serve.cjs');
 const { say, check, state, picturesIn, accessible, tidy, pixels, middle, drag, put, likeness, withPage } = require('./page.cjs');
@@ -36,7 +36,7 @@ async function firstSession(page, url) {
   await settled(page);
 }
 
-/** For how many vertices each input of the page's shader has values. */
+/** The number of vertices for which each input of the page's shader has values. */
 const vertexCounts = (page) => page.evaluate(() => {
   const { gl, vertices } = globalThis.cei3d.stage.live.renderer;
   const bytes = { [gl.BYTE]: 1, [gl.UNSIGNED_BYTE]: 1, [gl.SHORT]: 2, [gl.UNSIGNED_SHORT]: 2, [gl.UNSIGNED_INT]: 4 };
@@ -50,7 +50,7 @@ const vertexCounts = (page) => page.evaluate(() => {
   return counts;
 });
 
-/** What the page draws while something moves is nearly the program's own frame. */
+/** The picture that the page draws while something moves is close to the program's frame. */
 async function drawsItself(page) {
   await page.waitForFunction(() => globalThis.cei3d.stage.live.current(), null, { timeout: 30000 });
   const counts = await vertexCounts(page);
@@ -92,7 +92,7 @@ async function selects(page) {
   const at = await middle(page);
   await page.keyboard.press('p');
   await page.fill('#part-name', 'side');
-  // Not the head: on so rough an object one click may select all of it, which is refused.
+  // Not on the head: as this object is a rough one, a click there may select all of it, which is refused.
   await page.keyboard.down('Alt');
   await page.mouse.click(at.x - 110, at.y + 40);
   await page.keyboard.up('Alt');
@@ -165,7 +165,7 @@ async function compares(page) {
   await settled(page);
 }
 
-/** What a button of the dialog downloads. */
+/** The file that a button of the dialog downloads. */
 async function exported(page, title) {
   const [download] = await Promise.all([page.waitForEvent('download', { timeout: 60000 }), page.click(`[data-export="${title}"]`)]);
   const bytes = fs.readFileSync(await download.path());
@@ -173,7 +173,7 @@ async function exported(page, title) {
   return { name: download.suggestedFilename(), bytes };
 }
 
-/** No format overwrites the files of another, and none those of the same one for another use. */
+/** No export overwrites the files of another format, or of the same format for another use. */
 async function distinctNames(page) {
   const asked = [];
   await page.route('**/api/export', (route) => { asked.push(route.request().postDataJSON().file); return route.fulfill({ status: 400, json: { error: 'asked' } }); });
@@ -188,7 +188,7 @@ async function distinctNames(page) {
     }
   }
   await page.unroute('**/api/export');
-  // Files beside a .gltf and an .obj have their names without the ending.
+  // Files that belong to a .gltf or an .obj have its name without the ending.
   const stems = asked.map((file) => (/\.(gltf|obj)$/.test(file) ? file.replace(/\.\w+$/, '') : file));
   check(`names of exports differ: ${asked.join(' ')}`, new Set(stems).size === asked.length);
 }
@@ -237,7 +237,7 @@ async function twoWindows(context, page, url) {
   await page.waitForFunction((n) => globalThis.cei3d.store.state.done === n - 1, before, { timeout: 20000 });
   await other.waitForFunction((r) => globalThis.cei3d.store.state.revision === r, (await state(page)).revision, { timeout: 20000 });
   say('undo in one window is seen in the other');
-  // What happens while a window is not connected is known when it is back, without a full state.
+  // A window that reconnects gets the messages that it missed, and needs no full state.
   const asked = [];
   other.on('request', (r) => asked.push(new URL(r.url()).pathname));
   await other.evaluate(() => { const { line } = globalThis.cei3d.store; line.wait = 600000; line.socket.close(); });
@@ -251,7 +251,7 @@ async function twoWindows(context, page, url) {
   await other.close();
 }
 
-/** kill -9 while a stroke is being drawn: what was acknowledged is there, and the stroke is sent when the program is back. */
+/** kill -9 while a stroke is drawn: acknowledged edits are stored, and the stroke is sent when the program is back. */
 async function dies(page, server) {
   const before = await state(page);
   const at = await middle(page);
@@ -270,7 +270,7 @@ async function dies(page, server) {
   check('every acknowledged edit is there', log.edits.length === before.history.length);
 }
 
-/** Tab, until something has the focus. */
+/** Presses Tab until an element has the focus. */
 async function tabTo(page, selector) {
   for (let i = 0; i < 80; ++i) {
     if (await page.evaluate((s) => document.activeElement?.matches(s), selector)) return;
@@ -281,7 +281,7 @@ async function tabTo(page, selector) {
 
 const steps = (page, n) => page.waitForFunction((m) => globalThis.cei3d.store.state.done === m, n, { timeout: 30000 });
 
-/** From the start view to an exported object: no mouse. */
+/** From the start view to an exported object without a mouse. */
 async function keyboardOnly(page) {
   const { keyboard } = page, { done } = await state(page);
   await page.evaluate(() => { document.activeElement?.blur(); globalThis.cei3d.store.select(null); });
@@ -342,7 +342,7 @@ async function keyboardOnly(page) {
   await keyboard.press('u');
 }
 
-/** Steps that a command made while no window was open get pictures. */
+/** Steps that a command made while no window was open get pictures, too. */
 async function commandsHavePictures(at) {
   const { page } = at, { done } = await state(page);
   await at.server.kill();

@@ -17,7 +17,7 @@ function chunk(name, data) {
 
 const u24 = (...values) => Buffer.concat(values.map((v) => Buffer.from([v & 255, v >> 8 & 255, v >> 16 & 255])));
 
-/** The chunks of a WebP picture that are its pixels: frames may have no others. @param {Buffer} picture */
+/** The chunks of a WebP picture that hold its pixels; frames must not have others. @param {Buffer} picture */
 function pixels(picture) {
   const parts = [];
   for (let at = 12; at < picture.length;) {
@@ -28,7 +28,7 @@ function pixels(picture) {
   return Buffer.concat(parts);
 }
 
-/** An endless film. @param {{picture: Buffer, milliseconds: number}[]} frames pictures: WebP without alpha, all of one size */
+/** A WebP film that repeats forever. @param {{picture: Buffer, milliseconds: number}[]} frames pictures: WebP without alpha, all of one size */
 function film(frames, width, height) {
   const size = u24(width - 1, height - 1);
   const parts = [chunk('VP8X', Buffer.concat([Buffer.from([2, 0, 0, 0]), size])), chunk('ANIM', Buffer.alloc(6))];
@@ -37,7 +37,7 @@ function film(frames, width, height) {
   return chunk('RIFF', Buffer.concat([Buffer.from('WEBP'), ...parts]));
 }
 
-/** Screenshots become frames; equal neighbors become one. */
+/** Makes frames of screenshots; equal neighbors become one frame. */
 class Camera {
   constructor(page, converter) {
     Object.assign(this, { page, converter, frames: [], last: '' });
@@ -62,7 +62,7 @@ class Camera {
   }
 }
 
-/** Photographs of the strip come after the picture is complete. */
+/** Waits for the photographs of the strip, which are loaded after the picture is complete. */
 const photographs = (page) => page.waitForFunction(() => {
   const strip = document.getElementById('strip').getBoundingClientRect();
   const inSight = [...document.querySelectorAll('#strip button')].filter((b) => b.getBoundingClientRect().left < strip.right);
@@ -78,7 +78,7 @@ const drawn = (page) => page.evaluate(async () => {
 async function play(page, camera) {
   const still = async (milliseconds) => { await settled(page); await camera.shoot(milliseconds); };
   await settled(page);
-  // As fine as where there is a graphics processor.
+  // As fine as on a machine with a graphics processor.
   await page.evaluate(() => { const { pace } = globalThis.cei3d.stage.live; Object.assign(pace, { at: 0, took: () => {} }); });
   await photographs(page);
   await still(900);

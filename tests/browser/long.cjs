@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // long.cjs PROGRAM PROJECT CHROMIUM [STROKES RELOADS KILLS [SEED]]: a long session on a copy of PROJECT: strokes, reloads, and kill -9
-// of the program at random moments, after each of which every acknowledged edit must be there. Prints how memory grows.
+// of the program at random moments, after which all acknowledged edits must be stored. Prints the growth of memory.
 const { execFileSync } = require('node:child_process');
 const { withEditor, settled, megabytes, median } = require('./serve.cjs');
 
@@ -12,7 +12,7 @@ let dice = seed;
 const random = () => (dice = dice * 48271 % 2147483647) / 2147483647;
 const logged = (project) => JSON.parse(execFileSync(program, ['log', project, '--json'], { maxBuffer: 1 << 30 })).edits.filter((e) => e.done && !e.set_aside).length;
 
-/** Which of so many events happen at each step. @param {number} n @returns {Set<number>} */
+/** At which strokes an event happens that happens n times. @param {number} n @returns {Set<number>} */
 function moments(n) {
   const chosen = new Set();
   while (chosen.size < Math.min(n, strokes)) chosen.add(Math.floor(random() * strokes));
@@ -24,7 +24,7 @@ const stroke = (page) => page.evaluate(([a, b, c]) => {
   const { paint, stage } = globalThis.cei3d, { width, height } = stage.picture;
   for (let i = 0; i < 300; ++i) {
     const x = width * (0.3 + 0.4 * ((a + 0.7549 * i) % 1)), y = height * (0.3 + 0.4 * ((b + 0.5698 * i) % 1));
-    // Not at the rim, which a stroke does not reach.
+    // Not at the rim of the object, where a stroke may miss the surface.
     if (![[-8, 0], [20, 5], [0, -8], [0, 8]].every(([dx, dy]) => stage.onObject(x + dx, y + dy))) continue;
     const p = { x, y, pressure: 1, shift: false, alt: false, ctrl: false, onObject: true, erase: false };
     paint.setColor(`#${Math.floor(c * 0xffffff).toString(16).padStart(6, '0')}`);
@@ -37,7 +37,7 @@ const stroke = (page) => page.evaluate(([a, b, c]) => {
   throw new Error('The object is not in the picture.');
 }, [random(), random(), random()]);
 
-/** kill -9 at a random moment after a stroke was drawn; what is there then, against what was acknowledged. */
+/** kill -9 at a random moment after a stroke was drawn; compares the stored edits with the acknowledged ones. */
 async function killed(at, page, count) {
   await page.waitForTimeout(700 * random());
   const acknowledged = await page.evaluate(() => globalThis.cei3d.store.state.done);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// making.cjs PROGRAM CAPTURE PICTURES CHROMIUM: an object is made in the editor, seen on the way, stopped, and gone on with.
+// making.cjs PROGRAM CAPTURE PICTURES CHROMIUM: makes an object in the editor, with pictures meanwhile, stops and resumes.
 const fs = require('node:fs');
 const { check, state, picturesIn, accessible, tidy, zoomed, withPage } = require('./page.cjs');
 
@@ -10,7 +10,7 @@ const picture = picturesIn(pictures);
 const mode = (page, name) => page.waitForFunction((m) => globalThis.cei3d?.store.state.mode === m && document.querySelector('#place .column'), name, { timeout: 60000 });
 const seen = (page) => page.waitForFunction(() => document.getElementById('making-picture')?.naturalWidth > 50, null, { timeout: 60000 });
 
-/** How many pixels of the picture are not its white ground. */
+/** The share of pixels of the picture that are not its white background. */
 const inked = (page) => page.evaluate(() => {
   const img = document.getElementById('making-picture'), canvas = document.createElement('canvas');
   Object.assign(canvas, { width: img.naturalWidth, height: img.naturalHeight });

@@ -13,7 +13,7 @@ const [program, original, executablePath] = process.argv.slice(2);
 const row = (what, value) => console.log(`| ${what} | ${value} |`);
 const ms = (t) => `${Math.round(t)} ms`;
 
-/** What the editor's page loads: itself and what it names. */
+/** The size of the editor's page and of the files that it names. */
 function bundle() {
   const web = path.join(__dirname, '../../src/web'), page = fs.readFileSync(path.join(web, 'editor/index.html'));
   const named = new Set([...page.toString().matchAll(/(?:href|src)="\/app\/([^"]+)"/g)].map((m) => m[1]));
@@ -72,7 +72,7 @@ async function frames(page) {
   row('the step it takes while something moves; coarse triangles', `${times.chosen}; ${times.coarse}`);
 }
 
-/** Time of an action until something holds, both in the page. */
+/** The time from an action until a condition holds; both are evaluated in the page. */
 const timed = (page, action, holds) => page.evaluate(async ([a, h]) => {
   const wait = (f) => new Promise((resolve) => { const step = () => (f() ? resolve() : setTimeout(step, 2)); step(); });
   const t = performance.now();
@@ -92,7 +92,7 @@ async function edits(page) {
     picture.push(await timed(page, '', 'cei3d.stage.exact !== null'));
     await settled(page);
   }
-  row('slider let go to exact frame', ms(median(release)));
+  row('slider released to exact frame', ms(median(release)));
   row('undo to right picture of the page; to exact frame', `${ms(median(undo))}; ${ms(median(undo) + median(picture))}`);
 }
 

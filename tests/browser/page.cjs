@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What browser tests do with the editor's page.
+// Helpers of browser tests for the editor's page.
 const fs = require('node:fs');
 const path = require('node:path');
 const { withEditor } = require('./serve.cjs');
 const axe = fs.readFileSync(require.resolve('axe-core/axe.min.js'), 'utf8');
 
-const kScale = 0.5;  // pixels of a picture: a quarter of them takes a quarter of the time
+const kScale = 0.5;  // device pixels per pixel: pictures with a quarter of the pixels take a quarter of the time
 const began = Date.now();
 const say = (text) => console.log(`${((Date.now() - began) / 1000).toFixed(1)} s  ${text}`);
 
@@ -18,12 +18,12 @@ const state = (page) => page.evaluate(() => globalThis.cei3d.store.state);
 /** @param {string} folder @returns {(page: any, name: string) => Promise<Buffer>} saves what the page shows */
 const picturesIn = (folder) => async (page, name) => page.screenshot({ path: path.join(folder, `${name}.png`) });
 
-/** In dark and in light. */
+/** Checks the page for violations of accessibility rules, in its dark and its light colors. */
 async function accessible(page, name) {
   await page.evaluate(axe);
   for (const colorScheme of ['light', 'dark']) {
     await page.emulateMedia({ colorScheme });
-    // Other rules than those of colors need not be run twice.
+    // Rules that are not about colors need not be checked twice.
     const runOnly = colorScheme === 'dark' ? ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa', 'wcag22aa'] : { type: 'rule', values: ['color-contrast'] };
     const { violations } = await page.evaluate((only) => window.axe.run(document, { runOnly: only }), runOnly);
     for (const v of violations) console.log(v.id, v.help, v.nodes.slice(0, 3).map((n) => n.html.slice(0, 160)));
@@ -31,7 +31,7 @@ async function accessible(page, name) {
   }
 }
 
-/** No two of the page's areas overlap, and nothing is cut off. */
+/** Checks that the page's areas do not overlap and nothing is cut off. */
 async function tidy(page, name) {
   const problems = await page.evaluate(() => {
     const areas = ['.bar', '#tools', '#stage', '#panels', '#strip', '.status'].map((s) => [s, document.querySelector(s)]).filter(([, n]) => n && n.offsetParent !== null || n?.getBoundingClientRect().width > 0);
@@ -46,7 +46,7 @@ async function tidy(page, name) {
   check(`the page is tidy: ${name} ${problems}`, problems.length === 0);
 }
 
-/** At 200 %: half as many of the page's pixels in the same window. */
+/** Checks the page at a zoom of 200 %, which is a window of half the size. */
 async function zoomed(page, name) {
   const size = page.viewportSize();
   await page.setViewportSize({ width: size.width / 2, height: size.height / 2 });
@@ -55,7 +55,7 @@ async function zoomed(page, name) {
   await page.setViewportSize(size);
 }
 
-/** Pixels of the picture: object or not, and colors. */
+/** RGBA of pixels of the picture. */
 const pixels = (page, list) => page.evaluate((at) => {
   const c = document.getElementById('picture').getContext('2d');
   return at.map(([x, y]) => [...c.getImageData(Math.round(x), Math.round(y), 1, 1).data]);
@@ -79,7 +79,7 @@ async function drag(page, from, to, options = {}) {
   await page.mouse.up(options);
 }
 
-/** Moves a slider or chooses in a list, and lets go. */
+/** Sets a slider or list to a value, as a user who moves and releases it. */
 const put = (page, selector, value) => page.locator(selector).evaluate((node, v) => {
   node.value = v;
   for (const type of ['input', 'change']) node.dispatchEvent(new Event(type));
@@ -106,7 +106,7 @@ const likeness = (page) => page.evaluate(() => {
 });
 
 /**
- * Opens the project in a browser and runs a test in it; a page that complains is a failure.
+ * Opens the project in a browser and runs a test in it. Fails if the page logs an error.
  * @param {{program: string, project: string, executablePath: string, picture: (page: any, name: string) => Promise<Buffer>, flags?: string[]}} what
  * @param {(at: {page: any, context: any, server: import('./serve.cjs').Server, restart: () => Promise<void>, errors: string[]}) => Promise<void>} test
  */

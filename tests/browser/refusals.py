@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""refusals.py PROGRAM OBJECT FOLDER: what `cei3d open` must not do, asked by a client that is not a browser."""
+"""refusals.py PROGRAM OBJECT FOLDER: requests that `cei3d open` must refuse, sent by a client that is not a browser."""
 import http.client
 import json
 import os
@@ -92,7 +92,7 @@ def odd_paths(client):
     for path in ('/app/../../etc/passwd', '//etc/passwd', '/api/download/project.json', '/api/photo/%ff%fe',
                  '/api/' + 'a' * 4000, '/api/nothing'):
         check(path[:60], client.ask('GET', path)[0], 400, 404, 422)
-    # One folder up from any place below which files are, or could be.
+    # Paths that lead one folder up from every place below which there are files, or could be.
     for prefix in ['/', '/app/', '/app/editor/', '/api/'] + [f'/api/{g.split("/")[0]}/' for g in GETS]:
         for up in ('..%2f', '..%2f..%2f', '../', '%2e%2e/', '..%5c', '%2e%2e%2f..%2f'):
             status, body, _ = client.ask('GET', f'{prefix}{up}project.json')
@@ -135,7 +135,7 @@ def bad_sockets(client):
 
 
 def silent_socket(client, upgrade):
-    """One without a key has nothing to say. It must not keep its place."""
+    """A socket without the key is closed, so that it does not use up a connection."""
     s = socket.create_connection(('127.0.0.1', client.port), timeout=60)
     lines = [f'GET /socket HTTP/1.1\r\nHost: 127.0.0.1:{client.port}'] + [f'{k}: {v}' for k, v in upgrade.items()]
     s.sendall('\r\n'.join(lines + ['', '']).encode())

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// remote.cjs PROGRAM PROJECT CHROMIUM [MILLISECONDS MEGABITS]: the editor over a long line, on a copy of PROJECT: when a stroke is seen,
-// and when the program's own frame with it is there. The line is a proxy in this process, so that it needs no rights and no kernel module.
+// remote.cjs PROGRAM PROJECT CHROMIUM [MILLISECONDS MEGABITS]: the editor over a slow connection, on a copy of PROJECT: the time until a
+// stroke is shown, and until the program's frame shows it. The connection is a proxy in this process, which needs no privileges.
 const { withEditor, settled, median } = require('./serve.cjs');
 const { slowLine } = require('./slow_line.cjs');
 const { middle } = require('./page.cjs');
@@ -9,7 +9,7 @@ const [program, project, executablePath, ...numbers] = process.argv.slice(2);
 const [milliseconds, megabits] = [50, 5].map((n, i) => Number(numbers[i] ?? n));
 const kStrokes = 5;
 
-/** Frames of the display until a dab has changed pixels of the overlay, and the seconds of a request without work. */
+/** The number of frames of the display until a dab changes pixels of the overlay, and the seconds of a request that needs no work. */
 const dabFrames = (page, x, y) => page.evaluate(async ([px, py]) => {
   const { stage, paint } = globalThis.cei3d, overlay = stage.overlay;
   const pixel = () => overlay.getContext('2d').getImageData(Math.round(px), Math.round(py), 1, 1).data.join();
@@ -25,7 +25,7 @@ const dabFrames = (page, x, y) => page.evaluate(async ([px, py]) => {
   return frames;
 }, [x, y]);
 
-/** Seconds from the last dab until the stroke is kept, until the exact frame, and until it is refined. */
+/** Seconds from the last dab until the stroke is stored, until the exact frame is shown, and until it is refined. */
 const keep = (page) => page.evaluate(async () => {
   const { stage, store, paint } = globalThis.cei3d, begin = performance.now(), { done } = store.state;
   const until = (holds) => new Promise((resolve) => { const look = () => (holds() ? resolve((performance.now() - begin) / 1000) : setTimeout(look, 4)); look(); });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Program and browser for scripts: starts both, and ends both whatever happens.
+// Program and browser for scripts: starts both, and ends both even if the script fails.
 const { spawn } = require('node:child_process');
 const fs = require('node:fs');
 const os = require('node:os');
@@ -33,7 +33,7 @@ function serve(program, folder, port = 0, flags = []) {
 }
 
 /**
- * Runs some work with a program that serves the project, and a browser. copy: the work is on a copy, which goes away with it.
+ * Runs some work with a program that serves the project, and a browser. copy: of the project, which is deleted after the work.
  * @param {{program: string, project: string, executablePath: string, copy?: boolean, args?: string[], flags?: string[]}} what args: of the browser; flags: of `cei3d open`
  * @param {(at: {project: string, server: Server, browser: any, restart: () => Promise<void>, seconds: number}) => Promise<void>} work
  *   restart(): after server.kill(), at the same port; seconds: until the program answered
@@ -56,10 +56,10 @@ async function withEditor({ program, project, executablePath, copy = false, args
   }
 }
 
-/** Waits until the picture is complete and all is saved. */
+/** Waits until the picture is refined and everything is stored. */
 const settled = (page) => page.waitForFunction(() => globalThis.cei3d?.settled(), null, { timeout: 60000, polling: 30 });
 
-/** Megabytes of memory that a process has. @param {number} pid */
+/** Megabytes of memory of a process. @param {number} pid */
 const megabytes = (pid) => Number(/VmRSS:\s*(\d+)/.exec(fs.readFileSync(`/proc/${pid}/status`, 'utf8'))[1]) / 1024;
 
 /** @param {number[]} list */

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A connection as over a long line: a proxy that passes bytes on late and slowly.
+// Plays a slow connection: a proxy that passes bytes on late and at a limited rate.
 const net = require('node:net');
 
-/** Bytes of one direction: each arrives after the delay, and not before those ahead of it are through at the rate. */
+/** The bytes of one direction. They arrive in order, after the delay, and no faster than the rate. */
 class Pipe {
   /** @param {import('node:net').Socket} from @param {import('node:net').Socket} to @param {{seconds: number, rate: number, free: number}} line shared by all pipes of its direction */
   constructor(from, to, line) {
@@ -31,12 +31,12 @@ class Pipe {
         if (this.waiting < kMaxWaiting) this.from.resume();
       });
     }
-    if (this.waiting >= kMaxWaiting) this.from.pause();  // as full buffers do
+    if (this.waiting >= kMaxWaiting) this.from.pause();  // as if buffers on the way were full
   }
 }
 
 /**
- * A proxy to a port of this machine. @param {number} port @param {{milliseconds: number, megabits: number}} line there and back; each way
+ * A proxy to a port of this machine. @param {number} port @param {{milliseconds: number, megabits: number}} line milliseconds: of the round trip; megabits: per second, in each direction
  * @returns {Promise<{port: number, close: () => void}>}
  */
 function slowLine(port, { milliseconds, megabits }) {

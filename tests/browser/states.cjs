@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// states.cjs PROGRAM FOLDER PICTURES CHROMIUM: what the editor shows where there is nothing to edit: of the folders empty, broken (an
-// object) and object; the last one for looking only, in a browser without WebGL 2, and when its program goes away; then the folder itself.
+// states.cjs PROGRAM FOLDER PICTURES CHROMIUM: what the editor shows when there is nothing to edit. FOLDER has an empty folder, a broken
+// object and an object, named empty, broken and object. Opens each of them, the last one also read-only, in a browser without WebGL 2, and
+// when its program ends; then FOLDER itself.
 const fs = require('node:fs');
 const path = require('node:path');
 const { settled } = require('./serve.cjs');
@@ -62,37 +63,37 @@ async function losesItsProgram({ page, server, restart }) {
   await says('does not answer');
   await accessible(page, 'a lost connection');
   await restart();
-  await says('started anew');
+  await says('restarted');
   check('another program at the same address has another key', true);
-  await picture(page, 'started-anew');
-  await accessible(page, 'a program that was started anew');
+  await picture(page, 'restarted');
+  await accessible(page, 'a restarted program');
 }
 
 async function saysWhatFailed({ page, server }) {
   await page.goto(server.url);
   await mode(page, 'failed');
-  check(`what failed is said: ${(await state(page)).error}`, (await page.textContent('#place')).includes('scene.json'));
+  check(`the error is shown: ${(await state(page)).error}`, (await page.textContent('#place')).includes('scene.json'));
   await picture(page, 'failed-to-open');
   await accessible(page, 'what cannot be opened');
 }
 
-async function onlyLooks({ page, server }) {
+async function opensReadOnly({ page, server }) {
   await page.goto(server.url);
   await settled(page);
   const tools = await page.locator('#tools button:enabled').evaluateAll((list) => list.map((b) => b.dataset.tool));
-  check(`for looking only: ${tools}`, tools.join() === 'look,light');
+  check(`read-only: ${tools}`, tools.join() === 'look,light');
   await page.keyboard.press('b');
   check('the brush stays where it is', await page.evaluate(() => document.querySelector('[data-tool="look"]').getAttribute('aria-checked')) === 'true');
-  await accessible(page, 'looking only');
+  await accessible(page, 'read-only');
   await page.click('#export');
   await page.waitForSelector('#dialog[open]');
   check('nothing but the picture can be saved', (await page.locator('[data-export]').evaluateAll((list) => list.map((b) => b.dataset.export))).join() === 'Picture');
-  await accessible(page, 'looking only, export');
+  await accessible(page, 'read-only, export');
 }
 
 const chosen = (page) => page.getAttribute('#tools [aria-checked="true"]', 'data-tool');
 
-/** Keys that type do nothing where they are switched off, but on the view they do. */
+/** Keys that type characters can be switched off everywhere but on the view. */
 async function hasNoSingleKeys({ page, server }) {
   const press = async (focus, key) => {
     await page.focus(focus);
@@ -116,24 +117,24 @@ async function hasNoSingleKeys({ page, server }) {
   check('switched on it acts everywhere', (await press('#export', 'b')) === 'paint');
 }
 
-/** As when the program tells that the object is made, without waiting for one. */
+/** Plays that a reconstruction has ended, without running one. */
 async function startsWithPaint({ page, server }) {
   const after = (mode) => page.evaluate((m) => { const { store } = globalThis.cei3d; store.state = { ...store.state, mode: m }; return store.refresh(); }, mode);
   await page.goto(server.url);
   await settled(page);
-  check('an object that is opened is looked at', (await chosen(page)) === 'look');
+  check('an object that is opened has the tool for looking', (await chosen(page)) === 'look');
   await after('reconstructing');
   check('one that was just made can be painted at once', (await chosen(page)) === 'paint');
-  check('and what to do is said', (await page.textContent('#toasts')).includes('Drag on the object to paint'));
+  check('and a message says how', (await page.textContent('#toasts')).includes('Drag on the object to paint'));
   await settled(page);
   await accessible(page, 'an object that was just made');
   await zoomed(page, 'painting');
   await settled(page);
   await after('library');
-  check('later it is looked at, too', (await chosen(page)) === 'look');
+  check('and later, too', (await chosen(page)) === 'look');
 }
 
-/** The program's frames alone. */
+/** A page without WebGL shows the program's frames only. */
 async function hasNoWebGl({ page, server }) {
   await page.goto(server.url.replace('/#', '/?frames#'));
   await settled(page);
@@ -162,7 +163,7 @@ async function hasNoWebGl({ page, server }) {
 (async () => {
   await opened('empty', [], explainsItself);
   await opened('broken', [], saysWhatFailed);
-  await opened('object', ['--read-only'], onlyLooks);
+  await opened('object', ['--read-only'], opensReadOnly);
   await opened('object', [], startsWithPaint);
   await opened('object', [], hasNoSingleKeys);
   await opened('object', [], hasNoWebGl);

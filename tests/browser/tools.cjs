@@ -12,7 +12,7 @@ const picture = picturesIn(pictures);
 const steps = (page, n) => page.waitForFunction((m) => globalThis.cei3d.store.state.done === m, n, { timeout: 60000 });
 const last = async (page) => (await state(page)).history.filter((e) => e.done).at(-1);
 
-/** Draws around a box in the window, by the mouse. */
+/** Draws the outline of a box in the window with the mouse. */
 async function lasso(page, x, y, half, modifier) {
   if (modifier) await page.keyboard.down(modifier);
   await page.mouse.move(x - half, y - half);
@@ -68,7 +68,7 @@ async function names(page) {
   check(`its color and material are beside it: ${ball[1]}`, ball[0].includes('radial-gradient') && /roughness 0\.\d\d/.test(ball[1]));
 }
 
-/** The picture of the export dialog against a screenshot, where the object is; elsewhere it is white. */
+/** Compares the picture of the export dialog with a screenshot where the object is; elsewhere it must be white. */
 async function savesWhatIsSeen(page) {
   const shot = await page.screenshot({ clip: await page.locator('#picture').boundingBox() });
   const { inside, worst, ground } = await page.evaluate(async (base64) => {
@@ -91,10 +91,10 @@ async function savesWhatIsSeen(page) {
     }
     return { inside, worst, ground: [...saved.subarray(0, 4)] };
   }, shot.toString('base64'));
-  check(`a saved picture is what is seen, on white: ${inside} pixels, ${worst} levels, ${ground}`, inside > 200 && worst <= 2 && ground.every((v) => v === 255));
+  check(`a saved picture is that of the page, on white: ${inside} pixels, ${worst} levels, ${ground}`, inside > 200 && worst <= 2 && ground.every((v) => v === 255));
 }
 
-/** F comes nearer to the part that is selected. */
+/** The key F moves the camera nearer to the selected part. */
 async function framesPart(page) {
   const distance = () => page.evaluate(() => globalThis.cei3d.stage.camera.distance());
   await settled(page);
@@ -172,7 +172,7 @@ async function shines(page) {
   await page.keyboard.press('l');
   const ball = await page.locator('#light-ball').boundingBox();
   const light = () => page.evaluate(() => globalThis.cei3d.stage.light);
-  await page.waitForFunction(() => document.getElementById('light-ball').getContext('2d').getImageData(60, 60, 1, 1).data[3] > 0);  // it is drawn
+  await page.waitForFunction(() => document.getElementById('light-ball').getContext('2d').getImageData(60, 60, 1, 1).data[3] > 0);  // the ball is drawn
   await page.mouse.click(ball.x + 0.35 * ball.width, ball.y + 0.3 * ball.height);
   await settled(page);
   const { sun } = await light();
@@ -181,7 +181,7 @@ async function shines(page) {
   await page.waitForFunction(() => globalThis.cei3d.stage.live.sun !== null, null, { timeout: 10000 });
   await settled(page);
   await picture(page, '5-sun');
-  // Under another light the page draws what the program's frame does not show.
+  // While a light is previewed, the page draws it and the program's present frame does not show it.
   const [psnr, plain] = [await likeness(page), await likenessUnder(page, { rotate: 0, scale: 1 })];
   check(`the page draws the sun by itself: ${psnr.toFixed(1)} dB, without it ${plain.toFixed(1)} dB`, (await page.evaluate(() => globalThis.cei3d.stage.isLive())) && psnr > 26 && psnr > plain + 4);
   await accessible(page, 'a sun');
@@ -190,10 +190,10 @@ async function shines(page) {
   await settled(page);
   const kept = (await last(page)).params;
   check('the sun is kept', kept.sun.strength === 3 && kept.sun.direction.every((v, k) => Math.abs(v - sun.direction[k]) < 1e-9));
-  check('and the light that is looked under is the object’s again', (await light()).sun === undefined);
+  check('and the page shows the object’s own light again', (await light()).sun === undefined);
 }
 
-/** likeness() where the page draws under another light than the program's frame. */
+/** likeness() while a light is previewed. */
 async function likenessUnder(page, light) {
   const was = await page.evaluate((l) => { const { stage } = globalThis.cei3d, before = stage.light; stage.light = l; return before; }, light);
   const psnr = await likeness(page);
@@ -201,7 +201,7 @@ async function likenessUnder(page, light) {
   return psnr;
 }
 
-/** A picture that is dropped beside the object is a light, under which the page draws, too. */
+/** A picture that is dropped beside the object becomes the light, in which the page draws, too. */
 async function environments(page) {
   const { done } = await state(page), box = await page.locator('#view').boundingBox();
   await page.keyboard.press('v');
@@ -217,7 +217,7 @@ async function environments(page) {
   check(`and under the object's light again: ${back.toFixed(1)} dB`, back > 30 && (await state(page)).done === done);
 }
 
-/** A picture that is dropped on the view at a pixel of the window. */
+/** Drops a picture on the view at a pixel of the window. */
 const dropPicture = (page, x, y) => page.evaluate(async ([cx, cy]) => {
   const canvas = document.createElement('canvas');
   canvas.width = 64;

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
 /**
- * Paint and erase. Strokes are dabs in the plane of the picture; the program projects them onto what the camera sees.
- * Strokes that follow each other closely become one edit; until then each is undone by itself.
+ * Paint and erase. A stroke is drawn as dabs in the plane of the picture, and the program projects it onto the surface that the camera
+ * sees. Strokes that follow each other quickly become one edit; until it is stored, each of them can be undone alone.
  */
 import { cornersOf, ontoCorners, seen } from './camera.js';
 import { complain, el, select, showValue, slider } from './dom.js';
 import { postJson, upload } from './api.js';
 
-const kIdle = 900;  // milliseconds after the last stroke until they are kept
+const kIdle = 900;  // milliseconds after the last stroke until the strokes are stored
 
-/** What the brush is; shared by paint and eraser. */
+/** The brush; paint and eraser share it. size: pixels of the screen; other: the second color; pen: what its pressure changes. */
 export const brush = { size: 26, hardness: 0.8, opacity: 1, color: '#d8342c', other: '#f2f2f2', target: 'albedo', material: '', pen: 'size' };
 
 /** @typedef {{canvas: HTMLCanvasElement, opacity: number}} Stroke opacity: of the brush when it was drawn */
@@ -26,23 +26,23 @@ export class PaintTool {
     this.erase = erase;
     this.name = erase ? 'erase' : 'paint';
     this.label = erase ? 'Erase' : 'Paint';
-    this.hint = erase ? 'Drag on the object: its own color and material come back.'
+    this.hint = erase ? 'Drag on the object to restore its own color and material.'
       : 'Drag on the object. [ ] size, I takes a color, Shift and a click: a straight line. Beside the object, drag to turn it.';
-    /** @type {{camera: any, canvas: HTMLCanvasElement, strokes: Stroke[]} | null} what is not kept yet */
+    /** @type {{camera: any, canvas: HTMLCanvasElement, strokes: Stroke[]} | null} strokes that are not stored yet */
     this.pending = null;
-    /** @type {{canvas: HTMLCanvasElement, camera: any, kept: boolean}[]} what is being kept, or is and is in no picture yet */
+    /** @type {{canvas: HTMLCanvasElement, camera: any, kept: boolean}[]} strokes that are being stored, or are stored (`kept`) and not in the picture yet */
     this.saving = [];
-    /** @type {Stroke | null} */
+    /** @type {Stroke | null} that is being drawn */
     this.stroke = null;
-    /** @type {any} */
+    /** @type {any} the end of the stroke so far, or of the last one */
     this.last = null;
-    /** @type {any} */
+    /** @type {any} the pointer */
     this.at = null;
     this.timer = 0;
     this.picking = false;  // the next click takes a color
     stage.addEventListener('moved', () => { this.at = null; this.keep(); });
     stage.addEventListener('drawn', () => { this.saving = this.saving.filter((s) => !s.kept); });
-    this.busy = 0;
+    this.busy = 0;  // number of calls of keep() that store something
   }
 
   leave() { this.keep(); this.at = null; }
@@ -86,7 +86,7 @@ export class PaintTool {
     this.enter();
   }
 
-  /** The albedo under the pointer becomes the color. @param {any} [at] */
+  /** Takes the albedo under the pointer as the color of the brush. @param {any} [at] */
   async pickColor(at = this.at) {
     if (!at) return;
     try {
@@ -128,7 +128,7 @@ export class PaintTool {
     this.stage.redraw();
   }
 
-  /** @param {any} p */
+  /** Of the brush, in pixels of the frame. @param {any} p */
   radius(p) { return Math.max(0.5, brush.size * this.stage.size().scale * (['size', 'both'].includes(brush.pen) ? 0.35 + 0.65 * p.pressure : 1)); }
 
   /** @param {any} p */
@@ -165,6 +165,7 @@ export class PaintTool {
     this.store.emit('saving');
   }
 
+  /** Draws all strokes that are not stored into one picture. */
   flatten() {
     const pending = this.pending, c = pending?.canvas.getContext('2d');
     if (!pending || !c) return;
@@ -176,7 +177,7 @@ export class PaintTool {
     this.stage.redraw();
   }
 
-  /** Takes back the last stroke that is not kept. @returns {boolean} whether there was one */
+  /** Removes the last stroke that is not stored. @returns {boolean} whether there was one */
   undo() {
     if (!this.pending) return false;
     clearTimeout(this.timer);
@@ -188,7 +189,7 @@ export class PaintTool {
     return true;
   }
 
-  /** Keeps what is painted. @returns {Promise<void>} */
+  /** Stores the strokes as an edit. @returns {Promise<void>} */
   async keep() {
     clearTimeout(this.timer);
     const pending = this.pending;
@@ -217,7 +218,8 @@ export class PaintTool {
   unsaved() { return this.pending !== null || this.stroke !== null || this.busy > 0; }
 
   /**
-   * Strokes go along when the object turns, as if they lay across the view in which they were drawn, in front of its middle.
+   * Draws strokes that are being stored. While the camera moves they are shown as if they lay in a plane before the middle of the object,
+   * parallel to the picture in which they were drawn.
    * @param {CanvasRenderingContext2D} c @param {HTMLCanvasElement} canvas @param {import('./camera.js').CameraJson} camera
    */
   drawSaved(c, canvas, camera) {
@@ -240,7 +242,7 @@ export class PaintTool {
       c.globalAlpha = this.erase ? 0.6 : this.stroke.opacity;
       c.drawImage(this.stroke.canvas, 0, 0);
     }
-    // Only the object can be painted.
+    // Hides strokes beside the object, which cannot be painted.
     if (this.stage.picture.style.opacity !== '0') {
       c.globalAlpha = 1;
       c.globalCompositeOperation = 'destination-in';
@@ -266,7 +268,7 @@ export class PaintTool {
   }
 }
 
-/** A circle that is seen on any ground. @param {CanvasRenderingContext2D} c @param {number} x @param {number} y @param {number} r */
+/** A circle that can be seen on any background. @param {CanvasRenderingContext2D} c @param {number} x @param {number} y @param {number} r */
 export function ring(c, x, y, r) {
   for (const [color, width] of /** @type {[string, number][]} */ ([['#000a', 3], ['#fff', 1.25]])) {
     c.strokeStyle = color;
@@ -285,7 +287,7 @@ export function polygon(points) {
   return path;
 }
 
-/** An outline that is seen on any ground. @param {CanvasRenderingContext2D} c @param {Path2D} path */
+/** A dashed outline that can be seen on any background. @param {CanvasRenderingContext2D} c @param {Path2D} path */
 export function dashed(c, path) {
   for (const [color, dash] of /** @type {[string, number[]][]} */ ([['#000', []], ['#fff', [6, 6]]])) {
     c.strokeStyle = color;

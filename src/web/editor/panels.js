@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Lists beside the view: parts, history, photographs. */
+/** The lists around the view: parts, history, photographs. */
 import { byId, el, glyph, nameInPlace, toast } from './dom.js';
 import { getBlob, postForBlob } from './api.js';
 import { resized } from '../camera.js';
@@ -13,7 +13,7 @@ const opNames = { paint: 'Paint', material: 'Material', light: 'Light', deform: 
 /** @type {Record<string, string>} */
 const opGlyphs = { paint: 'paint', material: 'material', light: 'light', deform: 'grab', remove: 'trash', part: 'part' };
 
-/** "roughness 0.40, gold" @param {import('./store.js').Edit} e @returns {string} */
+/** What an edit did: "gold, roughness 0.40". @param {import('./store.js').Edit} e @returns {string} */
 export function describe(e) {
   const p = e.params, words = [];
   if (e.op === 'paint') words.push(p.erase ? 'erased' : p.target === 'albedo' ? '' : p.target, (e.strokes ?? 1) > 1 ? `${e.strokes} views` : '');
@@ -49,10 +49,10 @@ export class PartsPanel {
     this.stage.hide(hidden.has(name) ? [...hidden].filter((n) => n !== name) : [...hidden, name]);
   }
 
-  /** The name that the user gave the edit that made the part, or the one that commands know. @param {import('./store.js').Part} p */
+  /** The name of the part in this page: that of the edit that made it, if the user named that, else the one that commands use. @param {import('./store.js').Part} p */
   title(p) { return this.store.done().filter((e) => e.op === 'part' && e.params.name === p.name && e.name).at(-1)?.name ?? p.name; }
 
-  /** How the part looks, in a frame of the color in which it is shown when it is selected. @param {string} name @param {number} index */
+  /** A swatch of the part's look, with a border of the color in which the part is shown when it is selected. @param {string} name @param {number} index */
   ball(name, index) {
     const look = this.stage.live.looks.get(name), node = el('span', { class: 'swatch part', title: look ? lookText(look) : undefined });
     node.style.background = look ? swatch(look) : 'none';
@@ -92,17 +92,17 @@ export class HistoryPanel {
     this.store = store;
     this.stage = stage;
     this.thumbs = new Thumbs();
-    /** @type {Set<string>} steps of which there is no picture, by key and what it would be of */
+    /** @type {Set<string>} steps whose picture could not be fetched, by thumbKey() */
     this.without = new Set();
     this.fetching = false;
     store.on('state', () => this.draw());
-    store.on('mode', () => { this.thumbs.clear(); this.without.clear(); });  // another object
+    store.on('mode', () => { this.thumbs.clear(); this.without.clear(); });  // the pictures are of another object
     stage.addEventListener('exact', () => this.keepThumb(stage));
     stage.addEventListener('settled', () => this.fetchThumbs());
     byId('history').addEventListener('scroll', () => this.fetchThumbs(), true);
   }
 
-  /** The first step in sight without a picture: made by a command or in another window. @returns {{edit: import('./store.js').Edit | null, done: number} | undefined} */
+  /** The first visible step without a picture, as those that were made by a command or in another window. @returns {{edit: import('./store.js').Edit | null, done: number} | undefined} */
   missing() {
     const steps = this.store.state.history.filter((e) => !e.set_aside);
     const rows = [...byId('history').querySelectorAll('li[data-step]')], list = byId('history').querySelector('ul')?.getBoundingClientRect();
@@ -111,7 +111,7 @@ export class HistoryPanel {
       .find(({ edit }) => !this.thumbOf(edit) && !this.without.has(this.thumbKey(edit).join()));
   }
 
-  /** One after the other, while nothing else is to do. */
+  /** Fetches missing pictures one after the other, while the program has nothing else to do. */
   async fetchThumbs() {
     if (this.fetching || !this.stage.settled()) return;
     this.fetching = true;
@@ -122,11 +122,11 @@ export class HistoryPanel {
   /** @param {{edit: import('./store.js').Edit | null, done: number}} step @returns {Promise<boolean>} whether the history is still the same */
   async fetchThumb({ edit, done }) {
     const key = this.thumbKey(edit), { revision } = this.store.state;
-    this.without.add(key.join());  // not again, whatever comes
+    this.without.add(key.join());  // so that it is not asked for again, even if it fails
     try {
       const camera = resized(this.stage.camera.home.lens, kWidth, kHeight);
       this.thumbs.keep(...key, await createImageBitmap(await postForBlob('step', { camera, samples: 2, done }, revision)));
-      byId('history').querySelector(`li[data-step="${done}"] .thumb`)?.replaceWith(this.thumb(edit, ''));  // the list stays where it was scrolled to
+      byId('history').querySelector(`li[data-step="${done}"] .thumb`)?.replaceWith(this.thumb(edit, ''));  // not draw(), which would scroll the list
     } catch (error) {
       if (/** @type {any} */ (error).status !== 409) return true;
       this.without.delete(key.join());
@@ -135,7 +135,7 @@ export class HistoryPanel {
     return true;
   }
 
-  /** @param {import('./stage.js').Stage} stage */
+  /** Keeps the present picture as that of the last edit. @param {import('./stage.js').Stage} stage */
   keepThumb(stage) {
     const edit = this.store.last() ?? null;
     if (this.thumbOf(edit) || stage.preview || stage.channel !== 'rgb') return;
@@ -143,7 +143,7 @@ export class HistoryPanel {
     this.draw();
   }
 
-  /** Key of the edit's picture, and what it is of: another one is needed when that changes. @param {import('./store.js').Edit | null} edit null: the object before all edits @returns {[string, string]} */
+  /** The key of the edit's picture, and a text for what it shows: when that changes, the picture is outdated. @param {import('./store.js').Edit | null} edit null: the object before all edits @returns {[string, string]} */
   thumbKey(edit) {
     const { state, object } = this.store;
     return [`thumb ${state.folder} ${edit?.id ?? ''}`, `${object?.summary} ${JSON.stringify(edit?.params)}`];
@@ -207,7 +207,7 @@ export class PhotoStrip {
     this.urls = new Map();
     /** @type {any[]} */
     this.views = [];
-    /** @type {HTMLElement[]} buttons without pictures that are in sight */
+    /** @type {HTMLElement[]} visible buttons without pictures */
     this.wanted = [];
     this.loading = false;
     store.on('mode', ({ mode }) => { if (mode === 'project') this.begin(); });
@@ -236,7 +236,7 @@ export class PhotoStrip {
     for (const b of strip.children) seen.observe(b);
   }
 
-  /** One after the other, so that they take neither connections nor the program's time from the object. */
+  /** Loads pictures one after the other, so that they do not delay the packs and frames of the object. */
   async loadWanted() {
     if (this.loading) return;
     this.loading = true;

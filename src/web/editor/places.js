@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** What is shown when no object is open: a folder, a capture with what its check found, a reconstruction that runs. Loaded then. */
+/** Shows what is open when it is not an object: a folder, a capture and what its check found, a running reconstruction. Loaded when needed. */
 import { byId, complain, el, select, toast } from './dom.js';
 import { getBlob, postJson } from './api.js';
 
-/** @type {[string, string][]} first words of the program's stages, and what they are for */
-const stages = [['loading', 'Photographs'], ['start', 'Outline'], ['geometry', 'Shape'], ['polish', 'Polish'], ['surface', 'Surface'], ['appearance', 'Light, color and material'], ['finer', 'Finer surface'], ['residual', 'What is left']];
+/** @type {[string, string][]} first word of the name of a stage, and the name that is shown */
+const stages = [['loading', 'Photographs'], ['start', 'Outline'], ['geometry', 'Shape'], ['polish', 'Polish'], ['surface', 'Surface'], ['appearance', 'Light, color and material'], ['finer', 'Finer surface'], ['residual', 'Correction']];
 
 /** @param {number} seconds */
 function clock(seconds) {
@@ -13,7 +13,7 @@ function clock(seconds) {
   return `${Math.floor(s / 60)}:${String(s % 60).padStart(2, '0')}`;
 }
 
-/** As a shell reads it. @param {string} path */
+/** A path, quoted for a shell if necessary. @param {string} path */
 const quoted = (path) => (/^[\w./~-]+$/.test(path) ? path : `'${path.replaceAll("'", "'\\''")}'`);
 
 /** A command, and a button that copies it. @param {string} command */
@@ -50,27 +50,27 @@ export class Places {
   /** @param {any} state */
   library(state) {
     const open = (/** @type {string} */ id) => async () => { try { await this.store.take(await postJson('open', { id })); } catch (error) { complain(error); } };
-    const again = () => el('button', { class: 'big', onclick: async () => { try { await this.store.take(await postJson('close')); } catch (error) { complain(error); } } }, 'Look again');
+    const again = () => el('button', { class: 'big', onclick: async () => { try { await this.store.take(await postJson('close')); } catch (error) { complain(error); } } }, 'Refresh');
     const sample = state.sample ? el('button', { class: 'big primary', onclick: open('sample') }, 'Try the sample') : null;
     if (state.entries.length === 0)
       return [el('h2', {}, 'Nothing here yet'),
         el('p', {}, 'An object is made from photographs whose cameras are known, with masks of what is the object. Put such a capture into this folder:'),
         el('pre', {}, state.folder),
         el('p', {}, 'A capture is a folder in one of these forms:'), el('pre', {}, state.formats),
-        el('p', {}, 'Of bare photographs this command makes one; PHOTOS is their folder, and COLMAP finds the cameras. Then come back to this page.'),
+        el('p', {}, 'From photographs alone, this command makes a capture. PHOTOS is their folder; COLMAP finds the cameras. Come back to this page afterwards.'),
         copied(`cei3d capture PHOTOS -o ${quoted(`${state.folder}/capture`)}`),
         el('div', { class: 'inline' }, sample, again())];
     const damaged = (/** @type {any} */ e) => el('div', { class: 'card error' }, el('b', {}, e.name), el('span', { class: 'kind' }, 'photographs that cannot be read'), el('small', {}, e.problem));
     const card = (/** @type {any} */ e) => e.problem ? damaged(e) : el('button', { class: 'card', onclick: open(e.id) }, el('b', {}, e.name),
       el('span', { class: 'kind' }, e.kind === 'capture' ? 'photographs' : e.finished ? 'object' : 'object, not finished'),
-      el('small', {}, e.kind === 'capture' ? 'Check it and make an object of it' : e.finished ? 'Edit it' : 'Go on with it'));
+      el('small', {}, e.kind === 'capture' ? 'Check it and make an object from it' : e.finished ? 'Edit it' : 'Continue it'));
     return [el('h2', {}, 'Objects and captures'), el('p', {}, state.folder), el('div', { class: 'cards' }, ...state.entries.map(card)),
       el('div', { class: 'inline' }, sample, state.entries.some((/** @type {any} */ e) => e.problem) ? again() : null)];
   }
 
   /** @param {any} state */
   checking(state) {
-    return [el('h2', {}, state.name), el('p', { class: 'inline' }, el('span', { class: 'spinner' }), 'Looking at the photographs, cameras and masks')];
+    return [el('h2', {}, state.name), el('p', { class: 'inline' }, el('span', { class: 'spinner' }), 'Checking the photographs, cameras and masks')];
   }
 
   /** @param {any} state */
@@ -81,7 +81,7 @@ export class Places {
     const check = state.check, findings = check?.findings ?? [];
     const usable = state.resume || check?.usable;
     const cards = findings.map((/** @type {any} */ f) => el('div', { class: `card ${f.severity}` },
-      el('span', { class: 'kind' }, { error: 'must be mended', warning: 'may cost quality', note: 'note' }[/** @type {string} */ (f.severity)] ?? f.severity), el('b', {}, f.what), el('small', {}, f.fix)));
+      el('span', { class: 'kind' }, { error: 'must be fixed', warning: 'may cost quality', note: 'note' }[/** @type {string} */ (f.severity)] ?? f.severity), el('b', {}, f.what), el('small', {}, f.fix)));
     const minutes = select({ id: 'minutes', 'aria-label': 'Time' }, [['60', '1 minute: a first look'], ['300', '5 minutes: good'], ['900', '15 minutes: better'], ['3600', '1 hour: best']], '300');
     const go = el('button', { class: 'big primary', id: 'make', disabled: !usable, onclick: () => this.start(Number(minutes.value), state.resume) }, state.resume ? 'Go on where it stopped' : 'Make the object');
     return [el('h2', {}, state.name), ...(check ? this.facts(check) : [el('p', {}, 'This object is not finished. What was done so far is kept.')]),
@@ -115,7 +115,7 @@ export class Places {
       el('div', { class: 'inline' }, el('button', { class: 'big', id: 'stop', onclick: () => postJson('cancel').catch(complain) }, 'Stop and keep what is done'))];
   }
 
-  /** The object as it is now. */
+  /** Shows the present state of the object that is being reconstructed. */
   async show() {
     const picture = byId('making-picture');
     if (!picture) return;
@@ -124,7 +124,7 @@ export class Places {
       URL.revokeObjectURL(picture.src);
       picture.src = url;
       picture.hidden = false;
-    } catch { /* the next one comes soon */ }
+    } catch { /* the next picture comes soon */ }
   }
 
   /** @param {any} p */

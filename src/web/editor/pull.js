@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** How handles pull the surface, nearly: what is within their reach along the surface follows them, less the farther away it is. */
+/**
+ * Approximates how handles pull the surface, until the program has computed it: vertices within the reach of a handle, measured along the
+ * surface, follow it, less the farther away they are.
+ */
 import { add, rotation, sub, times } from './camera.js';
 import { fromOctahedron, onOctahedron } from './octahedron.js';
 
 /** @typedef {import('./camera.js').Vec} Vec */
 /** @typedef {import('../pack.js').Pack} Pack */
-/** @typedef {{from: Vec, to: Vec, axis: Vec, degrees: number}} Handle axis: unit, about which it is turned; one that neither moves nor turns holds the surface */
-/** @typedef {{vertices: Uint32Array, shares: Float32Array[], triangles: Uint32Array, normals: Float32Array}} Plan vertices that move, by what share of each handle; triangles at them; normals of these, summed, #vertices */
+/** @typedef {{from: Vec, to: Vec, axis: Vec, degrees: number}} Handle axis: unit, of its rotation. A handle that neither moves nor turns is a pin */
+/**
+ * @typedef {{vertices: Uint32Array, shares: Float32Array[], triangles: Uint32Array, normals: Float32Array}} Plan
+ * vertices: those that move; shares: by which each of them follows each handle; triangles: places in the list of corners of the triangles
+ * that have one of the vertices; normals: of the vertices, before they move.
+ */
 
 const kDisc = 0.15;  // share of the reach that moves with the handle, as in src/engine/edit/deform.cpp
-const kBins = 256;  // of distances
+const kBins = 256;  // of distances(), which visits vertices by bins instead of sorting them
 
 /** @param {Handle} h */
 const moves = (h) => h.degrees !== 0 || h.from.some((v, k) => v !== h.to[k]);
@@ -21,7 +28,7 @@ export class Pull {
     this.shape = shape;
     const { positions, triangles } = shape.arrays, { min, size } = shape.head, n = positions.length / 4;
     this.positions = Float32Array.from({ length: 3 * n }, (_, i) => min[i % 3] + size[i % 3] * positions[4 * Math.floor(i / 3) + i % 3] / 65535);
-    // Of each vertex those that it shares an edge with, most of them twice.
+    // Neighbors of vertex v, most of them twice: others[begins[v]] to others[begins[v + 1] - 1].
     this.begins = new Uint32Array(n + 1);
     for (const v of triangles) this.begins[v + 1] += 2;
     for (let v = 0; v < n; ++v) this.begins[v + 1] += this.begins[v];
@@ -39,7 +46,7 @@ export class Pull {
   /** @param {number} v @returns {Vec} */
   at(v) { return [this.positions[3 * v], this.positions[3 * v + 1], this.positions[3 * v + 2]]; }
 
-  /** @param {Vec} p */
+  /** The vertex nearest to a point. @param {Vec} p */
   nearest(p) {
     let best = 0, smallest = Infinity;
     for (let v = 0; v < this.positions.length / 3; ++v) {
@@ -49,7 +56,7 @@ export class Pull {
     return best;
   }
 
-  /** Lengths of paths along edges, at most `reach`; infinite beyond. @param {number} start vertex @param {number} reach @param {(v: number) => boolean} may go there */
+  /** Lengths of the shortest paths along edges; infinite beyond `reach`. @param {number} start vertex @param {number} reach @param {(v: number) => boolean} may whether a path may lead over a vertex */
   distances(start, reach, may) {
     const p = this.positions, far = new Float32Array(p.length / 3).fill(Infinity), bins = Array.from({ length: kBins + 1 }, () => /** @type {number[]} */ ([]));
     const binOf = (/** @type {number} */ d) => Math.floor(kBins * d / reach);
@@ -67,7 +74,7 @@ export class Pull {
     return far;
   }
 
-  /** How much every vertex follows a handle, 1 at it. @param {Handle} h @param {number} reach @param {(v: number) => boolean} may */
+  /** The weight of a handle at every vertex: 1 at the handle, 0 beyond its reach. @param {Handle} h @param {number} reach @param {(v: number) => boolean} may */
   weights(h, reach, may) {
     return this.distances(this.nearest(h.from), reach, may).map((d) => {
       const t = Math.max(0, Math.min(1, (d / reach - kDisc) / (1 - kDisc)));
@@ -75,13 +82,13 @@ export class Pull {
     });
   }
 
-  /** @param {Handle[]} handles @param {number} reach @param {(v: number) => boolean} may @returns {Plan} */
+  /** What does not change while the same handles are moved. @param {Handle[]} handles @param {number} reach @param {(v: number) => boolean} may @returns {Plan} */
   plan(handles, reach, may) {
     const all = handles.map((h) => this.weights(h, reach, may)), moving = handles.map(moves), n = this.positions.length / 3;
     const vertices = Uint32Array.from(function* () { for (let v = 0; v < n; ++v) if (all.some((w, k) => moving[k] && w[v] > 0)) yield v; }());
     const shares = handles.map(() => new Float32Array(vertices.length));
     vertices.forEach((v, i) => {
-      // At a handle the others count for nothing.
+      // At a handle the shares of the others are 0.
       const own = all.map((w, k) => w[v] * all.reduce((left, other, j) => (j === k ? left : left * (1.0001 - other[v])), 1));
       const sum = own.reduce((a, b) => a + b), most = Math.max(...all.map((w, k) => (moving[k] ? w[v] : 0)));
       own.forEach((o, k) => { shares[k][i] = most * o / sum; });
@@ -118,8 +125,8 @@ export class Pull {
   }
 
   /**
-   * Positions and normals as in a pack "shape", and the box of the positions.
-   * @param {Handle[]} handles @param {number} reach @param {string} part what may move, for it alone
+   * Positions and normals of the pulled surface, as in a pack "shape", and the box of the positions.
+   * @param {Handle[]} handles @param {number} reach @param {string} part name of the part that alone may move
    * @param {(v: number) => boolean} may whether a vertex may move
    */
   moved(handles, reach, part, may) {
@@ -137,7 +144,7 @@ export class Pull {
     return { ...quantized(p), normals: this.turnedNormals(plan, p) };
   }
 
-  /** Normals of the pack, turned as those of the triangles are. @param {Plan} plan @param {Float32Array} p positions */
+  /** Normals of the pack, changed as much as those of the triangles. @param {Plan} plan @param {Float32Array} p positions */
   turnedNormals(plan, p) {
     const out = Int16Array.from(this.shape.arrays.normals), after = this.normals(plan, p);
     plan.vertices.forEach((v, i) => {
@@ -148,7 +155,7 @@ export class Pull {
   }
 }
 
-/** @param {Float32Array} p positions */
+/** As in a pack. @param {Float32Array} p positions */
 function quantized(p) {
   const min = [Infinity, Infinity, Infinity], max = [-Infinity, -Infinity, -Infinity], out = new Uint16Array(4 * p.length / 3);
   for (let i = 0; i < p.length; ++i) {

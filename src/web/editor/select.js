@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Parts by clicks, and the overlay that shows a part. */
+/** Selects parts by clicks or with a lasso; and the overlay that shows a part. */
 import { complain, el, select, showValue, toast } from './dom.js';
 import { postForBlob, postJson, upload } from './api.js';
 import { Newest } from './newest.js';
 import { dashed, polygon, ring } from './paint.js';
 
-/** Colors of parts, by their place in the list; names and outlines tell them apart, too. */
+/** Colors of parts, by their place in the list. Parts can also be told apart by names and outlines. */
 export const partColors = ['#ffb454', '#6ea8ff', '#6fd08c', '#e58cff', '#ff8080', '#5fd7d7', '#d7c75f', '#b0a0ff'];
 
-/** @param {Blob} png gray @param {string} color @returns {Promise<HTMLCanvasElement>} the mask in that color, with a rim */
+/** A mask in a color, with a rim. @param {Blob} png gray @param {string} color @returns {Promise<HTMLCanvasElement>} */
 async function tinted(png, color) {
   const picture = await createImageBitmap(png);
   const canvas = document.createElement('canvas');
@@ -29,7 +29,7 @@ async function tinted(png, color) {
   return canvas;
 }
 
-/** Shows the selected part, or the one that is previewed, over the picture. */
+/** Shows the selected part, or the one that is previewed, above the picture. */
 export class PartOverlay {
   /** @param {import('./stage.js').Stage} stage @param {import('./store.js').Store} store */
   constructor(stage, store) {
@@ -37,8 +37,8 @@ export class PartOverlay {
     this.store = store;
     /** @type {HTMLCanvasElement | null} */
     this.mask = null;
-    this.asked = 0;
-    /** @type {string | null} */
+    this.asked = 0;  // number of the last request
+    /** @type {string | null} of the preview that is shown */
     this.token = null;
     stage.addEventListener('moved', () => { this.mask = null; });
     stage.addEventListener('exact', () => { if (!this.mask) this.refresh(); });
@@ -46,7 +46,7 @@ export class PartOverlay {
     store.on('revision', () => this.refresh());
   }
 
-  /** @param {string | null} token of a preview */
+  /** Shows a preview, or the selected part. @param {string | null} token of the preview */
   show(token) {
     this.token = token;
     return this.refresh();
@@ -83,22 +83,22 @@ export class PartTool {
     this.overlay = overlay;
     this.name = 'part';
     this.label = 'Part';
-    this.hint = 'Click on the part; Alt or the right button: not this. Or draw around it with the lasso. Enter keeps it, Esc discards it.';
+    this.hint = 'Click on the part; with Alt or the right button, on what is not part of it. Or draw around it with the lasso. Enter keeps it, Esc discards it.';
     this.segmenter = 'grow';
     this.how = 'new';
     this.by = 'click';  // or 'lasso'
-    this.through = false;  // a lasso takes what lies behind, too
-    /** @type {{x: number, y: number}[]} outline that is being drawn, or was */
+    this.through = false;  // a lasso selects hidden surface behind, too
+    /** @type {{x: number, y: number}[]} the lasso's outline, complete or being drawn */
     this.outline = [];
     this.drawing = false;
-    this.number = 0;
-    this.quick = true;  // first the network's answer for the view of the clicks alone
+    this.number = 0;  // of the selection; previews of an earlier one are ignored
+    this.quick = true;  // preview first what the network finds in the view of the clicks alone
     this.previews = new Newest(() => this.previewNow());
     /** @type {{x: number, y: number, out: boolean}[]} */
     this.clicks = [];
     /** @type {any} camera of the clicks */
     this.camera = null;
-    /** @type {string | null} of the preview of these clicks, once it is there */
+    /** @type {string | null} of the preview of the selection; null: it is not made yet */
     this.token = null;
     /** @type {any} */
     this.report = null;
@@ -109,7 +109,7 @@ export class PartTool {
     stage.addEventListener('moved', () => { if (this.clicks.length) this.camera ??= null; });
   }
 
-  /** With the lasso a drag may begin beside the object. */
+  /** Whether a press is for this tool although it is beside the object: a lasso may begin there. */
   takes() { return this.by === 'lasso'; }
 
   clear() {
@@ -133,7 +133,7 @@ export class PartTool {
     return [
       el('label', {}, 'By', select({ id: 'part-by' }, [['click', 'clicks'], ['lasso', 'lasso']], this.by, (by) => { this.by = by; this.drop(); this.stage.emit('options'); })),
       ...(this.by === 'lasso' ? [el('label', {}, el('input', { type: 'checkbox', id: 'part-through', checked: this.through,
-        onchange: (/** @type {any} */ e) => { this.through = e.target.checked; this.preview(); } }), 'also what is not seen')] : []),
+        onchange: (/** @type {any} */ e) => { this.through = e.target.checked; this.preview(); } }), 'also hidden surface')] : []),
       el('label', {}, 'Makes', select({ id: 'part-how' }, modes, this.how, (how) => { this.how = how; this.preview(); })),
       ...(this.store.object?.segment && this.by === 'click' ? [el('label', {}, 'Found by', select({}, [['grow', 'color and creases'], ['sam', 'network']], this.segmenter,
         (segmenter) => { this.segmenter = segmenter; this.preview(); }))] : []),
@@ -143,7 +143,7 @@ export class PartTool {
     ];
   }
 
-  /** Shift, Ctrl and both say what becomes of the selected part. @param {any} p */
+  /** Shift, Ctrl or both choose how the selected part is changed. @param {any} p */
   chooseHow(p) {
     if (!this.store.part || !(p.shift || p.ctrl)) return;
     this.how = p.shift && p.ctrl ? 'intersect' : p.shift ? 'add' : 'subtract';
@@ -179,7 +179,7 @@ export class PartTool {
 
   cancel() { if (this.drawing) this.drop(); }
 
-  /** What is inside the outline, white. @returns {Promise<Blob>} */
+  /** The inside of the outline, white on black. @returns {Promise<Blob>} */
   maskPicture() {
     const { width, height } = this.stage.picture, canvas = document.createElement('canvas');
     Object.assign(canvas, { width, height });
@@ -197,7 +197,7 @@ export class PartTool {
     if (!this.clicks.length) this.chooseHow(p);
     if (!this.camera) this.camera = this.stage.json();
     else if (JSON.stringify(this.camera) !== JSON.stringify(this.stage.json())) {
-      toast('These clicks are for the view in which they began; keep the part, then add to it from here.');
+      toast('All clicks must be in the view of the first one. Keep the part, then add to it from here.');
       return;
     }
     this.clicks.push({ x: p.x, y: p.y, out: p.alt });
@@ -221,7 +221,7 @@ export class PartTool {
     return true;
   }
 
-  /** What is selected, as an edit. @returns {Promise<any>} */
+  /** Parameters of the edit that makes the part. @returns {Promise<any>} */
   async params() {
     const camera = this.camera, part = this.store.part, combine = this.how !== 'new' && part ? { [this.how]: part } : {};
     const of = (/** @type {boolean} */ out) => this.clicks.filter((c) => c.out === out).map((c) => [c.x, c.y]);
@@ -261,7 +261,7 @@ export class PartTool {
   async keep() {
     if (!this.clicks.length && !this.outline.length) return;
     const number = this.number;
-    await this.preview(false);  // with the name as it is now
+    await this.preview(false);  // because the name may have changed
     const token = number === this.number ? this.token : null;
     this.token = null;
     if (!token) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** What the user has set for all objects; the browser keeps it. */
+/** Settings of the user for all objects, which the browser stores. */
 
 const kSingleKeys = 'cei3d-single-keys';
 let single = readSetting();
@@ -8,10 +8,10 @@ let single = readSetting();
 function readSetting() {
   try {
     return localStorage.getItem(kSingleKeys) !== 'off';
-  } catch { return true; }  // the browser keeps nothing
+  } catch { return true; }  // the browser refuses to store settings
 }
 
-/** Whether keys without a modifier act wherever the focus is; otherwise only while the view has it. */
+/** Whether keys without a modifier act wherever the focus is; if not, they act only while the view has it. */
 export const singleKeys = () => single;
 
 /** @param {boolean} on */
@@ -19,5 +19,5 @@ export function setSingleKeys(on) {
   single = on;
   try {
     localStorage.setItem(kSingleKeys, on ? 'on' : 'off');
-  } catch { /* until the page is closed */ }
+  } catch { /* the setting lasts until the page is closed */ }
 }

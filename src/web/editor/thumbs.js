@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Small pictures of what edits did. The browser keeps them while the window is open, so that a reload of the page does not lose them. */
+/** Small pictures of the object after each edit. The browser stores them until the window is closed, so that they survive a reload of the page. */
 
 export const kWidth = 80, kHeight = 60;
 
 export class Thumbs {
   constructor() {
-    /** @type {Map<string, {of: string, url: string}>} by key */
+    /** @type {Map<string, {of: string, url: string}>} what the picture shows, and its address, by key */
     this.shown = new Map();
   }
 
-  /** @param {string} key @param {string} of what the picture has to be of @returns {string | undefined} its address */
+  /** @param {string} key @param {string} of what the picture must show @returns {string | undefined} its address; undefined: there is no such picture */
   get(key, of) {
     const known = this.shown.get(key);
     if (known?.of === of) return known.url;
@@ -29,7 +29,7 @@ export class Thumbs {
     this.show(key, of, bytes);
     try {
       sessionStorage.setItem(key, JSON.stringify([of, bytes]));
-    } catch { /* the browser has no room: a reload forgets this one */ }
+    } catch { /* the browser's storage is full, so a reload loses this picture */ }
   }
 
   /** @param {string} key @param {string} of @param {string} base64 of a PNG file */

@@ -1,31 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 // @ts-check
-/** Changes of shape that are tried: while a handle moves the page pulls the surface by itself, at rest the program bends it. */
+/** Previews of changes of shape. While a handle moves, the page pulls the surface approximately; at rest the program computes the edit. */
 import { complain } from './dom.js';
 import { postJson } from './api.js';
 import { Newest } from './newest.js';
 
-const kRest = 150;  // milliseconds without movement until the program is asked
+const kRest = 150;  // milliseconds without movement until the program computes the edit
 
-/** @typedef {{handles: import('./pull.js').Handle[], reach: number}} Pulled reach: along the surface, in the object's units */
+/** @typedef {{handles: import('./pull.js').Handle[], reach: number}} Pulled reach: along the surface, capture units */
 
 export class ShapeTrial {
   /**
    * @param {import('./stage.js').Stage} stage
-   * @param {() => object | null} params of the edit; null: nothing is tried any more
-   * @param {() => Pulled | null} pulled null: it is not known
+   * @param {() => object | null} params of the edit; null: there is nothing to preview any more
+   * @param {() => Pulled | null} pulled handles for the page; null: they are not known yet
    */
   constructor(stage, params, pulled) {
     this.stage = stage;
     this.params = params;
     this.pulled = pulled;
-    this.number = 0;  // of the trial
-    this.moves = 0;
+    this.number = 0;  // of the trial, to ignore previews of an earlier one
+    this.moves = 0;  // number of movements
     this.timer = 0;
     this.newest = new Newest(() => this.ask());
   }
 
-  /** Something has moved. */
+  /** A handle has moved. */
   moved() {
     ++this.moves;
     clearTimeout(this.timer);
@@ -34,12 +34,13 @@ export class ShapeTrial {
     else this.newest.run();
   }
 
-  /** What was asked for is not wanted any more. */
+  /** Ends the trial; a preview that was asked for is ignored. */
   end() {
     ++this.number;
     clearTimeout(this.timer);
   }
 
+  /** Previews the edit as the program computes it. */
   async ask() {
     const params = this.params(), { number, moves } = this;
     if (!params) return;
