@@ -20,6 +20,18 @@ Area dilated(const Area& area, int width, int height, int radius) {
   return out;
 }
 
+Area eroded(const Area& area, int width, int height, int radius) {
+  Area rest(area.size());
+  for (size_t i = 0; i < area.size(); ++i) rest[i] = !area[i];
+  Area out = dilated(rest, width, height, radius);
+  for (uint8_t& v : out) v = !v;
+  return out;
+}
+
+Area opened(const Area& area, int width, int height, int radius) {
+  return dilated(eroded(area, width, height, radius), width, height, radius);
+}
+
 Image shown_in(const Image& image, const Area& area, float background) {
   Image out = image;
   for (size_t i = 0; i < area.size(); ++i)

@@ -14,6 +14,13 @@ using Area = std::vector<uint8_t>;
 // The area grown by `radius` pixels along both axes (by a square).
 Area dilated(const Area& area, int width, int height, int radius);
 
+// The area without the pixels that have one outside of the area within `radius` pixels along both axes. What
+// is beyond the border of the image counts as inside.
+Area eroded(const Area& area, int width, int height, int radius);
+
+// Eroded, then dilated: the area without its parts that are narrower than 2 radius + 1 pixels.
+Area opened(const Area& area, int width, int height, int radius);
+
 // The image with all channels set to `background` outside the area.
 Image shown_in(const Image& image, const Area& area, float background);
 

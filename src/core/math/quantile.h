@@ -24,4 +24,12 @@ T median(std::vector<T> values) {
   return value_of_rank(std::move(values), middle);
 }
 
+// The value than which about this share of the values is smaller: that of rank share (n - 1), rounded down.
+// share: [0, 1]. values: not empty.
+template <class T>
+T quantile(std::vector<T> values, double share) {
+  const auto rank = size_t(share * double(values.size() - 1));
+  return value_of_rank(std::move(values), rank);
+}
+
 }  // namespace cei3d

@@ -107,15 +107,6 @@ std::pair<double, double> span_in_sphere(Vec3d origin, Vec3d direction) {
   return {std::max(0.0, -b - std::sqrt(d)), -b + std::sqrt(d)};
 }
 
-Area opened(const Area& area, int width, int height, int radius) {
-  Area rest(area.size());
-  for (size_t i = 0; i < area.size(); ++i) rest[i] = !area[i];
-  const Area grown = dilated(rest, width, height, radius);
-  Area core(area.size());
-  for (size_t i = 0; i < area.size(); ++i) core[i] = !grown[i];
-  return dilated(core, width, height, radius);
-}
-
 // What the other views say about a pixel: whether its ray meets the object.
 bool meets_object(const Votes& votes, const HullMask& view, size_t index, int x, int y, Seen own) {
   const Ray ray = view.camera.ray(x + 0.5, y + 0.5);

@@ -48,7 +48,8 @@ SmallMasks small_first_mask(const View& view, const fs::path& file) {
 
 // The ball about the points that are believed to be on the object, with room for what has no points.
 Normalization ball_of(const SparsePoints& points, const PointBelief& belief) {
-  constexpr double kMax = 0.98, kRoom = 1.3;  // mistakes among the points; radius
+  constexpr double kQuantile = 0.98;     // of the distances; those beyond it are taken for outliers
+  constexpr double kRadiusFactor = 1.3;  // parts of the object without points lie outside of the points
   std::vector<double> axis[3], distances;
   for (size_t i = 0; i < belief.size(); ++i)
     for (int a = 0; a < 3 && belief[i] > 0; ++a) axis[a].push_back(points.positions[i][a]);
@@ -57,7 +58,7 @@ Normalization ball_of(const SparsePoints& points, const PointBelief& belief) {
   for (int a = 0; a < 3; ++a) n.center[a] = median(axis[a]);
   for (size_t i = 0; i < axis[0].size(); ++i)
     distances.push_back(length(Vec3d{axis[0][i], axis[1][i], axis[2][i]} - n.center));
-  n.scale = 1 / (kRoom * value_of_rank(distances, size_t(kMax * double(distances.size() - 1))));
+  n.scale = 1 / (kRadiusFactor * quantile(std::move(distances), kQuantile));
   return n;
 }
 
@@ -80,14 +81,6 @@ struct PhotoArea {
   PixelBox object;  // around it; width 0: it is not seen
   PixelBox box;     // the same with a margin
 };
-
-Area eroded(const Area& area, int width, int height, int radius) {
-  Area out(area.size());
-  for (size_t i = 0; i < area.size(); ++i) out[i] = !area[i];
-  out = dilated(out, width, height, radius);
-  for (uint8_t& v : out) v = !v;
-  return out;
-}
 
 PhotoArea photo_area(const View& view, const Camera& small, const Area& area) {
   const Area core = eroded(area, small.width, small.height, 1),

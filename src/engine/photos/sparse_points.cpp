@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "core/base/error.h"
+#include "core/base/thinned.h"
 #include "core/math/quantile.h"
 #include "core/math/rng.h"
 #include "engine/capture/normalize.h"
@@ -65,13 +66,6 @@ std::optional<Plane> support_plane(const std::vector<Vec3d>& points, std::span<c
   }
   if (double(best.on) < kPlaneShare * double(points.size())) return std::nullopt;
   return best.plane;
-}
-
-std::vector<Vec3d> thinned(const std::vector<Vec3d>& points, size_t max_count) {
-  const size_t step = std::max<size_t>(1, (points.size() + max_count - 1) / max_count);
-  std::vector<Vec3d> out;
-  for (size_t i = 0; i < points.size(); i += step) out.push_back(points[i]);
-  return out;
 }
 
 using Cell = std::array<int, 3>;

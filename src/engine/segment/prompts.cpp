@@ -5,11 +5,15 @@
 #include <cmath>
 #include <limits>
 
+#include "core/base/thinned.h"
+
 namespace cei3d {
 namespace {
 
-constexpr size_t kCandidates = 400;  // candidates that are compared
-constexpr size_t kOthers = 3000;     // points that candidates keep away from
+// Maximum numbers of pixels that are compared. Thinned pixels still show the whole part, because the order of
+// handler points is random in space.
+constexpr size_t kCandidates = 400;
+constexpr size_t kOthers = 3000;  // pixels that candidates keep away from
 constexpr float kFar = 1e9f;
 
 float distance(Vec2f a, Vec2f b) { return std::hypot(a.x - b.x, a.y - b.y); }
@@ -18,14 +22,6 @@ float nearest(Vec2f p, std::span<const Vec2f> others) {
   float best = kFar;
   for (Vec2f o : others) best = std::min(best, distance(p, o));
   return best;
-}
-
-// Every n-th element, at most `most` elements. The order of handler points is random in space.
-std::vector<Vec2f> thinned(std::span<const Vec2f> pixels, size_t max_count) {
-  const size_t step = std::max<size_t>((pixels.size() + max_count - 1) / max_count, 1);
-  std::vector<Vec2f> kept;
-  for (size_t i = 0; i < pixels.size(); i += step) kept.push_back(pixels[i]);
-  return kept;
 }
 
 struct Candidate {

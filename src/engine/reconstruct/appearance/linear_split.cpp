@@ -110,12 +110,6 @@ std::vector<Vec3f> vertex_albedo(const Transport& transport, const SplitSolution
   return color;
 }
 
-// share: [0, 1].
-float quantile(std::vector<float> values, double share) {
-  const auto rank = size_t(share * double(values.size() - 1));
-  return value_of_rank(std::move(values), rank);
-}
-
 // The vertex nearest to each sample: weights vertices by how often they are seen.
 std::vector<uint32_t> seen_vertices(const Mesh& mesh, const SurfaceSamples& samples) {
   std::vector<uint32_t> seen;

@@ -154,12 +154,10 @@ namespace {
 
 // Pixels well inside of the object in model and photograph.
 Area inside_of(const ModelView& model, const Image& photograph) {
-  Area out(size_t(photograph.width) * photograph.height), rest(out.size());
-  for (size_t i = 0; i < out.size(); ++i)
-    rest[i] = !(model.depth.data[i] > 0) || photograph.data[4 * i + 3] < 0.999f;
-  rest = dilated(rest, photograph.width, photograph.height, 1);
-  for (size_t i = 0; i < out.size(); ++i) out[i] = !rest[i];
-  return out;
+  Area inside(size_t(photograph.width) * photograph.height);
+  for (size_t i = 0; i < inside.size(); ++i)
+    inside[i] = model.depth.data[i] > 0 && !(photograph.data[4 * i + 3] < 0.999f);
+  return eroded(inside, photograph.width, photograph.height, 1);
 }
 
 }  // namespace
