@@ -27,7 +27,7 @@ struct PlanOptions {
 void plan(const PlanOptions& o, Session& session, Console& console) {
   const BatchPlan plan = batch_plan(o.captures, !o.quick, session, console);
   write_file_atomic(o.out, BatchManifest::of(plan.lines).text());
-  for (const BatchRefusal& r : plan.refused) console.warn(fmt::format("{}: {}", r.id, r.sentence));
+  for (const BatchRefusal& r : plan.refused) console.warn(fmt::format("{}: {}", r.id, r.reason));
   const std::string seen =
       o.quick ? ""
               : fmt::format(", {} views, at most {:.2f} GiB of memory each", plan.views, plan.memory_gib);
@@ -155,7 +155,7 @@ void run_here(const RunOptions& o, const BatchCatalog& catalog, const CommonOpti
   const BatchRunReport r = run_locally(catalog, run, console);
   std::string text =
       fmt::format("{} of {} objects are done, after {}.", r.done, r.objects, duration_text(r.seconds));
-  for (const std::string& sentence : r.not_done) text += "\n" + sentence;
+  for (const std::string& object : r.not_done) text += "\n" + object;
   console.answer(r.json(), text);
   if (!r.not_done.empty())
     throw Error(ErrorCode::failed, fmt::format("{} of {} objects failed.", r.not_done.size(), r.objects));
@@ -304,13 +304,13 @@ void work(const WorkOptions& o, Session& session, Console& console) {
   std::vector<Error> errors;
   for (const BatchWorkReport& r : reports_of(o, session, console)) {
     list.push_back(r.json());
-    text += fmt::format("{}: {}{}\n", r.id, batch_result_name(r.result),
-                        r.sentence.empty() ? "" : ", " + r.sentence);
+    text +=
+        fmt::format("{}: {}{}\n", r.id, batch_result_name(r.result), r.reason.empty() ? "" : ", " + r.reason);
     const ErrorCode code = r.result == BatchResult::failed        ? ErrorCode::failed
                            : r.result == BatchResult::interrupted ? ErrorCode::interrupted
                                                                   : ErrorCode::again;
-    if (r.result != BatchResult::done && r.result != BatchResult::already)
-      errors.emplace_back(code, r.id + ": " + r.sentence);
+    if (r.result != BatchResult::done && r.result != BatchResult::up_to_date)
+      errors.emplace_back(code, r.id + ": " + r.reason);
   }
   for (const Error& e : errors)
     if (worst == nullptr || int(e.code()) > int(worst->code())) worst = &e;

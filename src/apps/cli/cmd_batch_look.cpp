@@ -25,7 +25,7 @@ std::string status_text(const BatchStatus& s, bool failed) {
   std::string text = fmt::format("{} objects: {} done, {} failed, {} running, {} waiting", s.objects, s.done,
                                  s.failed, s.running, s.waiting);
   if (s.interrupted > 0) text += fmt::format(", {} interrupted", s.interrupted);
-  if (s.again > 0) text += fmt::format(", {} to be tried again", s.again);
+  if (s.retryable > 0) text += fmt::format(", {} to be tried again", s.retryable);
   text += s.cancelled ? "; cancelled\n" : "\n";
   if (s.per_hour > 0)
     text +=

@@ -182,7 +182,8 @@ void BatchAttempt::require_mine() const {
                     item_.filename().string()));
 }
 
-// What the last attempt has begun is gone on with. Its lock of the project is no longer meant.
+// Takes over the work folder of the previous attempt, and removes the lock of the project in it, whose owner
+// has ended.
 void BatchAttempt::adopt_work() {
   const std::vector<int> folders = numbers_in(item_, "work");
   if (!folders.empty() && folders.back() < number_) {

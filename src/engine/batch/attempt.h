@@ -36,15 +36,15 @@ class BatchAttempt {
   BatchAttempt& operator=(const BatchAttempt&) = delete;
 
   int number() const { return number_; }
-  // Attempts before this one that ended without a word, after the last one that state.json tells of.
+  // Number of earlier attempts that ended without writing state.json, since the last one that wrote it.
   int killed_before() const { return killed_; }
   std::filesystem::path item() const { return item_; }
   std::filesystem::path work() const;  // the folder to make results in
 
   bool lost() const { return lost_; }            // another worker has taken over
   bool cancelled() const { return cancelled_; }  // the whole catalog was cancelled
-  // Renames work()/name to item()/name, which goes aside. Error (again): another worker has taken over;
-  // nothing has changed.
+  // Moves work()/name to item()/name. What is there already is moved into work() first. Error
+  // (ErrorCode::again): another worker has taken over; nothing has changed.
   void publish(const std::filesystem::path& name);
   void publish_state(const BatchState&);
 

@@ -41,7 +41,7 @@ class BatchTest : public testing::Test {
 
 TEST_F(BatchTest, AnObjectIsMadeOnceAndAgainWhenItsOptionsChange) {
   EXPECT_EQ(work(stubs(1), 0), BatchResult::done);
-  EXPECT_EQ(work(stubs(1), 0), BatchResult::already);
+  EXPECT_EQ(work(stubs(1), 0), BatchResult::up_to_date);
   const BatchManifest other =
       BatchManifest::of({{{"id", "o0"}, {"steps", {"stub"}}, {"stub_seconds", 0.003}}});
   EXPECT_EQ(work(other, 0), BatchResult::done);
@@ -102,7 +102,7 @@ TEST_F(BatchTest, WorkersThatWereKilledAreCountedAndAtLastBelieved) {
   };
   for (int n = 1; n <= 4; ++n) killed(n);
   EXPECT_EQ(work(m, 0), BatchResult::failed);
-  EXPECT_THAT(read_batch_state(item("o0"))->sentence, HasSubstr("killed 4 times"));
+  EXPECT_THAT(read_batch_state(item("o0"))->reason, HasSubstr("killed 4 times"));
   EXPECT_EQ(work(m, 0), BatchResult::failed);
   EXPECT_EQ(read_batch_state(item("o0"))->attempt, 5);
   EXPECT_EQ(batch_retry(catalog, m, ""), 1u);
@@ -114,7 +114,7 @@ TEST_F(BatchTest, ACaptureThatIsNotThereFailsForGoodUnlessItWasPlanned) {
   EXPECT_EQ(work(BatchManifest::of({line}), 0), BatchResult::failed);
   line["id"] = "o1";
   line["planned"] = {{"views", 3}};
-  EXPECT_EQ(work(BatchManifest::of({line}), 0), BatchResult::again);
+  EXPECT_EQ(work(BatchManifest::of({line}), 0), BatchResult::retryable);
 }
 
 TEST_F(BatchTest, ACancelledCatalogIsLeftAlone) {

@@ -54,7 +54,7 @@ Json row_of(const BatchItemStatus& item, const fs::path& catalog, const Json& ta
   const BatchState s = item.state.value_or(BatchState());
   Json j{{"id", item.id},
          {"state", item.running ? "running" : batch_outcome_name(s.outcome)},
-         {"sentence", s.sentence},
+         {"sentence", s.reason},
          {"folder", batch_item_folder(catalog, item.id).string()}};
   for (const char* figure : kFigures) j[figure] = member_of(s.result, "figures", figure);
   j["worst_view"] = member_of(s.result, "figures", "worst_view");

@@ -53,11 +53,11 @@ class BatchIndexTest : public testing::Test {
   BatchIndexTest() { fs::create_directories(catalog.folder()); }
 
   void ended(const std::string& id, BatchOutcome outcome, const Json& result,
-             const std::string& sentence = "") {
+             const std::string& reason = "") {
     const auto attempt = BatchAttempt::take(catalog.folder(), id, {1000, 1000});
     BatchState s;
     s.outcome = outcome;
-    s.sentence = sentence;
+    s.reason = reason;
     s.attempt = attempt->number();
     s.result = result;
     attempt->publish_state(s);

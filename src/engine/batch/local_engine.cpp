@@ -121,8 +121,8 @@ class LocalEngine {
 
   std::string why(size_t index, int code) const {
     const auto state = read_batch_state(batch_item_folder(catalog_.folder(), manifest_.id(index)));
-    if (state && !state->sentence.empty()) return state->sentence;
-    return fmt::format("its worker ended with code {}; see {}", code, log_.string());
+    if (state && !state->reason.empty()) return state->reason;
+    return fmt::format("Its worker ended with exit code {}; see {}.", code, log_.string());
   }
 
   // Workers save their state first.

@@ -9,14 +9,15 @@ namespace cei3d {
 struct LocalRun {
   std::filesystem::path program;  // cei3d
   std::filesystem::path manifest;
-  int jobs = 1;           // objects at once, at most
-  int threads = 1;        // of each
-  double memory_gib = 2;  // that one is expected to need; those that ran out of it get twice as much
+  int jobs = 1;     // maximum number of objects at a time
+  int threads = 1;  // threads per object
+  // Expected memory per object, GiB; an object that ran out of memory gets twice as much.
+  double memory_gib = 2;
 };
 
 struct BatchRunReport {
   size_t objects = 0, done = 0;
-  std::vector<std::string> not_done;  // "mug-17: sentence"
+  std::vector<std::string> not_done;  // "mug-17: reason"
   double seconds = 0;
   Json json() const;
 };

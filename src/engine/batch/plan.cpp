@@ -36,7 +36,7 @@ double memory_of(const CheckReport& r) {
   return kProgram + kPerMegapixel * megapixels;
 }
 
-void look_at(const BatchItem& item, Json& line, Session& session, BatchPlan& plan) {
+void plan_capture(const BatchItem& item, Json& line, Session& session, BatchPlan& plan) {
   try {
     const CheckReport r = session.check({item.capture, item.capture_options, {}});
     require_usable(r.report);
@@ -70,7 +70,7 @@ std::vector<Json> lines_of(const std::vector<fs::path>& captures) {
 
 Json BatchPlan::json() const {
   Json list = Json::array();
-  for (const BatchRefusal& r : refused) list.push_back({{"id", r.id}, {"sentence", r.sentence}});
+  for (const BatchRefusal& r : refused) list.push_back({{"id", r.id}, {"sentence", r.reason}});
   return {{"objects", lines.size()}, {"views", views}, {"memory_gib", memory_gib}, {"refused", list}};
 }
 
@@ -81,7 +81,7 @@ BatchPlan batch_plan(const std::vector<fs::path>& captures, bool look, Session& 
     check_cancelled(progress);
     Json& line = plan.lines[i];
     const BatchItem item = batch_item_from(line, fmt::format("Object {}", i));
-    if (look && !item.capture.empty()) look_at(item, line, session, plan);
+    if (look && !item.capture.empty()) plan_capture(item, line, session, plan);
     progress.report({"plan", double(i + 1) / double(plan.lines.size()), -1, item.id});
   }
   return plan;

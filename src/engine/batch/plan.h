@@ -10,7 +10,7 @@
 namespace cei3d {
 
 struct BatchRefusal {
-  std::string id, sentence;
+  std::string id, reason;
 };
 struct BatchPlan {
   std::vector<Json> lines;

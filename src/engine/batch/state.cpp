@@ -13,6 +13,7 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
+// In the order of the enumerators. Catalogs store these words.
 constexpr std::array<const char*, 5> kOutcomes{"waiting", "done", "failed", "again", "interrupted"};
 constexpr std::array<const char*, 5> kCauses{"none", "input", "memory", "machine", "killed"};
 
@@ -29,7 +30,7 @@ BatchState state_from(const Json& j, const std::string& what) {
   s.outcome = named<BatchOutcome>(kOutcomes, r.require<std::string>("state"), what);
   s.cause = named<BatchCause>(kCauses, r.require<std::string>("cause"), what);
   s.key = r.require<std::string>("key");
-  s.sentence = r.require<std::string>("sentence");
+  s.reason = r.require<std::string>("sentence");
   s.attempt = r.require<int>("attempt");
   s.tries = r.require<int>("tries");
   s.memory_doublings = r.require<int>("memory_doublings");
@@ -51,7 +52,7 @@ Json BatchState::json() const {
   return {{"state", batch_outcome_name(outcome)},
           {"cause", batch_cause_name(cause)},
           {"key", key},
-          {"sentence", sentence},
+          {"sentence", reason},
           {"attempt", attempt},
           {"tries", tries},
           {"memory_doublings", memory_doublings},

@@ -14,8 +14,9 @@ namespace cei3d {
 // input: the capture or the options cannot be used; the same attempt would fail again.
 // memory, machine, killed: another attempt may succeed.
 enum class BatchCause { none, input, memory, machine, killed };
-// waiting: `retry` asks for another attempt. again: an attempt failed by a cause that may pass.
-enum class BatchOutcome { waiting, done, failed, again, interrupted };
+// waiting: no attempt has ended since `retry` asked for another. retryable: the last attempt failed by a
+// cause that may pass.
+enum class BatchOutcome { waiting, done, failed, retryable, interrupted };
 
 const char* batch_outcome_name(BatchOutcome);
 const char* batch_cause_name(BatchCause);
@@ -23,12 +24,12 @@ const char* batch_cause_name(BatchCause);
 struct BatchState {
   BatchOutcome outcome = BatchOutcome::waiting;
   BatchCause cause = BatchCause::none;
-  std::string key;           // of the work that it tells of
-  std::string sentence;      // why it failed
-  int attempt = 0;           // the last one that has ended
-  int tries = 0;             // attempts that failed or were killed since the key was new or `retry`
-  int memory_doublings = 0;  // to ask for at the next attempt
-  double seconds = 0;        // of all attempts that ended by themselves
+  std::string key;     // hash of what the result depends on
+  std::string reason;  // a sentence: why the object is not done
+  int attempt = 0;     // number of the last attempt that has ended
+  int tries = 0;       // attempts that failed or were killed since the key changed or `retry` was called
+  int memory_doublings = 0;  // how often the memory for the next attempt is doubled
+  double seconds = 0;        // time of all attempts that were not killed
   double peak_memory_gib = 0;
   int64_t ended = 0;  // seconds since 1970, by the clock of `host`
   std::string host;

@@ -20,13 +20,13 @@ void count(const BatchItemStatus& item, BatchStatus& out) {
   size_t& n = item.running                     ? out.running
               : o == BatchOutcome::done        ? out.done
               : o == BatchOutcome::failed      ? out.failed
-              : o == BatchOutcome::again       ? out.again
+              : o == BatchOutcome::retryable   ? out.retryable
               : o == BatchOutcome::interrupted ? out.interrupted
                                                : out.waiting;
   ++n;
   if (!item.state) return;
-  if (!item.running && !item.state->sentence.empty())
-    out.failures.push_back(fmt::format("{}: {}", item.id, item.state->sentence));
+  if (!item.running && !item.state->reason.empty())
+    out.failures.push_back(fmt::format("{}: {}", item.id, item.state->reason));
   out.core_hours += item.state->seconds / 3600;
   out.peak_memory_gib = std::max(out.peak_memory_gib, item.state->peak_memory_gib);
   if (item.state->seconds <= out.slowest_seconds) return;
@@ -82,7 +82,7 @@ Json BatchStatus::json() const {
           {"failed", failed},
           {"running", running},
           {"interrupted", interrupted},
-          {"again", again},
+          {"again", retryable},
           {"waiting", waiting},
           {"per_hour", per_hour},
           {"hours_left", hours_left},
@@ -104,7 +104,7 @@ size_t batch_retry(const BatchCatalog& catalog, const BatchManifest& manifest, c
     BatchState state = *item.state;
     state.outcome = BatchOutcome::waiting;
     state.cause = BatchCause::none;
-    state.sentence = "";
+    state.reason = "";
     state.attempt = attempt->number();
     state.tries = 0;
     attempt->publish_state(state);

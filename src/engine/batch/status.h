@@ -16,13 +16,13 @@ struct BatchItemStatus {
 std::vector<BatchItemStatus> batch_item_states(const BatchCatalog&, const BatchManifest&);
 
 struct BatchStatus {
-  size_t objects = 0, done = 0, failed = 0, running = 0, interrupted = 0, again = 0, waiting = 0;
+  size_t objects = 0, done = 0, failed = 0, running = 0, interrupted = 0, retryable = 0, waiting = 0;
   double per_hour = 0;     // objects done, over the time in which the last quarter of them was; 0: not known
   double hours_left = -1;  // negative: not known
-  double core_hours = 0;   // of one thread each, of what has ended
+  double core_hours = 0;   // time of all attempts that have ended, if each had one thread
   double slowest_seconds = 0, peak_memory_gib = 0;
   std::string slowest;
-  std::vector<std::string> failures;  // "mug-17: sentence"
+  std::vector<std::string> failures;  // "mug-17: reason"
   bool cancelled = false;
   Json json() const;
 };

@@ -77,7 +77,7 @@ Json run_export(const BatchItem& item, const std::string& source, const BatchSte
     r.out.push_back(out / (item.id + "." + kind));
   }
   r.purpose = export_for_from_name(item.purpose).value_or(ExportFor::any);
-  // Pages and lights have no place for it: it is a fact of the object, not a wish for them.
+  // Pages and lights store no scale; the session refuses unit_scale where no file can hold it.
   if (std::any_of(r.out.begin(), r.out.end(), holds_placed_object)) r.unit_scale = item.unit_scale;
   tools.session.export_to(r, tools.progress);
   tools.session.close();

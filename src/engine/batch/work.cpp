@@ -15,13 +15,14 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
+// In the order of BatchResult. Scripts read these words.
 constexpr const char* kResults[] = {"done", "already", "failed", "again", "taken", "interrupted"};
 
-// Why an attempt failed.
-struct Failure {
+// How an attempt ended.
+struct Ending {
   BatchOutcome outcome;
   BatchCause cause;
-  std::string sentence;
+  std::string reason;
 };
 
 // The disk is full or a file system is gone, although the error does not tell.
@@ -38,27 +39,27 @@ std::string sentences(const Error& e) {
   return e.hint().empty() ? e.what() : fmt::format("{} {}", e.what(), e.hint());
 }
 
-Failure failure_of(const std::exception_ptr& thrown, const BatchCatalog& catalog, const BatchItem& item) {
+Ending ending_of(const std::exception_ptr& thrown, const BatchCatalog& catalog, const BatchItem& item) {
   const auto of_text = [&](const std::string& text) {
-    return machine_is_in_the_way(catalog, item) ? Failure{BatchOutcome::again, BatchCause::machine, text}
-                                                : Failure{BatchOutcome::failed, BatchCause::input, text};
+    return machine_is_in_the_way(catalog, item) ? Ending{BatchOutcome::retryable, BatchCause::machine, text}
+                                                : Ending{BatchOutcome::failed, BatchCause::input, text};
   };
   try {
     std::rethrow_exception(thrown);
   } catch (const MachineError& e) {
-    return {BatchOutcome::again, BatchCause::machine, e.what()};
+    return {BatchOutcome::retryable, BatchCause::machine, e.what()};
   } catch (const Error& e) {
     if (e.code() == ErrorCode::interrupted) return {BatchOutcome::interrupted, BatchCause::none, e.what()};
-    if (e.code() == ErrorCode::again) return {BatchOutcome::again, BatchCause::none, e.what()};
+    if (e.code() == ErrorCode::again) return {BatchOutcome::retryable, BatchCause::none, e.what()};
     return of_text(sentences(e));
   } catch (const std::bad_alloc&) {
-    return {BatchOutcome::again, BatchCause::memory, "There was not enough memory."};
+    return {BatchOutcome::retryable, BatchCause::memory, "There was not enough memory."};
   } catch (const std::exception& e) {
     return of_text(e.what());
   }
 }
 
-// One attempt, from the right to it to the state that tells of it.
+// One attempt: makes the object and writes state.json, also where it fails.
 class Try {
  public:
   Try(const BatchCatalog& catalog, const BatchItem& item, const BatchSteps& steps, BatchAttempt& attempt)
@@ -79,9 +80,9 @@ class Try {
       state_.result = make_item(steps_, attempt_, session, watched);
       end({BatchOutcome::done, BatchCause::none, ""}, steady_seconds() - start);
     } catch (...) {
-      end(failure_of(std::current_exception(), catalog_, item_), steady_seconds() - start);
+      end(ending_of(std::current_exception(), catalog_, item_), steady_seconds() - start);
     }
-    return {item_.id, result(), state_.sentence, steady_seconds() - start};
+    return {item_.id, result(), state_.reason, steady_seconds() - start};
   }
 
  private:
@@ -90,25 +91,27 @@ class Try {
       throw Error(
           ErrorCode::failed,
           fmt::format(
-              "Its worker was killed {} times without a word: too little memory, or machines that fail.",
+              "Its worker was killed {} times without an error message: probably the memory is too small, or "
+              "a machine is failing.",
               state_.tries),
           "`cei3d batch retry` tries again.");
   }
 
-  Failure lost() const {
+  Ending lost() const {
     if (machine_is_in_the_way(catalog_, item_))
-      return {BatchOutcome::again, BatchCause::machine,
+      return {BatchOutcome::retryable, BatchCause::machine,
               "The catalog is out of reach: its file system is gone, or its disk is full."};
-    return {BatchOutcome::again, BatchCause::none, "Another worker has taken over."};
+    return {BatchOutcome::retryable, BatchCause::none, "Another worker has taken over."};
   }
 
-  void end(Failure f, double seconds) {
+  void end(Ending f, double seconds) {
     if (attempt_.lost()) f = lost();
     if (f.cause == BatchCause::memory && ++state_.memory_doublings > 1) f.outcome = BatchOutcome::failed;
     state_.outcome = f.outcome;
     state_.cause = f.cause;
-    state_.sentence = f.sentence;
-    state_.tries = f.outcome == BatchOutcome::done ? 0 : state_.tries + (f.outcome == BatchOutcome::again);
+    state_.reason = f.reason;
+    state_.tries =
+        f.outcome == BatchOutcome::done ? 0 : state_.tries + (f.outcome == BatchOutcome::retryable);
     state_.seconds += seconds;
     state_.peak_memory_gib = std::max(state_.peak_memory_gib, peak_memory_gib());
     state_.ended =
@@ -116,9 +119,9 @@ class Try {
             .count();
     try {
       attempt_.publish_state(state_);
-    } catch (const Error& e) {  // a full disk, another worker: there is nobody to tell but the caller
-      if (state_.outcome != BatchOutcome::interrupted) state_.outcome = BatchOutcome::again;
-      if (state_.sentence.empty()) state_.sentence = e.what();
+    } catch (const Error& e) {  // a full disk, or another worker has taken over: only the caller can be told
+      if (state_.outcome != BatchOutcome::interrupted) state_.outcome = BatchOutcome::retryable;
+      if (state_.reason.empty()) state_.reason = e.what();
       return;
     }
     std::error_code ignored;
@@ -130,7 +133,7 @@ class Try {
     return state_.outcome == BatchOutcome::done          ? BatchResult::done
            : state_.outcome == BatchOutcome::failed      ? BatchResult::failed
            : state_.outcome == BatchOutcome::interrupted ? BatchResult::interrupted
-                                                         : BatchResult::again;
+                                                         : BatchResult::retryable;
   }
 
   const BatchCatalog& catalog_;
@@ -141,8 +144,8 @@ class Try {
 };
 
 BatchWorkReport settled_report(const std::string& id, const BatchState& state) {
-  if (state.outcome == BatchOutcome::done) return {id, BatchResult::already, "", 0};
-  return {id, BatchResult::failed, state.sentence, 0};
+  if (state.outcome == BatchOutcome::done) return {id, BatchResult::up_to_date, "", 0};
+  return {id, BatchResult::failed, state.reason, 0};
 }
 
 // Workers begin at different objects, so that they seldom want the same one.
@@ -169,8 +172,8 @@ BatchWorkReport unguarded_work(const BatchCatalog& catalog, const BatchManifest&
   };
   if (auto report = settled()) return *report;
   const auto attempt = BatchAttempt::take(catalog.folder(), id, catalog.settings().timing);
-  if (!attempt) return {id, BatchResult::taken, "Another worker has it.", 0};
-  if (auto report = settled()) return *report;  // since the first look
+  if (!attempt) return {id, BatchResult::in_use, "Another worker has it.", 0};
+  if (auto report = settled()) return *report;  // another worker has made it since the first look
   return Try(catalog, item, steps, *attempt).run(session, progress);
 }
 
@@ -180,7 +183,7 @@ const char* batch_result_name(BatchResult r) { return kResults[size_t(r)]; }
 
 Json BatchWorkReport::json() const {
   Json j{{"id", id}, {"result", batch_result_name(result)}, {"seconds", seconds}};
-  if (!sentence.empty()) j["sentence"] = sentence;
+  if (!reason.empty()) j["sentence"] = reason;
   return j;
 }
 
@@ -195,7 +198,7 @@ BatchWorkReport batch_work(const BatchCatalog& catalog, const BatchManifest& man
   try {
     return unguarded_work(catalog, manifest, index, session, progress);
   } catch (const MachineError& e) {
-    return {manifest.id(index), BatchResult::again, e.what(), 0};
+    return {manifest.id(index), BatchResult::retryable, e.what(), 0};
   }
 }
 
@@ -205,7 +208,7 @@ std::vector<BatchWorkReport> batch_claim(const BatchCatalog& catalog, const Batc
   const size_t first = first_of(manifest);
   for (size_t i = 0; i < manifest.size(); ++i) {
     const BatchWorkReport r = batch_work(catalog, manifest, (first + i) % manifest.size(), session, progress);
-    if (r.result == BatchResult::taken || r.result == BatchResult::already) continue;
+    if (r.result == BatchResult::in_use || r.result == BatchResult::up_to_date) continue;
     out.push_back(r);
     progress.report({"catalog", double(i + 1) / double(manifest.size()), -1, r.id});
     if (r.result == BatchResult::interrupted) break;
