@@ -24,8 +24,9 @@ constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
 // trained.
 constexpr std::array kFitAt{0.1, 0.2, 0.3, 0.45, 0.6};
 constexpr int kAlignSide = 320, kExposeSide = 64;  // maximum sides of the images that are compared, pixels
-// Exposures are found late: what was trained briefly is off by as much. Their spread (exposure_change()) from
-// which on they are believed: of equal ones it is .05 at most, for a metal.
+// Exposures are fitted from kExposeFrom of the schedule on, because the brightness of what was trained
+// briefly is off by as much as they differ. They are used if their exposure_change() is at least
+// kMinExposure: where all exposures are equal it is .05 at most, for a metal.
 constexpr double kExposeFrom = 0.3, kMinExposure = 0.08;
 constexpr int kEvaluationBatches = 2;  // pixels of an evaluation, in batches of the training
 
@@ -51,7 +52,7 @@ class Training {
     fit_views(u);
     const GeometryStats sum = state_.geometry->step(state_.step, u, {}, run_.progress);
     if (!std::isfinite(sum.color))
-      fail("training diverged at step {}: the loss is not a number", state_.step);
+      fail("The training diverged at step {}: the loss is not a number.", state_.step);
     if (elapsed() > next_evaluation_) evaluate(u, sum);
     if (elapsed() > next_report_) report(u, sum);
     run_.live.offer([&](const Camera& camera) { return state_.geometry->render_radiance(camera, 1); });
@@ -68,7 +69,8 @@ class Training {
   double elapsed() const { return run_.progress.now() - begin_; }
 
  private:
-  // Changes nothing before all is known: whoever is interrupted goes on from the state before it.
+  // Changes the state only when everything is computed: a run that is interrupted meanwhile resumes from
+  // before.
   void fit_views(double u) {
     PixelStore& pixels = run_.views.train;
     while (state_.alignments < int(kFitAt.size()) && u >= kFitAt[size_t(state_.alignments)]) {

@@ -43,13 +43,13 @@ TEST(LivePicture, OfWhatIsDrawnAtOnceComesEveryThreeSeconds) {
   EXPECT_EQ(shown, 10);
 }
 
-TEST(LivePicture, IsNotDrawnWhereNobodyLooks) {
+TEST(LivePicture, IsNotDrawnWithoutAnObserver) {
   LivePicture live(camera_of(100, 100), {}, [] {
-    ADD_FAILURE() << "nobody needs the time";
+    ADD_FAILURE() << "without an observer the time is not needed";
     return 0.0;
   });
   live.offer([](const Camera&) {
-    ADD_FAILURE() << "nobody looks";
+    ADD_FAILURE() << "there is no observer";
     return Image();
   });
 }

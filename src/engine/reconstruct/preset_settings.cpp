@@ -143,7 +143,7 @@ void add_shapes(const Group<ShapeOptions>& g) {
            "Pixels of all depth maps together, at most")
       .add("neighbors", &StereoOptions::neighbors, {2, 32}, "views", "Views that each view is matched with")
       .add("window", &StereoOptions::window, {1, 16}, "pixels", "Half width of the windows that are matched")
-      .add("min_score", &StereoOptions::min_score, {-1, 1}, "", "Least correlation of a match",
+      .add("min_score", &StereoOptions::min_score, {-1, 1}, "", "Minimum correlation of a match",
            "[Goesele et al. 2006]")
       .add("agreement", &StereoOptions::agreement, {0, 100}, "planes",
            "Largest difference between the depths of a point in two maps");

@@ -108,7 +108,7 @@ Preset preset_by_name(const std::string& name) {
   if (name == "fast") return fast();
   if (name == "paper") return paper();
   if (name == "balanced") return balanced();
-  fail_usage("unknown preset '{}': fast, balanced or paper", name);
+  fail_usage("There is no preset '{}'; the presets are fast, balanced and paper.", name);
 }
 
 void fit_to_footprint(Preset& p, double footprint) {

@@ -94,7 +94,7 @@ Json to_json(const Rates& r) {
 }
 
 Rates rates_from_json(const Json& j) {
-  JsonReader reader(j, "the rates in the checkpoint");
+  JsonReader reader(j, "The rates in the checkpoint");
   const auto seconds = [&](const char* name) { return reader.require<double>(name); };
   const Rates rates{.sdf_step = seconds("sdf_step"),
                     .trial_step = seconds("trial_step"),

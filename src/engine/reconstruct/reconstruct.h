@@ -52,8 +52,8 @@ class Checkpoints {
   virtual std::optional<State> latest() = 0;  // the state to resume from; none: start anew
 };
 
-// show: empty: nobody looks; a run by steps makes the same object either way. Error: interrupted, after
-// saving a checkpoint, when progress.cancelled().
+// show: empty: no observer; a run by steps makes the same object either way. Error: interrupted, after saving
+// a checkpoint, when progress.cancelled().
 Scene reconstruct(const Device&, const Capture&, const ImageSource&, const Normalization&,
                   const ReconstructOptions&, Checkpoints&, Progress&, ShowPicture show = {});
 

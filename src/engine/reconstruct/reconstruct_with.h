@@ -17,7 +17,7 @@ struct ReconstructInputs {
   Preset preset;
   Clock clock = steady_seconds;
   std::optional<Rates> rates{};  // of this machine; none: measured, if the run is timed
-  ShowPicture show{};            // empty: nobody looks
+  ShowPicture show{};            // empty: no observer
 };
 
 Scene reconstruct(const ReconstructInputs&, Checkpoints&, Progress&);

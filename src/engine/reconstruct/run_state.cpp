@@ -24,7 +24,7 @@ Tensors without_prefix(const std::string& prefix, const Tensors& from) {
   return out;
 }
 
-const std::string kCheckpoint = "the checkpoint";
+const std::string kCheckpoint = "The checkpoint";
 
 SavedRun read_version_1(const Checkpoints::State& saved, const MakeGeometry& make_geometry) {
   JsonReader head(saved.head, kCheckpoint);
@@ -79,7 +79,7 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
 }
 
 RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry& make_geometry) {
-  JsonReader reader(head, "the state in the checkpoint");
+  JsonReader reader(head, "The state in the checkpoint");
   RunState state;
   state.step = reader.require<int64_t>("step");
   state.training_seconds = reader.require<double>("training_seconds");
@@ -94,9 +94,9 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   const bool has_geometry = reader.require<bool>("has_geometry");
   const Json& scene = reader.member("scene");
   reader.finish();
-  state.scene = load_scene(without_prefix(kScene, tensors), scene, "the object in the checkpoint");
+  state.scene = load_scene(without_prefix(kScene, tensors), scene, "The object in the checkpoint");
   if (tensors.contains(kSeparatedAlbedo)) {
-    if (!state.scene.surface) fail("albedo of vertices without a surface");
+    if (!state.scene.surface) fail("The checkpoint has an albedo for vertices, but no surface.");
     state.separated_albedo =
         vectors_from(tensors, kSeparatedAlbedo, int64_t(state.scene.surface->mesh().positions.size()));
   }
@@ -117,13 +117,13 @@ Checkpoints::State checkpoint_of(const RunPosition& position, const RunState& st
 }
 
 SavedRun read_checkpoint(const Checkpoints::State& saved, const MakeGeometry& make_geometry) {
-  constexpr const char* kHint = "start anew, in place of it";
+  constexpr const char* kHint = "Start the reconstruction anew.";
   try {
     const int version = saved.head.value("version", 1);
-    if (version > kVersion) fail("the checkpoint was written by a newer program; resume with that");
+    if (version > kVersion) fail("The checkpoint was written by a newer program; resume with that one.");
     return version == 1 ? read_version_1(saved, make_geometry) : read_version_2(saved, make_geometry);
   } catch (const Json::exception& e) {
-    throw Error(ErrorCode::failed, fmt::format("the checkpoint is damaged ({})", e.what()), kHint);
+    throw Error(ErrorCode::failed, fmt::format("The checkpoint is damaged ({}).", e.what()), kHint);
   } catch (const Error& e) {
     throw Error(e.code(), e.what(), kHint);
   }

@@ -19,17 +19,17 @@ size_t first_stage(const std::vector<Stage>& stages, const std::optional<RunPosi
   if (at == stages.end())
     throw Error(
         ErrorCode::failed,
-        fmt::format("the checkpoint ends in a stage '{}' that this program does not have", position->stage),
-        "start anew, in place of it");
+        fmt::format("The checkpoint ends in a stage '{}' that this program does not have.", position->stage),
+        "Start the reconstruction anew.");
   return size_t(at - stages.begin()) + (position->finished ? 1 : 0);
 }
 
 Error interrupted(const std::string& stage, bool has_checkpoint) {
   if (has_checkpoint)
-    return {ErrorCode::interrupted, fmt::format("interrupted in the stage '{}'; the state is saved", stage),
-            "resume it"};
+    return {ErrorCode::interrupted, fmt::format("Interrupted in the stage '{}'; the state is saved.", stage),
+            "The reconstruction can be resumed."};
   return {ErrorCode::interrupted,
-          fmt::format("interrupted in the stage '{}', before there was a state to save", stage)};
+          fmt::format("Interrupted in the stage '{}', before there was a state to save.", stage)};
 }
 
 }  // namespace

@@ -48,7 +48,7 @@ struct Stage {
 };
 
 // A descent in the middle of a stage continues from the state, and is saved into it every kCheckpointSeconds
-// and before an interruption. seconds: what the descent took so far; null: nobody asks. All arguments must
+// and before an interruption. seconds: what the descent took so far; null: not recorded. All arguments must
 // outlive the store.
 DescentStore descent_store(const RunContext&, RunState&, double* seconds, const Stage::Checkpoint&);
 

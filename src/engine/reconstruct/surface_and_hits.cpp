@@ -109,7 +109,7 @@ SurfaceAndHits extract_surface_and_hits(const Device& device, const Field& sdf, 
   SurfaceAndHits s;
   s.surface = extract_surface(device, sdf, meshing, progress);
   s.hits = object_hits(device, sdf, *s.surface, pixels, {max_hits}, progress);
-  if (s.hits.hits.empty()) fail("no training image shows the reconstructed surface");
+  if (s.hits.hits.empty()) fail("No training image shows the reconstructed surface.");
   return s;
 }
 

@@ -71,7 +71,7 @@ TrainingViews load_training_views(const Capture& capture, const ImageSource& ima
   v.noted_exposures = relative_exposures(noted);
   v.given_train = v.train.cameras();
   v.given_held_out = v.held_out.cameras();
-  if (v.train.pixels().empty()) fail("no training image shows the object: every mask is empty");
+  if (v.train.pixels().empty()) fail("No training image shows the object: every mask is empty.");
   return v;
 }
 

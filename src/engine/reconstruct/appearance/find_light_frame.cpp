@@ -7,14 +7,14 @@
 namespace cei3d {
 namespace {
 
-// A turning light has to leave so much less in the median view; where one that stands still leaves next to
-// nothing, 43 dB, it stays.
-constexpr double kTurningBy = 0.8, kExplained = 5e-5;
+// Maximum ratio of the residuals of a turning light and of one that stands still, for a light to be taken for
+// turning. A light that stands still and leaves less than kExplained, 43 dB, is kept without comparison.
+constexpr double kMaxTurningRatio = 0.8, kExplained = 5e-5;
 constexpr float kRoughness = 0.3f;
-constexpr int kLightHeight = 24;  // a rough answer will do
-constexpr int kHoldOut = 5;  // every so many views judge what the others say, where there are twice as many
+constexpr int kLightHeight = 24;  // a low resolution suffices
+constexpr int kHoldOut = 5;       // every n-th view is held out to compare, if there are at least 2n
 
-// Of every view. A few may be of another brightness, or see what no other does.
+// Median over views: robust to single views of another brightness.
 double median_ratio(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> ratios;
   for (size_t i = 0; i < a.size(); ++i) ratios.push_back(a[i] / std::max(b[i], 1e-12));
@@ -51,7 +51,7 @@ LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16
   };
   const std::vector<double> still = residuals(LightMotion::world);
   if (still.empty() || median(still) < kExplained) return {};
-  double smallest = kTurningBy;
+  double smallest = kMaxTurningRatio;
   LightMotion best = LightMotion::world;
   for (const LightMotion motion : {LightMotion::camera, LightMotion::turntable}) {
     const double ratio = median_ratio(residuals(motion), still);

@@ -12,7 +12,8 @@ constexpr float kDegree = kPi / 180;
 // Where the rings end. The directions of the visibility table are 9 degrees apart.
 constexpr std::array<float, kSkyRings> kRingEnds{6 * kDegree,  15 * kDegree, 27 * kDegree,
                                                  42 * kDegree, 60 * kDegree, 90 * kDegree};
-constexpr float kTypicalRoughness = 0.3f;  // weighs what is hidden for its middle
+// Roughness of the lobe whose radiance weights the hidden directions in their mean.
+constexpr float kTypicalRoughness = 0.3f;
 // Minimum cosine to the normal of directions that count: the surface itself hides those along it.
 constexpr float kHorizon = 0.05f;
 

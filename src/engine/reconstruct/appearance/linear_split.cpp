@@ -25,21 +25,21 @@ constexpr float kSmoothest = 0.12f, kRoughest = 0.95f;
 constexpr double kFar = 1.25;  // a residual this much above the best ends the scan
 // Maximum ratio of the residuals of a metal and a dielectric for an object to be a metal. On a matte object
 // of many colors the ratio is 1 (dtu24), on a metal 0.2 (teapot).
-constexpr double kMetalBy = 0.5;
+constexpr double kMaxMetalRatio = 0.5;
 // Several materials always fit a little better than one. They are chosen only if the residual falls below
 // this factor, and by more than the noise of photographs, 37 dB.
-constexpr double kSeveralBy = 0.75, kNoise = 2e-4;
-// A light that was raised by more than this, so that nothing is whiter than white, is one of assumed
-// strength.
-constexpr float kAssumed = 1.1f;
-// A light that was raised by more than this has faded in the separation: reflections said nothing about it.
-// Dielectrics reflect at least 2 %, half of what is usual.
+constexpr double kMaxSeveralRatio = 0.75, kNoise = 2e-4;
+// If the light was scaled up by more than this to keep the albedo at most 1, its strength is unknown.
+constexpr float kMaxKnownGain = 1.1f;
+// If the light was scaled up by more than this, it has faded in the separation: reflections do not determine
+// it. Dielectrics reflect at least 2 %, half of what is usual.
 constexpr float kFaded = 5;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
 constexpr double kSharedError = 0.1;
-// The search for several materials stops if its first round leaves a larger share of the residual of one.
-constexpr double kPlainlyOne = 0.85;
+// The search for several materials stops if its first round leaves a larger share than this of the residual
+// of one material.
+constexpr double kMaxFirstRoundRatio = 0.85;
 // The roughness is the largest whose residual is so close to the smallest, relatively, where photographs are
 // explained worse than to 30 dB: what shape and reflections of the object in itself leave unexplained is
 // smallest for surfaces that are too smooth. Where they are explained well, the smallest residual is nearer
@@ -195,11 +195,11 @@ struct OneMaterial {
 OneMaterial search_one_material(SplitSolver search, const LinearSplitOptions& options,
                                 std::vector<LinearSplit::Trial>& trials, SplitGuess& guess) {
   if (search.rows() < 1000)
-    fail("only {} pixels see the surface well enough to tell light from material; are masks and poses right?",
+    fail("Only {} pixels see the surface well enough to tell light from material. Are masks and poses right?",
          search.rows());
   const double dielectric_residual = search.dielectric(0.2f).residual,
                metal_residual = search.metal(0.2f).residual;
-  const bool is_metal = metal_residual < kMetalBy * dielectric_residual;
+  const bool is_metal = metal_residual < kMaxMetalRatio * dielectric_residual;
   const float roughness = search_roughness(
       [&](float r) { return (is_metal ? search.metal(r) : search.dielectric(r)).residual; }, options);
   trials = std::move(search.trials);
@@ -215,7 +215,7 @@ std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMate
   };
   SplitSolution start = one(found.roughness);
   if (start.residual < kNoise) return {};
-  const double max_residual = kPlainlyOne * start.residual;
+  const double max_residual = kMaxFirstRoundRatio * start.residual;
   if (found.roughness > kFirstRoughness) start = one(kFirstRoughness);
   SplitSolution several = search.several(std::move(start), max_residual);
   if (several.residual > max_residual) return {};
@@ -276,7 +276,7 @@ Solved solve(const Transport& transport, const SurfaceSamples& samples, const Li
   if (materials) {
     SplitSolution several = fine.with_materials(*materials);
     progress.log(Json{{"stage", "materials"}, {"one", best.residual}, {"several", several.residual}}.dump());
-    if (several.residual < std::min(kSeveralBy * best.residual, best.residual - kNoise))
+    if (several.residual < std::min(kMaxSeveralRatio * best.residual, best.residual - kNoise))
       best = std::move(several);
   }
   const LightCovariance error = believe_light(fine, options, best, progress);
@@ -313,7 +313,7 @@ LinearSplit result_of(const Transport& transport, SplitSolution s, const LinearS
   return result;
 }
 
-// gain: by how much the light was raised in the end.
+// gain: factor by which the light was scaled up in the end.
 LinearSplit separate(const Transport& transport, const SurfaceSamples& samples,
                      const LinearSplitOptions& options, Progress& progress, float& gain) {
   std::vector<LinearSplit::Trial> trials;
@@ -327,7 +327,7 @@ LinearSplit separate(const Transport& transport, const SurfaceSamples& samples,
                           options.light_height, turns, progress);
   LinearSplit result = result_of(transport, std::move(s), options, turns);
   result.trials = std::move(trials);
-  if (gain <= kAssumed) result.light_error = light_error;
+  if (gain <= kMaxKnownGain) result.light_error = light_error;
   return result;
 }
 

@@ -57,8 +57,8 @@ struct LinearSplit {
   Material material;                // mean over the surface
   std::vector<Material> materials;  // #V, metalness 0 or 1; empty: `material` everywhere
   float smoothest = 0;              // roughness of the smoothest hundredth of the surface
-  // Covariance of the light; 0 where its strength is assumed: all is metal, or it was raised so that nothing
-  // is whiter than white.
+  // Covariance of the light; 0 where its strength is unknown: all is metal, or the light was scaled up to
+  // keep the albedo at most 1.
   LightCovariance light_error{};
   Image light;                 // light_height rows, 2 light_height columns, RGB, linear, >= 0
   std::vector<Vec3f> albedo;   // #V, linear, [0, 1]

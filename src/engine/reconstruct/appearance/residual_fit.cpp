@@ -25,12 +25,12 @@ constexpr size_t kMaxValidationPixels = 100000;
 constexpr size_t kSlab = 1 << 15;  // hits between two checks for interruption: 5 s with the largest networks
 constexpr double kMinGain = 0.03;  // relative decrease of the squared error on the views held back
 constexpr double kValidationFraction = 0.2;  // share of the steps before the validation
-constexpr double kWarmUp = 0.05;  // share of the steps at rising rates: large first steps kill units
+constexpr double kWarmUp = 0.05;  // share of the steps at rising rates: large first steps leave dead units
 
-class Trainer {
+class ResidualTrainer {
  public:
-  Trainer(const Device& device, const Scene& scene, const SurfaceSamples& samples,
-          std::span<const uint16_t> views, const ResidualOptions& options, const Progress& progress)
+  ResidualTrainer(const Device& device, const Scene& scene, const SurfaceSamples& samples,
+                  std::span<const uint16_t> views, const ResidualOptions& options, const Progress& progress)
       : device_(device),
         samples_(samples),
         seed_(options.seed),
@@ -118,7 +118,7 @@ class Trainer {
     return n;
   }
 
-  // As the residual sees it.
+  // Network input of a sample: under a turning light, directions relative to the light.
   Hit hit(uint32_t sample) const {
     const Hit& h = samples_.hits[sample];
     const TurnedHits& turned = samples_.turned;
@@ -152,7 +152,7 @@ class Trainer {
 };
 
 // Trains at rates that decay to a hundredth. seconds: time limit; 0: none.
-void train(Trainer& trainer, int steps, double seconds, const Clock& clock, Progress& progress) {
+void train(ResidualTrainer& trainer, int steps, double seconds, const Clock& clock, Progress& progress) {
   const double start = clock();
   for (int step = 0; step < steps; ++step) {
     check_cancelled(progress);
@@ -171,7 +171,7 @@ ResidualFit fit_residual(const Device& device, const Scene& scene, const Surface
                          Progress& progress) {
   const double start = options.clock();
   progress.report({"residual", 0, -1, ""});
-  Trainer trainer(device, scene, samples, views, options, progress);
+  ResidualTrainer trainer(device, scene, samples, views, options, progress);
   if (options.alone) {
     trainer.teach_all();
     train(trainer, std::max(1, options.steps), options.seconds, options.clock, progress);

@@ -15,25 +15,25 @@
 namespace cei3d {
 namespace {
 
-// Rounds of materials and light: as many as lower the residual, from one plain round to the next below this
-// share of it. A light that is too sharp and surfaces that are too rough explain the photographs nearly as
-// well as the truth, and a round takes off a fifth of what is wrong or less (docs/notebook/0022). So every
-// second round multiplies the change of the roughness by kExtended; the plain ones between take back what it
-// overshoots where a round would have arrived at once (docs/notebook/0035). They also decide on the strength
-// of the light, which would creep with more of them where dielectrics say little.
+// Rounds of materials and light go on as long as each plain round lowers the residual below kArrived of that
+// of the plain round before. Convergence is slow: a light that is too sharp and surfaces that are too rough
+// explain the photographs nearly as well as the truth, so that each round removes at most a fifth of the
+// error (docs/notebook/0022). Therefore every second round extrapolates the logarithm of the roughness by
+// kExtended. The plain rounds between correct overshoot (docs/notebook/0035), and they alone set the strength
+// of the light: with more of them it would drift where dielectrics hardly determine it.
 constexpr int kMinRounds = 6, kMaxRounds = 14;
 constexpr double kArrived = 0.98;
 constexpr float kExtended = 4;
 // Rounds of linearization for a turning light: without a guess, and with one.
 constexpr int kFirstTurns = 3, kTurns = 2;
-constexpr int kDiffusion = 20;     // steps, of evidence over the surface
-constexpr float kMetalBy = 0.85f;  // maximum ratio of the errors of a metal and a dielectric for a metal
+constexpr int kDiffusion = 20;  // steps, of evidence over the surface
+// Maximum ratio of the errors of a metal and a dielectric for a vertex to be a metal.
+constexpr float kMaxMetalRatio = 0.85f;
 // Upper bounds of the diffuse albedo of a vertex, in multiples of white: while the scale of the light is
 // uncertain, and afterwards.
 constexpr float kFirstWhite = 3, kLastWhite = 1.3f;
-// Minimum reflectance under a given light, over the usual one: the smallest that light_scale() tells from
-// none. Reflections of a smooth light on a surface that shows none cost more than they add
-// (docs/notebook/0033).
+// Minimum reflectance under a given light, over the usual one: the smallest that light_scale() can tell from
+// 0. On a surface without reflections, those of a smooth light cost more than they add (docs/notebook/0033).
 constexpr float kMinReflected = 0.05f;
 
 }  // namespace
@@ -161,7 +161,7 @@ void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, flo
   for (size_t v = 0; v < materials.of.size(); ++v) {
     if (evidence.samples[v] <= 0) continue;
     const BestMaterials b = best_materials(evidence.of(v));
-    const bool metal = b.metal_error < kMetalBy * b.dielectric_error;
+    const bool metal = b.metal_error < kMaxMetalRatio * b.dielectric_error;
     float roughness = metal ? b.metal_roughness : b.dielectric_roughness;
     if (const float before = materials.of[v].roughness; metal == materials.is_metal(uint32_t(v)))
       roughness = clamp(before * std::pow(roughness / before, extended), BlurLadder::roughness(0),

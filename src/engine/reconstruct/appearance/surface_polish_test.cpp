@@ -68,14 +68,14 @@ GeometryOptions small_geometry() {
   return o;
 }
 
-struct Seen {
+struct ObservedSurface {
   std::shared_ptr<const Surface> surface;
   std::vector<Hit> hits;
   std::vector<Vec3f> colors;
 };
 
-Seen seen_of(const Device& device, const Field& sdf, const PixelStore& pixels) {
-  Seen s{std::make_shared<const Surface>(extract_mesh(device, sdf, {64})), {}, {}};
+ObservedSurface observed_surface(const Device& device, const Field& sdf, const PixelStore& pixels) {
+  ObservedSurface s{std::make_shared<const Surface>(extract_mesh(device, sdf, {64})), {}, {}};
   std::vector<Ray> rays;
   std::vector<Vec3f> colors;
   for (const Pixel& p : pixels.pixels()) {
@@ -92,7 +92,7 @@ Seen seen_of(const Device& device, const Field& sdf, const PixelStore& pixels) {
 
 // Mean angle between the hits' normals and the ball's own, degrees.
 double normal_error(const Device& device, const Field& sdf, const PixelStore& pixels) {
-  const Seen s = seen_of(device, sdf, pixels);
+  const ObservedSurface s = observed_surface(device, sdf, pixels);
   double sum = 0;
   for (const Hit& h : s.hits) sum += std::acos(std::min(dot(h.normal, normalize(h.position)), 1.0f));
   return sum / double(s.hits.size()) * 180 / M_PI;
@@ -107,7 +107,7 @@ TEST(SurfacePolish, BringsNormalsNearerToTheTruthThanTheSameStepsWithoutIt) {
   Tensors before;
   stage.save(before);
 
-  const Seen seen = seen_of(device, stage.sdf(), pixels);
+  const ObservedSurface seen = observed_surface(device, stage.sdf(), pixels);
   const AppearanceInput input{seen.surface, {seen.hits, seen.colors, {}}};
   AppearanceResult look;
   look.light = room();

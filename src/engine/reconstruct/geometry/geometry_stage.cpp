@@ -53,8 +53,8 @@ GeometryStage::Step GeometryStage::step_at(int64_t index, double u) const {
           .objective = {options_, s, anchor_}};
 }
 
-// Cells near the surface decide where rays are sampled, the others only how far rays leap: those are updated
-// less often.
+// Cells near the surface decide where rays are sampled. The others only decide how far rays skip empty space,
+// and are updated less often.
 void GeometryStage::refresh_grid(int64_t step, double u, const Progress& progress) {
   constexpr int kUpdatesPerFull = 40;
   if (step % options_.refresh_every != 0) return;
@@ -188,7 +188,8 @@ template <class F>
 void GeometryStage::render_rays(const Camera& camera, int samples, const F& take) {
   const int per_pixel = samples * samples, pixels = kChunkRays / per_pixel,
             all = camera.width * camera.height;
-  if (pixels < 1) fail("render_radiance: at most 8 samples per pixel and axis");
+  if (pixels < 1)
+    fail("A view of the model has at most 8 samples per pixel and axis (an error in the program).");
   const Step step = step_at(-1, 1);
   parallel_for((all + pixels - 1) / pixels, [&](int c) {
     std::vector<Ray> rays;

@@ -22,7 +22,8 @@ bool unit_sphere_span(const Ray& ray, float& near, float& far) {
 }
 
 OccupancyGrid::OccupancyGrid(int resolution) : n_(resolution), value_(size_t(n_) * n_ * n_) {
-  if (n_ % 4 != 0) fail("an occupancy grid of {} cells per axis: not a multiple of 4", n_);
+  if (n_ % 4 != 0)
+    fail("An occupancy grid needs a multiple of 4 cells per axis, not {} (an error in the program).", n_);
   // The value that set() stores for far away, so that a grid that is saved and loaded has the same bits.
   for (size_t i = 0; i < value_.size(); ++i) set_distance(i, std::numeric_limits<float>::max());
 }
@@ -115,11 +116,11 @@ bool OccupancyGrid::advance(const Ray& ray, const March& m, Walk& walk, float* d
     walk.far = walk.t;
     return false;
   }
-  // Away from the surface no sample keeps the gradient of the field at unit length: a leap of the whole
-  // distance could land behind the surface, and the ray would miss it.
-  const bool leap = d > reach;
-  if (!leap) depths[walk.found++] = walk.t;
-  walk.t += leap ? std::max(0.5f * (d - reach), m.step) : m.step;
+  // Away from the surface no sample keeps the gradient of the field at unit length: sphere tracing with the
+  // full distance could overshoot the surface, and the ray would miss it.
+  const bool is_empty = d > reach;
+  if (!is_empty) depths[walk.found++] = walk.t;
+  walk.t += is_empty ? std::max(0.5f * (d - reach), m.step) : m.step;
   return true;
 }
 

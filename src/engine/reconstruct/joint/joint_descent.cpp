@@ -309,9 +309,9 @@ double JointDescent::held_out_psnr() {
   const std::vector<Vec3f> albedo = pixel_colors(device_, object_.albedo, traced.hits(), footprints);
   const HitBatch batch = batch_of(shaded);
   const std::vector<ShadingTerms<float>> terms = terms_at(batch, light_at(batch));
-  std::vector<Vec3f> got(judged.size(), Vec3f{0, 0, 0});
-  for (size_t i = 0; i < seen.size(); ++i) got[traced.rays()[i]] = terms[i].radiance(albedo[i]);
-  return display_psnr(input_.samples, judged, got);
+  std::vector<Vec3f> radiance(judged.size(), Vec3f{0, 0, 0});
+  for (size_t i = 0; i < seen.size(); ++i) radiance[traced.rays()[i]] = terms[i].radiance(albedo[i]);
+  return display_psnr(input_.samples, judged, radiance);
 }
 
 void JointDescent::save(Tensors& out) const {

@@ -61,7 +61,7 @@ JointObject descend_jointly(const Device& device, const AppearanceInput& input, 
     if (u >= 1) break;
     const JointLoss loss = descent.step(step, float(rate_at(options.descent.schedule, u, options.steps)));
     if (!std::isfinite(loss.total()))
-      fail("the joint descent diverged at step {}: the loss is not a number", step);
+      fail("The joint descent diverged at step {}: the loss is not a number.", step);
     if (options.show) options.show(descent.lighting(), descent.object().albedo, descent.object().material);
     summary.add(loss, step, u);
   }

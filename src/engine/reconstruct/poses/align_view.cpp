@@ -56,7 +56,7 @@ Image blurred(const Image& image, int radius) {
 }
 
 struct Sampled {
-  Vec3d color, d_x, d_y;  // and its derivatives by the position, in pixels
+  Vec3d color, d_x, d_y;  // color, and its derivatives by x and y per pixel
   double known;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moves a camera until what a model shows from it lies where the photograph shows it: direct image alignment
+// Moves a camera until the picture of a model from there matches the photograph: direct image alignment
 // [Lucas and Kanade 1981] with the depths of the model. Views of one camera may change their focal length
 // together.
 #pragma once
@@ -17,25 +17,25 @@
 namespace cei3d {
 
 struct AlignOptions {
-  int steps = 15;  // at most, at each of the blurs
-  // Standard deviations of a turn (radians) and of a shift (world units) as they are expected; what the
-  // images say weighs more, unless they say nothing.
+  int steps = 15;  // maximum number of steps for each of the blurs
+  // Expected standard deviations of a turn, radians, and of a shift, unit frame. This prior decides only
+  // about motions that the images do not determine.
   double turn = 0.02, shift = 0.02;
 };
 
 // How much motions, (turn, shift), move points in the image: the sum over points of the outer products of the
-// slopes of their pixel positions.
+// derivatives of their pixel positions.
 using MotionInformation = std::array<std::array<double, 6>, 6>;
 MotionInformation information_of(const Camera&, std::span<const Vec3d> points);
 
 struct Alignment {
   RigidMotion motion;               // of the camera, after dolly_zoomed() by the factor that was found
-  double pixels = 0;                // root mean square of how far the model's points move in the image
+  double pixels = 0;                // root mean square distance by which the model's points move in the image
   MotionInformation information{};  // of the model's points
 };
 
-// What a view says about a change x of the logarithm of the focal length, if its pose follows as it likes
-// best: the logarithm of the likelihood changes by pull x - information x^2 / 2.
+// What a view says about a change x of the logarithm of the focal length, with the pose eliminated (chosen
+// optimally for each x): the logarithm of the likelihood changes by pull x - information x^2 / 2.
 struct FocalPull {
   double information = 0, pull = 0;
 };
@@ -45,9 +45,10 @@ struct FocalPull {
 class ViewAligner {
  public:
   ViewAligner(const Camera& given, const ModelView& model, const Image& photograph, const AlignOptions&);
-  void align_pose();  // to begin with
+  void align_pose();  // to be called first
   FocalPull focal_pull();
-  // Changes the logarithm of the focal length by this, and moves the camera as the last focal_pull() had it.
+  // Changes the logarithm of the focal length by `change`, and moves the camera to the pose that the last
+  // focal_pull() found for it.
   void zoom(double change);
   Alignment alignment() const;
 
@@ -72,12 +73,13 @@ class ViewAligner {
   const Image& photograph_;
   AlignOptions options_;
   std::vector<Point> points_;
-  double log_focal_ = 0;  // of the factor so far
-  // The best motion, (turn, shift), for a change x of the focal length is still - x follow.
+  double log_focal_ = 0;  // logarithm of the factor on the focal length so far
+  // The best motion, (turn, shift), is a linear function of the change x of the logarithm of the focal
+  // length: still_ - x follow_.
   std::array<double, 6> still_{}, follow_{};
 };
 
-// The pose alone.
+// Aligns the pose alone.
 Alignment align_view(const Camera&, const ModelView&, const Image& photograph, const AlignOptions& = {});
 
 }  // namespace cei3d

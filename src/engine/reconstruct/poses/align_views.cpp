@@ -20,28 +20,29 @@ namespace {
 using Matrix7 = Eigen::Matrix<double, 7, 7>;
 using Vector7 = Eigen::Matrix<double, 7, 1>;
 
-// Steps of the focal length, at most. A change of its logarithm by less than this, or than this share of its
-// standard error, is the last.
+// Maximum number of steps of the focal length. A step is the last if it changes the logarithm by less than
+// kSmallChange, or by less than kSmallShare of its standard error.
 constexpr int kFocalSteps = 20;
 constexpr double kSmallChange = 1e-5, kSmallShare = 0.1;
-// A change is believed from so many standard errors on, and from a size on below which it hardly matters (a
-// sixth of a pixel in views of 800) and what a short training has learned wrong decides. One of more expected
-// deviations than kOddChange is no error of a focal length.
-constexpr double kSureErrors = 3, kLeastChange = 0.004, kOddChange = 5;
+// A change is used if it exceeds kSureErrors standard errors and kMinChange: that is a sixth of a pixel in
+// views of 800 pixels, and smaller changes are mostly errors of the short training. Beyond kMaxDeviations
+// standard deviations of the prior it is rejected, because focal lengths are not that wrong.
+constexpr double kSureErrors = 3, kMinChange = 0.004, kMaxDeviations = 5;
 
-// The best step by the views and what is believed, and its standard error.
+// The best step by views and prior, and its standard error.
 struct FocalStep {
   double change, error;
 };
 FocalStep focal_step(std::span<const FocalPull> views, const FocalPrior& prior, double so_far) {
-  const double believed = 1 / (prior.error * prior.error);
-  double information = believed, pull = -believed * (std::log(prior.found) + so_far), squares = 0;
+  const double of_prior = 1 / (prior.error * prior.error);
+  double information = of_prior, pull = -of_prior * (std::log(prior.found) + so_far), squares = 0;
   for (const FocalPull& v : views) {
     information += v.information;
     pull += v.pull;
     squares += v.pull * v.pull;
   }
-  // By what the views disagree about, or if that is less, by the differences of colors within them.
+  // The standard error follows from how much the views disagree, or if that is less, from the differences of
+  // colors within them.
   return {pull / information, std::max(std::sqrt(squares) / information, 1 / std::sqrt(information))};
 }
 
@@ -54,10 +55,10 @@ double change_focal(std::span<ViewAligner> views, const FocalPrior& prior) {
     parallel_for(int(views.size()), [&](int v) { pulls[size_t(v)] = views[size_t(v)].focal_pull(); });
     const FocalStep step = focal_step(pulls, prior, change);
     change += step.change;
-    if (!(std::abs(change) < kOddChange * prior.error)) return 0;
+    if (!(std::abs(change) < kMaxDeviations * prior.error)) return 0;
     for (ViewAligner& v : views) v.zoom(step.change);
     if (std::abs(step.change) > std::max(kSmallChange, kSmallShare * step.error)) continue;
-    return std::abs(change) < std::max(kSureErrors * step.error, kLeastChange) ? 0 : change;
+    return std::abs(change) < std::max(kSureErrors * step.error, kMinChange) ? 0 : change;
   }
   return 0;
 }

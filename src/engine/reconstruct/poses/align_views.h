@@ -28,18 +28,18 @@ struct AlignedViews {
   double pixels = 0;  // median over views of how far they move the object in the image, in its pixels
 };
 
-// What is believed about the focal length before the photographs are asked.
+// Prior on the focal length.
 struct FocalPrior {
-  double error = 0;  // standard deviation of the logarithm of the capture's; 0: it is right
-  double found = 1;  // factor on the capture's that the cameras of the store have already
+  double error = 0;  // standard deviation of the logarithm of the capture's focal length; 0: it is exact
+  double found = 1;  // factor on the capture's focal length that the cameras of the store have already
 };
 
-// Aligns every camera with the model by align_view(), then keep_frame(), so that the object stays where it is
-// and as large as it is. Changes the focal length of all by one factor, if the photographs are sure of it.
+// Aligns every camera with the model by align_view(), then keep_frame(), so that the object keeps its place
+// and size. Changes the focal length of all by one factor, if the photographs determine it well enough.
 AlignedViews align_views(const ShownViews&, const PixelStore&, const FocalPrior& = {});
 
-// The change of the logarithm of the focal length that explains all views best, with their poses, from
-// aligned poses; the views are then changed so. 0, and the views are of no more use: it is not known.
+// Logarithm of the factor on the focal length that fits all views best; call it after align_pose(). Applies
+// the factor to the views. 0: the focal length is undetermined; the views must then be discarded.
 double change_focal(std::span<ViewAligner> views, const FocalPrior&);
 
 // New exposures for the store: its present ones, times the factors by which the photographs are brighter than
@@ -48,8 +48,8 @@ std::vector<Vec3f> find_exposures(const ShownViews&, const PixelStore&);
 // Root mean square of the logarithm of b over a, over views and channels. Empty: all are 1.
 double exposure_change(std::span<const Vec3f> a, std::span<const Vec3f> b);
 
-// Takes out of the motions of these cameras what all have in common: a turn, a shift, and a step away from
-// the origin, as far as they move the object in the images.
+// Subtracts what the motions of these cameras have in common: a turn, a shift, and a step away from the
+// origin. Fitted to how they move the object in the images.
 void keep_frame(std::span<const Camera>, std::vector<Alignment>&);
 
 // Photographs at 1/n of their size as alignment compares them: color over white, alpha 1 where it is known.

@@ -22,7 +22,7 @@ RefinedCameras refined_cameras(const Capture& capture, std::span<const Camera> g
 std::vector<Camera> refined(std::vector<Camera> cameras, const RefinedCameras& found,
                             const Normalization& normalization) {
   if (found.poses.size() != cameras.size())
-    fail("there are {} poses for {} training views; start anew, in place of it", found.poses.size(),
+    fail("There are {} poses for {} training views. Start the reconstruction anew.", found.poses.size(),
          cameras.size());
   for (size_t i = 0; i < cameras.size(); ++i) {
     cameras[i] = zoomed(cameras[i], found.focal);

@@ -126,9 +126,9 @@ class Fog {
   const PixelStore& pixels_;
   const VisualHull& hull_;
   CarveOptions options_;
-  float size_;                   // of a cell
-  std::vector<uint32_t> id_;     // of the hull's cells among those inside, or kNone
-  std::vector<uint32_t> place_;  // and back
+  float size_;                   // side of a cell
+  std::vector<uint32_t> id_;     // stored cell of each hull cell; kNone: not inside of the hull
+  std::vector<uint32_t> place_;  // hull cell of each stored cell
   std::vector<Cell> cells_, grad_, mean_, square_;
   std::vector<float> lit_;  // maximum light that reached the cell in the last steps
   std::vector<std::vector<CellGrad>> chunks_;

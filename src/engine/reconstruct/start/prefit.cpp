@@ -85,7 +85,7 @@ void prefit(const Device& device, Field& sdf, const DistanceGrid& grid, const Pr
   for (size_t i = 0; i < distance.size(); ++i)
     if (std::abs(distance[i]) < 0.08f) near.push_back(uint32_t(i));
   if (near.empty())
-    fail("the visual hull of the masks is empty: masks and camera poses disagree, or the masks are wrong");
+    fail("The visual hull of the masks is empty: masks and camera poses disagree, or the masks are wrong.");
 
   FieldTrainer::Options rates;
   rates.network_rate = options.layer_rate;

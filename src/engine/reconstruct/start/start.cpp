@@ -23,20 +23,21 @@ constexpr std::array<std::pair<Start, const char*>, 3> kStarts{
 // otherwise mirror images would hollow the shape out further. Not after stereo, whose shape is close enough
 // to the surface: there highlights would dent it if colors could not depend on the view.
 constexpr float kMatteUntil = 0.25f;
-// dB by which another start must be better than the visual hull, which is robust: where the hull is wrong the
-// difference is at least 1.1 dB; between tries of equal worth it is up to .4.
+// dB by which another start must be better than the visual hull, which is robust. Where the hull is wrong the
+// difference is at least 1.1 dB; equally good starts differ by up to .4 dB.
 constexpr double kMinGain = 0.8;
 // Minimum number of views that must have a cell in their frame for the start shape to fill it. With fewer
 // views, floating blobs in front of the surface remain.
 constexpr int kMinViews = 3;
-constexpr int kCompareSide = 160;  // maximum side of the images that show what is wrong with views, pixels
-// Alignments of cameras at most, and pixels by which one has to move the object in the images (median of the
-// views).
-constexpr int kMaxAlignments = 5;
+constexpr int kCompareSide = 160;  // maximum side of the images used to align cameras, pixels
+constexpr int kMaxAlignments = 5;  // maximum number of alignments of the cameras
+// Minimum distance by which an alignment has to move the object in the images to be used, pixels, median over
+// views.
 constexpr double kMinAlignment = 0.5;
-constexpr double kMinAlignmentGain = 0.3;  // dB that the first one has to gain
-// Share of noted exposures that has to be found in the photographs. Colors that depend on the view explain a
-// part of them; where the notes say nothing of the photographs it is about 0.
+constexpr double kMinAlignmentGain = 0.3;  // minimum gain of the first alignment, dB
+// Minimum share of the noted exposures that has to be found in the photographs. It is below 1 because colors
+// that depend on the view explain a part of them, and about 0 where the notes do not apply to the
+// photographs.
 constexpr double kMinShareFound = 0.15;
 
 // Cells that the object may fill. Masks are grown by half a cell, as the cameras see it at the object's
