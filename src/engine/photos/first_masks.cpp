@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr size_t kPrompts = 4;    // number of prompts of each kind
-constexpr float kPrior = 3;       // masks that must contradict what the points' places say
+constexpr float kPrior = 3;       // number of masks that outweigh what the place of a point says
 constexpr double kMargin = 0.05;  // margin of the box around the points, as a share of its longer side
 
 bool is_in(const Image& mask, Vec2f p) {
@@ -21,9 +21,9 @@ bool is_in(const Image& mask, Vec2f p) {
   return *mask.at(x, y) > 0.5f;
 }
 
-// Without the outermost, which may be mistakes.
+// Two corners of the box around the pixels without the outermost ones, which may be mistakes.
 std::vector<Vec2f> without_strays(const std::vector<Vec2f>& pixels) {
-  constexpr double kStrays = 0.01;  // at each side
+  constexpr double kStrays = 0.01;  // share of the pixels that is left out at each side
   std::vector<float> x, y;
   for (const Vec2f p : pixels) x.push_back(p.x), y.push_back(p.y);
   const auto low = size_t(kStrays * double(x.size())), high = x.size() - 1 - low;
@@ -38,7 +38,7 @@ class FirstRound {
     belief_ = split_points(points, r.views).belief;
     if (r.clicks.empty()) return;
     for (float& b : belief_)
-      if (b > -1) b = 0;  // what stands about may be what was clicked
+      if (b > -1) b = 0;  // with clicks, only points on the plane or far away are known
   }
 
   PointBelief beliefs() const {
@@ -61,8 +61,8 @@ class FirstRound {
   }
 
  private:
-  // The view that shows most points of the object, of those that are not done; clicked ones first. The number
-  // of views: none shows any.
+  // Of the views that are not done the one that shows most points of the object; clicked views come first.
+  // The number of views: none shows any point.
   size_t next(const std::vector<uint8_t>& done) const {
     size_t best = request_.views.size(), largest = 0;
     for (size_t v = 0; v < done.size(); ++v) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The first round of masks: prompts are triangulated points, which each mask says more about.
+// The first round of masks: prompts are triangulated points; every mask votes on the points that it shows.
 #pragma once
 
 #include "engine/photos/object_masks.h"
@@ -8,8 +8,8 @@
 
 namespace cei3d {
 
-// Writes request.first_masks. Returns what is then believed of the points: on the object where above 0.
-// Errors: those of make_masks().
+// Writes request.first_masks. Returns the score of each point; above 0: on the object. Errors: those of
+// make_masks().
 PointBelief make_first_masks(const MaskRequest&, const SparsePoints&, PhotoSegmenter&, double first,
                              double last, Progress&);
 

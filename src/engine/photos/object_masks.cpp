@@ -19,9 +19,10 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-// Prompts of the second round, where the box says most: many prompts inside make the outline ragged.
-constexpr size_t kInside = 2, kBeside = 4;
-constexpr double kMargin = 0.1;  // around the object, as a share of its longer side
+// Numbers of prompts of the second round. The box constrains the mask most; many prompts on the object make
+// the outline ragged.
+constexpr size_t kOnObject = 2, kBesideObject = 4;
+constexpr double kMargin = 0.1;  // margin of the box around the object, as a share of its longer side
 
 View with_mask(View view, const fs::path& file) {
   view.mask_path = file;
@@ -29,7 +30,7 @@ View with_mask(View view, const fs::path& file) {
   return view;
 }
 
-// What all masks say, in every view: also in those without a mask of their own.
+// The consensus of all masks, projected into every view, also into those without a mask of their own.
 struct Consensus {
   std::vector<Camera> cameras;  // small, capture frame
   std::vector<Area> areas;
@@ -46,7 +47,7 @@ SmallMasks small_first_mask(const View& view, const fs::path& file) {
   return {{small}, {std::vector<uint8_t>(size_t(small.width) * small.height, kBackground)}};
 }
 
-// The ball about the points that are believed to be on the object, with room for what has no points.
+// The ball about the points on the object, enlarged.
 Normalization ball_of(const SparsePoints& points, const PointBelief& belief) {
   constexpr double kQuantile = 0.98;     // of the distances; those beyond it are taken for outliers
   constexpr double kRadiusFactor = 1.3;  // parts of the object without points lie outside of the points
@@ -126,7 +127,7 @@ std::vector<Piece> pieces_of(const Image& mask) {
   return pieces;
 }
 
-// Cuts off what no other view takes for the object.
+// Removes mask pixels outside of the consensus.
 void keep_near(Image& mask, const View& view, const Camera& small, const Area& area) {
   const Area near = dilated(area, small.width, small.height, 2);
   const double n = double(view.camera.width) / small.width;
@@ -141,7 +142,7 @@ void keep_near(Image& mask, const View& view, const Camera& small, const Area& a
     }
 }
 
-// Without specks: pieces that are small beside the largest one.
+// Removes pieces that are small in comparison with the largest one.
 void drop_specks(Image& mask) {
   constexpr double kSpeck = 0.03;  // share of the largest piece
   const std::vector<Piece> pieces = pieces_of(mask);
@@ -164,8 +165,8 @@ bool second_mask(const MaskRequest& r, size_t v, const Consensus& consensus, Pho
     return p.x < float(area.box.x0) || p.y < float(area.box.y0) ||
            p.x >= float(area.box.x0 + area.box.width) || p.y >= float(area.box.y0 + area.box.height);
   });
-  add_prompts(in_box, kBeside, prompts);
-  prompts.positive.resize(std::min(prompts.positive.size(), kInside));
+  add_prompts(in_box, kBesideObject, prompts);
+  prompts.positive.resize(std::min(prompts.positive.size(), kOnObject));
   Image mask = mask_image(segmenter.log_odds(view, area.box, prompts, area.object), area.box, view);
   keep_near(mask, view, consensus.cameras[v], consensus.areas[v]);
   drop_specks(mask);

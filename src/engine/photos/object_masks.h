@@ -28,11 +28,12 @@ struct MaskRequest {
   std::filesystem::path masks;        // folder for the result: NAME.png, white where the object is
 };
 
-// Two rounds. In the first one the triangulated points give prompts: those that are believed to be on the
-// object, and beside it; each mask corrects the belief in the points that it shows. In the second one the
-// volume that nearly all masks agree on (vote_on_masks()) gives them, in an enlarged section. What is outside
-// of that volume is cut off. Returns the names of photographs in which the object was not found; they have no
-// mask. Errors: no prompts anywhere, unreadable photographs, interrupted.
+// Works in two rounds. In the first one prompts are triangulated points that probably lie on the object, and
+// points beside it; each mask corrects the scores of the points that it shows. In the second one prompts come
+// from the volume that nearly all masks agree on (vote_on_masks()), and the network sees an enlarged section
+// of the photograph; mask pixels outside of that volume are removed. Returns the names of photographs in
+// which the object was not found; they have no mask. Errors: no prompts anywhere, unreadable photographs,
+// interrupted.
 std::vector<std::string> make_masks(const MaskRequest&, PhotoSegmenter&, double first, double last,
                                     Progress&);
 

@@ -108,10 +108,10 @@ PhotoFiles copy_photos(const fs::path& from, const fs::path& to, int frames, con
   } else {
     const std::vector<fs::path> photos = photos_in(from);
     require_distinct(photos);
-    if (photos.size() < kFewestPhotos)
+    if (photos.size() < kMinPhotos)
       throw Error(ErrorCode::failed,
                   fmt::format("{} has {} photographs; an object needs {} at least, better 40.", from.string(),
-                              photos.size(), kFewestPhotos),
+                              photos.size(), kMinPhotos),
                   "docs/photographing.md says how to take them.");
     for (const fs::path& p : photos) check_cancelled(progress), copy_photo(p, to);
   }

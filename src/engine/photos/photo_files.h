@@ -18,9 +18,9 @@ struct PhotoFiles {
 
 // Copies photographs into the folder `to`, as they are; those that are there already stay. HEIC files become
 // JPEG by heif-convert, and of a video `frames` images are taken by ffmpeg. from: a folder of photographs, or
-// a video file. Errors: fewer than kFewestPhotos, two photographs of the same name, no such programs.
+// a video file. Errors: fewer than kMinPhotos, two photographs of the same name, no such programs.
 PhotoFiles copy_photos(const std::filesystem::path& from, const std::filesystem::path& to, int frames,
                        const Progress&);
-inline constexpr size_t kFewestPhotos = 8;
+inline constexpr size_t kMinPhotos = 8;
 
 }  // namespace cei3d

@@ -16,13 +16,14 @@ namespace cei3d {
 namespace {
 
 // Lengths as shares of the radius that the photographs show.
-constexpr double kReach = 1.5;   // distance from the center: an object that fills the frame is that large
-constexpr double kBeside = 2.5;  // no object of which whole photographs were taken reaches as far
-constexpr double kFlat = 0.02;   // distance from a plane up to which a point is on it
-constexpr double kAbove = 0.05;  // distance from which it surely stands above it
-constexpr double kLinkMin = 0.04, kLinkMax = 0.15;  // points of one thing are closer to each other than that
+constexpr double kReach = 1.5;  // maximum distance of the object from the center: it may fill the frame
+constexpr double kBackgroundRadius = 2.5;  // points farther than this from the center are background
+constexpr double kFlat = 0.02;             // maximum distance from a plane of points on it
+constexpr double kAbove = 0.05;  // minimum distance from a plane of points clearly above or behind it
+// Bounds of the distance up to which neighbors are points of one thing.
+constexpr double kLinkMin = 0.04, kLinkMax = 0.15;
 constexpr double kPlaneShare = 0.1;  // minimum share of the points in a plane that the object lies on
-constexpr double kBehind = 0.03;     // share of the points that may be behind that plane, for mistakes
+constexpr double kBehind = 0.03;     // maximum share of the points behind that plane, which are mistakes
 constexpr int kPlaneTrials = 2000;
 constexpr size_t kPlanePoints = 5000;  // maximum number of points that are counted
 
@@ -190,9 +191,9 @@ PointSplit split_points(const SparsePoints& points, std::span<const View> views)
     const Vec3d p = points.positions[i];
     const double height = plane ? plane->height(p) / out.radius : 1,
                  distance = length(p - out.center) / out.radius;
-    const bool beside = distance > kBeside || height < kFlat;
-    out.belief.push_back(beside ? -1.0f : 0.0f);  // at the foot of the object nothing is sure
-    if (!beside && distance < kReach && height > kAbove) above.push_back(i), standing.push_back(p);
+    const bool background = distance > kBackgroundRadius || height < kFlat;
+    out.belief.push_back(background ? -1.0f : 0.0f);  // points close to the plane may be of either
+    if (!background && distance < kReach && height > kAbove) above.push_back(i), standing.push_back(p);
   }
   const std::vector<uint8_t> is_object = middle_group(standing, out.center, out.radius);
   for (size_t i = 0; i < above.size(); ++i) out.belief[above[i]] = is_object[i] ? 1.0f : -0.5f;

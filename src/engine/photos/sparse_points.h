@@ -21,7 +21,7 @@ struct SparsePoints {
 };
 SparsePoints sparse_points(std::span<const View> views);
 
-// Where each point is believed to be, #points: 1: on the object; -1: on the plane that the object lies on or
+// Where each point probably lies, #points: 1: on the object; -1: on the plane that the object lies on or
 // hangs at, or far away; -0.5: on something else nearby; 0: not known.
 using PointBelief = std::vector<float>;
 
