@@ -15,7 +15,7 @@ namespace cei3d {
 
 struct CaptureFormat {
   std::string name;
-  std::string programs;                               // and data sets that it comes from
+  std::string programs;                               // programs and data sets that write this format
   std::string layout;                                 // its files, for help and messages
   std::optional<Vec3d> up;                            // none: the world frame is arbitrary
   bool (*detect)(const std::filesystem::path& path);  // path: folder or file

@@ -91,7 +91,7 @@ Image file_rgba(const View& view) {
   return out;
 }
 
-// The last channel gets kUnknownAlpha where the mask is not believed.
+// The last channel gets kUnknownAlpha where the mask is overruled.
 void forget_doubtful(const View& view, Image& image) {
   if (view.doubtful_path.empty()) return;
   const Image doubtful = read_image(view.doubtful_path);

@@ -89,7 +89,7 @@ void look_at_image(const View& view, ViewResult& out) {
   out.has[kCut] = out.mask.stated && !full && border_pixels(out.mask) >= 2;
 }
 
-ViewResult look_at(const View& view) {
+ViewResult check_view(const View& view) {
   ViewResult out;
   out.has[kBadPose] = !pose_is_sound(view.camera);
   const bool camera_only = view.image_path.empty() && view.split != Split::train;
@@ -286,7 +286,7 @@ CaptureReport check(const Capture& capture, std::optional<Split> only) {
   std::vector<Checked> all;
   for (const View& v : capture.views)
     if (!only || v.split == *only) all.push_back({&v, {}});
-  parallel_for(int(all.size()), [&](int i) { all[i].result = look_at(*all[i].view); });
+  parallel_for(int(all.size()), [&](int i) { all[i].result = check_view(*all[i].view); });
 
   CaptureReport report;
   report.format = capture.format;

@@ -40,7 +40,7 @@ struct CaptureReport {
   std::optional<Normalization> normalization;  // none: it could not be determined
   // Training cameras to the object's center, input units.
   double distance_min = 0, distance = 0, distance_max = 0;
-  // Where the mask of a view contradicts the other views so much that it is not believed.
+  // Where the mask of a view contradicts the other views so much that it is overruled.
   struct Doubt {
     std::string view;
     Area area;  // [camera.height][camera.width]

@@ -128,7 +128,7 @@ std::string check_page(const Capture& capture, const CaptureReport& report) {
         "<p>Cameras and the object's bounding sphere from above and from the side; training blue, validation "
         "green, test orange.</p>" +
         image_tag(draw_cameras(capture, *report.normalization)) + "\n";
-  page += "<h2>Views</h2><p>What is not the object is dark; where a mask is not believed it is red.</p>\n";
+  page += "<h2>Views</h2><p>What is not the object is dark; where a mask is overruled it is red.</p>\n";
   const std::vector<Image> pictures = pictures_of(capture, report, 180);
   for (size_t i = 0; i < pictures.size(); ++i)
     page += fmt::format("<figure{}>{}<figcaption>{}</figcaption></figure>\n",

@@ -10,7 +10,7 @@
 namespace cei3d {
 
 // One view, `size` pixels wide and high at most, sRGB RGB: the photograph, what is not the object darkened,
-// pixels of masks that are not believed red. A view that cannot be read is gray.
+// pixels where its mask is overruled red. A view that cannot be read is gray.
 Image view_picture(const View& view, const CaptureReport& report, int size);
 
 // All views in rows, in the capture's order; those that a finding names have a red frame.

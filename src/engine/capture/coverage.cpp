@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kDirections = 4096;  // 3 degrees apart
 constexpr double kUnseen = 50;     // degrees to the nearest camera: a quarter of the way around is missing
-constexpr size_t kFewest = 10;     // views; of fewer another finding says that there are few
+constexpr size_t kMinViews = 10;   // minimum number of views; below it check() already reports too few views
 // Sides: directions up to 45 degrees above the horizontal.
 constexpr double kHighest = 0.7071;
 
@@ -64,7 +64,7 @@ std::string between_text(const std::vector<Facing>& cameras, Vec3d middle, Vec3d
 SeenSides seen_sides(std::span<const Vec3d> cameras, const std::function<bool(Vec3d)>& wanted) {
   SeenSides out;
   int all = 0, seen = 0;
-  double least = 2;
+  double min_cosine = 2;
   for (int i = 0; i < kDirections; ++i) {
     const Vec3d d = to_double(fibonacci_direction(i, kDirections));
     if (wanted && !wanted(d)) continue;
@@ -72,10 +72,10 @@ SeenSides seen_sides(std::span<const Vec3d> cameras, const std::function<bool(Ve
     for (const Vec3d& c : cameras) cosine = std::max(cosine, dot(c, d));
     ++all;
     seen += degrees(cosine) <= kSeenWithin;
-    if (cosine < least) least = cosine, out.unseen = d;
+    if (cosine < min_cosine) min_cosine = cosine, out.unseen = d;
   }
   out.share = double(seen) / std::max(all, 1);
-  out.gap = all > 0 ? degrees(least) : 0;
+  out.gap = all > 0 ? degrees(min_cosine) : 0;
   return out;
 }
 
@@ -85,7 +85,7 @@ SeenSides seen_sides(const Capture& capture, Vec3d center) {
 
 void check_coverage(const Capture& capture, Vec3d center, std::vector<Finding>& findings) {
   const std::vector<Facing> cameras = facing_cameras(capture, center);
-  if (cameras.size() < kFewest) return;
+  if (cameras.size() < kMinViews) return;
   const Vec3d up = normalize(capture.up);
   const SeenSides sides =
       seen_sides(directions_of(cameras), [&](Vec3d d) { return dot(d, up) >= 0 && dot(d, up) <= kHighest; });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of check() that compare what a capture says in several ways: its sparse points with its cameras,
-// its masks with each other, its photographs with their neighbors.
+// The consistency checks of check(): sparse points against the cameras, masks against each other, photographs
+// against their neighbors.
 #pragma once
 
 #include <cstdint>

@@ -195,10 +195,10 @@ Image of_mask_size(const Image& photograph, const MaskDoubt& doubt) {
   return same ? photograph : scaled_to(photograph, doubt.width, doubt.height);
 }
 
-// The votes that the photographs do not contradict. A view with an explanation is wrong as a whole, so its
+// Drops the votes that the photographs contradict. A view with an explanation is wrong as a whole, so its
 // photograph does not count.
-void believe_photographs(std::span<const JudgedMask> masks, const SmallMasks& small,
-                         const std::vector<std::string>& explanations, std::vector<MaskDoubt>& doubts) {
+void drop_contradicted_votes(std::span<const JudgedMask> masks, const SmallMasks& small,
+                             const std::vector<std::string>& explanations, std::vector<MaskDoubt>& doubts) {
   for (size_t i = 0; i < doubts.size(); ++i) {
     const Image* photograph = masks[i].photograph;
     MaskDoubt& d = doubts[i];
@@ -339,7 +339,7 @@ std::vector<MaskDoubt> check_silhouettes(std::span<const JudgedMask> masks,
   const SmallMasks small = small_masks(hull, *normalization);
   std::vector<MaskDoubt> doubts = vote_on_masks(small);
   const std::vector<std::string> explanations = explanations_of(masks, small, doubts);
-  believe_photographs(masks, small, explanations, doubts);
+  drop_contradicted_votes(masks, small, explanations, doubts);
   std::vector<double> unconfirmed;
   for (const MaskDoubt& d : doubts) unconfirmed.push_back(d.extra + d.missing);
   if (median(unconfirmed) > 1 - kAgree && report_mistake(masks, findings)) return {};

@@ -14,11 +14,11 @@ namespace cei3d {
 namespace {
 
 constexpr size_t kNeighbors = 6;
-constexpr double kJump = 0.5;        // natural logarithm: 1.6 times as bright as the neighbors
-constexpr double kSpreads = 5;       // median deviations from the neighbors
-constexpr double kBlurred = 0.4;     // maximum sharpness of a blurred photograph, relative to its neighbors'
-constexpr double kSame = 0.004;      // root mean square difference of thumbnails, linear
-constexpr double kExposures = 1.25;  // ratio of the camera's own notes that matters
+constexpr double kJump = 0.5;         // natural logarithm: 1.6 times as bright as the neighbors
+constexpr double kOutlierFactor = 5;  // a photograph stands out beyond this many median deviations
+constexpr double kBlurred = 0.4;      // maximum sharpness of a blurred photograph, relative to its neighbors'
+constexpr double kSame = 0.004;       // root mean square difference of thumbnails, linear
+constexpr double kExposures = 1.25;   // ratio of the camera's own notes that matters
 
 // Second differences at the image's own resolution, where all five pixels are of the object.
 double sharpness_of(const Image& rgba) {
@@ -83,12 +83,12 @@ std::vector<double> against_neighbors(std::span<const JudgedPhoto> photos, F val
   return out;
 }
 
-double spread_of(std::vector<double> values) {
+double median_deviation(std::vector<double> values) {
   for (double& v : values) v = std::abs(v);
   return median(values);
 }
 
-// What an object looks like changes with the direction, so jumps are told from a gradient.
+// An object's brightness changes gradually with the direction: a jump is the residual of a local linear fit.
 std::vector<double> jumps_of_brightness(std::span<const JudgedPhoto> photos, Vec3d center) {
   std::vector<Vec3d> directions;
   std::vector<double> brightness;
@@ -102,7 +102,7 @@ std::vector<double> jumps_of_brightness(std::span<const JudgedPhoto> photos, Vec
 
 void check_exposures(std::span<const JudgedPhoto> photos, Vec3d center, std::vector<Finding>& findings) {
   const auto differences = jumps_of_brightness(photos, center);
-  const double limit = std::max(kJump, kSpreads * spread_of(differences));
+  const double limit = std::max(kJump, kOutlierFactor * median_deviation(differences));
   std::vector<std::string> names;
   for (size_t i = 0; i < photos.size(); ++i)
     if (std::abs(differences[i]) > limit)
@@ -144,7 +144,7 @@ void check_white_balance(std::span<const JudgedPhoto> photos, std::vector<Findin
 void check_blur(std::span<const JudgedPhoto> photos, std::vector<Finding>& findings) {
   const auto differences = against_neighbors(
       photos, [](const JudgedPhoto& p) { return std::log(std::max(p.look->sharpness, 1e-6)); });
-  const double limit = std::max(-std::log(kBlurred), kSpreads * spread_of(differences));
+  const double limit = std::max(-std::log(kBlurred), kOutlierFactor * median_deviation(differences));
   std::vector<std::string> names;
   for (size_t i = 0; i < photos.size(); ++i)
     if (differences[i] < -limit) names.push_back(photos[i].view->name);
@@ -174,8 +174,8 @@ double contrast_of(const PhotoLook& look) {
   return std::sqrt(sum / double(look.thumbnail.size()));
 }
 
-// The same image at two poses, or twice at one. Neighbors of a smooth object are similar: twice means nearly
-// equal and far nearer than other pairs.
+// Finds the same image at two poses, or twice at one. Neighboring photographs of a smooth object are similar,
+// too: thumbnails of a duplicate are nearly equal, and its pixels are the same.
 void check_duplicates(std::span<const JudgedPhoto> photos, std::vector<Finding>& findings) {
   std::vector<std::string> pairs, second;
   for (size_t i = 0; i < photos.size(); ++i)

@@ -10,10 +10,13 @@
 namespace cei3d {
 namespace {
 
-constexpr size_t kFewest = 8;      // sightings of a view that are judged
-constexpr double kFits = 1.0;      // pixels at a size of 1000: median of cameras that fit
-constexpr double kExplains = 0.5;  // maximum share of the median that another reading of the cameras leaves
-constexpr double kOddView = 5;     // medians of all
+constexpr size_t kMinSightings = 8;  // minimum number of sightings of a view that is judged
+// Maximum median error of cameras that fit their points: pixels in images of 1000 pixels.
+constexpr double kMaxMedianError = 1.0;
+// Maximum error that the right reading of the cameras leaves, as a share of that of the present one.
+constexpr double kMaxExplainedShare = 0.5;
+// A view stands out if its error is larger than this many times the median over views.
+constexpr double kOutlierFactor = 5;
 
 PhotoCamera camera_of(const View& view) {
   return view.photo ? *view.photo : PhotoCamera(view.camera, LensDistortion());
@@ -86,7 +89,7 @@ std::vector<Reading> readings() {
 std::vector<const View*> views_with_points(const Capture& capture) {
   std::vector<const View*> out;
   for (const View& v : capture.views)
-    if (v.sightings && v.sightings->size() >= kFewest) out.push_back(&v);
+    if (v.sightings && v.sightings->size() >= kMinSightings) out.push_back(&v);
   return out;
 }
 
@@ -122,7 +125,7 @@ bool is_half_pixel(Vec2d bias) {
 const Reading* best_reading(const std::vector<Reading>& all, const std::vector<const View*>& views,
                             double now) {
   const Reading* best = nullptr;
-  double smallest = kExplains * now;
+  double smallest = kMaxExplainedShare * now;
   for (const Reading& r : all)
     if (const double left = median_of_all(views, &r); left < smallest) smallest = left, best = &r;
   return best;
@@ -132,7 +135,7 @@ void check_each(const std::vector<const View*>& views, double usual, std::vector
   std::vector<std::string> odd;
   for (const View* v : views) {
     const double m = median_length(residuals(*v, camera_of(*v)));
-    if (m > std::max(3.0, kOddView * usual)) odd.push_back(v->name);
+    if (m > std::max(3.0, kOutlierFactor * usual)) odd.push_back(v->name);
   }
   if (odd.empty() || 2 * odd.size() > views.size()) return;
   findings.push_back(
@@ -153,7 +156,7 @@ void check_tracks(const Capture& capture, std::vector<Finding>& findings) {
   if (views.size() < 2) return;
   const double now = median_of_all(views, nullptr);
   const Camera& first = views[0]->file_camera();
-  const double fits = kFits * std::max(first.width, first.height) / 1000.0;
+  const double fits = kMaxMedianError * std::max(first.width, first.height) / 1000.0;
   const std::vector<Reading> all = readings();
   const bool half_pixel = is_half_pixel(usual_bias(views));
   const Reading* best = now > std::min(fits, 0.3) || half_pixel ? best_reading(all, views, now) : nullptr;

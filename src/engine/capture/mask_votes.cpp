@@ -16,21 +16,23 @@ constexpr double kAgainst = 0.15;  // share of the other views that may see back
 // Number of views nearest in direction: a hole that is really there is seen by most of them.
 constexpr size_t kNear = 8;
 constexpr double kNearCosine = 0.64;  // 50 degrees
-constexpr size_t kFewest = 3;         // near views without which nothing is decided
-constexpr int kOpening = 2;           // pixels: doubts about the outline alone do not count
+constexpr size_t kMinNear = 3;        // minimum number of near views for a decision
+constexpr int kOpening = 2;           // pixels: doubts about a thin outline do not count
 constexpr double kShare = 0.01,
                  kOutlier = 3;  // stands out: share of doubtful pixels > kShare + kOutlier x median
 
 constexpr double kAlike = 0.1;  // focal lengths of one camera differ by less
 
-enum class Seen { nothing, background, object };
+enum class MaskSample { nothing, background, object };
 
-Seen look(const HullMask& view, Vec3d p) {
+MaskSample sample_mask(const HullMask& view, Vec3d p) {
   const Vec3d at = view.camera.project(p);
   if (!(at.z > 0 && at.x >= 0 && at.y >= 0 && at.x < view.camera.width && at.y < view.camera.height))
-    return Seen::nothing;
+    return MaskSample::nothing;
   const uint8_t pixel = view.mask[size_t(at.y) * size_t(view.camera.width) + size_t(at.x)];
-  return pixel == kUnknown ? Seen::nothing : pixel == kObject ? Seen::object : Seen::background;
+  return pixel == kUnknown  ? MaskSample::nothing
+         : pixel == kObject ? MaskSample::object
+                            : MaskSample::background;
 }
 
 Vec3d cell_center(int x, int y, int z) {
@@ -48,22 +50,22 @@ class Votes {
     for (size_t v = 0; v < views.size(); ++v) near_.push_back(near_views(v));
   }
 
-  // Whether the other views take the place for the object. own: what this view itself says there.
-  bool supported(Vec3d p, Seen own) const {
+  // Whether nearly all other views show the object at p. own: what this view itself shows there.
+  bool supported(Vec3d p, MaskSample own) const {
     const int cell = cell_of(p);
     if (cell < 0) return false;
-    const int seen = seen_[size_t(cell)] - (own != Seen::nothing),
-              against = against_[size_t(cell)] - (own == Seen::background);
+    const int seen = seen_[size_t(cell)] - (own != MaskSample::nothing),
+              against = against_[size_t(cell)] - (own == MaskSample::background);
     return seen >= std::max(2, int(views_.size()) / 3) && against <= kAgainst * seen;
   }
-  // Whether most of the views from nearly the same direction do.
+  // Whether most views from nearly the same direction show the object at p.
   bool supported_nearby(size_t view, Vec3d p) const {
     size_t for_it = 0, against = 0;
     for (const size_t v : near_[view]) {
-      const Seen s = look(views_[v], p);
-      for_it += s == Seen::object, against += s == Seen::background;
+      const MaskSample s = sample_mask(views_[v], p);
+      for_it += s == MaskSample::object, against += s == MaskSample::background;
     }
-    return for_it + against >= kFewest && for_it > against;
+    return for_it + against >= kMinNear && for_it > against;
   }
 
  private:
@@ -71,9 +73,9 @@ class Votes {
     const Vec3d p = cell_center(x, y, z);
     const size_t i = (size_t(z) * kCells + y) * kCells + x;
     for (const HullMask& view : views_) {
-      const Seen s = look(view, p);
-      seen_[i] = uint16_t(seen_[i] + (s != Seen::nothing));
-      against_[i] = uint16_t(against_[i] + (s == Seen::background));
+      const MaskSample s = sample_mask(view, p);
+      seen_[i] = uint16_t(seen_[i] + (s != MaskSample::nothing));
+      against_[i] = uint16_t(against_[i] + (s == MaskSample::background));
     }
   }
   static int cell_of(Vec3d p) {
@@ -107,14 +109,15 @@ std::pair<double, double> span_in_sphere(Vec3d origin, Vec3d direction) {
   return {std::max(0.0, -b - std::sqrt(d)), -b + std::sqrt(d)};
 }
 
-// What the other views say about a pixel: whether its ray meets the object.
-bool meets_object(const Votes& votes, const HullMask& view, size_t index, int x, int y, Seen own) {
+// Whether the ray of a pixel meets the object, by the other views. own: what the pixel itself shows.
+bool meets_object(const Votes& votes, const HullMask& view, size_t index, int x, int y, MaskSample own) {
   const Ray ray = view.camera.ray(x + 0.5, y + 0.5);
   const Vec3d origin = to_double(ray.origin), direction = to_double(ray.direction);
   const auto [first, last] = span_in_sphere(origin, direction);
   for (double t = first; t < last; t += 1.0 / kCells) {
     const Vec3d p = origin + direction * t;
-    if (votes.supported(p, own) && (own == Seen::object || votes.supported_nearby(index, p))) return true;
+    if (votes.supported(p, own) && (own == MaskSample::object || votes.supported_nearby(index, p)))
+      return true;
   }
   return false;
 }
@@ -129,8 +132,8 @@ MaskDoubt judge(const Votes& votes, const HullMask& view, size_t index) {
       const size_t i = size_t(y) * w + x;
       const uint8_t pixel = view.mask[i];
       object += pixel == kObject;
-      if (pixel == kBackground) missing[i] = meets_object(votes, view, index, x, y, Seen::background);
-      if (pixel == kObject) extra[i] = !meets_object(votes, view, index, x, y, Seen::object);
+      if (pixel == kBackground) missing[i] = meets_object(votes, view, index, x, y, MaskSample::background);
+      if (pixel == kObject) extra[i] = !meets_object(votes, view, index, x, y, MaskSample::object);
     }
   doubt.consensus = missing;
   for (size_t i = 0; i < extra.size(); ++i) doubt.consensus[i] |= view.mask[i] == kObject && !extra[i];

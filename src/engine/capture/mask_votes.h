@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Masks judged by each other: what one mask says against nearly all other views is not believed.
+// Masks judged by each other: a mask that contradicts nearly all other views is overruled where it does.
 // docs/method.md#masks-that-are-a-little-wrong
 #pragma once
 
