@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The segmentation network and the images that it has seen last. To encode an image takes most of a second,
-// to answer a click on an encoded one a few hundredths: whoever clicks again waits for the answer alone.
+// The segmentation network and the images that it has encoded last. Encoding an image takes most of a second,
+// decoding the mask of a click a few hundredths of one: repeated clicks on an image only run the decoder.
 #pragma once
 
 #include <deque>

@@ -228,7 +228,7 @@ bool all_metal(const SplitSolution& s) { return s.materials.metal_share() > 1 - 
 
 // Combines the prior of the light's color with the estimate from the samples and scales the light. Returns
 // the remaining covariance.
-LightCovariance believe_light(SplitSolver& solver, const LinearSplitOptions& options, SplitSolution& s,
+LightCovariance correct_light(SplitSolver& solver, const LinearSplitOptions& options, SplitSolution& s,
                               Progress& progress) {
   if (all_metal(s)) return {};
   LightScale evidence = solver.light_correction(s);
@@ -279,7 +279,7 @@ Solved solve(const Transport& transport, const SurfaceSamples& samples, const Li
     if (several.residual < std::min(kMaxSeveralRatio * best.residual, best.residual - kNoise))
       best = std::move(several);
   }
-  const LightCovariance error = believe_light(fine, options, best, progress);
+  const LightCovariance error = correct_light(fine, options, best, progress);
   return {std::move(best), error};
 }
 

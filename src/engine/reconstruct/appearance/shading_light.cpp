@@ -206,9 +206,9 @@ Vector solve_light(const Shading& s, const std::vector<Pair>& pairs) {
 ShadingLight light_of_shading(const Transport& transport, std::span<const Vec3f> diffuse, uint64_t seed) {
   const Shading s{transport.surface(), diffuse, transport.bounce(diffuse)};
   const Vector light = solve_light(s, pairs_of(s, seed));
-  const float least = kMinRadiance * light.mean();
+  const float min_radiance = kMinRadiance * light.mean();
   ShadingLight out;
-  for (const float l : light) out.sky.push_back(Vec3f{1, 1, 1} * max(l, least));
+  for (const float l : light) out.sky.push_back(Vec3f{1, 1, 1} * max(l, min_radiance));
   out.irradiance = transport.sky(out.sky);
   for (size_t v = 0; v < out.irradiance.size(); ++v) out.irradiance[v] += s.bounce[v];
   return out;
