@@ -30,7 +30,7 @@ std::vector<float> activate_twice_case(const Device& device) {
 
 // Between the layers of a network whose gradient is taken: 5 rows, of the larger arrays 7.
 struct GradientCase {
-  std::vector<float> wide = noise(kN * 7, 30), slope = noise(kN * 5, 31), curvature = noise(kN * 5, 32),
+  std::vector<float> wide = noise(kN * 7, 30), first = noise(kN * 5, 31), second = noise(kN * 5, 32),
                      d_wide = noise(kN * 7, 33), narrow = noise(kN * 5, 34), x = noise(kN * 4 * 7, 35),
                      d_y = noise(kN * 4 * 3, 36), y = std::vector<float>(kN * 4 * 3, 0.0f),
                      d_x = std::vector<float>(kN * 4 * 7, 0.0f);
@@ -38,21 +38,21 @@ struct GradientCase {
 
 std::vector<float> gradient_step_case(const Device& device) {
   GradientCase c;
-  device.launch<GradientStep>({c.wide.data(), c.slope.data(), c.narrow.data(), 7, 5}, kN);
+  device.launch<GradientStep>({c.wide.data(), c.first.data(), c.narrow.data(), 7, 5}, kN);
   return c.narrow;
 }
 
 std::vector<float> gradient_step_grad_case(const Device& device) {
   GradientCase c;
   device.launch<GradientStepGrad>(
-      {c.wide.data(), c.slope.data(), c.curvature.data(), c.d_wide.data(), c.narrow.data(), 7, 5}, kN);
+      {c.wide.data(), c.first.data(), c.second.data(), c.d_wide.data(), c.narrow.data(), 7, 5}, kN);
   c.narrow.insert(c.narrow.end(), c.d_wide.begin(), c.d_wide.end());
   return c.narrow;
 }
 
 std::vector<float> activate_grad_plus_case(const Device& device) {
   GradientCase c;
-  device.launch<ActivateGradPlus>({c.slope.data(), c.narrow.data(), c.wide.data(), 7, 5}, kN);
+  device.launch<ActivateGradPlus>({c.first.data(), c.narrow.data(), c.wide.data(), 7, 5}, kN);
   return c.wide;
 }
 

@@ -9,9 +9,9 @@ namespace cei3d {
 namespace {
 
 constexpr float kDark = 0.08f, kClipped = 0.97f;  // display-encoded
-constexpr size_t kFewest = 50;                    // pixels
+constexpr size_t kMinPixels = 50;
 
-bool tells(float v) { return v > kDark && v < kClipped; }
+bool is_informative(float v) { return v > kDark && v < kClipped; }
 
 }  // namespace
 
@@ -23,11 +23,11 @@ std::optional<Vec3f> exposure_between(const Image& shown, const Image& photo, co
     for (size_t i = 0; i < area.size(); ++i) {
       const float a = shown.data[i * size_t(shown.channels) + size_t(c)],
                   b = photo.data[i * size_t(photo.channels) + size_t(c)];
-      if (!area[i] || !tells(a) || !tells(b)) continue;
+      if (!area[i] || !is_informative(a) || !is_informative(b)) continue;
       of_shown += linear_from_srgb(a), of_photo += linear_from_srgb(b);
       ++pixels;
     }
-    if (pixels < kFewest) return std::nullopt;
+    if (pixels < kMinPixels) return std::nullopt;
     factors[c] = float(of_photo / of_shown);
   }
   return factors;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pinhole camera. OpenCV axes: x right, y down, z into the scene. Pixel (column, row) covers [c, c+1) x [r,
-// r+1); its center is at +0.5. Loaders convert other conventions on the way in.
+// r+1); its center is at +0.5. Loaders convert other conventions on the way in. The pose places the camera in
+// the capture frame or in the unit frame, which is "the frame of the pose" here and "world" in names.
 #pragma once
 
 #include "core/math/vec.h"
@@ -15,7 +16,7 @@ struct Camera {
   int width = 0, height = 0;                        // pixels
   double fx = 0, fy = 0, cx = 0, cy = 0, skew = 0;  // pixels
   Mat3d world_from_cam = Mat3d::identity();         // rotation
-  Vec3d center{0, 0, 0};                            // camera center in world units
+  Vec3d center{0, 0, 0};                            // of the camera, in the frame of the pose
 
   // Ray through the continuous pixel position (u, v).
   Ray ray(double u, double v) const {
@@ -23,7 +24,8 @@ struct Camera {
     const Vec3d d = world_from_cam * Vec3d{x, y, 1.0};
     return {to_float(center), to_float(d / length(d))};
   }
-  // Continuous pixel position (x, y) and z-depth (z) of a world point; z <= 0: behind the camera.
+  // Continuous pixel position (x, y) and z-depth (z) of a point in the frame of the pose; z <= 0: behind the
+  // camera.
   Vec3d project(Vec3d p) const {
     const Vec3d c = transpose(world_from_cam) * (p - center);
     return {(fx * c.x + skew * c.y) / c.z + cx, fy * c.y / c.z + cy, c.z};

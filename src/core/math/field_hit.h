@@ -39,16 +39,16 @@ struct FieldHit {
   Vec3<T> position, normal;
 };
 
-// <grad f, d> of a ray that enters the surface, bounded away from zero.
+// <grad f, d>, the derivative of the field along a ray that enters the surface, bounded away from zero.
 template <class T>
-HD T entering_slope(Vec3<T> gradient, Vec3<T> direction) {
+HD T entering_derivative(Vec3<T> gradient, Vec3<T> direction) {
   return min(dot(gradient, direction), T(-kGrazingCosine) * length(gradient));
 }
 
 // value and gradient: at the parameters Phi, at the point that was traced with Phi0.
 template <class T>
 HD FieldHit<T> field_hit(const TracedHit<T>& h) {
-  const T shift = -h.value / entering_slope(h.gradient, h.direction);
+  const T shift = -h.value / entering_derivative(h.gradient, h.direction);
   return {h.depth + shift, h.position + h.direction * shift,
           normalize(h.gradient + h.gradient_along * shift)};
 }
@@ -66,7 +66,7 @@ HD TracedHitGrad<T> field_hit_grad(const TracedHit<T>& h, const FieldHit<T>& d) 
   const Vec3<T> n = h.gradient * inverse;
   const Vec3<T> d_gradient = (d.normal - n * dot(n, d.normal)) * inverse;
   const T d_depth = d.depth + dot(d.position, h.direction) + dot(d_gradient, h.gradient_along);
-  return {-d_depth / entering_slope(h.gradient, h.direction), d_gradient};
+  return {-d_depth / entering_derivative(h.gradient, h.direction), d_gradient};
 }
 
 }  // namespace cei3d

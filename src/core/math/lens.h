@@ -32,15 +32,16 @@ inline double atan(double a) { return ::atan(a); }
 // Factor on both coordinates, and its derivative with respect to r^2.
 template <class T>
 struct RadialFactor {
-  T value, slope;
+  T value, d_r2;
 };
 
 template <class T>
 T horner(const std::array<double, 4>& k, T t) {
   return T(1.0) + t * (T(k[0]) + t * (T(k[1]) + t * (T(k[2]) + t * T(k[3]))));
 }
+// Derivative of horner() with respect to t.
 template <class T>
-T horner_slope(const std::array<double, 4>& k, T t) {
+T horner_derivative(const std::array<double, 4>& k, T t) {
   return T(k[0]) + t * (T(2 * k[1]) + t * (T(3 * k[2]) + t * T(4 * k[3])));
 }
 
@@ -49,12 +50,13 @@ RadialFactor<T> radial_factor(const LensDistortion& lens, T r2) {
   if (lens.kind == LensKind::fisheye) {
     const T safe = max(r2, T(1e-20)), r = sqrt(safe), angle = atan(r), t = angle * angle;
     const T value = angle * horner(lens.radial, t) / r;
-    const T slope = (horner(lens.radial, t) + T(2.0) * t * horner_slope(lens.radial, t)) / (T(1.0) + safe);
-    return {value, (slope - value) / (safe + safe)};
+    // Derivative of the moved angle with respect to r.
+    const T d_r = (horner(lens.radial, t) + T(2.0) * t * horner_derivative(lens.radial, t)) / (T(1.0) + safe);
+    return {value, (d_r - value) / (safe + safe)};
   }
   const std::array<double, 4> d{lens.divisor[0], lens.divisor[1], lens.divisor[2], 0};
   const T over = horner(lens.radial, r2), under = horner(d, r2), value = over / under;
-  return {value, (horner_slope(lens.radial, r2) - value * horner_slope(d, r2)) / under};
+  return {value, (horner_derivative(lens.radial, r2) - value * horner_derivative(d, r2)) / under};
 }
 
 template <class T>
@@ -74,9 +76,9 @@ template <class T>
 Jacobian2<T> distortion_jacobian(const LensDistortion& lens, Vec2<T> p) {
   const T two(2.0), p1(lens.p1), p2(lens.p2);
   const RadialFactor<T> f = radial_factor(lens, p.x * p.x + p.y * p.y);
-  const T mixed = two * (p.x * p.y * f.slope + p1 * p.x + p2 * p.y);
-  return {{f.value + two * (p.x * p.x * f.slope + p1 * p.y) + T(6.0) * p2 * p.x, mixed},
-          {mixed, f.value + two * (p.y * p.y * f.slope + p2 * p.x) + T(6.0) * p1 * p.y}};
+  const T mixed = two * (p.x * p.y * f.d_r2 + p1 * p.x + p2 * p.y);
+  return {{f.value + two * (p.x * p.x * f.d_r2 + p1 * p.y) + T(6.0) * p2 * p.x, mixed},
+          {mixed, f.value + two * (p.y * p.y * f.d_r2 + p2 * p.x) + T(6.0) * p1 * p.y}};
 }
 
 // The radius |p| up to which distorted() is one to one along the radius; at most kWidestRadius.
@@ -119,7 +121,8 @@ class PhotoCamera {
 std::optional<Vec2d> photo_from_pinhole(const PhotoCamera&, const Camera& pinhole, Vec2d pixel);
 std::optional<Vec2d> pinhole_from_photo(const PhotoCamera&, const Camera& pinhole, Vec2d pixel);
 
-// Where the photograph shows a world point; none: behind the camera or beyond the reach of the lens.
+// Where the photograph shows a point in the frame of the pose; none: behind the camera or beyond the reach of
+// the lens.
 std::optional<Vec2d> project(const PhotoCamera&, Vec3d point);
 
 }  // namespace cei3d

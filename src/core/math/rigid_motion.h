@@ -8,7 +8,8 @@
 
 namespace cei3d {
 
-// turn: rotation about the origin, by |turn| radians about its direction. shift: after it, world units.
+// Of a camera in the frame of its pose. turn: rotation about the origin, by |turn| radians about its
+// direction. shift: after it.
 struct RigidMotion {
   Vec3d turn{0, 0, 0}, shift{0, 0, 0};
 };
@@ -33,8 +34,8 @@ inline Vec3d turn_of(const Mat3d& r) {
   return sine < 1e-12 ? twice_sine * 0.5 : twice_sine * (std::atan2(sine, cosine) / (2 * sine));
 }
 
-// Derivative of the continuous pixel position of a world point by a motion of the camera, at no motion:
-// row 0 of x, row 1 of y; columns turn (3) and shift (3).
+// Derivative of the continuous pixel position of a point, given in the frame of the pose, by a motion of the
+// camera, at no motion: row 0 of x, row 1 of y; columns turn (3) and shift (3).
 struct MotionGrad {
   Vec3d d_turn[2], d_shift[2];
 };
@@ -68,8 +69,8 @@ inline Camera dolly_zoomed(const Camera& camera, double factor) {
   return out;
 }
 
-// Derivative of the continuous pixel position of a world point by the logarithm of the factor of
-// dolly_zoomed(), at a factor of 1.
+// Derivative of the continuous pixel position of a point, given in the frame of the pose, by the logarithm of
+// the factor of dolly_zoomed(), at a factor of 1.
 inline Vec2d dolly_zoom_grad(const Camera& camera, Vec3d point) {
   const Vec3d at = camera.project(point);
   const MotionGrad grad = motion_grad(camera, point);

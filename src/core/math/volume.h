@@ -26,22 +26,22 @@ struct NeusSample {
 
 // Opacity of a section of length `delta` whose middle has signed distance `sdf` and along which the distance
 // changes by `cosine` (gradient . direction) per unit of length. Without the derivative by the cosine the
-// zero set would shrink. Deep inside a section is opaque. NeuS softens the slope early in training; when
+// zero set would shrink. Deep inside a section is opaque. NeuS softens the cosine early in training; when
 // training starts from the visual hull that costs 1 dB, so this does not.
 template <class T>
 HD NeusSample<T> neus_alpha(T sdf, T cosine, T delta, T inv_s) {
   const T zero(0.0f), one(1.0f), half(0.5f), eps(kNeusEpsilon);
   const auto entering = cosine < zero;
-  const T slope = select(entering, cosine, zero), d_slope = select(entering, one, zero);
-  const auto before = Sigmoid::eval(inv_s * (sdf - half * slope * delta), 1.0f);
-  const auto after = Sigmoid::eval(inv_s * (sdf + half * slope * delta), 1.0f);
+  const T change = select(entering, cosine, zero), change_by_cosine = select(entering, one, zero);
+  const auto before = Sigmoid::eval(inv_s * (sdf - half * change * delta), 1.0f);
+  const auto after = Sigmoid::eval(inv_s * (sdf + half * change * delta), 1.0f);
   const T raw = neus_ratio(before.value, after.value, eps), q = before.value + eps;
   const auto inside = (raw > zero) & (raw < one);
   // raw = 1 - after / q
   const T d_before = after.value / (q * q) * before.first * inv_s;
   const T d_after = -(after.first * inv_s / q);
   const T d_sdf = d_before + d_after;
-  const T d_cosine = half * delta * d_slope * (d_after - d_before);
+  const T d_cosine = half * delta * change_by_cosine * (d_after - d_before);
   return {clamp(raw, zero, one), select(inside, d_sdf, zero), select(inside, d_cosine, zero)};
 }
 
@@ -53,15 +53,15 @@ struct NeusNeighbors {
 };
 
 // Opacity of the section of length `delta` around the point, for choosing samples before gradients are known:
-// the slope is that between neighbors, and that of a surface met at 45 degrees where there are none. Deep
-// inside a section is transparent, so that nothing is sampled there.
+// the distance changes as between neighbors, and as for a surface met at 45 degrees where there are none.
+// Deep inside a section is transparent, so that nothing is sampled there.
 template <class T>
 HD T neus_alpha_of_neighbors(const NeusNeighbors<T>& n, T delta, T inv_s) {
   const T half(0.5f);
-  const T half_slope = select(n.has_next, half * (n.next - n.value),
-                              select(n.has_previous, half * (n.value - n.previous), T(-0.35f) * delta));
-  const T before = select(n.has_previous, half * (n.value + n.previous), n.value - half_slope);
-  const T after = n.value + half_slope;
+  const T half_change = select(n.has_next, half * (n.next - n.value),
+                               select(n.has_previous, half * (n.value - n.previous), T(-0.35f) * delta));
+  const T before = select(n.has_previous, half * (n.value + n.previous), n.value - half_change);
+  const T after = n.value + half_change;
   const T phi_before = Sigmoid::eval(inv_s * before, 1.0f).value,
           phi_after = Sigmoid::eval(inv_s * after, 1.0f).value;
   return clamp(neus_ratio(phi_before, phi_after, T(0.0f)), T(0.0f), T(1.0f));

@@ -61,7 +61,7 @@ struct DeformResult {
   DeformReport report;
 };
 
-// Default radius: 0.3 of the unit sphere's, or one and a half times the longest drag if that is more.
+// Default radius: 0.3 in the unit frame, or one and a half times the longest drag if that is more.
 //
 // The deformation itself is solved on the mesh instead of on handler points: the radius contains some
 // thousand vertices, which are solved for exactly in a fraction of a second, and no interpolation between

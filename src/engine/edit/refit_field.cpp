@@ -108,13 +108,13 @@ Field refit_field(const Device& device, const Field& before, const DeformedPoint
 
 std::vector<Vec3f> on_zero_set(const Device& device, const Field& sdf, std::vector<Vec3f> x) {
   constexpr int kRounds = 4;
-  constexpr float kMaxStep = 0.01f, kMinSlope = 0.3f;
+  constexpr float kMaxStep = 0.01f, kMinLength = 0.3f;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<float> values = first_output(device, sdf, x);
     const std::vector<Vec3f> gradients = sdf_gradients(device, sdf, x);
     for (size_t i = 0; i < x.size(); ++i) {
-      const float slope = max(length(gradients[i]), kMinSlope);
-      x[i] = x[i] - gradients[i] * (clamp(values[i] / slope, -kMaxStep, kMaxStep) / slope);
+      const float per_length = max(length(gradients[i]), kMinLength);
+      x[i] = x[i] - gradients[i] * (clamp(values[i] / per_length, -kMaxStep, kMaxStep) / per_length);
     }
   }
   return x;

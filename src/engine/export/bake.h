@@ -22,7 +22,7 @@ struct Textures {
 
 struct BakeOptions {
   int size = 2048;      // texels of a side
-  float reach = 0.02f;  // how far the surface may be from the mesh, unit-sphere units
+  float reach = 0.02f;  // how far the surface may be from the mesh, unit frame
 };
 
 // A texel's surface point is the nearest one along the mesh's normal, moved onto the zero set as for

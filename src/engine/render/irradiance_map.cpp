@@ -26,11 +26,11 @@ IrradianceMap::IrradianceMap(const Device& device, const LobePlanes& lobes) {
 Vec3f IrradianceMap::grad(Vec3f normal, Vec3f d_irradiance) const {
   constexpr float kStep = 1.5f / kCells;
   const auto [t, b] = tangents_of(normal, 2);
-  const auto slope = [&](Vec3f along) {
-    const Vec3f more = at(normal + along * kStep), less = at(normal - along * kStep);
+  const auto derivative_along = [&](Vec3f direction) {
+    const Vec3f more = at(normal + direction * kStep), less = at(normal - direction * kStep);
     return dot(d_irradiance, more - less) / (2 * kStep);
   };
-  return t * slope(t) + b * slope(b);
+  return t * derivative_along(t) + b * derivative_along(b);
 }
 
 }  // namespace cei3d

@@ -189,12 +189,12 @@ void Lighting::add_diffuse_light_grad(const HitBatch& batch, size_t hit, const D
       const DiffuseLight<float> light = directions_.at(normalize(normal)).towards(v);
       return light.lv * d.lv + light.grazing * d.grazing + light.grazing_lv * d.grazing_lv;
     };
-    const auto slope = [&](Vec3f along) {
-      return (loss_at(n + along * kStep) - loss_at(n - along * kStep)) / (2 * kStep);
+    const auto derivative_along = [&](Vec3f direction) {
+      return (loss_at(n + direction * kStep) - loss_at(n - direction * kStep)) / (2 * kStep);
     };
     const Tangents<float> t = tangents_of(n);
     const LightDirection light = directions_.at(n);
-    d_n = t.x * slope(t.x) + t.y * slope(t.y);
+    d_n = t.x * derivative_along(t.x) + t.y * derivative_along(t.y);
     d_v = light.mean * d.lv + light.grazing_mean * d.grazing_lv;
     d_v += v * -dot(v, d_v);
   } else if (nv > 0 && nv < 1) {

@@ -144,8 +144,9 @@ std::optional<EnvConvention> env_convention_from_name(const std::string&);  // "
 // A small distant light, added to the others.
 struct Sun {
   Vec3d direction{0, 0, 1};  // towards it, capture frame; any length
-  double strength = 1;       // of what a surface that faces it receives, in units of what the rest of the
-                             // light gives to a surface on average
+  // Of what a surface that faces it receives, in units of what the rest of the light gives to a surface on
+  // average.
+  double strength = 1;
 };
 
 struct LightChoice {

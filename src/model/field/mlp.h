@@ -72,10 +72,10 @@ class MlpPass {
   // What a hidden layer keeps, in panels of its outputs. "Wide": of what the next layer reads, which may have
   // the network's input appended.
   struct Hidden {
-    AlignedVector<float> z;  // before the activation; of jets the activation's slope there
+    AlignedVector<float> z;  // before the activation; of jets the activation's first derivative there
     AlignedVector<float> h;  // after it; wide
     // The rest is filled by passes of jets only.
-    AlignedVector<float> curvature;  // second derivative of the activation
+    AlignedVector<float> second;     // second derivative of the activation
     AlignedVector<float> d_h, d_z;   // derivatives of output 0 by h and z; d_h is wide
     AlignedVector<float> loss_by_z;  // derivative by z of a loss of the gradient
   };

@@ -72,7 +72,7 @@ MlpPass::MlpPass(const MlpConfig& config, int capacity, int columns)
     hidden.h.resize(next);
     if (jets()) {
       hidden.d_h.resize(next);
-      for (auto* rows : {&hidden.curvature, &hidden.d_z, &hidden.loss_by_z}) rows->resize(own);
+      for (auto* rows : {&hidden.second, &hidden.d_z, &hidden.loss_by_z}) rows->resize(own);
     }
     widest = std::max(widest, size_t(std::max(layers_[l].in, layers_[l].out)));
   }
@@ -106,7 +106,7 @@ void MlpPass::activate(const Device& device, int l, const Batch& s) {
   if (jets())
     launch_by_activation<ActivateTwice, ActivateTwiceArgs>(
         device, config_.activation,
-        {hidden.z.data(), hidden.curvature.data(), hidden.h.data(), stride, out, beta}, s.n);
+        {hidden.z.data(), hidden.second.data(), hidden.h.data(), stride, out, beta}, s.n);
   else
     launch_by_activation<Activate, ActivateArgs>(
         device, config_.activation, {hidden.z.data(), hidden.h.data(), out, stride, out, beta}, s.n);
@@ -171,7 +171,7 @@ void MlpPass::differentiate_grad(const Device& device, const MlpWeights& w, cons
     device.linear_weight_grad({s.panels, in, out, t, t_stride, hidden.d_z.data(), out, gradient + offset(l),
                                layers_[l].in, nullptr});
     device.linear({s.panels, in, out, t, t_stride, w.weight(l), layers_[l].in, nullptr, next, stride});
-    device.launch<GradientStepGrad>({hidden.d_h.data(), hidden.z.data(), hidden.curvature.data(), next,
+    device.launch<GradientStepGrad>({hidden.d_h.data(), hidden.z.data(), hidden.second.data(), next,
                                      hidden.loss_by_z.data(), stride, out},
                                     s.n);
     if (layers_[l + 1].concat) append_input(loss_by_gradient_.data(), inputs, next, l, s);

@@ -7,8 +7,8 @@
 namespace cei3d {
 
 struct Normalization {
-  Vec3d center{0, 0, 0};  // input units
-  double scale = 1;       // unit-frame lengths per input length
+  Vec3d center{0, 0, 0};  // capture frame
+  double scale = 1;       // unit-frame lengths per length of the capture frame
 
   Vec3d unit_from_capture(Vec3d p) const { return (p - center) * scale; }
   Vec3d capture_from_unit(Vec3d p) const { return p / scale + center; }

@@ -53,7 +53,7 @@ int ResidualPass::forward(const Device& device, const Field& features, const Mlp
     }
   values_.forward(device, features, feature_weights, points_.data(), samples, features_.encoding.levels,
                   rows);
-  // The network reads jets; their slopes are the normals that shading uses.
+  // The network reads jets; as their gradients it gets the normals that shading uses.
   for (int i = 0; i < samples; ++i) {
     for (int o = 0; o < rows; ++o)
       jets_[panel_at(i, 4, 0, rows, o)] = values_.output()[panel_at(i, 1, 0, rows, o)];

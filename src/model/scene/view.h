@@ -73,7 +73,7 @@ struct Capture {
   std::string format;                 // one of capture_format_names()
   std::vector<View> views;            // train first, then val, test; each in the order of the capture
   std::optional<ObjectBall> region;   // capture frame
-  Vec3d up{0, 0, 1};                  // world axis that points up, capture frame
+  Vec3d up{0, 0, 1};                  // axis that points up, capture frame
   std::vector<std::string> warnings;  // one sentence per assumption that the loader made
 };
 

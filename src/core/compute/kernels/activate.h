@@ -42,8 +42,8 @@ struct ActivateGrad {
 
 // Activations whose derivatives are needed later.
 struct ActivateTwiceArgs {
-  float* z_slope;    // before the activation on entry, its first derivative there on return
-  float* curvature;  // its second derivative, written
+  float* z_first;  // before the activation on entry, its first derivative there on return
+  float* second;   // its second derivative, written
   float* y;
   int y_stride;  // the others have `rows` rows per panel
   int rows;
@@ -58,10 +58,10 @@ struct ActivateTwice {
     const float beta = a.beta;
     for (int r = 0; r < a.rows; ++r) {
       const size_t at = panel_at(i, 1, 0, a.rows, r);
-      const auto s = A::eval(load<T>(a.z_slope + at), beta);
+      const auto s = A::eval(load<T>(a.z_first + at), beta);
       store<T>(a.y + panel_at(i, 1, 0, a.y_stride, r), s.value);
-      store<T>(a.z_slope + at, s.first);
-      store<T>(a.curvature + at, s.second);
+      store<T>(a.z_first + at, s.first);
+      store<T>(a.second + at, s.second);
     }
   }
 };

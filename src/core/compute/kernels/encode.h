@@ -37,13 +37,13 @@ struct EncodeFrequency {
   static HD void run(const Args& a, int i) {
     const Vec3<T> p = load_point<T>(a.points, i);
     for (int axis = 0; axis < 3; ++axis) {
-      T value[2], slope[2];
-      frequency_eval(p[axis], a.k, value, slope);
+      T value[2], d_p[2];
+      frequency_eval(p[axis], a.k, value, d_p);
       for (int j = 0; j < 2; ++j)
         for (int c = 0; c < a.columns; ++c)
           store<T>(a.out + panel_at(i, a.columns, c, a.stride, a.row + 2 * axis + j), c == 0 ? value[j]
                                                                                       : c == axis + 1
-                                                                                          ? slope[j]
+                                                                                          ? d_p[j]
                                                                                           : T(0.0f));
     }
   }

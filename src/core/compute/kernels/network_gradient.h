@@ -7,10 +7,10 @@
 
 namespace cei3d {
 
-// Back through an activation: d_z = slope d_h.
+// Back through an activation: d_z = first d_h, with `first` the derivative of the activation there.
 struct GradientStep {
   struct Args {
-    const float *d_h, *slope;
+    const float *d_h, *first;
     float* d_z;
     int h_stride;  // the others have `rows` rows per panel
     int rows;
@@ -19,16 +19,16 @@ struct GradientStep {
   static HD void run(const Args& a, int i) {
     for (int r = 0; r < a.rows; ++r) {
       const size_t at = panel_at(i, 1, 0, a.rows, r);
-      store<T>(a.d_z + at, load<T>(a.slope + at) * load<T>(a.d_h + panel_at(i, 1, 0, a.h_stride, r)));
+      store<T>(a.d_z + at, load<T>(a.first + at) * load<T>(a.d_h + panel_at(i, 1, 0, a.h_stride, r)));
     }
   }
 };
 
-// The adjoint of GradientStep: a loss with derivatives t by d_z has slope t by d_h, and (curvature d_h) t by
-// z.
+// The adjoint of GradientStep: a loss with derivatives t by d_z has the derivatives first t by d_h, and, with
+// `second` the second derivative of the activation, second d_h t by z.
 struct GradientStepGrad {
   struct Args {
-    const float *d_h, *slope, *curvature;
+    const float *d_h, *first, *second;
     float* t;      // by d_z on entry, by d_h on return
     float* d_z;    // by z, written
     int h_stride;  // of d_h and t; the others have `rows` rows per panel
@@ -39,16 +39,16 @@ struct GradientStepGrad {
     for (int r = 0; r < a.rows; ++r) {
       const size_t at = panel_at(i, 1, 0, a.rows, r), h = panel_at(i, 1, 0, a.h_stride, r);
       const T t = load<T>(a.t + h);
-      store<T>(a.d_z + at, t * load<T>(a.curvature + at) * load<T>(a.d_h + h));
-      store<T>(a.t + h, t * load<T>(a.slope + at));
+      store<T>(a.d_z + at, t * load<T>(a.second + at) * load<T>(a.d_h + h));
+      store<T>(a.t + h, t * load<T>(a.first + at));
     }
   }
 };
 
-// Back through an activation whose input has a derivative from elsewhere, too: d = slope d + d_z.
+// Back through an activation whose input has a derivative from elsewhere, too: d = first d + d_z.
 struct ActivateGradPlus {
   struct Args {
-    const float *slope, *d_z;
+    const float *first, *d_z;
     float* d;
     int d_stride;  // the others have `rows` rows per panel
     int rows;
@@ -58,7 +58,7 @@ struct ActivateGradPlus {
     for (int r = 0; r < a.rows; ++r) {
       const size_t at = panel_at(i, 1, 0, a.rows, r);
       float* d = a.d + panel_at(i, 1, 0, a.d_stride, r);
-      store<T>(d, load<T>(d) * load<T>(a.slope + at) + load<T>(a.d_z + at));
+      store<T>(d, load<T>(d) * load<T>(a.first + at) + load<T>(a.d_z + at));
     }
   }
 };

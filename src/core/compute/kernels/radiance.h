@@ -67,8 +67,8 @@ struct RadianceInput {
     for (int k = 0; k < 3; ++k) put(r[k]);
     for (int o = 0; o < kRadianceOctaves; ++o)
       for (int k = 0; k < 3; ++k) {
-        T value[2], slope[2];
-        frequency_eval(r[k], o, value, slope);
+        T value[2], by_r[2];
+        frequency_eval(r[k], o, value, by_r);
         put(value[0]);
         put(value[1]);
       }
@@ -106,10 +106,10 @@ struct RadianceInputGrad {
     Vec3<T> d_r = get3(at_r);
     for (int o = 0; o < kRadianceOctaves; ++o)
       for (int k = 0; k < 3; ++k) {
-        T value[2], slope[2];
-        frequency_eval(r[k], o, value, slope);
+        T value[2], by_r[2];
+        frequency_eval(r[k], o, value, by_r);
         const int row = at_r + 3 + 6 * o + 2 * k;
-        d_r[k] = d_r[k] + slope[0] * get(row) + slope[1] * get(row + 1);
+        d_r[k] = d_r[k] + by_r[0] * get(row) + by_r[1] * get(row + 1);
       }
     const Vec3<T> d_n = get3(a.features) + v * get(a.features + 9) + (d_r * nv + v * dot(d_r, n)) * T(2.0f);
     const Vec3<T> d_g = rotated_back(a.rotations, i, (d_n - n * dot(n, d_n)) * inverse);

@@ -31,7 +31,7 @@ std::vector<uint8_t> smooth(const VertexLists& neighbors, std::span<const uint8_
   return out;
 }
 
-// Flips connected components of that label whose area is below `least` and that border on the other label.
+// Flips connected components of that label whose area is below `min_area` and that border on the other label.
 void flip_islands(const VertexLists& neighbors, const std::vector<double>& area, uint8_t label,
                   double min_area, std::vector<uint8_t>& labels) {
   std::vector<uint8_t> seen(labels.size(), 0);

@@ -32,10 +32,12 @@ template <class Use>
 void for_each_inner_texel(Vec2f a, Vec2f b, Vec2f c, int width, int height, const Use& use) {
   constexpr float kFromEdge = 0.02f;  // texels
   const float area = std::abs(signed_area(b - a, c - a));
-  const auto least = [&](Vec2f p, Vec2f q) { return kFromEdge * std::hypot(q.x - p.x, q.y - p.y) / area; };
-  const float least_a = least(b, c), least_b = least(a, c), least_c = least(a, b);
+  const auto min_share = [&](Vec2f p, Vec2f q) {
+    return kFromEdge * std::hypot(q.x - p.x, q.y - p.y) / area;
+  };
+  const float min_a = min_share(b, c), min_b = min_share(a, c), min_c = min_share(a, b);
   for_each_texel(a, b, c, width, height, [&](int x, int y, float b1, float b2) {
-    if (1 - b1 - b2 >= least_a && b1 >= least_b && b2 >= least_c) use(x, y);
+    if (1 - b1 - b2 >= min_a && b1 >= min_b && b2 >= min_c) use(x, y);
   });
 }
 
