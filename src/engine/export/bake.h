@@ -14,7 +14,7 @@ namespace cei3d {
 // Square images, row 0 at v = 0. Texels that no triangle covers have the values of those near them.
 struct Textures {
   Image base_color;  // RGB, linear
-  Image orm;         // R: share of the sky that is free, G: roughness, B: metalness
+  Image orm;         // R: share of the sky that is visible, G: roughness, B: metalness
   Image normal;      // RGB, tangent space, (n + 1) / 2
   Image specular;    // 1 channel, specular strength; empty where it is the same everywhere
   float middle_specular = 0.5f;

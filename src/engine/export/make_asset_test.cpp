@@ -123,7 +123,7 @@ TEST_F(MakeAsset, MaterialsVaryFromTexelToTexel) {
   size_t rough = 0, smooth = 0;
   for_each_point([&](size_t texel, Vec3f direction, const auto&, float, float) {
     const float* orm = &made_->textures.orm.data[3 * texel];
-    EXPECT_NEAR(orm[0], 1, 1e-5);  // the whole sky is free
+    EXPECT_NEAR(orm[0], 1, 1e-5);  // the whole sky is visible
     if (direction.z > 0.35f) {
       EXPECT_EQ(orm[1], 0.8f);
       EXPECT_EQ(orm[2], 1);

@@ -8,7 +8,7 @@
 
 namespace cei3d {
 
-// #V of the surface, [0, 1]: how much of the sky above a vertex is free, weighted by the cosine.
+// #V of the surface, [0, 1]: how much of the sky above a vertex is visible from it, weighted by the cosine.
 std::vector<float> sky_shares(const Surface& surface);
 
 }  // namespace cei3d

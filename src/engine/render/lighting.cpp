@@ -235,7 +235,7 @@ std::vector<IncidentLight<float>> Lighting::incident_light(const HitBatch& batch
   return out;
 }
 
-std::vector<IncidentLight<float>> Lighting::open_light(const HitBatch& batch) const {
+std::vector<IncidentLight<float>> Lighting::unoccluded_light(const HitBatch& batch) const {
   const Vec3f all{1, 1, 1}, none{0, 0, 0};
   std::vector<IncidentLight<float>> out(batch.size());
   parallel_ranges(int(batch.size()), kBlock, [&](int begin, int end) {

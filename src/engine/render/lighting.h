@@ -63,7 +63,7 @@ class Lighting {
   std::vector<IncidentLight<float>> incident_light(const HitBatch&, const VertexMaterials& seen = {}) const;
   // incident_light() of a Lighting without a surface: as if the object hid nothing of the environment and
   // reflected nothing of itself, and diffuse light came evenly from everywhere.
-  std::vector<IncidentLight<float>> open_light(const HitBatch&) const;
+  std::vector<IncidentLight<float>> unoccluded_light(const HitBatch&) const;
   // The radiance of every hit as a linear function of its albedo.
   std::vector<ShadingTerms<float>> terms(const HitBatch&, std::span<const IncidentLight<float>>) const;
   std::vector<ShadingTerms<float>> terms(const HitBatch&, const VertexMaterials& seen = {}) const;

@@ -125,14 +125,14 @@ TEST(Transport, AWhiteCavityGlows) {
   const Mesh mesh = two_spheres(-0.4f);
   const Transport transport(std::make_shared<const Surface>(mesh));
   const SkyRadiance sky(kSkyDirections, Vec3f{1, 1, 1});
-  const auto seen = transport.sky(sky), open = transport.open_sky(sky, seen);
+  const auto seen = transport.sky(sky), unoccluded = transport.unoccluded_sky(sky, seen);
   const std::vector<Vec3f> one(seen.size(), Vec3f{1, 1, 1});
   const auto bounce = transport.bounce(one);
   for (size_t v = 0; v < seen.size(); ++v) {
-    EXPECT_NEAR(open[v].x, kPi, 0.02f);
+    EXPECT_NEAR(unoccluded[v].x, kPi, 0.02f);
     // What is not sky is surface, and a surface as bright as the sky closes the sum (up to the lift of the
     // rays).
-    EXPECT_NEAR(seen[v].x + bounce[v].x, open[v].x, 0.12f);
+    EXPECT_NEAR(seen[v].x + bounce[v].x, unoccluded[v].x, 0.12f);
   }
 }
 

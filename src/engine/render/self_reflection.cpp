@@ -152,7 +152,7 @@ void SelfReflection::add_rays(const Hit& h, const Material& m, uint32_t owner,
   const LobeRays lobe(h, m);
   for (const Vec2f& p : points) {
     const Vec3f ray = lobe.at(p);
-    if (surface_.open(h.triangle, ray)) continue;
+    if (surface_.sees_around(h.triangle, ray)) continue;
     rays.owner.push_back(owner);
     rays.share.push_back(1 / float(points.size()));
     rays.origins.push_back(ray_origin(h));

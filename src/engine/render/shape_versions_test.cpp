@@ -213,9 +213,9 @@ TEST(ChangedScene, WhatWasCutOffNoLongerShadesTheRest) {
   const auto transports = scene_transports(cut);
   ASSERT_EQ(transports.size(), 2u);
   const SkyRadiance sky = sky_radiance(cut.light);
-  const auto seen = transports[1]->sky(sky), open = transports[1]->open_sky(sky, seen);
+  const auto seen = transports[1]->sky(sky), unoccluded = transports[1]->unoccluded_sky(sky, seen);
   const size_t lid = sphere_scene().surface->mesh().positions.size();  // its middle; it lay inside the sphere
-  EXPECT_NEAR(seen[lid].x / open[lid].x, 1, 0.02f);
+  EXPECT_NEAR(seen[lid].x / unoccluded[lid].x, 1, 0.02f);
   EXPECT_EQ(seen[0].x, 0);  // did not change: not asked for
 }
 

@@ -77,7 +77,7 @@ namespace {
 
 // Calls visit(direction) for the bits that are set.
 template <class F>
-void for_free(const uint8_t* bits, const F& visit) {
+void for_visible(const uint8_t* bits, const F& visit) {
   for (int byte = 0; byte < kSkyDirections / 8; ++byte)
     for (int set = bits[byte]; set; set &= set - 1) visit(8 * byte + __builtin_ctz(set));
 }
@@ -90,8 +90,8 @@ std::vector<Vec3f> Transport::sky(const SkyRadiance& radiance) const {
   const uint8_t* bits = surface_->visibility().data();
   return per_vertex([&](int v) {
     Vec3f sum{0, 0, 0};
-    for_free(bits + size_t(v) * (kSkyDirections / 8),
-             [&](int k) { sum += radiance[k] * max(dot(mesh.normals[v], sky[k]), 0.0f); });
+    for_visible(bits + size_t(v) * (kSkyDirections / 8),
+                [&](int k) { sum += radiance[k] * max(dot(mesh.normals[v], sky[k]), 0.0f); });
     return sum * kSolidAngle;
   });
 }
@@ -127,12 +127,13 @@ std::vector<std::vector<Vec3f>> Transport::sums_over_skies(std::span<const SkyRa
 
 std::vector<std::vector<Vec3f>> Transport::skies(std::span<const SkyRadiance> radiance) const {
   const uint8_t* bits = surface_->visibility().data();
-  return sums_over_skies(
-      radiance, [&](int v, const auto& visit) { for_free(bits + size_t(v) * (kSkyDirections / 8), visit); });
+  return sums_over_skies(radiance, [&](int v, const auto& visit) {
+    for_visible(bits + size_t(v) * (kSkyDirections / 8), visit);
+  });
 }
 
-std::vector<std::vector<Vec3f>> Transport::open_skies(std::span<const SkyRadiance> radiance,
-                                                      const std::vector<std::vector<Vec3f>>& visible) const {
+std::vector<std::vector<Vec3f>> Transport::unoccluded_skies(
+    std::span<const SkyRadiance> radiance, const std::vector<std::vector<Vec3f>>& visible) const {
   std::vector<std::vector<Vec3f>> out = sums_over_skies(radiance, [&](int v, const auto& visit) {
     for (const uint16_t k : blocked_directions(size_t(v))) visit(k);
   });
@@ -141,7 +142,7 @@ std::vector<std::vector<Vec3f>> Transport::open_skies(std::span<const SkyRadianc
   return out;
 }
 
-std::vector<Vec3f> Transport::open_sky(const SkyRadiance& radiance, std::vector<Vec3f> visible) const {
+std::vector<Vec3f> Transport::unoccluded_sky(const SkyRadiance& radiance, std::vector<Vec3f> visible) const {
   const auto& sky = sky_directions();
   return per_vertex([&](int v) {
     Vec3f blocked{0, 0, 0};

@@ -24,11 +24,11 @@ class Transport {
   // Irradiance of every vertex from the sky that is visible from it: #V.
   std::vector<Vec3f> sky(const SkyRadiance&) const;
   // Irradiance of every vertex without occlusion: #V. visible: sky() of the same radiance.
-  std::vector<Vec3f> open_sky(const SkyRadiance&, std::vector<Vec3f> visible) const;
-  // sky() and open_sky() of several skies at once, several times as fast: [sky][#V].
+  std::vector<Vec3f> unoccluded_sky(const SkyRadiance&, std::vector<Vec3f> visible) const;
+  // sky() and unoccluded_sky() of several skies at once, several times as fast: [sky][#V].
   std::vector<std::vector<Vec3f>> skies(std::span<const SkyRadiance>) const;
-  std::vector<std::vector<Vec3f>> open_skies(std::span<const SkyRadiance>,
-                                             const std::vector<std::vector<Vec3f>>& visible) const;
+  std::vector<std::vector<Vec3f>> unoccluded_skies(std::span<const SkyRadiance>,
+                                                   const std::vector<std::vector<Vec3f>>& visible) const;
   // Irradiance of every vertex from the rest of the surface: #V. radiance: #V, leaving each vertex.
   std::vector<Vec3f> bounce(std::span<const Vec3f> radiance) const;
 

@@ -16,14 +16,14 @@ Vec3f fraction(Vec3f part, Vec3f whole) {
 }
 
 // Computes the light of the vertices that the transport covers, with two diffuse bounces. Metals, which have
-// no diffuse term, count as diffuse with their reflectance as albedo. visible, open: irradiance of the
+// no diffuse term, count as diffuse with their reflectance as albedo. visible, unoccluded: irradiance of the
 // vertices from the sky with and without occlusion.
-void relight(const Transport& transport, const std::vector<Vec3f>& visible, const std::vector<Vec3f>& open,
-             VertexLight& v) {
+void relight(const Transport& transport, const std::vector<Vec3f>& visible,
+             const std::vector<Vec3f>& unoccluded, VertexLight& v) {
   const size_t n = visible.size();
   for (size_t i = 0; i < n; ++i) {
     if (!transport.covers(i)) continue;
-    v.visibility[i] = fraction(visible[i], open[i]);
+    v.visibility[i] = fraction(visible[i], unoccluded[i]);
     v.bounce[i] = {0, 0, 0};
   }
   std::vector<Vec3f> radiance(n);
@@ -50,14 +50,14 @@ void take_materials(const Transport& transport, VertexMaterials&& made_of, Verte
 }
 
 VertexLight lit(VertexLight before, const Transport& transport, const std::vector<Vec3f>& visible,
-                const std::vector<Vec3f>& open, VertexMaterials made_of) {
+                const std::vector<Vec3f>& unoccluded, VertexMaterials made_of) {
   const size_t n = transport.surface().mesh().positions.size();
   if (made_of.albedo.size() != n || made_of.material.size() != n)
     fail("lighting: {} albedos and {} materials for {} vertices", made_of.albedo.size(),
          made_of.material.size(), n);
   take_materials(transport, std::move(made_of), before);
   for (auto* a : {&before.visibility, &before.bounce, &before.irradiance}) a->resize(n, {0, 0, 0});
-  relight(transport, visible, open, before);
+  relight(transport, visible, unoccluded, before);
   return before;
 }
 
@@ -88,10 +88,10 @@ std::vector<VertexLight> turned_vertex_lights(const Transport& transport, const 
   for (const Mat3f& room_from_object : turns->bins)
     skies.push_back(sky_radiance(rotated(light, transpose(room_from_object))));
   const std::vector<std::vector<Vec3f>> visible = transport.skies(skies),
-                                        open = transport.open_skies(skies, visible);
+                                        unoccluded = transport.unoccluded_skies(skies, visible);
   std::vector<VertexLight> out;
   for (size_t bin = 0; bin < skies.size(); ++bin) {
-    out.push_back(lit({}, transport, visible[bin], open[bin], made_of));
+    out.push_back(lit({}, transport, visible[bin], unoccluded[bin], made_of));
     if (bin > 0) out.back().made_of = {};
   }
   return out;
@@ -101,7 +101,8 @@ VertexLight vertex_light_after(VertexLight before, const Transport& transport, c
                                VertexMaterials made_of) {
   const SkyRadiance sky = sky_radiance(light);
   const std::vector<Vec3f> visible = transport.sky(sky);
-  return lit(std::move(before), transport, visible, transport.open_sky(sky, visible), std::move(made_of));
+  return lit(std::move(before), transport, visible, transport.unoccluded_sky(sky, visible),
+             std::move(made_of));
 }
 
 }  // namespace cei3d

@@ -93,7 +93,7 @@ void JointDescent::make_gloss() {
 // Empty where the shading needs none.
 std::vector<IncidentLight<float>> JointDescent::light_at(const HitBatch& batch) const {
   if (gloss_) return {};
-  return input_.surface ? lighting_->incident_light(batch) : lighting_->open_light(batch);
+  return input_.surface ? lighting_->incident_light(batch) : lighting_->unoccluded_light(batch);
 }
 
 std::vector<ShadingTerms<float>> JointDescent::terms_at(const HitBatch& batch,

@@ -189,7 +189,7 @@ Surface::Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> reca
 
 Surface::~Surface() = default;
 
-bool Surface::open(uint32_t triangle, Vec3f direction) const {
+bool Surface::sees_around(uint32_t triangle, Vec3f direction) const {
   for (const uint16_t k : sky_around(direction))
     for (const uint32_t corner : mesh_.triangles[triangle])
       if (!sees(corner, k)) return false;

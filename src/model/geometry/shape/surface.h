@@ -31,9 +31,9 @@ class Surface {
   bool sees(uint32_t vertex, int direction) const {
     return visibility_[size_t(vertex) * (kSkyDirections / 8) + direction / 8] >> (direction % 8) & 1;
   }
-  // Whether the triangle is unoccluded in a unit direction according to the table: its three corners see the
-  // sky in all directions of sky_around().
-  bool open(uint32_t triangle, Vec3f direction) const;
+  // Whether the sky is visible from the triangle in a unit direction according to the table: its three
+  // corners see it in all directions of sky_around().
+  bool sees_around(uint32_t triangle, Vec3f direction) const;
 
   struct RayHit {
     float t = -1;  // negative: nothing hit

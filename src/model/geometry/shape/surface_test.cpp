@@ -77,7 +77,7 @@ TEST(Surface, NothingIsInTheWayWhereItSaysOpen) {
     Surface::RayHit met;
     s.intersect(std::span(&from, 1), std::span(&to, 1), 0, std::span(&met, 1));
     free += met.t < 0;
-    if (!s.open(f, to)) continue;
+    if (!s.sees_around(f, to)) continue;
     ++open;
     open_but_met += met.t >= 0;
   }
