@@ -33,7 +33,7 @@ class MachineError : public Error {
   explicit MachineError(const std::string& what) : Error(ErrorCode::failed, what) {}
 };
 
-// fail("{}: truncated PNG", path): bad data or a failed operation, exit code 1.
+// fail("{} is a truncated PNG. Copy it again.", path): bad data or a failed operation, exit code 1.
 template <class... A>
 [[noreturn]] void fail(fmt::format_string<A...> text, A&&... args) {
   throw Error(ErrorCode::failed, fmt::format(text, std::forward<A>(args)...));

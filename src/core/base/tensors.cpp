@@ -3,6 +3,8 @@
 // little-endian machines. [huggingface.co/docs/safetensors]
 #include "core/base/tensors.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -169,6 +171,38 @@ Tensors read_tensors(const std::filesystem::path& path) {
 
 void write_tensors(const std::filesystem::path& path, const Tensors& tensors) {
   write_file_atomic(path, tensors_to_bytes(tensors));
+}
+
+namespace {
+
+constexpr const char* kRemedy = "The file is damaged: restore it from a copy, or make again what it holds.";
+
+const Tensor& of_shape(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape) {
+  const Tensor& t = require_tensor(in, name);
+  if (t.shape != shape)
+    fail("Array '{}' has the shape {} instead of {}. {}", name, fmt::join(t.shape, "x"),
+         fmt::join(shape, "x"), kRemedy);
+  return t;
+}
+
+}  // namespace
+
+const Tensor& require_tensor(const Tensors& in, const std::string& name) {
+  const auto it = in.find(name);
+  if (it == in.end()) fail("Array '{}' is missing. {}", name, kRemedy);
+  return it->second;
+}
+
+const Tensor& require_tensor(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape) {
+  const Tensor& t = of_shape(in, name, shape);
+  if (!t.u8.empty()) fail("Array '{}' holds bytes instead of floats. {}", name, kRemedy);
+  return t;
+}
+
+const Tensor& require_bytes(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape) {
+  const Tensor& t = of_shape(in, name, shape);
+  if (!t.f32.empty()) fail("Array '{}' holds floats instead of bytes. {}", name, kRemedy);
+  return t;
 }
 
 }  // namespace cei3d

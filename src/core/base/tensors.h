@@ -24,4 +24,10 @@ void write_tensors(const std::filesystem::path&, const Tensors&);
 std::string tensors_to_bytes(const Tensors&);
 Tensors tensors_from_bytes(const std::string& bytes, const std::string& name_for_errors);
 
+// The array of that name. Error: it is missing.
+const Tensor& require_tensor(const Tensors& in, const std::string& name);
+// The array of floats, or of bytes, of that name. Errors: it is missing, or of another shape or type.
+const Tensor& require_tensor(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape);
+const Tensor& require_bytes(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape);
+
 }  // namespace cei3d

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/base/error.h"
+#include "core/base/error_of.h"
 #include "core/base/temp_folder.h"
 
 namespace cei3d {
@@ -53,6 +54,31 @@ TEST(Tensors, ReadsAForeignFile) {
       "t");
   EXPECT_EQ(t.at("x").f32, std::vector<float>{1});
   EXPECT_EQ(t.at("y").u8, (std::vector<uint8_t>{'a', 'b'}));
+}
+
+TEST(Tensors, ARequiredArrayIsThereAsItIsWanted) {
+  const Tensors t = sample();
+  EXPECT_EQ(&require_tensor(t, "mask"), &t.at("mask"));
+  EXPECT_EQ(&require_tensor(t, "sdf/layer0/weight", {2, 3}), &t.at("sdf/layer0/weight"));
+  EXPECT_EQ(&require_tensor(t, "scalar", {}), &t.at("scalar"));
+  EXPECT_EQ(&require_bytes(t, "mask", {5}), &t.at("mask"));
+  for (const auto& require : {require_bytes, static_cast<decltype(&require_bytes)>(require_tensor)})
+    EXPECT_EQ(&require(t, "empty", {0, 3}), &t.at("empty"));
+}
+
+TEST(Tensors, ARequiredArrayThatIsMissingOrAnotherIsAnError) {
+  const auto floats = [](const char* name, std::vector<int64_t> shape) {
+    return message([&] { require_tensor(sample(), name, shape); });
+  };
+  EXPECT_THAT(message([] { require_tensor(sample(), "normal"); }), testing::HasSubstr("'normal' is missing"));
+  EXPECT_THAT(floats("normal", {5}), testing::HasSubstr("'normal' is missing"));
+  EXPECT_THAT(floats("sdf/layer0/weight", {3, 2}), testing::HasSubstr("has the shape 2x3 instead of 3x2"));
+  EXPECT_THAT(floats("sdf/layer0/weight", {6}), testing::HasSubstr("has the shape 2x3 instead of 6"));
+  EXPECT_THAT(floats("mask", {5}), testing::HasSubstr("holds bytes instead of floats"));
+  EXPECT_THAT(message([] {
+                require_bytes(sample(), "sdf/layer0/weight", {2, 3});
+              }),
+              testing::HasSubstr("holds floats instead of bytes"));
 }
 
 TEST(Tensors, BadHeadersAreErrors) {

@@ -53,7 +53,7 @@ void expect_sound(const std::vector<BenchFigure>& figures) {
 const BenchFigure& figure(const std::vector<BenchFigure>& figures, const std::string& name) {
   const auto it =
       std::find_if(figures.begin(), figures.end(), [&](const BenchFigure& f) { return f.name == name; });
-  if (it == figures.end()) fail("no figure {}", name);
+  if (it == figures.end()) fail("There is no figure {}.", name);
   return *it;
 }
 

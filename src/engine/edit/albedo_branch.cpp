@@ -104,7 +104,7 @@ std::shared_ptr<const Field> fit_branch(const Device& device, const BranchSample
       copies ? std::make_shared<Field>(*s.trained) : std::make_shared<Field>(branch_config(s, options), seed);
   FieldTrainer trainer(*field, {.encoding_rate = options.table_rate, .network_rate = options.layer_rate});
   for (int step = 0; step < options.steps; ++step) {
-    check_cancelled(progress, "painting was interrupted; nothing was changed");
+    check_cancelled(progress, "Painting was interrupted; nothing was changed.");
     const float fraction = float(step) / float(options.steps);
     const Batch batch(s, size_t(options.batch), seed, step);
     trainer.step(

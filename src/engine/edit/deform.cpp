@@ -310,7 +310,7 @@ DeformResult deform(const Device& device, const Scene& scene, const DeformReques
   const ArapResult moved =
       arap_deform(mesh.positions, mesh.triangles, reach.constraints, arap_options(reach, request.options));
   progress.report({"deform", request.geometry == DeformedGeometry::field ? 0.2 : 0.8, -1, ""});
-  check_cancelled(progress, "deforming was interrupted; nothing was changed");
+  check_cancelled(progress, "Deforming was interrupted; nothing was changed.");
   auto reshape = std::make_shared<Reshape>(reshape_to(scene, moved.positions));
 
   DeformResult result;

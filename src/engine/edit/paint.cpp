@@ -20,17 +20,17 @@ namespace {
 void check_scribble(const Scribble& s) {
   if (s.image.channels != 4)
     fail(
-        "the scribble has no alpha channel; save it as RGBA, opaque where it paints and transparent "
-        "elsewhere");
+        "The scribble has no alpha channel. Save it as RGBA, opaque where it paints and transparent "
+        "elsewhere.");
   if (s.image.width != s.camera.width || s.image.height != s.camera.height)
-    fail("the scribble is {}x{} pixels, the view {}x{}; paint on an image of the view's own size",
+    fail("The scribble is {}x{} pixels, the view {}x{}. Paint on an image of the view's own size.",
          s.image.width, s.image.height, s.camera.width, s.camera.height);
 }
 
 void check_stroke(const Stroke& s) {
-  if (s.painted_pixels == 0) fail("nothing in the scribble is opaque; paint with alpha above one half");
+  if (s.painted_pixels == 0) fail("Nothing in the scribble is opaque. Paint with alpha above one half.");
   if (s.painted_pixels == s.missed_pixels)
-    fail("none of the {} painted pixels is on the object as this view sees it; is it the right view?",
+    fail("None of the {} painted pixels is on the object as this view sees it. Is it the right view?",
          s.painted_pixels);
 }
 
@@ -47,8 +47,8 @@ void check_opacity(const std::vector<Stroke>& strokes) {
     if (std::any_of(s.coverage.begin(), s.coverage.end(), [](float c) { return c > kMaterialWeight; }))
       return;
   fail(
-      "the paint is nowhere more opaque than one half, and a material is painted only from there; paint with "
-      "a higher alpha");
+      "The paint is nowhere more opaque than one half, and a material is painted only from there. Paint with "
+      "a higher alpha.");
 }
 
 // Targets of all scribbles together.
@@ -159,7 +159,7 @@ bool paints_albedo(const PaintRequest& r) {
 
 std::vector<Stroke> trace_strokes(const Device& device, const Scene& scene, const PaintRequest& request,
                                   PaintReport& report) {
-  if (request.scribbles.empty()) fail("there is no scribble to paint");
+  if (request.scribbles.empty()) fail("There is no scribble to paint.");
   for (const Scribble& s : request.scribbles) check_scribble(s);
   std::vector<Stroke> strokes;
   for (const Scribble& s : request.scribbles) {

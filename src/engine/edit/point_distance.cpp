@@ -27,7 +27,7 @@ float length_1(Vec3f v) { return std::abs(v.x) + std::abs(v.y) + std::abs(v.z); 
 }  // namespace
 
 PointDistance::PointDistance(HandlerPoints points) {
-  if (points.positions.empty()) fail("a surface without points has no distance");
+  if (points.positions.empty()) fail("A surface without points has no distance (an error in the program).");
   for (int k = 0; k < kLevels; ++k) {
     const float spacing = points.spacing, radius = kSpacings * spacing;
     PointIndex index(points.positions, radius);

@@ -33,7 +33,8 @@ class Refit {
     for (size_t i = 0; i < given.moved.size(); ++i)
       if (given.moved[i]) moved_.push_back(given.points.positions[i]);
     changed.insert(changed.end(), moved_.begin(), moved_.end());
-    if (moved_.empty() || vacated_.empty()) fail("no handler point has moved: the field stays as it is");
+    if (moved_.empty() || vacated_.empty())
+      fail("No handler point has moved, so the field cannot follow. Drag farther.");
     const PointIndex near(changed, kHeldFrom);
     for (size_t i = 0; i < given.moved.size(); ++i) {
       const Vec3f p = given.points.positions[i];
@@ -100,7 +101,7 @@ Field refit_field(const Device& device, const Field& before, const DeformedPoint
       field, {.encoding_rate = options.table_rate, .network_rate = has_tables ? 0 : options.layer_rate});
   Refit refit(device, before, given, options);
   for (int step = 0; step < options.steps; ++step) {
-    check_cancelled(progress, "deforming was interrupted; nothing was changed");
+    check_cancelled(progress, "Deforming was interrupted; nothing was changed.");
     refit.step(trainer, step, std::pow(kLastRate, float(step) / float(options.steps)));
   }
   return field;

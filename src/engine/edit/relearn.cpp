@@ -52,7 +52,7 @@ std::shared_ptr<const Field> relearn(const Device& device, const Scene& scene, c
   auto field = std::make_shared<Field>(*scene.albedo);
   FieldTrainer trainer(*field, {.encoding_rate = 1e-2f, .network_rate = 2e-3f});
   for (int step = 0; step < kSteps; ++step) {
-    check_cancelled(progress, "painting was interrupted; nothing was changed");
+    check_cancelled(progress, "Painting was interrupted; nothing was changed.");
     const float fraction = float(step) / kSteps;
     const ColorSamples batch = batch_of(painted, beside, seed, step);
     trainer.step(device, batch.positions, absolute_difference(batch.colors),

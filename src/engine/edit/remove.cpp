@@ -32,7 +32,7 @@ RemoveResult remove_part(const Device& device, const Scene& scene, const RemoveR
   check_part(mesh, inside, request.part);
   progress.report({"remove", 0.2, -1, ""});
   CutResult result = cut(mesh, inside, appearance_at(device, scene, vertex_hits(mesh)).albedo);
-  check_cancelled(progress, "removing was interrupted; nothing was changed");
+  check_cancelled(progress, "Removing was interrupted; nothing was changed.");
   RemoveResult out;
   out.layer.id = request.id;
   out.report.removed_triangles = result.reshape.removed.size();

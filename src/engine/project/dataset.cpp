@@ -35,7 +35,7 @@ fs::path find_root(JsonReader& reader, const fs::path& project) {
 
 Split split_of(const std::string& name) {
   const std::optional<Split> split = split_from_name(name);
-  if (!split) fail("dataset.json of the project names the unknown split '{}'; restore it from a copy.", name);
+  if (!split) fail("The project's dataset.json names the unknown split '{}'. Restore it from a copy.", name);
   return *split;
 }
 

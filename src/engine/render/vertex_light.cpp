@@ -53,8 +53,8 @@ VertexLight lit(VertexLight before, const Transport& transport, const std::vecto
                 const std::vector<Vec3f>& unoccluded, VertexMaterials made_of) {
   const size_t n = transport.surface().mesh().positions.size();
   if (made_of.albedo.size() != n || made_of.material.size() != n)
-    fail("lighting: {} albedos and {} materials for {} vertices", made_of.albedo.size(),
-         made_of.material.size(), n);
+    fail("There are {} albedos and {} materials for {} vertices (an error in the program).",
+         made_of.albedo.size(), made_of.material.size(), n);
   take_materials(transport, std::move(made_of), before);
   for (auto* a : {&before.visibility, &before.bounce, &before.irradiance}) a->resize(n, {0, 0, 0});
   relight(transport, visible, unoccluded, before);

@@ -46,7 +46,7 @@ int64_t level_entries(const EncodingConfig& e, int level) {
 void check_config(const FieldConfig& c) {
   const EncodingConfig& e = c.encoding;
   const auto in_range = [](int v, int lo, int hi, const char* name) {
-    if (v < lo || v > hi) fail("field: {} is {}, must be {} to {}", name, v, lo, hi);
+    if (v < lo || v > hi) fail("'{}' of a field is {}, but must be {} to {}.", name, v, lo, hi);
   };
   in_range(e.frequencies, 0, 16, "frequencies");
   in_range(e.levels, 0, 24, "levels");
@@ -78,7 +78,8 @@ void Field::eval(const Device& device, std::span<const Vec3f> x, std::span<float
   const MlpWeights weights(mlp_config(config_), params_);
   const int outputs = int(out.size() / x.size());
   if (outputs < 1 || outputs > config_.outputs || out.size() % x.size() != 0)
-    fail("a field of {} outputs at {} points: no room for {} values", config_.outputs, x.size(), out.size());
+    fail("A field of {} outputs at {} points has no room for {} values (an error in the program).",
+         config_.outputs, x.size(), out.size());
   parallel_ranges(int(x.size()), kGrain, [&](int begin, int end) {
     FieldPass pass(config_, kBlock, 1);
     AlignedVector<float> points(size_t(kBlock) * 3);
@@ -118,7 +119,7 @@ std::string activation_name(Activation a) {
 Activation activation_from(const std::string& name) {
   for (const auto& [value, known] : kActivations)
     if (name == known) return value;
-  fail("field: unknown activation '{}'", name);
+  fail("A field has the activation '{}', which this program does not know. Update cei3d.", name);
 }
 
 // Visits every member under its JSON name; writing and reading share this list.

@@ -58,7 +58,7 @@ void spread_rows(const float* values, int rows, float* to, int to_stride, int pa
 MlpPass::MlpPass(const MlpConfig& config, int capacity, int columns)
     : config_(config), layers_(mlp_layers(config)), columns_(columns) {
   if (jets() && config.output_activation != Activation::none)
-    fail("a network whose gradient is needed cannot have an output activation");
+    fail("A network whose gradient is needed cannot have an output activation (an error in the program).");
   const size_t samples = size_t(capacity);
   x_.assign(samples * columns * config.inputs, 0.0f);
   y_.assign(samples * columns * config.outputs, 0.0f);

@@ -20,7 +20,7 @@ void Optimizer::add(ParamSet& params, const std::string& prefix, const Group& gr
 std::span<float> Optimizer::gradient(const Param& param) {
   for (Slot& s : slots_)
     if (s.param == &param) return s.gradient;
-  fail("parameter '{}' is not being optimized", param.name);
+  fail("Parameter '{}' is not being optimized (an error in the program).", param.name);
 }
 
 void Optimizer::step(const Device& device, float rate_scale) {

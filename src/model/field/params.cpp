@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "model/field/params.h"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <utility>
 
@@ -26,7 +24,7 @@ Param& ParamSet::add(std::string name, std::vector<int64_t> shape) {
 const Param& ParamSet::get(const std::string& name) const {
   for (const Param& p : params_)
     if (p.name == name) return p;
-  fail("no parameter named '{}'", name);
+  fail("There is no parameter '{}' (an error in the program).", name);
 }
 Param& ParamSet::get(const std::string& name) { return const_cast<Param&>(std::as_const(*this).get(name)); }
 
@@ -43,15 +41,6 @@ void ParamSet::load(const Tensors& in, const std::string& prefix) {
     const Tensor& t = require_tensor(in, prefix + "/" + p.name, p.shape);
     std::copy(t.f32.begin(), t.f32.end(), p.value.begin());
   }
-}
-
-const Tensor& require_tensor(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape) {
-  const auto it = in.find(name);
-  if (it == in.end()) fail("array '{}' is missing from the project's data", name);
-  if (it->second.shape != shape)
-    fail("array '{}' has shape {}, expected {}", name, fmt::join(it->second.shape, "x"),
-         fmt::join(shape, "x"));
-  return it->second;
 }
 
 }  // namespace cei3d

@@ -35,7 +35,4 @@ class ParamSet {
   std::vector<Param> params_;
 };
 
-// An array of a tensor file. Error: it is missing or has another shape.
-const Tensor& require_tensor(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape);
-
 }  // namespace cei3d

@@ -136,9 +136,9 @@ class LobeFit {
 
 SgMixture fit_lobes(const Device& device, const Image& lat_long, const LobeFitOptions& options, EnvUp up,
                     const Progress& progress) {
-  if (lat_long.empty() || lat_long.channels < 3) fail("light map: expected a color image");
+  if (lat_long.empty() || lat_long.channels < 3) fail("A light map must be a color image.");
   for (const float x : lat_long.data)
-    if (!std::isfinite(x)) fail("light map: a value is not finite");
+    if (!std::isfinite(x)) fail("A value of the light map is not finite.");
   Image map = env_resample(lat_long, std::min(options.height, lat_long.height));
   const float kernel = options.seen_through;
   if (kernel > 0) map = blurred(map, kernel, up);

@@ -33,13 +33,13 @@ std::vector<float> to_array(const SgMixture& light) {
 
 SgMixture light_from_array(std::span<const float> rows) {
   if (rows.empty() || rows.size() % 7)
-    fail("light: {} numbers are no rows of 7 (axis, sharpness, color)", rows.size());
+    fail("The {} numbers of a light are no rows of 7 (axis, sharpness, color).", rows.size());
   for (const float x : rows)
-    if (!std::isfinite(x)) fail("light: a number is not finite");
+    if (!std::isfinite(x)) fail("A number of the light is not finite.");
   SgMixture light;
   for (size_t i = 0; i < rows.size(); i += 7) {
     const Vec3f axis{rows[i], rows[i + 1], rows[i + 2]};
-    if (length(axis) < 1e-6f) fail("light: lobe {} has no direction", i / 7);
+    if (length(axis) < 1e-6f) fail("Lobe {} of the light has no direction.", i / 7);
     light.lobes.push_back({normalize(axis),
                            clamp(std::abs(rows[i + 3]), kBroadestLobe, kSharpestLobe),
                            {std::abs(rows[i + 4]), std::abs(rows[i + 5]), std::abs(rows[i + 6])}});

@@ -44,7 +44,7 @@ Aspects aspects_from_json(const Json& list) {
     bool known = false;
     for (const Name& n : kNames)
       if (j.get<std::string>() == n.name) a.*n.member = known = true;
-    if (!known) fail("{} is not what an edit can change; update cei3d", j.dump());
+    if (!known) fail("{} is not what an edit can change. Update cei3d.", j.dump());
   }
   return a;
 }

@@ -27,12 +27,12 @@ void check_triangles(const Mesh& mesh) {
   for (const auto& t : mesh.triangles)
     for (const uint32_t v : t)
       if (v >= mesh.positions.size())
-        fail("a triangle of the stored surface names vertex {} of {}", v, mesh.positions.size());
+        fail("A triangle of the stored surface names vertex {} of {}.", v, mesh.positions.size());
 }
 
 std::shared_ptr<const Surface> load_surface(const Tensors& tensors, JsonReader head) {
   if (const int directions = head.require<int>("sky_directions"); directions != kSkyDirections)
-    fail("the stored surface has {} sky directions, this program uses {}; reconstruct the object again",
+    fail("The stored surface has {} sky directions, this program uses {}. Reconstruct the object again.",
          directions, kSkyDirections);
   const int64_t vertices = rows_from(head.member("vertices")), faces = rows_from(head.member("triangles"));
   const bool has_normals = head.require<bool>("normals");
@@ -43,7 +43,7 @@ std::shared_ptr<const Surface> load_surface(const Tensors& tensors, JsonReader h
   mesh.triangles = triangles_from(tensors, "surface/triangles", faces);
   check_triangles(mesh);
   std::vector<uint8_t> visibility =
-      bytes_from(tensors, "surface/visibility", vertices, kSkyDirections / 8).u8;
+      require_bytes(tensors, "surface/visibility", {vertices, kSkyDirections / 8}).u8;
   return std::make_shared<Surface>(std::move(mesh), std::move(visibility));
 }
 
@@ -59,7 +59,7 @@ std::shared_ptr<const HandlerPoints> load_handlers(const Tensors& tensors, JsonR
   auto points = std::make_shared<HandlerPoints>();
   points->positions = vectors_from(tensors, "handlers/positions", n);
   points->normals = vectors_from(tensors, "handlers/normals", n);
-  points->footprints = floats_from(tensors, "handlers/footprints", n, 1).f32;
+  points->footprints = require_tensor(tensors, "handlers/footprints", {n, 1}).f32;
   points->spacing = head.require<float>("spacing");
   head.finish();
   return points;
@@ -82,7 +82,7 @@ std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const std:
                                               JsonReader& reader) {
   // Objects of project version 2 have two layers over the SDF's own features.
   const int layers = reader.member("residual").is_object() ? layers_from(reader.object("residual")) : 2;
-  if (layers < 1 || layers > kMaxResidualLayers) fail("the correction network has {} layers", layers);
+  if (layers < 1 || layers > kMaxResidualLayers) fail("The correction network has {} layers.", layers);
   const std::shared_ptr<const Field> own = load_field("residual_features", tensors, reader);
   auto residual = std::make_shared<Residual>(make_residual(own ? own : sdf, 0, layers));
   residual->params.load(tensors, "residual");
@@ -100,7 +100,7 @@ void save_light_frame(const LightFrame& frame, Json& head) {
 LightFrame load_light_frame(JsonReader& head) {
   JsonReader reader = head.object("light_frame");
   const auto motion = light_motion_named(reader.require<std::string>("motion"));
-  if (!motion) fail("the motion of the light is unknown; update cei3d");
+  if (!motion) fail("The motion of the light is unknown. Update cei3d.");
   LightFrame frame{*motion, to_float(vector_from(reader, "axis")), {}};
   const std::array<double, 9> rows = reader.numbers<9>("reference");  // row by row
   for (size_t i = 0; i < 3; ++i)
@@ -144,7 +144,7 @@ RefinedPose pose_from_json(JsonReader reader) {
 std::shared_ptr<const Field> load_materials(const Tensors& tensors, JsonReader& head) {
   std::shared_ptr<const Field> field = load_field("materials", tensors, head);
   if (field && field->config().outputs < MaterialField::kOutputs)
-    fail("the network of the materials has {} outputs, {} are needed", field->config().outputs,
+    fail("The network of the materials has {} outputs, but {} are needed.", field->config().outputs,
          MaterialField::kOutputs);
   return field;
 }
@@ -167,7 +167,7 @@ Scene with_layer(Scene scene, EditLayer layer) {
   if (layer.shape_version == kLatestVersion) layer.shape_version = latest;
   if (layer.shape_version < 0 || layer.shape_version > latest ||
       (layer.reshape && layer.shape_version != latest))
-    fail("edit {} was made for another shape of the object; undo it, or make it again", layer.id);
+    fail("Edit {} was made for another shape of the object. Undo it, or make it again.", layer.id);
   if (layer.light) {
     scene.light = *layer.light;
     scene.light_frame = {};
@@ -225,7 +225,7 @@ RefinedCameras refined_from_head(const Json& head, const std::string& what) {
       refined.poses.push_back(pose_from_json({pose, "A pose in " + what}));
   if (head.contains("focal")) refined.focal = head.at("focal").get<double>();
   if (!(refined.focal > 0.1 && refined.focal < 10))
-    fail("{} has the impossible factor {} on the focal length", what, refined.focal);
+    fail("{} has the impossible factor {} on the focal length.", what, refined.focal);
   return refined;
 }
 

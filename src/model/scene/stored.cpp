@@ -35,7 +35,7 @@ Tensor tensor_of(const SgMixture& light) {
 SgMixture light_from(const Tensors& tensors, const std::string& name, int64_t lobes) {
   SgMixture light;
   light.lobes.resize(size_t(lobes));
-  const Tensor& t = floats_from(tensors, name, lobes, 7);
+  const Tensor& t = require_tensor(tensors, name, {lobes, 7});
   if (!light.lobes.empty()) std::memcpy(light.lobes.data(), t.f32.data(), t.f32.size() * sizeof(float));
   return light;
 }

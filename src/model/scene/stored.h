@@ -31,8 +31,8 @@ auto checked_load(const char* what, F load) {
   try {
     return load();
   } catch (const Json::exception& e) {
-    fail("the description of the {} is damaged ({}); restore the project from a copy, or make it again", what,
-         e.what());
+    fail("The description of the {} is damaged ({}). Restore the project from a copy, or make it again.",
+         what, e.what());
   }
 }
 

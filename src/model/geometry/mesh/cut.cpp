@@ -164,8 +164,9 @@ CutResult cut(const Mesh& mesh, std::span<const uint8_t> in_part, std::span<cons
     else
       rest.triangles.push_back(mesh.triangles[i]);
   if (result.reshape.removed.empty())
-    fail("the part holds nothing of the surface: there is nothing to remove");
-  if (rest.triangles.empty()) fail("the part is the whole surface: nothing would be left");
+    fail("The part holds nothing of the surface, so there is nothing to remove. Choose another part.");
+  if (rest.triangles.empty())
+    fail("The part is the whole surface, so nothing would be left. Choose a smaller part.");
   const VertexLists around = triangles_around(rest.positions.size(), rest.triangles);
   Reshape& reshape = result.reshape;
   std::map<uint32_t, Vec3f> rim;

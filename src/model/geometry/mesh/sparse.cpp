@@ -18,7 +18,7 @@ Matrix lower_triangle(int n, std::span<const SparseEntry> entries) {
   triplets.reserve(entries.size());
   for (const SparseEntry& e : entries) {
     if (e.row < 0 || e.row >= n || e.column < 0 || e.column >= n)
-      fail("sparse matrix of size {}: an entry at ({}, {})", n, e.row, e.column);
+      fail("A sparse matrix of size {} has no entry ({}, {}) (an error in the program).", n, e.row, e.column);
     if (e.row >= e.column) triplets.emplace_back(e.row, e.column, e.value);
   }
   Matrix a(n, n);
@@ -36,8 +36,9 @@ SparseSolver::SparseSolver(int n, std::span<const SparseEntry> entries)
     : factor_(std::make_unique<Factor>()) {
   factor_->llt.compute(lower_triangle(n, entries));
   if (factor_->llt.info() != Eigen::Success)
-    fail("a linear system of {} unknowns is not positive definite: parts of it hang on nothing that is fixed",
-         n);
+    fail(
+        "A linear system of {} unknowns is not positive definite: parts of it hang on nothing that is fixed.",
+        n);
 }
 
 SparseSolver::SparseSolver(SparseSolver&&) noexcept = default;
@@ -49,8 +50,10 @@ int SparseSolver::size() const { return int(factor_->llt.rows()); }
 std::vector<double> SparseSolver::solve(std::span<const double> right_hand_sides, int columns) const {
   const size_t n = size_t(size());
   if (right_hand_sides.size() != n * size_t(columns))
-    fail("a linear system of {} unknowns and {} right-hand sides was given {} numbers", n, columns,
-         right_hand_sides.size());
+    fail(
+        "A linear system of {} unknowns and {} right-hand sides was given {} numbers (an error in the "
+        "program).",
+        n, columns, right_hand_sides.size());
   std::vector<double> x(right_hand_sides.size());
   parallel_for(columns, [&](int c) {
     const Eigen::Map<const Vector> b(right_hand_sides.data() + size_t(c) * n, Eigen::Index(n));

@@ -207,7 +207,10 @@ Mesh extract_mesh(const Device& device, const Field& sdf, const MeshingOptions& 
   Mesh mesh = surface_net([&](std::span<const Vec3f> points) { return first_output(device, sdf, points); },
                           options.resolution, progress);
   if (mesh.triangles.empty())
-    fail("the reconstructed field has no surface: the object was lost during training");
+    fail(
+        "The reconstructed field has no surface: the object was lost during training. Check the masks and "
+        "the "
+        "camera poses.");
   drop_small_parts(mesh, options.smallest_part);
   mesh.normals.resize(mesh.positions.size());
   constexpr size_t kSlab = 1 << 13;  // vertices between two checks: with the largest networks 7 s of one core

@@ -32,13 +32,10 @@ float texel(const Image& image, int x, int y) {
 bool in_image(const Camera& c, double u, double v) { return u >= 0 && v >= 0 && u < c.width && v < c.height; }
 
 Image image_of(const Tensors& tensors, const std::string& name) {
-  const auto it = tensors.find(name);
-  if (it == tensors.end())
-    fail("the edit's data lack '{}'; the project is damaged, undo or repeat the edit", name);
-  const Tensor& t = it->second;
+  const Tensor& t = require_tensor(tensors, name);
   if (t.shape.size() != 2 || t.shape[0] < 1 || t.shape[1] < 1 ||
       size_t(t.shape[0] * t.shape[1]) != t.f32.size())
-    fail("'{}' is not an image; the project is damaged, undo or repeat the edit", name);
+    fail("Array '{}' of the edit is not an image. The project is damaged: undo or repeat the edit.", name);
   Image image(int(t.shape[1]), int(t.shape[0]), 1);
   image.data = t.f32;
   return image;
@@ -48,7 +45,7 @@ Camera camera_from(JsonReader reader) {
   const Camera c = camera_from_json(reader);
   reader.finish();
   if (c.width < 1 || c.height < 1)
-    fail("the edit's camera has no pixels; the project is damaged, undo or repeat the edit");
+    fail("The edit's camera has no pixels. The project is damaged: undo or repeat the edit.");
   return c;
 }
 

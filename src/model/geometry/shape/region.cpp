@@ -4,36 +4,10 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/base/error.h"
 #include "core/base/json.h"
+#include "model/geometry/shape/vec_tensors.h"
 
 namespace cei3d {
-namespace {
-
-Tensor tensor_of(const std::vector<Vec3f>& v) {
-  Tensor t{{int64_t(v.size()), 3}, {}, {}};
-  t.f32.reserve(3 * v.size());
-  for (const Vec3f p : v) t.f32.insert(t.f32.end(), {p.x, p.y, p.z});
-  return t;
-}
-
-const Tensor& find(const Tensors& tensors, const std::string& name, size_t floats) {
-  const auto it = tensors.find(name);
-  if (it == tensors.end())
-    fail("the edit's data lack '{}'; the project is damaged, undo or repeat the edit", name);
-  if (it->second.f32.size() != floats)
-    fail("'{}' holds {} numbers where {} belong; the project is damaged, undo or repeat the edit", name,
-         it->second.f32.size(), floats);
-  return it->second;
-}
-
-std::vector<Vec3f> vectors_of(const Tensor& t) {
-  std::vector<Vec3f> v(t.f32.size() / 3);
-  for (size_t i = 0; i < v.size(); ++i) v[i] = {t.f32[3 * i], t.f32[3 * i + 1], t.f32[3 * i + 2]};
-  return v;
-}
-
-}  // namespace
 
 Region::Region(Points points, Projector projector) {
   auto data = std::make_shared<Data>();
@@ -151,17 +125,12 @@ Region Region::load(const Tensors& tensors, const Json& head, const std::string&
     reader.finish();
     return scored;
   }
-  const auto n = reader.require<size_t>("points");
+  const auto n = reader.require<int64_t>("points");
   Points points;
-  points.positions = vectors_of(find(tensors, "region/positions", 3 * n));
-  points.normals = vectors_of(find(tensors, "region/normals", 3 * n));
-  points.reach = find(tensors, "region/reach", n).f32;
-  if (const auto edited = tensors.find("region/edited"); edited != tensors.end()) {
-    if (edited->second.u8.size() != n)
-      fail("'region/edited' holds {} labels where {} belong; the project is damaged, undo or repeat the edit",
-           edited->second.u8.size(), n);
-    points.edited = edited->second.u8;
-  }
+  points.positions = vectors_from(tensors, "region/positions", n);
+  points.normals = vectors_from(tensors, "region/normals", n);
+  points.reach = require_tensor(tensors, "region/reach", {n}).f32;
+  if (tensors.contains("region/edited")) points.edited = require_bytes(tensors, "region/edited", {n}).u8;
   const bool has_projector = reader.has("projector");
   reader.finish();
   if (!has_projector) return Region(std::move(points));

@@ -29,7 +29,8 @@ void check_fit(const Mesh& mesh, const Reshape& r) {
   });
   if (!whole || !named || mesh.normals.size() != old || !ascends_below(r.moved, old) ||
       !ascends_below(r.rim, old) || !ascends_below(r.removed, mesh.triangles.size()))
-    fail("a change of shape does not fit the surface it should change; toggle it off, or make it again");
+    fail(
+        "A change of shape does not fit the surface that it should change. Toggle it off, or make it again.");
 }
 
 Tensor gradients_tensor(const std::vector<std::array<float, 9>>& gradients) {
@@ -39,7 +40,7 @@ Tensor gradients_tensor(const std::vector<std::array<float, 9>>& gradients) {
 }
 
 std::vector<std::array<float, 9>> gradients_from(const Tensors& in, int64_t rows) {
-  const Tensor& t = floats_from(in, "reshape/gradients", rows, 9);
+  const Tensor& t = require_tensor(in, "reshape/gradients", {rows, 9});
   std::vector<std::array<float, 9>> out(static_cast<size_t>(rows));
   if (!out.empty()) std::memcpy(out.data(), t.f32.data(), t.f32.size() * sizeof(float));
   return out;

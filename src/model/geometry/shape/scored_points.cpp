@@ -75,9 +75,9 @@ ScoredPoints ScoredPoints::load(const Tensors& tensors, JsonReader head) {
   head.finish();
   s.data_.positions = vectors_from(tensors, "region/scored/positions", n);
   s.data_.normals = vectors_from(tensors, "region/scored/normals", n);
-  s.data_.scores = floats_from(tensors, "region/scored/scores", n, 1).f32;
+  s.data_.scores = require_tensor(tensors, "region/scored/scores", {n, 1}).f32;
   if (n > 0 && !(s.data_.spacing > 0))
-    fail("the edit's points have no spacing; the project is damaged, undo or repeat the edit");
+    fail("The edit's points have no spacing. The project is damaged: undo or repeat the edit.");
   if (n > 0) s.index_ = PointIndex(s.data_.positions, s.radius());
   return s;
 }

@@ -44,9 +44,9 @@ void check_mesh(const Mesh& mesh) {
   const size_t n = mesh.positions.size();
   for (const auto& t : mesh.triangles)
     if (std::max({t[0], t[1], t[2]}) >= n)
-      fail("mesh: a triangle names vertex {} of {}", std::max({t[0], t[1], t[2]}), n);
+      fail("A triangle of the mesh names vertex {} of {}.", std::max({t[0], t[1], t[2]}), n);
   if (!mesh.normals.empty() && mesh.normals.size() != n)
-    fail("mesh: {} normals for {} vertices", mesh.normals.size(), n);
+    fail("A mesh has {} normals for {} vertices (an error in the program).", mesh.normals.size(), n);
 }
 
 RTCRay make_ray(Vec3f o, Vec3f d, float t_min) {
@@ -70,7 +70,7 @@ using Owned = std::unique_ptr<std::remove_pointer_t<Handle>, Release>;
 
 std::shared_ptr<std::remove_pointer_t<RTCDevice>> new_device() {
   const RTCDevice device = rtcNewDevice(nullptr);
-  if (!device) fail("the ray index (Embree) could not start on this processor");
+  if (!device) fail("The ray index (Embree) could not start on this processor.");
   return {device, Release()};
 }
 
@@ -90,7 +90,7 @@ struct Surface::Bvh {
     if (!mesh.triangles.empty()) add(mesh);
     rtcCommitScene(scene);
     if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE)
-      fail("the ray index of a mesh of {} triangles could not be made", mesh.triangles.size());
+      fail("The ray index of a mesh of {} triangles could not be made.", mesh.triangles.size());
   }
 
   void add(const Mesh& mesh) {
@@ -102,7 +102,7 @@ struct Surface::Bvh {
     auto* t = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(g, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                                              3 * sizeof(uint32_t), mesh.triangles.size()));
     if (!p || !t)
-      fail("not enough memory for the ray index of a mesh of {} triangles", mesh.triangles.size());
+      fail("There is not enough memory for the ray index of a mesh of {} triangles.", mesh.triangles.size());
     for (const Vec3f& v : mesh.positions) *p++ = v.x, *p++ = v.y, *p++ = v.z;
     for (const auto& tri : mesh.triangles) t = std::copy(tri.begin(), tri.end(), t);
     rtcCommitGeometry(g);
@@ -172,7 +172,7 @@ Surface::Surface(Mesh mesh, std::vector<uint8_t> visibility)
   check_mesh(mesh_);
   if (mesh_.normals.empty()) mesh_.normals = angle_weighted_normals(mesh_);
   if (visibility_.size() != mesh_.positions.size() * kRowBytes)
-    fail("visibility table of {} bytes does not fit a mesh of {} vertices", visibility_.size(),
+    fail("A visibility table of {} bytes does not fit a mesh of {} vertices.", visibility_.size(),
          mesh_.positions.size());
   bvh_ = std::make_unique<Bvh>(mesh_, nullptr);
 }
@@ -181,7 +181,8 @@ Surface::Surface(Mesh mesh, const Surface& before, std::span<const uint8_t> reca
     : mesh_(std::move(mesh)), visibility_(before.visibility_) {
   check_mesh(mesh_);
   if (recast.size() != mesh_.positions.size() || mesh_.normals.empty())
-    fail("surface: a change needs normals and {} marks, not {}", mesh_.positions.size(), recast.size());
+    fail("A change of the surface needs normals and {} marks, not {} (an error in the program).",
+         mesh_.positions.size(), recast.size());
   bvh_ = std::make_unique<Bvh>(mesh_, before.bvh_.get());
   visibility_.resize(mesh_.positions.size() * kRowBytes);
   bvh_->cast_visibility(mesh_, recast, visibility_, Progress());

@@ -6,7 +6,6 @@
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
-#include "model/field/params.h"
 
 namespace cei3d {
 namespace {
@@ -24,25 +23,13 @@ Tensor bytes_of(std::span<const Row> rows) {
 
 template <class Row>
 std::vector<Row> rows_of_bytes(const Tensors& in, const std::string& name, int64_t rows) {
-  const Tensor& t = bytes_from(in, name, rows, sizeof(Row));
+  const Tensor& t = require_bytes(in, name, {rows, int64_t(sizeof(Row))});
   std::vector<Row> out(static_cast<size_t>(rows));
   if (!out.empty()) std::memcpy(out.data(), t.u8.data(), t.u8.size());
   return out;
 }
 
 }  // namespace
-
-const Tensor& floats_from(const Tensors& in, const std::string& name, int64_t rows, int64_t columns) {
-  const Tensor& t = require_tensor(in, name, {rows, columns});
-  if (int64_t(t.f32.size()) != rows * columns) fail("array '{}' does not hold 32-bit floats", name);
-  return t;
-}
-
-const Tensor& bytes_from(const Tensors& in, const std::string& name, int64_t rows, int64_t columns) {
-  const Tensor& t = require_tensor(in, name, {rows, columns});
-  if (int64_t(t.u8.size()) != rows * columns) fail("array '{}' does not hold bytes", name);
-  return t;
-}
 
 Tensor tensor_of(std::span<const Vec3f> rows) {
   Tensor t{{int64_t(rows.size()), 3}, std::vector<float>(3 * rows.size()), {}};
@@ -51,7 +38,7 @@ Tensor tensor_of(std::span<const Vec3f> rows) {
 }
 
 std::vector<Vec3f> vectors_from(const Tensors& in, const std::string& name, int64_t rows) {
-  const Tensor& t = floats_from(in, name, rows, 3);
+  const Tensor& t = require_tensor(in, name, {rows, 3});
   std::vector<Vec3f> v(static_cast<size_t>(rows));
   if (!v.empty()) std::memcpy(v.data(), t.f32.data(), t.f32.size() * sizeof(float));
   return v;
@@ -69,7 +56,8 @@ std::vector<Triangle> triangles_from(const Tensors& in, const std::string& name,
 
 int64_t rows_from(const Json& j) {
   const int64_t n = j.get<int64_t>();
-  if (n < 0 || n > (int64_t(1) << 32)) fail("a size in a stored description is {}", n);
+  if (n < 0 || n > (int64_t(1) << 32))
+    fail("A size in a stored description is {}. Restore the project from a copy.", n);
   return n;
 }
 

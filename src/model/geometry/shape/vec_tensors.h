@@ -22,10 +22,6 @@ std::vector<uint32_t> numbers_from(const Tensors&, const std::string& name, int6
 Tensor tensor_of(std::span<const std::array<uint32_t, 3>> triangles);
 std::vector<std::array<uint32_t, 3>> triangles_from(const Tensors&, const std::string& name, int64_t rows);
 
-// The tensor of that name, checked.
-const Tensor& floats_from(const Tensors&, const std::string& name, int64_t rows, int64_t columns);
-const Tensor& bytes_from(const Tensors&, const std::string& name, int64_t rows, int64_t columns);
-
 // A number of rows from a stored description.
 int64_t rows_from(const Json&);
 
