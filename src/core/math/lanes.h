@@ -113,6 +113,8 @@ HD Lanes<W> abs(Lanes<W> a) {
 HD Lanes<8> sqrt(Lanes<8> a) { return Reg<8>::f(_mm256_sqrt_ps(__m256(a.v))); }
 HD Lanes<8> reciprocal(Lanes<8> a) { return Lanes<8>(1.0f) / a; }
 HD Lanes<8> floor(Lanes<8> a) { return Reg<8>::f(_mm256_floor_ps(__m256(a.v))); }
+// A pair of floats is gathered as one double. The pointer is read by the intrinsic alone, which may alias any
+// type, and never as a double by this code.
 HD void gather2(const float* p, LaneIndex<8> i, Lanes<8>& a, Lanes<8>& b) {
   const __m256i idx = __m256i(i.v);
   const auto* q = reinterpret_cast<const double*>(p);

@@ -10,7 +10,7 @@ namespace {
 
 template <class T>
 T& member(LobeNumbers<T>& l, int i) {
-  return i < 3 ? l.axis[i] : i == 3 ? l.sharpness : l.color[i - 4];
+  return i < 3 ? l.axis[i] : i == 3 ? l.lambda : l.color[i - 4];
 }
 
 TEST(RawLobe, GradientEqualsDualNumbers) {

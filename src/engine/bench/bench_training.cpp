@@ -133,9 +133,9 @@ std::vector<BenchFigure> figures_of(const std::string& subject, const Samples& s
 
 std::vector<BenchFigure> bench_training(const Device& device, const TrainingBench& options,
                                         Progress& progress) {
-  progress.report({"training: pictures", 0.2, -1, ""});
+  progress.report({"training: photographs", 0.2, -1, ""});
   const Subject subject = subject_of(options.capture);
-  if (subject.pixels.pixels().empty()) fail("No training picture of {} shows the object.", subject.name);
+  if (subject.pixels.pixels().empty()) fail("No training photograph of {} shows the object.", subject.name);
   Preset preset = preset_by_name("fast");
   fit_to_footprint(preset, subject.footprint);
   preset.geometry.prefit_steps = std::min(preset.geometry.prefit_steps, 2 * options.warm_up);

@@ -104,12 +104,23 @@ void MlpPass::activate(const Device& device, int l, const Batch& s) {
   Hidden& hidden = hidden_[l];
   const float beta = config_.softplus_beta;
   if (jets())
-    launch_by_activation<ActivateTwice, ActivateTwiceArgs>(
-        device, config_.activation,
-        {hidden.z.data(), hidden.second.data(), hidden.h.data(), stride, out, beta}, s.n);
+    launch_by_activation<ActivateTwice, ActivateTwiceArgs>(device, config_.activation,
+                                                           {.z_first = hidden.z.data(),
+                                                            .second = hidden.second.data(),
+                                                            .y = hidden.h.data(),
+                                                            .y_stride = stride,
+                                                            .rows = out,
+                                                            .beta = beta},
+                                                           s.n);
   else
-    launch_by_activation<Activate, ActivateArgs>(
-        device, config_.activation, {hidden.z.data(), hidden.h.data(), out, stride, out, beta}, s.n);
+    launch_by_activation<Activate, ActivateArgs>(device, config_.activation,
+                                                 {.z = hidden.z.data(),
+                                                  .y = hidden.h.data(),
+                                                  .z_stride = out,
+                                                  .y_stride = stride,
+                                                  .rows = out,
+                                                  .beta = beta},
+                                                 s.n);
   if (layers_[l + 1].concat) append_input(x_.data(), config_.inputs * columns_, hidden.h.data(), l, s);
 }
 
@@ -129,8 +140,9 @@ void MlpPass::forward(const Device& device, const MlpWeights& w, int n, int acti
   device.linear({s.panels, in_use(s, last()), outputs, x, stride, w.weight(last()), layers_[last()].in,
                  w.bias(last()), y, all * columns_});
   if (!y_raw_.empty())
-    launch_by_activation<Activate, ActivateArgs>(device, config_.output_activation,
-                                                 {y, y_.data(), all, all, outputs, 1}, n);
+    launch_by_activation<Activate, ActivateArgs>(
+        device, config_.output_activation,
+        {.z = y, .y = y_.data(), .z_stride = all, .y_stride = all, .rows = outputs, .beta = 1}, n);
   if (jets()) differentiate(device, w, s);
 }
 
@@ -143,7 +155,12 @@ void MlpPass::differentiate(const Device& device, const MlpWeights& w, const Bat
     const int out = layers_[l].out, stride = layers_[l + 1].in;
     if (layers_[l + 1].concat)
       copy_rows(hidden.d_h.data(), stride, hidden.d_h.data(), stride, 0, stride, s.panels, kHalfRoot);
-    device.launch<GradientStep>({hidden.d_h.data(), hidden.z.data(), hidden.d_z.data(), stride, out}, s.n);
+    device.launch<GradientStep>({.d_h = hidden.d_h.data(),
+                                 .first = hidden.z.data(),
+                                 .d_z = hidden.d_z.data(),
+                                 .h_stride = stride,
+                                 .rows = out},
+                                s.n);
     d = l == 0 ? gradient_.data() : hidden_[l - 1].d_h.data();
     device.linear({s.panels, out, in_use(s, l), hidden.d_z.data(), out, w.transposed(l), out, nullptr, d,
                    layers_[l].in});
@@ -152,15 +169,26 @@ void MlpPass::differentiate(const Device& device, const MlpWeights& w, const Bat
     if (layers_[l + 1].concat)
       add_rows(hidden_[l].d_h.data(), layers_[l + 1].in, layers_[l].out, gradient_.data(), inputs,
                s.active_inputs, s.panels);
-  device.launch<PointGradient>(
-      {x_.data(), gradient_.data(), y_.data(), inputs, config_.outputs, s.active_inputs}, s.n);
+  device.launch<PointGradient>({.x = x_.data(),
+                                .d_input = gradient_.data(),
+                                .y = y_.data(),
+                                .inputs = inputs,
+                                .outputs = config_.outputs,
+                                .rows = s.active_inputs},
+                               s.n);
 }
 
 void MlpPass::differentiate_grad(const Device& device, const MlpWeights& w, const Batch& s, float* gradient,
                                  float* d_input) {
   const int inputs = config_.inputs;
-  device.launch<PointGradientGrad>({x_.data(), gradient_.data(), d_y_.data(), loss_by_gradient_.data(),
-                                    d_input, inputs, config_.outputs, s.active_inputs},
+  device.launch<PointGradientGrad>({.x = x_.data(),
+                                    .d_input = gradient_.data(),
+                                    .d_y = d_y_.data(),
+                                    .t = loss_by_gradient_.data(),
+                                    .d_x = d_input,
+                                    .inputs = inputs,
+                                    .outputs = config_.outputs,
+                                    .rows = s.active_inputs},
                                    s.n);
   const float* t = loss_by_gradient_.data();
   int t_stride = inputs;
@@ -171,8 +199,13 @@ void MlpPass::differentiate_grad(const Device& device, const MlpWeights& w, cons
     device.linear_weight_grad({s.panels, in, out, t, t_stride, hidden.d_z.data(), out, gradient + offset(l),
                                layers_[l].in, nullptr});
     device.linear({s.panels, in, out, t, t_stride, w.weight(l), layers_[l].in, nullptr, next, stride});
-    device.launch<GradientStepGrad>({hidden.d_h.data(), hidden.z.data(), hidden.second.data(), next,
-                                     hidden.loss_by_z.data(), stride, out},
+    device.launch<GradientStepGrad>({.d_h = hidden.d_h.data(),
+                                     .first = hidden.z.data(),
+                                     .second = hidden.second.data(),
+                                     .t = next,
+                                     .d_z = hidden.loss_by_z.data(),
+                                     .h_stride = stride,
+                                     .rows = out},
                                     s.n);
     if (layers_[l + 1].concat) append_input(loss_by_gradient_.data(), inputs, next, l, s);
     t = next;
@@ -192,10 +225,18 @@ void MlpPass::activate_grad(const Device& device, int l, const Batch& s, float* 
     add_rows(d, stride, out, d_x_.data(), inputs, inputs, s.panels);
   }
   if (jets())
-    device.launch<ActivateGradPlus>({hidden.z.data(), hidden.loss_by_z.data(), d, stride, out}, s.n);
+    device.launch<ActivateGradPlus>(
+        {.first = hidden.z.data(), .d_z = hidden.loss_by_z.data(), .d = d, .d_stride = stride, .rows = out},
+        s.n);
   else
-    launch_by_activation<ActivateGrad, ActivateArgs>(
-        device, config_.activation, {hidden.z.data(), d, out, stride, out, config_.softplus_beta}, s.n);
+    launch_by_activation<ActivateGrad, ActivateArgs>(device, config_.activation,
+                                                     {.z = hidden.z.data(),
+                                                      .y = d,
+                                                      .z_stride = out,
+                                                      .y_stride = stride,
+                                                      .rows = out,
+                                                      .beta = config_.softplus_beta},
+                                                     s.n);
 }
 
 void MlpPass::backward(const Device& device, const MlpWeights& w, int n, int active_inputs, float* gradient,
@@ -204,8 +245,9 @@ void MlpPass::backward(const Device& device, const MlpWeights& w, int n, int act
   const int all = config_.outputs, inputs = config_.inputs;
   if (jets()) differentiate_grad(device, w, s, gradient, d_input);
   if (!y_raw_.empty())
-    launch_by_activation<ActivateGrad, ActivateArgs>(device, config_.output_activation,
-                                                     {y_raw_.data(), d_y_.data(), all, all, all, 1}, n);
+    launch_by_activation<ActivateGrad, ActivateArgs>(
+        device, config_.output_activation,
+        {.z = y_raw_.data(), .y = d_y_.data(), .z_stride = all, .y_stride = all, .rows = all, .beta = 1}, n);
 
   const float* d_y = d_y_.data();
   int d_stride = all * columns_;

@@ -30,10 +30,17 @@ void Optimizer::step(const Device& device, float rate_scale) {
     const Group& g = s.group;
     const auto [beta2, eps] = g.adam;
     const double correction = bias_correction(kBeta1, beta2, steps_);
-    const AdamStep step{float(g.rate * rate_scale * correction), kBeta1, beta2, eps, g.skip_zero};
+    const AdamStep step{.rate = float(g.rate * rate_scale * correction),
+                        .beta1 = kBeta1,
+                        .beta2 = beta2,
+                        .eps = eps,
+                        .skip_zero = g.skip_zero};
     parallel_ranges(int(s.gradient.size()), kGrain, [&](int begin, int end) {
-      device.launch<Adam>({step, s.param->value.data() + begin, s.gradient.data() + begin, s.m.data() + begin,
-                           s.v.data() + begin},
+      device.launch<Adam>({.step = step,
+                           .value = s.param->value.data() + begin,
+                           .gradient = s.gradient.data() + begin,
+                           .m = s.m.data() + begin,
+                           .v = s.v.data() + begin},
                           end - begin);
     });
   }

@@ -16,10 +16,10 @@
 namespace cei3d {
 namespace {
 
-constexpr int kRows = 7;  // axis, sharpness, color
+constexpr int kRows = 7;  // axis, lambda, color
 constexpr float kRate = 0.03f, kBeta1 = 0.9f, kBeta2 = 0.99f;
 
-Image blurred(const Image& map, float sharpness, EnvUp up) {
+Image blurred(const Image& map, float lambda, EnvUp up) {
   Image out(map.width, map.height, 3);
   std::vector<Vec3f> directions;
   for (int y = 0; y < map.height; ++y)
@@ -31,7 +31,7 @@ Image blurred(const Image& map, float sharpness, EnvUp up) {
       Vec3f sum{0, 0, 0};
       float total = 0;
       for (int i = 0; i < map.width * map.height; ++i) {
-        const float t = sharpness * (dot(d, directions[i]) - 1);
+        const float t = lambda * (dot(d, directions[i]) - 1);
         if (t < -12) continue;
         const float w = std::exp(t) * env_solid_angle(i / map.width, map.width, map.height);
         sum += map.rgb(i % map.width, i / map.width) * w;
@@ -43,9 +43,9 @@ Image blurred(const Image& map, float sharpness, EnvUp up) {
   return out;
 }
 
-// The lobe that becomes `seen` when blurred by a lobe of the given sharpness; same energy.
-SgLobe unblurred(SgLobe seen, float sharpness) {
-  const float lambda = min(seen.lambda * sharpness / (sharpness - seen.lambda), kSharpestLobe);
+// The lobe that becomes `seen` when blurred by a lobe of sharpness `kernel`; same energy.
+SgLobe unblurred(SgLobe seen, float kernel) {
+  const float lambda = min(seen.lambda * kernel / (kernel - seen.lambda), kSharpestLobe);
   return {seen.axis, lambda, seen.mu * (sg_integral(seen.lambda) / sg_integral(lambda))};
 }
 
@@ -81,15 +81,25 @@ class LobeFit {
 
   void step(const Device& device, int t, float rate) {
     expand();
-    const SgFitArgs args{
-        {planes_.data(), lobes_, p_}, cells_,          directions_.data(), roots_.data(), weights_.data(),
-        d_radiance_.data(),           d_planes_.data()};
+    const SgFitArgs args{.lobes = {planes_.data(), lobes_, p_},
+                         .cells = cells_,
+                         .directions = directions_.data(),
+                         .roots = roots_.data(),
+                         .weights = weights_.data(),
+                         .d_radiance = d_radiance_.data(),
+                         .d_lobes = d_planes_.data()};
     device.launch<SgFitResidual>(args, cells_);
     device.launch<SgFitGather>(args, p_);
     pull_back();
     const auto correction = float(bias_correction(kBeta1, kBeta2, t + 1));
-    const AdamStep adam{kRate * rate * correction, kBeta1, kBeta2, 1e-8f, false};
-    device.launch<Adam>({adam, raw_.data(), gradient_.data(), m_.data(), v_.data()}, kRows * p_);
+    const AdamStep adam{.rate = kRate * rate * correction,
+                        .beta1 = kBeta1,
+                        .beta2 = kBeta2,
+                        .eps = 1e-8f,
+                        .skip_zero = false};
+    device.launch<Adam>(
+        {.step = adam, .value = raw_.data(), .gradient = gradient_.data(), .m = m_.data(), .v = v_.data()},
+        kRows * p_);
     for (int k = 0; k < lobes_; ++k) {
       float& s = row(raw_, 3)[k];
       s = clamp(s, std::log(kBroadestLobe), std::log(sharpest_));
@@ -101,7 +111,7 @@ class LobeFit {
     SgMixture light;
     for (int k = 0; k < lobes_; ++k) {
       const LobeNumbers<float> l = get(planes_, k);
-      light.lobes.push_back({l.axis, l.sharpness, l.color});
+      light.lobes.push_back({l.axis, l.lambda, l.color});
     }
     return light;
   }
@@ -114,7 +124,7 @@ class LobeFit {
   }
   void put(std::vector<float>& planes, int k, const LobeNumbers<float>& l) {
     store_planes(row(planes, 0), p_, k, l.axis);
-    row(planes, 3)[k] = l.sharpness;
+    row(planes, 3)[k] = l.lambda;
     store_planes(row(planes, 4), p_, k, l.color);
   }
 

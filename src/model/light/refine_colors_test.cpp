@@ -26,16 +26,16 @@ Image sunny() {
   return map;
 }
 
-// Mean error, relative, of the light seen through Gaussians of a sharpness between those of the fit, summed
+// Mean error, relative, of the light seen through Gaussians of a lambda between those of the fit, summed
 // pixel by pixel.
-double error_through(float sharpness, const SgMixture& light, const Image& map) {
+double error_through(float lambda, const SgMixture& light, const Image& map) {
   const Image drawn = lat_long(light, kHeight * 4), truth = env_resample(map, kHeight);
   const auto seen = [&](const Image& m, Vec3f towards) {
     double sum = 0;
     for (int y = 0; y < m.height; ++y)
       for (int x = 0; x < m.width; ++x) {
         const Vec3f d = env_direction(float(x) + 0.5f, float(y) + 0.5f, m.width, m.height);
-        sum += double(m.at(x, y)[1]) * std::exp(sharpness * (dot(towards, d) - 1)) *
+        sum += double(m.at(x, y)[1]) * std::exp(lambda * (dot(towards, d) - 1)) *
                env_solid_angle(y, m.width, m.height);
       }
     return sum;
@@ -55,7 +55,7 @@ TEST(RefineColors, KeepsTheEnergyOfASun) {
   const Image map = sunny();
   const SgMixture light = fit_lobes(make_device(), map);
   // .62 by the square roots alone, in which the sun is little
-  for (const float sharpness : {2.0f, 20.0f}) EXPECT_LT(error_through(sharpness, light, map), 0.07);
+  for (const float lambda : {2.0f, 20.0f}) EXPECT_LT(error_through(lambda, light, map), 0.07);
 }
 
 TEST(RefineColors, FindsTheColorsOfLobesWhoseAxesAndSharpnessesAreRight) {

@@ -16,14 +16,14 @@ constexpr int kWidth = 64;
 
 Residual make_residual(std::shared_ptr<const Field> features, uint64_t seed, int layers) {
   Residual r;
-  r.network = {radiance_rows(features->config().outputs - 1),
-               layers,
-               kWidth,
-               -1,
-               Activation::relu,
-               1,
-               3,
-               Activation::none};
+  r.network = {.inputs = radiance_rows(features->config().outputs - 1),
+               .hidden_layers = layers,
+               .width = kWidth,
+               .skip_layer = -1,
+               .activation = Activation::relu,
+               .softplus_beta = 1,
+               .outputs = 3,
+               .output_activation = Activation::none};
   r.features = std::move(features);
   add_mlp_params(r.network, r.params, seed);
   std::vector<Param>& all = r.params.all();
@@ -59,7 +59,11 @@ int ResidualPass::forward(const Device& device, const Field& features, const Mlp
       jets_[panel_at(i, 4, 0, rows, o)] = values_.output()[panel_at(i, 1, 0, rows, o)];
     for (int c = 0; c < 3; ++c) jets_[panel_at(i, 4, 1 + c, rows, 0)] = hit(i).normal[c];
   }
-  device.launch<RadianceInput>({points_.data(), directions_.data(), jets_.data(), network_.input(), rows - 1},
+  device.launch<RadianceInput>({.points = points_.data(),
+                                .directions = directions_.data(),
+                                .jets = jets_.data(),
+                                .input = network_.input(),
+                                .features = rows - 1},
                                samples);
   network_.forward(device, weights, samples, weights.config().inputs, 3);
   return samples;
@@ -82,8 +86,12 @@ void ResidualPass::backward_features(const Device& device, const MlpWeights& fea
                                      ChunkGradients& g) {
   const int rows = features_.outputs;
   std::fill(d_jets_.begin(), d_jets_.end(), 0.0f);
-  device.launch<RadianceInputGrad>(
-      {directions_.data(), jets_.data(), d_input_.data(), d_jets_.data(), rows - 1}, samples);
+  device.launch<RadianceInputGrad>({.directions = directions_.data(),
+                                    .jets = jets_.data(),
+                                    .d_input = d_input_.data(),
+                                    .d_jets = d_jets_.data(),
+                                    .features = rows - 1},
+                                   samples);
   float* d_value = values_.d_output();
   for (int i = 0; i < samples; ++i)
     for (int o = 0; o < rows; ++o)  // output 0, the distance, is not a feature

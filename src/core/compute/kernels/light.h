@@ -15,7 +15,7 @@ struct SgFitArgs {
   const float* roots;       // [3][cells] square root of the radiance
   const float* weights;     // [cells] steradians
   float* d_radiance;        // [3][cells] dL/d(radiance)
-  float* d_lobes;           // [7][padded] dL/d(axis, sharpness, color)
+  float* d_lobes;           // [7][padded] dL/d(axis, lambda, color)
 };
 
 // Item: a cell. Evaluates the mixture and writes d_radiance.

@@ -7,7 +7,7 @@
 
 namespace cei3d {
 
-// Light lobes as planes [7][padded]: axis (unit), sharpness, peak color.
+// Light lobes as planes [7][padded]: axis (unit), lambda (sharpness), mu (peak color).
 struct LobePlanes {
   const float* data;
   int count, padded;  // padded: a multiple of 32; unused lobes have zero color

@@ -136,7 +136,7 @@ struct SgLobesGrad {
     const float *normals, *axes, *across;     // [3][stride]
     const float* reflection_lobes;            // [ReflectionLobes::kRows][stride]
     const float *d_irradiance, *d_reflected;  // [3][stride]
-    float* d_lobes;                           // [7][lobes.padded]: axis, sharpness, color; written
+    float* d_lobes;                           // [7][lobes.padded]: axis, lambda, color; written
   };
   template <class T>
   static HD void run(const Args& a, int i) {

@@ -102,7 +102,7 @@ struct SgMirrorLobesGrad {
     MirrorPlanes points;
     int begin, end;
     const float *d_irradiance, *d_mirrored;  // [3][stride]
-    float* d_lobes;                          // [7][lobes.padded]: axis, sharpness, color; written
+    float* d_lobes;                          // [7][lobes.padded]: axis, lambda, color; written
   };
   template <class T>
   static HD void run(const Args& a, int i) {

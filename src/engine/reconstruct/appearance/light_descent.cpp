@@ -5,6 +5,7 @@
 
 #include "core/base/parallel.h"
 #include "core/compute/kernels/shade.h"
+#include "core/compute/planes.h"
 #include "engine/render/hit_reflection.h"
 #include "engine/render/lobe_frames.h"
 
@@ -14,13 +15,6 @@ namespace {
 constexpr int kGrain = 512;                           // hits per chunk
 constexpr float kLogRate = 1e-2f, kAxisRate = 2e-3f;  // of Adam, on logarithms and on unit vectors
 constexpr float kDarkest = 1e-5f;                     // minimum peak radiance; logarithms of 0 do not exist
-
-// [3][stride]
-std::vector<float> planes_of(std::span<const Vec3f> v, int stride) {
-  std::vector<float> p(size_t(3) * stride, 0);
-  for (size_t i = 0; i < v.size(); ++i) store_planes(p.data(), stride, int(i), v[i]);
-  return p;
-}
 
 // Inputs of the lobes' gradient for the hits and one part of their reflection, as planes.
 struct HitPlanes {

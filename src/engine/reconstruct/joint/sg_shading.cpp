@@ -5,6 +5,7 @@
 
 #include "core/base/parallel.h"
 #include "core/compute/kernels/single_sg.h"
+#include "core/compute/planes.h"
 #include "engine/reconstruct/joint/logit.h"
 #include "engine/render/lobe_planes.h"
 
@@ -14,17 +15,7 @@ namespace {
 constexpr int kGrain = 256;  // points per chunk, a multiple of a panel
 enum Row { kSharpness, kAmplitude, kRoughness = 4, kSpecular, kMetalness, kRows };
 
-std::vector<float> planes_of(std::span<const Vec3f> v, int stride) {  // [3][stride]
-  std::vector<float> p(size_t(3) * stride, 0.0f);
-  for (size_t i = 0; i < v.size(); ++i) store_planes(p.data(), stride, int(i), v[i]);
-  return p;
-}
-std::vector<Vec3f> vectors_of(const std::vector<float>& planes, int stride, size_t n) {
-  std::vector<Vec3f> out(n);
-  for (size_t i = 0; i < n; ++i) out[i] = load_planes<float>(planes.data(), stride, int(i));
-  return out;
-}
-// Slopes of what the forward pass has clamped at zero are none.
+// What the forward pass has clamped at zero has no derivative.
 Vec3f where_positive(Vec3f d, Vec3f value) {
   for (int c = 0; c < 3; ++c)
     if (value[c] <= 0) d[c] = 0;
@@ -127,8 +118,8 @@ ShadingGrads SgShading::grad(const HitBatch& batch, std::span<const Vec3f> albed
   d_raw[kSharpness] = light_grad(batch, points, d_mirrored, out) * double(m.sharpness);
   const std::span<float> gradient = optimizer_.gradient(*raw_);
   for (size_t r = 0; r < kRows; ++r) {
-    const float slope = r < kRoughness ? 1 : Sigmoid::eval(raw_->value[r], 1).first;
-    gradient[r] += float(d_raw[r]) * slope;
+    const float value_by_raw = r < kRoughness ? 1 : Sigmoid::eval(raw_->value[r], 1).first;
+    gradient[r] += float(d_raw[r]) * value_by_raw;
   }
   return out;
 }
@@ -142,11 +133,20 @@ double SgShading::light_grad(const HitBatch& batch, const Points& points, std::s
   std::vector<std::vector<float>> d_lobes(size_t(chunks), std::vector<float>(size_t(7) * padded));
   parallel_for(chunks, [&](int c) {
     const int begin = c * kGrain, end = min(stride, begin + kGrain);
-    device_.launch<SgMirrorGrad>({lobes(), part(points.planes(), begin), e.data() + begin, g.data() + begin,
-                                  d_normals.data() + begin, d_sharpness.data() + begin},
+    device_.launch<SgMirrorGrad>({.lobes = lobes(),
+                                  .points = part(points.planes(), begin),
+                                  .d_irradiance = e.data() + begin,
+                                  .d_mirrored = g.data() + begin,
+                                  .d_normals = d_normals.data() + begin,
+                                  .d_sharpness = d_sharpness.data() + begin},
                                  end - begin);
-    device_.launch<SgMirrorLobesGrad>({lobes(), points.planes(), begin, min(end, int(batch.size())), e.data(),
-                                       g.data(), d_lobes[size_t(c)].data()},
+    device_.launch<SgMirrorLobesGrad>({.lobes = lobes(),
+                                       .points = points.planes(),
+                                       .begin = begin,
+                                       .end = min(end, int(batch.size())),
+                                       .d_irradiance = e.data(),
+                                       .d_mirrored = g.data(),
+                                       .d_lobes = d_lobes[size_t(c)].data()},
                                       padded);
   });
   d_lobes_.assign(size_t(7) * padded, 0.0f);

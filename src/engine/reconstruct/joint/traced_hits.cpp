@@ -2,6 +2,7 @@
 #include "engine/reconstruct/joint/traced_hits.h"
 
 #include "core/compute/kernels/field_hit.h"
+#include "core/compute/planes.h"
 #include "model/geometry/shape/sdf_normals.h"
 #include "model/geometry/shape/trace_field.h"
 
@@ -10,11 +11,6 @@ namespace {
 
 constexpr float kBehind = 2.5f;  // rays begin so far before the mesh: outside the unit sphere
 
-std::vector<float> planes_of(std::span<const Vec3f> v, int stride) {  // [3][stride]
-  std::vector<float> p(size_t(3) * stride, 0.0f);
-  for (size_t i = 0; i < v.size(); ++i) store_planes(p.data(), stride, int(i), v[i]);
-  return p;
-}
 std::vector<float> padded(std::span<const float> v, int stride) {
   std::vector<float> p(v.begin(), v.end());
   p.resize(size_t(stride), 0.0f);
@@ -27,8 +23,13 @@ struct TracedHits::Planes {
   int stride;
   std::vector<float> depths, positions, directions, values, gradients, along;
   TracedHitPlanes view() const {
-    return {stride,        depths.data(),    positions.data(), directions.data(),
-            values.data(), gradients.data(), along.data()};
+    return {.stride = stride,
+            .depths = depths.data(),
+            .positions = positions.data(),
+            .directions = directions.data(),
+            .values = values.data(),
+            .gradients = gradients.data(),
+            .gradients_along = along.data()};
   }
 };
 
@@ -37,13 +38,13 @@ TracedHits::Planes TracedHits::planes(const std::vector<float>& values) const {
   const int stride = padded_to_panels(int(hits_.size()));
   std::vector<Vec3f> directions;
   for (const Hit& h : hits_) directions.push_back(-h.to_camera);
-  return {stride,
-          std::vector<float>(size_t(stride), 0.0f),
-          planes_of(positions_of(hits_), stride),
-          planes_of(directions, stride),
-          padded(values, stride),
-          planes_of(gradients_, stride),
-          planes_of(gradients_along_, stride)};
+  return {.stride = stride,
+          .depths = std::vector<float>(size_t(stride), 0.0f),
+          .positions = planes_of(positions_of(hits_), stride),
+          .directions = planes_of(directions, stride),
+          .values = padded(values, stride),
+          .gradients = planes_of(gradients_, stride),
+          .along = planes_of(gradients_along_, stride)};
 }
 
 TracedHits::TracedHits(const Device& device, const Field& sdf, std::span<const Hit> near, bool are_near)
@@ -78,7 +79,9 @@ void TracedHits::refine(const Device& device, const std::vector<float>& values) 
   if (hits_.empty()) return;
   const Planes in = planes(values);
   std::vector<float> depths(size_t(in.stride)), positions(size_t(3) * in.stride), normals(positions.size());
-  device.launch<FieldHits>({in.view(), depths.data(), positions.data(), normals.data()}, in.stride);
+  device.launch<FieldHits>(
+      {.hits = in.view(), .depths = depths.data(), .positions = positions.data(), .normals = normals.data()},
+      in.stride);
   for (size_t i = 0; i < hits_.size(); ++i) {
     hits_[i].position = load_planes<float>(positions.data(), in.stride, int(i));
     hits_[i].normal = load_planes<float>(normals.data(), in.stride, int(i));
@@ -98,9 +101,13 @@ void TracedHits::backward(const Device& device, std::span<const float> d_depths,
   const std::vector<float> depths = padded(d_depths, in.stride), normals = planes_of(d_normals, in.stride),
                            positions(size_t(3) * in.stride, 0.0f);
   std::vector<float> d_values(size_t(in.stride)), d_planes(size_t(3) * in.stride);
-  device.launch<FieldHitsGrad>(
-      {in.view(), depths.data(), positions.data(), normals.data(), d_values.data(), d_planes.data()},
-      in.stride);
+  device.launch<FieldHitsGrad>({.hits = in.view(),
+                                .d_depths = depths.data(),
+                                .d_positions = positions.data(),
+                                .d_normals = normals.data(),
+                                .d_values = d_values.data(),
+                                .d_gradients = d_planes.data()},
+                               in.stride);
   std::vector<Vec3f> d_gradients;
   for (size_t i = 0; i < hits_.size(); ++i) {
     out.points.push_back(hits_[i].position);
