@@ -4,7 +4,6 @@
 #include <string>
 #include <utility>
 
-#include "core/base/error.h"
 #include "engine/io/color_profile.h"
 #include "engine/io/exif.h"
 #include "engine/io/exr_file.h"
@@ -13,6 +12,7 @@
 #include "engine/io/jpeg_file.h"
 #include "engine/io/png_file.h"
 #include "engine/io/tiff_file.h"
+#include "tests/fuzz/target.h"
 
 namespace {
 // As read_linear_image() does it, of small images: the profile is read once and then applied to every pixel.
@@ -55,9 +55,5 @@ void decode(const std::string& bytes) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  try {
-    decode({reinterpret_cast<const char*>(data), size});
-  } catch (const cei3d::Error&) {
-  }
-  return 0;
+  return fuzz_bytes(data, size, decode);
 }

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/hash.h"
 #include "engine/io/npy.h"
@@ -12,6 +11,7 @@
 #include "engine/io/zip_file.h"
 #include "engine/project/project.h"
 #include "engine/project/test_project.h"
+#include "tests/fuzz/target.h"
 
 namespace {
 namespace fs = std::filesystem;
@@ -98,10 +98,5 @@ void read_as(int kind, const std::string& bytes) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  if (size < 1) return 0;
-  try {
-    read_as(data[0] % 12, {reinterpret_cast<const char*>(data) + 1, size - 1});
-  } catch (const cei3d::Error&) {
-  }
-  return 0;
+  return fuzz_kinds(data, size, 12, read_as);
 }

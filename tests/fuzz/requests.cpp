@@ -8,7 +8,6 @@
 #include "apps/server/guard.h"
 #include "apps/server/http.h"
 #include "apps/server/uploads.h"
-#include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/parse_json.h"
 #include "core/base/settings.h"
@@ -16,6 +15,7 @@
 #include "engine/batch/manifest.h"
 #include "engine/batch/state.h"
 #include "engine/session/cameras.h"
+#include "tests/fuzz/target.h"
 
 namespace {
 using namespace cei3d;
@@ -80,10 +80,5 @@ void read_as(int kind, const std::string& bytes) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  if (size < 1) return 0;
-  try {
-    read_as(data[0] % 9, {reinterpret_cast<const char*>(data) + 1, size - 1});
-  } catch (const cei3d::Error&) {
-  }
-  return 0;
+  return fuzz_kinds(data, size, 9, read_as);
 }

@@ -10,8 +10,11 @@ namespace cei3d {
 namespace {
 
 constexpr int kLevels = 5;
-constexpr float kSpacings = 4;  // of a level, to the radius of its searches and to the spacing of the next
-constexpr float kFlat = 1, kRound = 3;  // spacings up to which a plane is used, and from which the point is
+// Radius of the searches of a level and spacing of the next coarser one, in spacings of the level.
+constexpr float kSpacings = 4;
+// Distances, in spacings, up to which the surface is taken as the plane of the nearest point, and from which
+// on the distance is that to the point itself. Between them both are blended.
+constexpr float kFlat = 1, kRound = 3;
 
 HandlerPoints thinned(const HandlerPoints& points, float spacing) {
   std::vector<Hit> hits;

@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/hash.h"
 #include "core/base/json_reader.h"
+#include "core/base/rollback.h"
 #include "core/base/system.h"
 #include "engine/project/dataset.h"
 #include "engine/project/json_file.h"
@@ -80,30 +81,19 @@ void remove_temporaries(const fs::path& folder) {
     if (is_temporary(p)) fs::remove(p, error);
 }
 
-// Undoes the making of a folder when something after it fails.
-class FolderGuard {
- public:
-  explicit FolderGuard(const fs::path& folder) : folder_(folder) {
-    std::error_code error;
-    existed_ = fs::exists(folder, error);
-    fs::create_directories(folder, error);
-    if (error) fail("Cannot make folder {}: {}.", folder.string(), error.message());
-  }
-  ~FolderGuard() {
-    std::error_code error;
-    if (kept_) return;
+// Makes the folder of a new project. The returned guard removes it and the project's first files.
+Rollback make_folder(const fs::path& folder) {
+  std::error_code error;
+  const bool existed = fs::exists(folder, error);
+  fs::create_directories(folder, error);
+  if (error) fail("Cannot make folder {}: {}.", folder.string(), error.message());
+  return Rollback([folder, existed] {
+    std::error_code ignored;
     for (const char* name : {"project.json", "dataset.json", "stack.json", ".lock"})
-      fs::remove(folder_ / name, error);
-    if (!existed_) fs::remove(folder_, error);
-  }
-  FolderGuard(const FolderGuard&) = delete;
-  FolderGuard& operator=(const FolderGuard&) = delete;
-  void keep() { kept_ = true; }
-
- private:
-  fs::path folder_;
-  bool existed_ = false, kept_ = false;
-};
+      fs::remove(folder / name, ignored);
+    if (!existed) fs::remove(folder, ignored);
+  });
+}
 
 }  // namespace
 
@@ -160,7 +150,7 @@ Project Project::create(const fs::path& folder, const ProjectHead& head, const C
     write_json_file(folder / "dataset.json", dataset_json(capture, folder));
     write_json_file(folder / "project.json", head_json(head));
   } else {
-    FolderGuard guard(folder);
+    Rollback guard = make_folder(folder);
     write_json_file(folder / "stack.json", Stack().to_json());
     write_json_file(folder / "dataset.json", dataset_json(capture, folder));
     write_json_file(folder / "project.json", head_json(head));  // last: it makes the folder a project

@@ -6,6 +6,7 @@
 
 #include "core/base/hash.h"
 #include "core/base/json_reader.h"
+#include "core/base/rollback.h"
 #include "core/base/system.h"
 #include "engine/project/json_file.h"
 #include "engine/project/project.h"
@@ -13,23 +14,6 @@
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
-
-// Removes the files of an edit unless keep() was called.
-class EditGuard {
- public:
-  explicit EditGuard(fs::path folder) : folder_(std::move(folder)) {}
-  ~EditGuard() {
-    std::error_code error;
-    if (!kept_) fs::remove_all(folder_, error);
-  }
-  EditGuard(const EditGuard&) = delete;
-  EditGuard& operator=(const EditGuard&) = delete;
-  void keep() { kept_ = true; }
-
- private:
-  fs::path folder_;
-  bool kept_ = false;
-};
 
 std::string object_of(const Json& j) { return j.at("object").get<std::string>(); }
 
@@ -223,7 +207,10 @@ void Project::add_edit(const EditRecord& record, const EditLayer& layer, Place p
   if (place == Place::instead_of_last) below.undo();
   place == Place::on_top ? next.push(record.id) : next.amend(record.id);
   const fs::path folder = file("edits") / record.id;
-  EditGuard guard(folder);
+  Rollback guard([&] {
+    std::error_code error;
+    fs::remove_all(folder, error);
+  });
   Json inputs = Json::object();
   for (const auto& [name, bytes] : record.inputs) {
     write_file_atomic(folder / name, bytes);

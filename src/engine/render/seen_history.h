@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The materials of the vertices of a shape version after each layer. Surface that a layer was the last to
-// edit sees in its reflections the materials after that layer. Only what each layer changes is kept, so that
-// many small edits take little room.
+// The materials of the vertices of a shape version after each layer. A point that was last edited by some
+// layer reflects the vertices with the materials that they have after that layer. Only what each layer
+// changes is kept, so that many small edits take little room.
 #pragma once
 
 #include <cstdint>

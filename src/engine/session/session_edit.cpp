@@ -115,6 +115,15 @@ void check_paint(const PaintCommand& c) {
     fail_usage("Material {} paints its own color, which is an albedo; leave out the target.", m.preset);
 }
 
+// Undo or redo: a function of the stack, and that of the project which stores what it does.
+std::string move_cursor(Project& project, const Tools& tools, std::string (Stack::*move)(),
+                        std::string (Project::*store)()) {
+  Stack next = project.stack();
+  (next.*move)();
+  make_anew(project, tools, next);
+  return (project.*store)();
+}
+
 bool toggle_edit(Project& project, const Tools& tools, const std::string& id) {
   Stack next = project.stack();
   next.toggle(id);
@@ -218,20 +227,14 @@ EditPlan Session::plan(const LightChoice& choice) const {
 }
 
 std::string Session::undo(Progress& progress) {
-  return threads_->run([&]() -> std::string {
-    Stack next = project().stack();
-    next.undo();
-    make_anew(project(), {*device_, *frames_, *sam_, progress}, next);
-    return project().undo();
+  return threads_->run([&] {
+    return move_cursor(project(), {*device_, *frames_, *sam_, progress}, &Stack::undo, &Project::undo);
   });
 }
 
 std::string Session::redo(Progress& progress) {
-  return threads_->run([&]() -> std::string {
-    Stack next = project().stack();
-    next.redo();
-    make_anew(project(), {*device_, *frames_, *sam_, progress}, next);
-    return project().redo();
+  return threads_->run([&] {
+    return move_cursor(project(), {*device_, *frames_, *sam_, progress}, &Stack::redo, &Project::redo);
   });
 }
 

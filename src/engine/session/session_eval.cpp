@@ -113,8 +113,9 @@ const EditLayer* layer_of(const Scene& scene, const std::string& edit) {
 }
 
 struct ScoredScenes {
-  Scene scene, without;           // without the edit that is scored; the same if none is
-  std::optional<Scene> physical;  // and without the correction network, if there is one
+  Scene scene;
+  Scene without;                  // the scene without the edit that is scored; the same if none is
+  std::optional<Scene> physical;  // the scene without the correction network; none: it has no such network
 };
 
 ScoredScenes scenes_to_score(const Project& project, const EvalRequest& request) {

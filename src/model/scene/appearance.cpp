@@ -83,14 +83,16 @@ class Walk {
     const bool marks = r_.layer < 0 && !layer.everywhere;
     const bool changes = shows(layer.material, covered_) || layer.erase_material;
     if (!colors && !changes && !marks) return;
-    const bool old = born_ <= version;  // surface added later is in no earlier region
+    // Surface that was added after this version lies in no earlier region. Only changes of material that
+    // apply to the whole object reach it.
+    const bool old = born_ <= version;
     if (!old && !layer.everywhere) return;
     const SurfacePoint p = old ? in_version(scene_.shape_versions, hit_, version) : SurfacePoint{};
     const float weight = layer.everywhere ? 1 : layer.weight(p.position, p.normal);
     if (weight <= 0) return;
     if (marks) r_.layer = l;
     if (changes && weight > kMaterialWeight) visit_material(l, layer);
-    if (colors && old) visit_colors(l, layer, p, weight);  // but gets material changes of the whole object
+    if (colors && old) visit_colors(l, layer, p, weight);
   }
 
   void visit_material(int l, const EditLayer& layer) {

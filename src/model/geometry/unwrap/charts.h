@@ -20,7 +20,8 @@ struct Charts {
 };
 
 // Grown from seeds that move to the middles of their charts [Lloyd 1982; Sander et al. 2003], then joined
-// where the union still looks one way, then with the teeth of their borders cut off.
+// where the normals of the union still differ little. Finally single faces at a border move to the
+// neighboring chart where they fit better, which makes the border smooth.
 Charts grow_charts(const FaceGraph& graph);
 
 // The connected parts of a set of faces.

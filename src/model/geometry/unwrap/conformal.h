@@ -24,7 +24,7 @@ struct Patch2d {
 // one piece connected by edges.
 std::vector<Vec2d> conformal_map(const Patch2d& patch);
 
-// The piece as one sees it along its axis, made as large as it is.
+// The orthogonal projection of the piece along its axis, scaled to the area of the piece.
 std::vector<Vec2d> projection(const Patch2d& patch);
 
 struct Stretch {

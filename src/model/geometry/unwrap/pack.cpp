@@ -101,7 +101,8 @@ struct Pose {
   Vec2d size;
 };
 
-// Turns besides those by quarters: pieces that fill their boxes badly often fit aslant.
+// Number of rotations that are tried besides quarter turns: pieces that fill their boxes badly often fit
+// better rotated.
 constexpr int kPoses = 3;
 
 struct Placement {
