@@ -7,6 +7,7 @@
 
 #include "core/base/parallel.h"
 #include "core/math/quantile.h"
+#include "core/math/ray_sphere.h"
 
 namespace cei3d {
 namespace {
@@ -102,18 +103,11 @@ class Votes {
   std::vector<std::vector<size_t>> near_;
 };
 
-// Depths between which a ray is inside the unit sphere; none: first > last.
-std::pair<double, double> span_in_sphere(Vec3d origin, Vec3d direction) {
-  const double b = dot(origin, direction), c = dot(origin, origin) - 1, d = b * b - c;
-  if (d <= 0) return {1, 0};
-  return {std::max(0.0, -b - std::sqrt(d)), -b + std::sqrt(d)};
-}
-
 // Whether the ray of a pixel meets the object, by the other views. own: what the pixel itself shows.
 bool meets_object(const Votes& votes, const HullMask& view, size_t index, int x, int y, MaskSample own) {
   const Ray ray = view.camera.ray(x + 0.5, y + 0.5);
   const Vec3d origin = to_double(ray.origin), direction = to_double(ray.direction);
-  const auto [first, last] = span_in_sphere(origin, direction);
+  const auto [first, last] = sphere_span(origin, direction, 1.0);
   for (double t = first; t < last; t += 1.0 / kCells) {
     const Vec3d p = origin + direction * t;
     if (votes.supported(p, own) && (own == MaskSample::object || votes.supported_nearby(index, p)))

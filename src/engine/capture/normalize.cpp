@@ -8,6 +8,7 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/math/axis_box.h"
 #include "core/math/quantile.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_images.h"
@@ -120,12 +121,10 @@ Vote vote(std::span<const HullMask> masks, const Normalization& box, int n, int 
 
 // Bounding cube of points, as the transform that maps it to [-1, 1]^3.
 Normalization cube_around(const Vote& v) {
-  Vec3d lo = v.cells[0], hi = v.cells[0];
-  for (const Vec3d p : v.cells)
-    for (int a = 0; a < 3; ++a) lo[a] = std::min(lo[a], p[a]), hi[a] = std::max(hi[a], p[a]);
-  const Vec3d size = hi - lo;
+  const AxisBoxOf<double> box = box_of(v.cells);
+  const Vec3d size = box.size();
   const double half = std::max({size.x, size.y, size.z}) / 2 + 2 * v.half_diagonal;
-  return {(lo + hi) / 2.0, 1 / half};
+  return {(box.min + box.max) / 2.0, 1 / half};
 }
 
 // Smallest enclosing ball, to 1 %: shrinking steps towards the farthest point. [Badoiu and Clarkson 2003]

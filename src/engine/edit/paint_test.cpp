@@ -7,6 +7,7 @@
 
 #include "core/base/error.h"
 #include "core/math/color.h"
+#include "core/math/ray_sphere.h"
 #include "core/math/rng.h"
 #include "core/math/sub_pixel.h"
 #include "engine/edit/relearn.h"
@@ -101,8 +102,7 @@ TEST_F(PaintTest, ColorsComeOutExactWithASharpBorder) {
     const double u = 36.5 + 23 * rng.uniform(), v = 40.5 + 15 * rng.uniform();
     if (std::abs(u - 48) < 1) continue;
     const Ray ray = camera.ray(u, v);
-    const float b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - kRadius * kRadius;
-    const Vec3f p = ray.origin + ray.direction * (-b - sqrt(b * b - c));
+    const Vec3f p = ray.origin + ray.direction * sphere_span(ray, kRadius).near;
     hits.push_back({p, normalize(p), -ray.direction, 0, 0, 0});
     expected.push_back(linear_from_srgb(u < 48 ? kRed : kBlue));
   }
@@ -221,8 +221,7 @@ TEST_F(PaintTest, SemiTransparentPaintIsMixedWithWhatLiesBelow) {
   // The paint ends where the scribble ends.
   for (const auto& [x, y] : {std::pair{30, 30}, {70, 48}, {48, 60}}) {
     const Ray ray = front().ray(x, y);
-    const float b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - kRadius * kRadius;
-    const Vec3f p = ray.origin + ray.direction * (-b - sqrt(b * b - c));
+    const Vec3f p = ray.origin + ray.direction * sphere_span(ray, kRadius).near;
     EXPECT_EQ(twice.layers[1].weight(p, normalize(p)), 0) << x;
   }
 }

@@ -10,6 +10,7 @@
 
 #include "core/base/error_of.h"
 #include "core/math/color.h"
+#include "core/math/ray_sphere.h"
 #include "core/math/rng.h"
 #include "engine/render/sphere_scene.h"
 #include "model/scene/appearance.h"
@@ -168,9 +169,8 @@ TEST_F(PartTest, APatternIsContinuedOverThePart) {
   // Columns 32 to 40 mirror the red half, columns 56 to 64 the dark one; rows repeat it.
   const auto red_at = [&](float column, float row) {
     const Ray ray = r.camera.ray(column, row);
-    const float b = dot(ray.origin, ray.direction);
-    const float d = b * b - dot(ray.origin, ray.origin) + square(kSphereRadius);
-    return layer.albedo->eval3(device_, std::vector{ray.origin + ray.direction * (-b - sqrt(d))})[0].x;
+    const Vec3f p = ray.origin + ray.direction * sphere_span(ray, kSphereRadius).near;
+    return layer.albedo->eval3(device_, std::vector{p})[0].x;
   };
   for (const float row : {float(on_cap) - 3.5f, float(on_cap) + 0.5f}) {
     for (const float column : {36.0f, 44.0f})
@@ -207,9 +207,8 @@ TEST_F(PartTest, AMaskSelectsTheSame) {
   for (int y = 0; y < kSize; ++y)
     for (int x = 0; x < kSize; ++x) {
       const Ray ray = r.camera.ray(x + 0.5, y + 0.5);
-      const float b = dot(ray.origin, ray.direction);
-      const float d = b * b - dot(ray.origin, ray.origin) + square(kSphereRadius);
-      if (d > 0 && cap(ray.origin + ray.direction * (-b - sqrt(d))) > 0) *r.mask.at(x, y) = 1;
+      const auto [near, far] = sphere_span(ray, kSphereRadius);
+      if (near < far && cap(ray.origin + ray.direction * near) > 0) *r.mask.at(x, y) = 1;
     }
   EXPECT_GT(right_share(select(r).layer, cap), 0.995);
 }

@@ -6,6 +6,7 @@
 #include "core/base/bytes.h"
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/math/axis_box.h"
 #include "core/math/brdf.h"
 
 namespace cei3d {
@@ -46,9 +47,7 @@ int GltfBuffer::add_vertices(const void* data, size_t count, int floats, const c
 
 int GltfBuffer::add_positions(std::span<const Vec3f> v) {
   const int id = add_vertices(v.data(), v.size(), 3, "VEC3");
-  Vec3f low = v[0], high = v[0];
-  for (const Vec3f& p : v)
-    for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
+  const auto [low, high] = box_of(v);
   accessors_.back()["min"] = {low.x, low.y, low.z};
   accessors_.back()["max"] = {high.x, high.y, high.z};
   return id;

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/math/axis_box.h"
+
 namespace cei3d {
 
 Vec3d Placement::turned(Vec3d v) const {
@@ -27,16 +29,13 @@ Placement upright(Vec3d up) {
 
 Placement placement_of(std::span<const Vec3f> points, Vec3d up, const PlacementOptions& options) {
   Placement out = upright(up);
-  Vec3d low = out.turned(to_double(points[0])), high = low;
-  for (const Vec3f& point : points) {
-    const Vec3d p = out.turned(to_double(point));
-    for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
-  }
-  const Vec3d size = high - low;
+  AxisBoxOf<double> box;
+  for (const Vec3f& p : points) box.add(out.turned(to_double(p)));
+  const Vec3d size = box.size();
   const double longest = std::max({size.x, size.y, size.z});
   out.scale = options.size > 0 && longest > 0 ? options.size / longest : options.unit_scale;
   if (options.origin == Origin::base)
-    out.translation = Vec3d{low.x + high.x, 2 * low.y, low.z + high.z} * (-0.5 * out.scale);
+    out.translation = Vec3d{box.min.x + box.max.x, 2 * box.min.y, box.min.z + box.max.z} * (-0.5 * out.scale);
   return out;
 }
 

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "core/base/error.h"
+#include "core/math/axis_box.h"
 
 namespace cei3d {
 namespace {
@@ -25,10 +26,8 @@ std::string vectors(const std::vector<Vec3f>& v) {
 }
 
 std::string extent(const std::vector<Vec3f>& v) {
-  Vec3f low = v[0], high = v[0];
-  for (const Vec3f& p : v)
-    for (int a = 0; a < 3; ++a) low[a] = std::min(low[a], p[a]), high[a] = std::max(high[a], p[a]);
-  return vectors({low, high});
+  const AxisBox box = box_of(v);
+  return vectors({box.min, box.max});
 }
 
 // Rows: where the axes go, then the origin; vectors are multiplied from the left.

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/math/ray_sphere.h"
 #include "core/math/rng.h"
 #include "core/math/sg.h"
 #include "core/math/split_sum.h"
@@ -133,8 +134,7 @@ TEST(Picture, TellsWhereTheBallIs) {
       covered += alpha;
       if (alpha < 1) continue;
       const Ray ray = camera.ray(x + 0.5, y + 0.5);
-      const float b = dot(ray.origin, ray.direction),
-                  t = -b - std::sqrt(b * b - dot(ray.origin, ray.origin) + radius * radius);
+      const float t = sphere_span(ray, radius).near;
       const Vec3f p = ray.origin + ray.direction * t;
       const float facing = -dot(normalize(p), ray.direction);
       if (facing < 0.4f) continue;  // within a pixel the ball bends away

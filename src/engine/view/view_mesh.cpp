@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/base/error.h"
+#include "core/math/axis_box.h"
 #include "engine/view/pack.h"
 #include "engine/view/quantize.h"
 #include "engine/view/visibility_harmonics.h"
@@ -34,25 +35,12 @@ ViewMesh compacted(const std::vector<std::array<uint32_t, 3>>& triangles, size_t
   return out;
 }
 
-struct Box {
-  Vec3d min{0, 0, 0}, size{0, 0, 0};
-};
-
-Box box_of(const std::vector<Vec3d>& points) {
-  Vec3d low = points.front(), high = low;
-  for (const Vec3d& p : points)
-    for (int c = 0; c < 3; ++c) {
-      low[c] = std::min(low[c], p[c]);
-      high[c] = std::max(high[c], p[c]);
-    }
-  return {low, high - low};
-}
-
-std::vector<uint16_t> quantized(const std::vector<Vec3d>& points, const Box& box) {
+std::vector<uint16_t> quantized(const std::vector<Vec3d>& points, const AxisBoxOf<double>& box) {
   std::vector<uint16_t> out;
+  const Vec3d size = box.size();
   for (const Vec3d& p : points) {
     for (int c = 0; c < 3; ++c)
-      out.push_back(unorm16(box.size[c] > 0 ? float((p[c] - box.min[c]) / box.size[c]) : 0));
+      out.push_back(unorm16(size[c] > 0 ? float((p[c] - box.min[c]) / size[c]) : 0));
     out.push_back(0);
   }
   return out;
@@ -100,10 +88,11 @@ std::string view_shape(const Scene& scene, const ViewMesh& view) {
   std::vector<Vec3d> points;
   for (const uint32_t v : view.vertices)
     points.push_back(scene.normalization.capture_from_unit(to_double(mesh.positions[v])));
-  const Box box = box_of(points);
+  const AxisBoxOf<double> box = box_of(points);
+  const Vec3d size = box.size();
   Pack pack("shape");
   pack["min"] = {box.min.x, box.min.y, box.min.z};
-  pack["size"] = {box.size.x, box.size.y, box.size.z};
+  pack["size"] = {size.x, size.y, size.z};
   pack.add("positions", quantized(points, box), 4);
   pack.add("normals", octahedral(mesh.normals, view), 2);
   add_visibility(visibility_of(*scene.surface, view), pack);

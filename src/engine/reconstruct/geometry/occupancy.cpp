@@ -8,18 +8,10 @@
 #include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/parallel.h"
+#include "core/math/ray_sphere.h"
 #include "core/math/trilinear.h"
 
 namespace cei3d {
-
-bool unit_sphere_span(const Ray& ray, float& near, float& far) {
-  const float b = dot(ray.origin, ray.direction), c = dot(ray.origin, ray.origin) - 1, disc = b * b - c;
-  if (disc <= 0) return false;
-  const float root = std::sqrt(disc);
-  near = std::max(0.0f, -b - root);
-  far = -b + root;
-  return far > near;
-}
 
 OccupancyGrid::OccupancyGrid(int resolution) : n_(resolution), value_(size_t(n_) * n_ * n_) {
   if (n_ % 4 != 0)
@@ -132,8 +124,8 @@ void OccupancyGrid::march(std::span<const Ray> rays, const March& m, std::span<c
     const size_t n = std::min(kTogether, rays.size() - first);
     Walk walks[kTogether];
     for (size_t k = 0; k < n; ++k)
-      if (unit_sphere_span(rays[first + k], walks[k].t, walks[k].far))
-        walks[k].t += jitter[first + k] * m.step;
+      if (const SphereSpan<float> s = sphere_span(rays[first + k], 1); s.near < s.far)
+        walks[k] = {.t = s.near + jitter[first + k] * m.step, .far = s.far};
     for (bool going = true; going;) {
       going = false;
       for (size_t k = 0; k < n; ++k)

@@ -67,7 +67,4 @@ class OccupancyGrid {
   std::vector<int16_t> value_;  // [brick][cell]
 };
 
-// Entry and exit of the unit sphere; false when the ray misses it.
-bool unit_sphere_span(const Ray& ray, float& near, float& far);
-
 }  // namespace cei3d

@@ -8,6 +8,7 @@
 
 #include "core/base/cancel.h"
 #include "core/math/quantile.h"
+#include "core/math/ray_sphere.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/geometry/occupancy.h"
 #include "model/geometry/shape/visual_hull.h"
@@ -69,9 +70,8 @@ std::vector<Lowest> lowest(const Device& device, const Field& sdf, std::span<con
 std::vector<Lowest> lowest_along(const Device& device, const Field& sdf, std::span<const Ray> rays) {
   std::vector<Stretch> stretches;
   for (const Ray& ray : rays) {
-    float near = 0, far = 0;
-    const bool meets = unit_sphere_span(ray, near, far);
-    stretches.push_back({near, kStep, meets ? int((far - near) / kStep) + 1 : 0});
+    const auto [near, far] = sphere_span(ray, 1);
+    stretches.push_back({near, kStep, near < far ? int((far - near) / kStep) + 1 : 0});
   }
   const std::vector<Lowest> coarse = lowest(device, sdf, rays, stretches);
   for (size_t i = 0; i < rays.size(); ++i)

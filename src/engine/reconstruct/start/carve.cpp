@@ -9,6 +9,7 @@
 #include "core/base/parallel.h"
 #include "core/math/adam.h"
 #include "core/math/fog.h"
+#include "core/math/ray_sphere.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/geometry/occupancy.h"
 
@@ -91,8 +92,8 @@ class Fog {
     const Pixel& p = pixels_.pixels()[rng.below(uint32_t(pixels_.pixels().size()))];
     const float u = rng.uniform(), v = rng.uniform();
     const Ray ray = pixels_.cameras()[p.view].ray(p.x + u, p.y + v);
-    float near, far;
-    if (!unit_sphere_span(ray, near, far)) return;
+    const auto [near, far] = sphere_span(ray, 1);
+    if (!(near < far)) return;
     const size_t first = out.size();
     Composite<float> seen = fog_ray<float>();
     for (float t = near + size_ * rng.uniform(); t < far && seen.coverage < 1 - kDark; t += size_) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/json.h"
+#include "core/math/ray_sphere.h"
 #include "core/math/rng.h"
 #include "model/geometry/shape/test_regions.h"
 
@@ -26,8 +27,8 @@ constexpr float kRadius = 0.8f;
 
 // First meeting of a ray with the sphere; negative: none.
 float sphere_distance(const Ray& r) {
-  const float b = dot(r.origin, r.direction), c = dot(r.origin, r.origin) - kRadius * kRadius;
-  return b * b < c ? -1 : -b - sqrt(b * b - c);
+  const auto [near, far] = sphere_span(r, kRadius);
+  return near < far ? near : -1;
 }
 
 // A disc painted on the sphere: mask of radius 10 pixels about the picture's center.
