@@ -24,8 +24,8 @@ struct GradientStep {
   }
 };
 
-// The adjoint of GradientStep: a loss with derivatives t by d_z has the derivatives first t by d_h, and, with
-// `second` the second derivative of the activation, second d_h t by z.
+// The adjoint of GradientStep. From the derivatives t of a loss by d_z it makes those by d_h, first t, and
+// those by z, second d_h t, with `second` the second derivative of the activation.
 struct GradientStepGrad {
   struct Args {
     const float *d_h, *first, *second;
