@@ -100,6 +100,7 @@ export class PartTool {
     this.camera = null;
     /** @type {string | null} of the preview of the selection; null: it is not made yet */
     this.token = null;
+    this.previewed = '';  // what the preview was made of
     /** @type {any} */
     this.report = null;
     /** @type {any} */
@@ -243,7 +244,7 @@ export class PartTool {
     const number = this.number, late = () => number !== this.number || this.previews.again;
     const ask = (/** @type {any} */ params) => postJson('preview', { op: 'part', params });
     try {
-      const params = await this.params();
+      const params = await this.params(), what = this.key(params);
       if (this.quick && params.segmenter === 'sam') {
         const seen = await ask({ ...params, views: 1 });
         if (late()) return;
@@ -252,16 +253,21 @@ export class PartTool {
       const made = await ask(params);
       if (late()) return;
       this.token = made.token;
+      this.previewed = what;
       this.report = made.report;
       await this.overlay.show(made.token);
       toast(`${made.part}: ${(100 * made.report.share).toFixed(1)} % of the surface. Enter keeps it.`);
     } catch (error) { if (!late()) complain(error); }
   }
 
+  /** Two previews with the same key are of the same edit. @param {any} params */
+  key(params) { return JSON.stringify([params, this.store.state.revision]); }
+
   async keep() {
     if (!this.clicks.length && !this.outline.length) return;
     const number = this.number;
-    await this.preview(false);  // because the name may have changed
+    // The name may have changed since the preview; a mask is another upload each time.
+    if (!this.token || this.outline.length || this.key(await this.params()) !== this.previewed) await this.preview(false);
     const token = number === this.number ? this.token : null;
     this.token = null;
     if (!token) return;
