@@ -21,7 +21,7 @@ NUMBERED = re.compile(r'\b(decisions|notebook)/(\d{4})')
 MARKDOWN_LINK = re.compile(r'\]\(([^)#\s]*)(#[^)\s]*)?\)')
 COLUMNS = 130  # at most, except in tables, pictures and indented code
 # Of .github because GitHub shows each line of a template as a line.
-WIDER = ['docs/notebook', 'docs/results.md', 'docs/limits.md', '.github']
+WIDER = ['docs/notebook', '.github']
 NUMBER = re.compile(r'\d*\.\d+|\d+')
 # What the rows of README's table begin with, and the row or column of docs/results.md that has their figures.
 README_ROWS = {'spot': 'spot', 'kettle': 'kettle', 'DTU scan 24': 'dtu24', 'paint edit': 'paint',
