@@ -23,7 +23,8 @@ endfunction()
 
 # The CPU devices and the card. fmt is compiled in, because these programs are to need few libraries.
 function(cei3d_cuda_library path folder)
-  set(sources ${CMAKE_SOURCE_DIR}/src/${path}/device.cpp ${folder}/failed.cpp ${CMAKE_BINARY_DIR}/cuda_run.o)
+  set(own ${CMAKE_SOURCE_DIR}/src/${path})
+  set(sources ${own}/device.cpp ${own}/planes.cpp ${folder}/failed.cpp ${CMAKE_BINARY_DIR}/cuda_run.o)
   cei3d_cu(${folder}/run.cu ${CMAKE_BINARY_DIR}/cuda_run.o)
   add_library(cei3d_core_compute_cuda STATIC EXCLUDE_FROM_ALL ${sources})
   get_target_property(isas cei3d_core_compute COMPILE_DEFINITIONS)
