@@ -103,10 +103,10 @@ function partTool() {
     asked.push({ path, answer, clicks: JSON.parse(body).params.positive?.length });
   });
   const stage = { json: () => ({}), redraw() {}, addEventListener() {} };
-  const store = { part: null, select() {}, change: async (route, { token }) => { kept.push(token); return { part: 'part' }; } };
+  const store = { part: null, state: { revision: 'r0' }, select() {}, change: async (route, { token }) => { kept.push(token); return { part: 'part' }; } };
   const tool = new PartTool(stage, store, { show: async () => {} });
   const click = (x) => tool.click({ x, y: 0, onObject: true, alt: false });
-  return { tool, asked, kept, click };
+  return { tool, store, asked, kept, click };
 }
 
 test('quick clicks are previewed one at a time, the newest ones', async () => {
@@ -141,6 +141,27 @@ test('a part is kept as it was clicked last, or not at all', async () => {
   await answer(5, 'again');
   await Promise.all(twice);
   assert.deepEqual(kept, ['again']);
+});
+
+test('a part is kept as it is shown, unless the object has changed since', async () => {
+  const { asked, kept, click, tool, store } = partTool();
+  click(1);
+  await until(() => asked.length === 1);
+  asked[0].answer('shown');
+  await tool.previews.running;
+  await Promise.all([tool.keep(), tool.keep()]);  // as by a double click
+  assert.deepEqual(kept, ['shown']);
+  assert.equal(asked.length, 1);
+  click(2);
+  await until(() => asked.length === 2);
+  asked[1].answer('old');
+  await tool.previews.running;
+  store.state.revision = 'r1';
+  const keeping = tool.keep();
+  await until(() => asked.length === 3);
+  asked[2].answer('new');
+  await keeping;
+  assert.deepEqual(kept, ['shown', 'new']);
 });
 
 test('what is discarded while it is being kept is not kept, nor what is clicked then', async () => {

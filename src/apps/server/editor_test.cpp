@@ -240,7 +240,9 @@ TEST_F(EditorTest, ScribblesAndMasksAreLimitedInSize) {
   EXPECT_NO_THROW(edit_command("paint", paint, uploads));
   std::filesystem::resize_file(uploads.path(id), (64 << 20) + 1);
   for (const auto& [op, params] : {std::pair("paint", paint), std::pair("part", part)})
-    EXPECT_THAT(message([&] { edit_command(op, params, uploads); }), HasSubstr("at most 64 MiB")) << op;
+    EXPECT_THAT(message([&, &op = op, &params = params] { edit_command(op, params, uploads); }),
+                HasSubstr("at most 64 MiB"))
+        << op;
 }
 
 TEST_F(EditorTest, ExportsGoToTheProjectAndCanBeFetched) {

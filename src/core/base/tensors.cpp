@@ -185,6 +185,12 @@ const Tensor& of_shape(const Tensors& in, const std::string& name, const std::ve
   return t;
 }
 
+void require_count(const std::string& name, size_t count, const std::vector<int64_t>& shape) {
+  size_t wanted = 1;
+  for (const int64_t n : shape) wanted *= size_t(n);
+  if (count != wanted) fail("Array '{}' has {} numbers instead of {}. {}", name, count, wanted, kRemedy);
+}
+
 }  // namespace
 
 const Tensor& require_tensor(const Tensors& in, const std::string& name) {
@@ -196,12 +202,14 @@ const Tensor& require_tensor(const Tensors& in, const std::string& name) {
 const Tensor& require_tensor(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape) {
   const Tensor& t = of_shape(in, name, shape);
   if (!t.u8.empty()) fail("Array '{}' holds bytes instead of floats. {}", name, kRemedy);
+  require_count(name, t.f32.size(), shape);
   return t;
 }
 
 const Tensor& require_bytes(const Tensors& in, const std::string& name, const std::vector<int64_t>& shape) {
   const Tensor& t = of_shape(in, name, shape);
   if (!t.f32.empty()) fail("Array '{}' holds floats instead of bytes. {}", name, kRemedy);
+  require_count(name, t.u8.size(), shape);
   return t;
 }
 

@@ -152,7 +152,7 @@ EvalReport Session::evaluate(const EvalRequest& request, Progress& progress) {
       return rounded_srgb(frames_->shade(lit, frames_->light(lit), *trace(lit, v)).rgb);
     };
     EvalReport report;
-    if (scenes.physical) report.alone.emplace();
+    if (scenes.physical) report.alone = EvalReport::Alone{};
     Sets sets;
     EditScorer scorer(request.truth, request.masks, perceptual);
     for (size_t i = 0; i < views.size(); ++i) {

@@ -157,7 +157,7 @@ TEST(Scene, OfAnotherTableOfDirectionsIsRefused) {
   Json head;
   save_scene(full_scene(), tensors, head);
   head["surface"]["sky_directions"] = 256;
-  EXPECT_NE(message([&] { load_scene(tensors, head); }).find("reconstruct the object again"),
+  EXPECT_NE(message([&] { load_scene(tensors, head); }).find("Reconstruct the object again"),
             std::string::npos);
 }
 
