@@ -14,6 +14,12 @@ std::string shortened(const Json& j) {
   return text.size() <= kMaxLetters ? text : text.substr(0, kMaxLetters) + "...";
 }
 
+// A name of a thing that may begin a sentence, inside of one.
+std::string inside(std::string what) {
+  if (what.starts_with("The ")) what[0] = 't';
+  return what;
+}
+
 }  // namespace
 
 JsonReader::JsonReader(const Json& object, std::string what) : object_(object), what_(std::move(what)) {
@@ -39,7 +45,7 @@ const Json& JsonReader::array(const char* key) {
 JsonReader JsonReader::object(const char* key) {
   const Json& j = member(key);
   if (!j.is_object()) wrong_type(key, j, "an object");
-  return {j, fmt::format("'{}' of {}", key, what_)};
+  return {j, fmt::format("'{}' of {}", key, inside(what_))};
 }
 
 void JsonReader::finish() const {

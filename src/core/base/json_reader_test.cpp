@@ -46,6 +46,13 @@ TEST(JsonReader, UnknownKeysAreNamedWithTheNearestKnownOne) {
   EXPECT_THAT(message([&] { JsonReader(j, "it").finish(); }), HasSubstr("'roughness'"));
 }
 
+TEST(JsonReader, AThingIsNamedAsItsPlaceInTheSentenceAsks) {
+  const Json j = {{"light", {{"lobs", 1}}}};
+  JsonReader r(j, "The object");
+  EXPECT_THAT(message([&] { r.object("light").finish(); }), HasSubstr("'light' of the object has"));
+  EXPECT_THAT(message([&] { JsonReader(j, "The object").finish(); }), HasSubstr("The object has"));
+}
+
 TEST(JsonReader, MissingKeysAndWrongTypesAreNamed) {
   const Json j =
       Json::parse(R"({"i": 1.5, "n": -1, "big": 3000000000, "t": 3, "b": 1, "list": [1, "x"], "o": []})");

@@ -393,7 +393,7 @@ TEST(Reconstruct, RefusesUnknownKeysInACheckpoint) {
     progress.stop_at("joint", 1);  // where it would resume
     small.run(checkpoints, progress);
   };
-  EXPECT_EQ(objects_with_unknown_keys_read(good.head, "The checkpoint", read), std::vector<std::string>());
+  EXPECT_EQ(objects_with_unknown_keys_read(good.head, "checkpoint", read), std::vector<std::string>());
 }
 
 }  // namespace

@@ -222,7 +222,7 @@ RefinedCameras refined_from_head(const Json& head, const std::string& what) {
   RefinedCameras refined;
   if (head.contains("poses"))
     for (const Json& pose : head.at("poses"))
-      refined.poses.push_back(pose_from_json({pose, "A pose in " + what}));
+      refined.poses.push_back(pose_from_json({pose, what + ": a pose"}));
   if (head.contains("focal")) refined.focal = head.at("focal").get<double>();
   if (!(refined.focal > 0.1 && refined.focal < 10))
     fail("{} has the impossible factor {} on the focal length.", what, refined.focal);
