@@ -67,7 +67,7 @@ function(cei3d_tests target sources modules)
     target_link_libraries(${program} PRIVATE ${dep_target})
   endforeach()
   target_include_directories(${program} PRIVATE ${CMAKE_SOURCE_DIR})
-  # What takes long in tests is in the modules, but half of the time of a build was for optimizing tests.
+  # What takes long in tests is in the modules, so the tests themselves need little optimization: they compile faster.
   target_compile_options(${program} PRIVATE ${CEI3D_FLAGS} $<$<CONFIG:Release>:-O1>)
   cei3d_shared_suites(suites "${sources}")
   set(single "*")

@@ -169,8 +169,8 @@ ReconstructReport Session::run_reconstruction(const ReconstructRequest& request,
                            project().head().normalization, options, checkpoints, log, request.show);
     project().save_base(scene);
     begin_frames(Access::write);
-    frames_->light_to_keep(
-        project().scene());  // so that the first picture of the object need not wait for it
+    // Otherwise the first picture of the object would wait for this light.
+    frames_->light_to_keep(project().scene());
     return report_of(*device_, project(), scene, steady_seconds() - start);
   } catch (...) {
     project().discard_if_empty();
