@@ -25,7 +25,7 @@ constexpr size_t kPrompts = 5;           // prompts of each kind, besides those 
 constexpr size_t kSamples = 500;         // number of points of the part used to choose views
 constexpr float kEnough = 0.5f;          // votes, in frontal votes, that halve the need for more
 constexpr float kSurroundings = 0.5f;    // distance around the part, in its extents, where votes are wanted
-constexpr float kMinGain = 0.02f;        // minimum mean gain per point for which a view is segmented
+constexpr float kMinGain = 0.03f;        // minimum mean gain per point for which a view is segmented
 constexpr float kMinSeen = 0.07f;        // minimum share of the part that a view must show
 
 // Score of each point from the masks so far.
@@ -41,8 +41,12 @@ class Votes {
     if (combination_ == MaskCombination::any) return sum_[i] > 0 ? 1 : weight_[i] > 0 ? 0 : 0.5f;
     return (sum_[i] + 0.5f * kPrior) / (weight_[i] + kPrior);
   }
-  // Information that one more vote would add, [0, 1].
-  float need(size_t i) const { return 1 / (1 + weight_[i] / kEnough); }
+  // Information that one more vote would add, [0, 1]: much where there are few votes, or where they disagree.
+  // Where any mask counts votes cannot disagree.
+  float need(size_t i) const {
+    const float p = combination_ == MaskCombination::votes ? score(i) : 0.5f;
+    return 4 * p * (1 - p) / (1 + weight_[i] / kEnough);
+  }
   bool in(size_t i) const { return score(i) >= kBelieved; }
   bool out(size_t i) const { return score(i) <= 1 - kBelieved; }
   size_t size() const { return sum_.size(); }

@@ -132,12 +132,38 @@ TEST(Propagate, GoesWhereMuchIsKnownBeforeItGoesFar) {
   // The farther of two views shows more that is new, but little that is known.
   const HandlerPoints h = sphere_points(4000);
   PropagateRequest request = band_request();
-  request.cameras = {camera_at({2.5, 0, 0}), camera_at({2.5 * std::cos(1.0), 2.5 * std::sin(1.0), 0}),
-                     camera_at({2.5 * std::cos(0.2), 2.5 * std::sin(0.2), 0})};
+  request.cameras = {camera_at({2.5, 0, 0}), camera_at({2.5 * std::cos(1.4), 2.5 * std::sin(1.4), 0}),
+                     camera_at({2.5 * std::cos(0.7), 2.5 * std::sin(0.7), 0})};
   request.clicks.positive = {{kSize / 2.0f, kSize / 2.0f}};
   Oracle oracle(request.cameras, band);
   Progress silent;
   EXPECT_EQ(propagate(h, sphere(), request, oracle, silent).report.views, (std::vector<int>{0, 2, 1}));
+}
+
+TEST(Propagate, AsksForMoreViewsWhereMasksDisagree) {
+  const HandlerPoints h = sphere_points(6000);
+  PropagateRequest request = band_request();
+  request.cameras.clear();
+  for (int k = 0; k < 12; ++k)
+    request.cameras.push_back(camera_at({2.5, 1.2 * std::cos(k * M_PI / 6), 1.2 * std::sin(k * M_PI / 6)}));
+  request.clicks.positive = {{kSize / 2.0f, kSize / 2.0f}};
+  const auto disc = [](float radius) {
+    return [radius](Vec3f p) { return length(p - Vec3f{kRadius, 0, 0}) < radius; };
+  };
+  Progress silent;
+  const auto views = [&](const Truth& first, const Truth& others) {
+    struct Mixed : ViewSegmenter {
+      Oracle first, others;
+      Mixed(Oracle a, Oracle b) : first(std::move(a)), others(std::move(b)) {}
+      Image mask(int view, std::span<const Vec2f> in, std::span<const Vec2f> out) override {
+        return (view == 0 ? first : others).mask(view, in, out);
+      }
+    } mixed({request.cameras, first}, {request.cameras, others});
+    return propagate(h, sphere(), request, mixed, silent).report.views.size();
+  };
+  const size_t agreed = views(disc(0.3f), disc(0.3f)), disagreed = views(disc(0.3f), disc(0.36f));
+  EXPECT_LE(agreed, 4u);
+  EXPECT_GT(disagreed, agreed);
 }
 
 TEST(Propagate, HiddenPointsHaveNoVote) {
