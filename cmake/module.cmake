@@ -52,6 +52,11 @@ function(cei3d_shared_suites out sources)
   set(${out} ${found} PARENT_SCOPE)
 endfunction()
 
+# For code that never takes long to run, and long to compile.
+function(cei3d_compile_fast target)
+  target_compile_options(${target} PRIVATE $<IF:$<CONFIG:Release>,-O1,-O0>)
+endfunction()
+
 # Each case is a test of its own (`ctest -R Lighting.WhiteFurnace`); a suite with a SetUpTestSuite is one test, so that
 # what it makes is made once. The label is the module's target (`ctest -L core_math`).
 function(cei3d_tests target sources modules)
@@ -67,8 +72,9 @@ function(cei3d_tests target sources modules)
     target_link_libraries(${program} PRIVATE ${dep_target})
   endforeach()
   target_include_directories(${program} PRIVATE ${CMAKE_SOURCE_DIR})
-  # What takes long in tests is in the modules, so the tests themselves need little optimization: they compile faster.
-  target_compile_options(${program} PRIVATE ${CEI3D_FLAGS} $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${program} PRIVATE ${CEI3D_FLAGS})
+  cei3d_compile_fast(${program})
+  target_compile_definitions(${program} PRIVATE CEI3D_SOURCE="${CMAKE_SOURCE_DIR}")
   cei3d_shared_suites(suites "${sources}")
   set(single "*")
   if(suites)
@@ -76,10 +82,10 @@ function(cei3d_tests target sources modules)
     list(JOIN excluded ":" excluded)
     set(single "-${excluded}")
   endif()
-  gtest_discover_tests(${program} TEST_FILTER "${single}" WORKING_DIRECTORY ${CMAKE_SOURCE_DIR}
-    DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120 PROPERTIES LABELS ${target})
+  gtest_discover_tests(${program} TEST_FILTER "${single}" DISCOVERY_MODE PRE_TEST DISCOVERY_TIMEOUT 120
+    PROPERTIES LABELS ${target})
   foreach(suite ${suites})
-    add_test(NAME ${suite} COMMAND ${program} --gtest_filter=${suite}.* WORKING_DIRECTORY ${CMAKE_SOURCE_DIR})
+    add_test(NAME ${suite} COMMAND ${program} --gtest_filter=${suite}.*)
     set_tests_properties(${suite} PROPERTIES LABELS ${target})
   endforeach()
 endfunction()

@@ -9,6 +9,7 @@
 
 #include "apps/server/test_editor.h"
 #include "core/base/file.h"
+#include "core/base/test_source.h"
 #include "engine/io/png_file.h"
 
 namespace cei3d {
@@ -121,9 +122,10 @@ TEST_F(MessagesTest, TheTypesOfThePageAreThoseOfTheProgram) {
   add("Picked", Json::parse(post("/api/pick", {{"camera", camera(0)}, {"pixel", {24, 24}}}).body));
   add("Failure", Json::parse(post("/api/nothing", Json::object()).body));
   const std::string now = text();
-  write_file_atomic("build/messages.js", now);
-  EXPECT_EQ(read_file(kFile), now) << "Copy build/messages.js to " << kFile
-                                   << " and run tools/lint.sh quick, which shows what uses other types.";
+  write_file_atomic(source_file("build/messages.js"), now);
+  EXPECT_EQ(read_file(source_file(kFile)), now)
+      << "Copy build/messages.js to " << kFile
+      << " and run tools/lint.sh quick, which shows what uses other types.";
 }
 
 TEST(Messages, TypesComeFromExamples) {

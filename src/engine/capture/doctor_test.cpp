@@ -12,6 +12,7 @@
 
 #include "core/base/error.h"
 #include "core/base/temp_folder.h"
+#include "core/base/test_source.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_images.h"
 #include "engine/capture/check.h"
@@ -76,7 +77,7 @@ int not_named(const fs::path& good, const fs::path& work, size_t every = 1) {
 
 TEST(Doctor, NamesTheUsualMistakes) {
   const TempFolder temp;
-  write_some_views("samples/spot", 24, temp.path() / "good");
+  write_some_views(source_file("samples/spot"), 24, temp.path() / "good");
   EXPECT_EQ(what_check_says(temp.path() / "good"), "");
   EXPECT_EQ(not_named(temp.path() / "good", temp.path() / "copy", 2), 0);
 }
@@ -105,7 +106,7 @@ int not_named_of_colmap(const fs::path& good, const fs::path& work) {
 
 TEST(Doctor, NamesTheMistakesOfColmapModels) {
   const TempFolder temp;
-  write_some_views("samples/spot", 24, temp.path() / "good");
+  write_some_views(source_file("samples/spot"), 24, temp.path() / "good");
   EXPECT_EQ(not_named_of_colmap(temp.path() / "good", temp.path() / "colmap"), 0);
 }
 
@@ -114,7 +115,7 @@ TEST(Doctor, NamesTheMistakesOfColmapModels) {
 TEST(Doctor, FindsNothingInACleanColmapModel) {
   const TempFolder temp;
   const fs::path good = temp.path() / "good", model = temp.path() / "colmap";
-  write_some_views("samples/spot", 24, good);
+  write_some_views(source_file("samples/spot"), 24, good);
   const Capture capture = load_capture(good);
   const ColmapCopy copy(capture, object_of(capture), model);
   std::set<int> factors;
@@ -145,7 +146,7 @@ void store_in_p3(DamagedCapture& c, size_t i) {
 
 TEST(Doctor, ImagesInDisplayP3AreLikeTheOthers) {
   const TempFolder temp;
-  write_some_views("samples/spot", 24, temp.path() / "good");
+  write_some_views(source_file("samples/spot"), 24, temp.path() / "good");
   copy_capture(temp.path() / "good", temp.path() / "copy");
   DamagedCapture copy(temp.path() / "copy");
   for (const size_t i : {3, 4, 11}) store_in_p3(copy, i);

@@ -7,6 +7,7 @@
 
 #include "core/base/error_of.h"
 #include "core/base/temp_folder.h"
+#include "core/base/test_source.h"
 #include "core/math/color.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_format.h"
@@ -71,7 +72,8 @@ TEST_F(Formats, OneObjectInEveryFormatIsTheSame) {
 
 // The one table of formats is what the documents say.
 TEST_F(Formats, StandInTheDocuments) {
-  const std::string readme = read_file("README.md"), method = read_file("docs/method.md");
+  const std::string readme = read_file(source_file("README.md")),
+                    method = read_file(source_file("docs/method.md"));
   EXPECT_THAT(readme, HasSubstr(capture_format_programs()));
   for (const CaptureFormat& f : capture_formats()) {
     const std::string row = fmt::format("| `{}` | {} | {} |", f.name, f.programs, f.layout);

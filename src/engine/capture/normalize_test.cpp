@@ -7,6 +7,7 @@
 
 #include "core/base/error_of.h"
 #include "core/base/temp_folder.h"
+#include "core/base/test_source.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_images.h"
 #include "engine/capture/test_capture.h"
@@ -124,7 +125,7 @@ TEST(Normalize, FromFiles) {
 // The sample was rendered with the object in the unit sphere, bounding radius 0.97. Hulls are a little
 // larger.
 TEST(Normalize, SampleCapture) {
-  const Normalization n = find_normalization(load_capture("samples/spot"));
+  const Normalization n = find_normalization(load_capture(source_file("samples/spot")));
   EXPECT_NEAR(n.scale, 0.9 / 0.97, 0.06);
   EXPECT_LT(length(n.center), 0.15);
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/base/json.h"
+#include "core/base/test_source.h"
 #include "core/math/rng.h"
 #include "engine/project/project.h"
 #include "engine/reconstruct/test_run.h"
@@ -14,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kStored = fs::path("tests/e2e/data/formats") / std::to_string(kProjectVersion);
+const fs::path kStored = source_file("tests/e2e/data/formats") / std::to_string(kProjectVersion);
 
 Scene reconstructed(const TurntableCapture& capture) {
   ReconstructOptions options;

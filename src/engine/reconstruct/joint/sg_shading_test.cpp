@@ -11,6 +11,7 @@
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "core/base/parse_json.h"
+#include "core/base/test_source.h"
 #include "engine/reconstruct/joint/test_probe.h"
 
 namespace cei3d {
@@ -30,7 +31,7 @@ Vec3f tangent(Vec3f d, Vec3f n) { return d - n * dot(n, d); }
 
 class PaperShading : public testing::Test {
  protected:
-  static Json oracle() { return parse_json(read_file("tests/oracles/paper_shading.json")); }
+  static Json oracle() { return parse_json(read_file(source_file("tests/oracles/paper_shading.json"))); }
   Numbers input(const char* name) const { return oracle_["inputs"][name].get<Numbers>(); }
   Numbers derivative(const char* name) const { return oracle_["derivatives"][name].get<Numbers>(); }
   float number(const char* name) const { return float(input(name)[0]); }
