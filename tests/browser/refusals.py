@@ -74,7 +74,7 @@ FORMS = ['application/x-www-form-urlencoded', 'multipart/form-data; boundary=x',
 
 def refused_everywhere(client):
     foreign = f'http://evil.example:{client.port}'
-    cases = [({'Authorization': None}, 403), ({'Authorization': 'Bearer ' + '0' * 64}, 403),
+    cases = [({'Authorization': None}, 401), ({'Authorization': 'Bearer ' + '0' * 64}, 401),
              ({'Host': 'evil.example'}, 403), ({'Origin': foreign}, 403), ({'Origin': 'null'}, 403),
              ({'Sec_Fetch_Site': 'cross-site'}, 403)]
     for method, paths in (('GET', GETS), ('POST', POSTS)):

@@ -27,7 +27,8 @@ async function until(is) {
   assert.ok(is());
 }
 
-// A program, and what befalls the edits that it is sent: 'lost': the answer, 'unheard': the edit, 'late': another window was quicker.
+// A program, and what befalls the edits that it is sent: 'lost': the answer, 'unheard': the edit, 'late': another window was quicker,
+// 'stranger': the program was restarted, and has another key.
 function programWith(fates) {
   const history = [], state = () => ({ mode: 'project', folder: 'f', history: [...history], done: history.length, parts: [], revision: `r${history.length}` });
   globalThis.fetch = async (path, { method, body, headers }) => {
@@ -35,6 +36,7 @@ function programWith(fates) {
     const fate = fates.shift();
     if (fate === 'late') history.push({ op: 'paint', of: 'another window' });
     if (fate === 'unheard') throw new Error('no connection');
+    if (fate === 'stranger') return Response.json({ error: 'another key' }, { status: 401 });
     if (headers['If-Match'] !== state().revision) return Response.json({ error: 'changed in another window' }, { status: 409 });
     history.push(JSON.parse(body));
     if (fate === 'lost') throw new Error('no connection');
@@ -43,8 +45,8 @@ function programWith(fates) {
   return history;
 }
 
-test('an edit of another window never counts as the one that was refused', async () => {
-  const history = programWith(['lost', 'repeated', 'unheard', 'repeated', 'late']), store = new Store();
+test('an edit is sent until it arrives, and one of another window never counts as the one that was refused', async () => {
+  const history = programWith(['lost', 'repeated', 'unheard', 'repeated', 'stranger', 'stranger', 'arrives', 'late']), store = new Store();
   await store.refresh();
   const paint = async (of) => {
     let over = false;
@@ -55,8 +57,9 @@ test('an edit of another window never counts as the one that was refused', async
   };
   assert.equal((await paint('first')).of, 'first');  // it arrived, only its answer did not
   assert.equal((await paint('second')).of, 'second');
-  await assert.rejects(paint('third'), { status: 409 });
-  assert.deepEqual(history.map((e) => e.of), ['first', 'second', 'another window']);
+  assert.equal((await paint('third')).of, 'third');
+  await assert.rejects(paint('fourth'), { status: 409 });
+  assert.deepEqual(history.map((e) => e.of), ['first', 'second', 'third', 'another window']);
 });
 
 test('an object counts as made once, in the page that saw it being made', async () => {

@@ -10,7 +10,6 @@
 #include "core/base/hash.h"
 #include "core/base/json.h"
 #include "core/base/parse_json.h"
-#include "core/base/system.h"
 
 namespace cei3d {
 namespace {
@@ -129,7 +128,6 @@ void Editor::change(const HttpRequest& request, Reply reply, std::function<Json(
                                       "It is shown now; make your change again.");
               const Json result = make(session, progress);
               publish(session);
-              trim_memory();
               return HttpResponse{200, "application/json",
                                   "{\"result\":" + text_of(result) + ",\"state\":" + state_text() + "}"};
             });
@@ -162,16 +160,6 @@ std::string Editor::state_text() const {
 std::string Editor::revision() const {
   const std::lock_guard lock(mutex_);
   return state_.value("revision", "");
-}
-
-// Changes, and windows that come and go, fragment the heap.
-void Editor::trim_memory() {
-  constexpr uint64_t kTrimInterval = 16;  // calls
-  if (++trims_asked_ % kTrimInterval == 0)
-    worker_->background([](Session&) {
-      trim_heap();
-      return false;
-    });
 }
 
 }  // namespace cei3d

@@ -144,7 +144,6 @@ class Editor : public HttpApp, private JobListener {
   Json state() const;              // without the members that grow
   std::string state_text() const;  // JSON of the whole state
   std::string revision() const;    // of the history; empty: nothing is open
-  void trim_memory();              // calls trim_heap() now and then, when the worker has nothing else to do
   std::filesystem::path object_folder() const;
 
   // packs.cpp: what the page draws. The last pack of each kind is kept. Requests for packs of an object that
@@ -185,7 +184,6 @@ class Editor : public HttpApp, private JobListener {
   bool first_frame_ = false;                           // packs wait for the object's first frame
   std::vector<std::function<void()>> held_packs_;      // requests for packs that wait for that frame
   std::atomic<uint64_t> tokens_ = 0;
-  std::atomic<uint64_t> trims_asked_ = 0;  // calls of trim_memory()
   std::unique_ptr<Worker> worker_;         // last: it uses the others
 };
 

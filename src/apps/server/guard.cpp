@@ -54,7 +54,7 @@ std::optional<HttpResponse> Guard::refuse(const HttpRequest& r) const {
   if (!is_api(r)) return std::nullopt;
   if (!r.authorization.starts_with(kBearer) ||
       !knows(std::string_view(r.authorization).substr(std::string_view(kBearer).size())))
-    return error_response(403, "This page does not have the editor's key.",
+    return error_response(401, "This page does not have the editor's key.",
                           "Open the whole address that cei3d printed, with what follows the #.");
   if (changes(r) && r.content_type != "application/json" && r.content_type != "application/octet-stream")
     return error_response(415, "The editor takes JSON and bytes only.");

@@ -117,7 +117,6 @@ void Editor::received(const SocketPtr& socket, const std::string& text) {
     if (type != "hello" || !j.contains("token") || !j["token"].is_string() ||
         !guard_.knows(j["token"].get<std::string>()))
       return socket->close();
-    trim_memory();
     return welcome(socket, j);
   }
   if (type == "rest") return worker_->drop_frame(tab.name);

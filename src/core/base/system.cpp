@@ -2,7 +2,6 @@
 #include "core/base/system.h"
 
 #include <fcntl.h>
-#include <malloc.h>
 #include <stdlib.h>
 #include <sys/file.h>
 #include <sys/resource.h>
@@ -17,6 +16,10 @@
 #include <utility>
 
 #include "core/base/error.h"
+
+// Of jemalloc, which the program is linked with; null in programs that are not, such as tests.
+extern "C" int mallctl(const char* name, void* old_value, size_t* old_size, void* new_value, size_t new_size)
+    __attribute__((weak));
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -88,18 +91,17 @@ fs::path make_temporary_folder() {
 }
 
 void give_back_freed_memory() {
-#ifdef __GLIBC__
-  constexpr int kBlock = 256 << 10, kRest = 1 << 20, kArenas = 2;  // bytes, bytes, number
-  ::mallopt(M_MMAP_THRESHOLD, kBlock);
-  ::mallopt(M_TRIM_THRESHOLD, kRest);
-  ::mallopt(M_ARENA_MAX, kArenas);
-#endif
-}
-
-void trim_heap() {
-#ifdef __GLIBC__
-  ::malloc_trim(0);
-#endif
+  if (!mallctl) return;
+  ssize_t at_once = 0;  // milliseconds that free pages are kept
+  const auto set = [&](const std::string& arena) {
+    for (const char* pages : {"dirty", "muzzy"})
+      mallctl(fmt::format("{}.{}_decay_ms", arena, pages).c_str(), nullptr, nullptr, &at_once, sizeof at_once);
+  };
+  set("arenas");  // that threads will make
+  unsigned made = 0;
+  size_t size = sizeof made;
+  mallctl("arenas.narenas", &made, &size, nullptr, 0);
+  for (unsigned i = 0; i < made; ++i) set(fmt::format("arena.{}", i));
 }
 
 std::optional<FileLock> FileLock::take(const fs::path& file) {

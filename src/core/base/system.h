@@ -16,11 +16,8 @@ double thread_seconds();   // processor time of the calling thread
 double process_seconds();  // processor time of all threads
 double peak_memory_gib();  // that the process has had so far
 
-// For a process that runs long, before it has threads: large blocks that it frees go back to the system. They
-// would stay for later use and be cut into pieces, which after many edits takes as much again as is in use.
+// For a process that runs long: pages that it frees go back to the system at once. Needs jemalloc.
 void give_back_freed_memory();
-// Gives free pages between the blocks in use back to the system, too; takes some milliseconds.
-void trim_heap();
 
 std::string utc_text(const char* format);  // the time now, by a format of strftime
 

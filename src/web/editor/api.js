@@ -156,6 +156,14 @@ export class Line extends EventTarget {
     this.emit(message.type, message);
   }
 
+  /** Done when the program answers again; if the socket has not noticed that it was away, after a second. @returns {Promise<void>} */
+  back() {
+    return new Promise((resolve) => {
+      this.addEventListener('welcome', () => resolve(), { once: true });
+      if (this.ready) window.setTimeout(resolve, 1000);
+    });
+  }
+
   /** @param {string} type @param {any} detail */
   emit(type, detail) { this.dispatchEvent(new CustomEvent(type, { detail })); }
   /** @param {string} type @param {(detail: any) => void} listener */

@@ -136,9 +136,10 @@ export class Store extends EventTarget {
           if (route === 'edit' && tries > 1 && last?.op === body.op && this.state.done === before.done + 1) return last;
           throw error;
         }
-        if (error.status !== 0) throw error;
+        // 401: the program was restarted, and this page does not have its new key yet.
+        if (error.status !== 0 && error.status !== 401) throw error;
         this.setLost(true);
-        await new Promise((resolve) => this.line.addEventListener('welcome', resolve, { once: true }));
+        await this.line.back();
       }
     }
   }
