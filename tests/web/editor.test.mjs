@@ -28,7 +28,7 @@ async function until(is) {
 }
 
 // A program, and what befalls the edits that it is sent: 'lost': the answer, 'unheard': the edit, 'late': another window was quicker,
-// 'stranger': the program was restarted, and has another key.
+// 'stranger': the program was restarted, and has another key, 'empty': it was restarted, and does not have the uploads.
 function programWith(fates) {
   const history = [], state = () => ({ mode: 'project', folder: 'f', history: [...history], done: history.length, parts: [], revision: `r${history.length}` });
   globalThis.fetch = async (path, { method, body, headers }) => {
@@ -37,6 +37,7 @@ function programWith(fates) {
     if (fate === 'late') history.push({ op: 'paint', of: 'another window' });
     if (fate === 'unheard') throw new Error('no connection');
     if (fate === 'stranger') return Response.json({ error: 'another key' }, { status: 401 });
+    if (fate === 'empty') return Response.json({ error: 'sent files are gone' }, { status: 410 });
     if (headers['If-Match'] !== state().revision) return Response.json({ error: 'changed in another window' }, { status: 409 });
     history.push(JSON.parse(body));
     if (fate === 'lost') throw new Error('no connection');
@@ -46,11 +47,11 @@ function programWith(fates) {
 }
 
 test('an edit is sent until it arrives, and one of another window never counts as the one that was refused', async () => {
-  const history = programWith(['lost', 'repeated', 'unheard', 'repeated', 'stranger', 'stranger', 'arrives', 'late']), store = new Store();
+  const history = programWith(['lost', 'repeated', 'unheard', 'repeated', 'stranger', 'stranger', 'empty', 'arrives', 'late']), store = new Store();
   await store.refresh();
   const paint = async (of) => {
     let over = false;
-    const done = store.send('edit', { op: 'paint', of }).finally(() => { over = true; });
+    const done = store.send('edit', async () => ({ op: 'paint', of })).finally(() => { over = true; });
     done.catch(() => {});
     for (; !over; await soon()) store.line.emit('welcome', { complete: true });  // the connection is back
     return done;

@@ -16,6 +16,7 @@ namespace {
 
 int status_of(const Error& e) {
   if (e.code() == ErrorCode::interrupted) return 499;  // the user stopped it
+  if (e.code() == ErrorCode::again) return 410;        // what the request refers to is gone
   return e.code() == ErrorCode::usage ? 400 : 422;
 }
 

@@ -245,6 +245,12 @@ TEST_F(EditorTest, ScribblesAndMasksAreLimitedInSize) {
         << op;
 }
 
+// After a restart a page sends its files again; a status of its own tells it when to.
+TEST_F(EditorTest, FilesThatAreGoneAreAskedForAgain) {
+  const Json edit = {{"op", "paint"}, {"params", paint_params(camera(0), "never sent")}};
+  EXPECT_EQ(post("/api/edit", edit).status, 410);
+}
+
 TEST_F(EditorTest, ExportsGoToTheProjectAndCanBeFetched) {
   const HttpResponse r = post("/api/export", {{"file", "../ball.ply"}});
   ASSERT_EQ(r.status, 200) << r.body;

@@ -36,7 +36,8 @@ std::string Uploads::add(const std::string& name, const std::string& bytes) {
 std::filesystem::path Uploads::path(const std::string& id) const {
   const std::lock_guard lock(mutex_);
   const auto it = std::find_if(files_.begin(), files_.end(), [&](const auto& f) { return f.first == id; });
-  if (it == files_.end()) fail_usage("The file that was sent for this is gone; send it again.");
+  if (it == files_.end())
+    throw Error(ErrorCode::again, "The file that was sent for this is gone; send it again.");
   return folder_.path() / it->first / it->second;
 }
 

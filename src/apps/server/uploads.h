@@ -16,7 +16,8 @@ class Uploads {
  public:
   // name: of the user's file; see plain_file_name(). Returns the id.
   std::string add(const std::string& name, const std::string& bytes);
-  // Usage error: there is no such upload, or it was deleted because newer ones took its place.
+  // Error (ErrorCode::again): there is no such upload here, perhaps since the program was restarted, or newer
+  // ones took its place.
   std::filesystem::path path(const std::string& id) const;
   std::string bytes(const std::string& id) const;
 

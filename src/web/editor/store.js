@@ -11,6 +11,8 @@ import { started } from './start.js';
 /** @typedef {State['history'][number]} Edit */
 /** @typedef {State['parts'][number]} Part */
 
+const kTries = 5;  // of an edit whose files are gone
+
 export class Store extends EventTarget {
   constructor() {
     super();
@@ -136,6 +138,8 @@ export class Store extends EventTarget {
           if (route === 'edit' && tries > 1 && last?.op === body.op && this.state.done === before.done + 1) return last;
           throw error;
         }
+        // The files of the edit were sent to a program that was restarted since.
+        if (error.status === 410 && typeof make === 'function' && tries < kTries) continue;
         // 401: the program was restarted, and this page does not have its new key yet.
         if (error.status !== 0 && error.status !== 401) throw error;
         this.setLost(true);
