@@ -10,6 +10,7 @@
 #include "core/base/hash.h"
 #include "core/base/json.h"
 #include "core/base/parse_json.h"
+#include "core/base/system.h"
 
 namespace cei3d {
 namespace {
@@ -129,6 +130,10 @@ void Editor::change(const HttpRequest& request, Reply reply, std::function<Json(
                                       "It is shown now; make your change again.");
               const Json result = make(session, progress);
               publish(session);
+              worker_->background([](Session&) {
+                give_back_freed_memory();
+                return false;
+              });
               return HttpResponse{200, "application/json",
                                   "{\"result\":" + text_of(result) + ",\"state\":" + state_text() + "}"};
             });

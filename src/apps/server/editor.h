@@ -184,7 +184,7 @@ class Editor : public HttpApp, private JobListener {
   bool first_frame_ = false;                           // packs wait for the object's first frame
   std::vector<std::function<void()>> held_packs_;      // requests for packs that wait for that frame
   std::atomic<uint64_t> tokens_ = 0;
-  std::unique_ptr<Worker> worker_;         // last: it uses the others
+  std::unique_ptr<Worker> worker_;  // last: it uses the others
 };
 
 }  // namespace cei3d

@@ -26,7 +26,6 @@ void serve(const ServeOptions& options, const std::function<void(const Address&)
         "--host {} can be reached from other machines, and what is sent is not encrypted. An ssh tunnel to "
         "this machine's own address is safer; if you mean it, name this machine with --allow-host, too.",
         options.http.host);
-  give_back_freed_memory();
   Guard guard(new_token(), options.allowed_hosts);
   const std::string token = guard.token();
   Editor editor(options.editor, std::move(guard));

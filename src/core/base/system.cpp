@@ -2,6 +2,7 @@
 #include "core/base/system.h"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <stdlib.h>
 #include <sys/file.h>
 #include <sys/resource.h>
@@ -17,7 +18,7 @@
 
 #include "core/base/error.h"
 
-// Of jemalloc, which the program is linked with; null in programs that are not, such as tests.
+// Of jemalloc; null in programs that are not linked with it, such as most tests.
 extern "C" int mallctl(const char* name, void* old_value, size_t* old_size, void* new_value, size_t new_size)
     __attribute__((weak));
 
@@ -91,17 +92,13 @@ fs::path make_temporary_folder() {
 }
 
 void give_back_freed_memory() {
-  if (!mallctl) return;
-  ssize_t at_once = 0;  // milliseconds that free pages are kept
-  const auto set = [&](const std::string& arena) {
-    for (const char* pages : {"dirty", "muzzy"})
-      mallctl(fmt::format("{}.{}_decay_ms", arena, pages).c_str(), nullptr, nullptr, &at_once, sizeof at_once);
-  };
-  set("arenas");  // that threads will make
-  unsigned made = 0;
-  size_t size = sizeof made;
-  mallctl("arenas.narenas", &made, &size, nullptr, 0);
-  for (unsigned i = 0; i < made; ++i) set(fmt::format("arena.{}", i));
+  if (mallctl) {
+    mallctl("arena.4096.purge", nullptr, nullptr, nullptr, 0);  // 4096: of all arenas
+    return;
+  }
+#ifdef __GLIBC__
+  ::malloc_trim(0);
+#endif
 }
 
 std::optional<FileLock> FileLock::take(const fs::path& file) {

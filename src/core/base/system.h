@@ -16,7 +16,8 @@ double thread_seconds();   // processor time of the calling thread
 double process_seconds();  // processor time of all threads
 double peak_memory_gib();  // that the process has had so far
 
-// For a process that runs long: pages that it frees go back to the system at once. Needs jemalloc.
+// Gives free pages between the blocks in use back to the system; takes some milliseconds, and as many again
+// when they are needed again.
 void give_back_freed_memory();
 
 std::string utc_text(const char* format);  // the time now, by a format of strftime

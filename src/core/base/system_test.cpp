@@ -59,24 +59,6 @@ double resident_megabytes() {
   return resident * double(::sysconf(_SC_PAGESIZE)) / 1e6;
 }
 
-TEST(System, FreedMemoryGoesBack) {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "has an allocator of its own";
-#endif
-  give_back_freed_memory();
-  const double before = resident_megabytes();
-  std::vector<std::unique_ptr<std::string>> small;
-  for (int round = 0; round < 3; ++round) {
-    std::vector<std::string> large;
-    for (int i = 0; i < 100; ++i) {
-      large.emplace_back(size_t(700) << 10, 'x');
-      small.push_back(std::make_unique<std::string>(100, 'y'));  // stays, between large ones
-    }
-    EXPECT_GT(resident_megabytes(), before + 60);
-  }
-  EXPECT_LT(resident_megabytes(), before + 10);
-}
-
 TEST(System, HolesGoBack) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "has an allocator of its own";
@@ -87,7 +69,7 @@ TEST(System, HolesGoBack) {
   for (size_t i = 0; i < blocks.size(); ++i)
     if (i % 100 < 99) blocks[i].reset();
   EXPECT_GT(resident_megabytes(), before + 60);
-  trim_heap();
+  give_back_freed_memory();
   EXPECT_LT(resident_megabytes(), before + 30);
 }
 
