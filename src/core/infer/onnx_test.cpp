@@ -6,13 +6,14 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/temp_folder.h"
+#include "core/base/test_source.h"
 #include "core/infer/test_networks.h"
 
 namespace cei3d {
 namespace {
 
 // `./run sam` fills it; tests run in the repository's root.
-const std::filesystem::path kFolder = "build/sam";
+const std::filesystem::path kFolder = source_file("build/sam");
 
 // c = a - b
 std::string subtraction() {

@@ -8,6 +8,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/temp_folder.h"
+#include "core/base/test_source.h"
 #include "core/infer/test_networks.h"
 #include "engine/metrics/fid.h"
 #include "engine/metrics/lpips.h"
@@ -99,7 +100,7 @@ TEST(Features, ResizingKeepsALinearRamp) {
   EXPECT_EQ(resized_for_features(ramp, 20, 10).data, ramp.data);
 }
 
-const std::filesystem::path kFolder = "build/sam";  // tests run in the repository's root
+const std::filesystem::path kFolder = source_file("build/sam");
 
 class Networks : public testing::Test {
  protected:

@@ -5,11 +5,13 @@
 
 #include <cmath>
 
+#include "core/base/test_source.h"
+
 namespace cei3d {
 namespace {
 
 // `./run sam` fills it; tests run in the repository's root.
-const std::filesystem::path kFolder = "build/sam";
+const std::filesystem::path kFolder = source_file("build/sam");
 
 // A disc of one color on a square of another, on nothing.
 Image disc(float cx, float cy, float radius) {

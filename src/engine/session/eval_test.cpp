@@ -9,6 +9,7 @@
 #include "core/base/file.h"
 #include "core/base/json.h"
 #include "core/base/temp_folder.h"
+#include "core/base/test_source.h"
 #include "core/base/test_unknown_keys.h"
 #include "core/infer/onnx.h"
 #include "core/infer/test_networks.h"
@@ -180,7 +181,8 @@ TEST_F(EvalTest, SaysWhatIsMissing) {
 class EvalNetworks : public EvalTest {
  protected:
   void SetUp() override {
-    if (!OnnxRuntime::available("build/sam")) GTEST_SKIP() << "no ONNX Runtime here; ./run sam installs it";
+    if (!OnnxRuntime::available(source_file("build/sam")))
+      GTEST_SKIP() << "no ONNX Runtime here; ./run sam installs it";
     EvalTest::SetUp();
   }
 };
