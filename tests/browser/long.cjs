@@ -89,6 +89,7 @@ function report(count, there) {
 
 withEditor({ program, project: original, executablePath, copy: true, args: ['--js-flags=--expose-gc', '--enable-precise-memory-info'] }, async (at) => {
   const page = await at.browser.newPage({ viewport: { width: 868, height: 674 } });
+  const begun = logged(at.project);
   const count = { lost: 0, unacknowledged: 0, done: 0, seconds: [], memory: [] }, refused = [];
   page.on('response', async (r) => { if (r.status() >= 400) refused.push(`${r.status()} ${r.url()} ${await r.text().catch(String)}`); });
   try {
@@ -100,5 +101,5 @@ withEditor({ program, project: original, executablePath, copy: true, args: ['--j
   await at.server.kill();
   const there = logged(at.project);
   report(count, there);
-  if (count.lost > 0 || count.done !== there || count.done !== strokes) throw new Error('Edits are missing or doubled.');
+  if (count.lost > 0 || count.done !== there || count.done !== begun + strokes) throw new Error('Edits are missing or doubled.');
 }).catch((error) => { console.error(error); process.exit(1); });
