@@ -63,6 +63,19 @@ test('an edit is sent until it arrives, and one of another window never counts a
   assert.deepEqual(history.map((e) => e.of), ['first', 'second', 'third', 'another window']);
 });
 
+test('an edit is sent again although the socket never noticed that the program was away', async () => {
+  const history = programWith(['unheard', 'arrives']), store = new Store();
+  await store.refresh();
+  store.line.ready = true;
+  window.setTimeout = (work) => timer(work, 0);
+  try {
+    await store.send('edit', { op: 'paint', of: 'first' });
+  } finally {
+    window.setTimeout = () => 0;
+  }
+  assert.deepEqual(history.map((e) => e.of), ['first']);
+});
+
 test('an object counts as made once, in the page that saw it being made', async () => {
   programWith([]);
   const store = new Store(), seen = [];
