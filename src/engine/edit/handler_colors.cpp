@@ -11,7 +11,7 @@ std::vector<Vec3f> handler_colors(const Device& device, const Scene& scene) {
 }
 
 Image albedo_image(const Device& device, const Scene& scene, const Camera& camera) {
-  const GBuffer traced = trace_view(device, scene, camera);
+  const GBuffer traced = trace_view(device, scene, camera, 2, OnSurface::mesh);
   const std::vector<Vec3f> albedo = appearance_at(device, scene, traced.hits).albedo;
   Image picture(traced.width, traced.height, 4);
   for (size_t pixel = 0; pixel + 1 < traced.pixel_start.size(); ++pixel) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/photos/photo_pixels.h"
 
-#include <algorithm>
-
 namespace cei3d {
 
 PixelBox whole(const View& v) { return {0, 0, v.file_camera().width, v.file_camera().height}; }
@@ -13,17 +11,6 @@ Image mask_image(const Image& log_odds, const PixelBox& box, const View& view) {
     for (int x = 0; x < box.width; ++x)
       *mask.at(box.x0 + x, box.y0 + y) = *log_odds.at(x, y) > 0 ? 1.0f : 0.0f;
   return mask;
-}
-
-PixelBox box_around(const std::vector<Vec2f>& pixels, double margin, const PixelBox& limit) {
-  if (pixels.empty()) return {};
-  float x0 = pixels[0].x, x1 = x0, y0 = pixels[0].y, y1 = y0;
-  for (const Vec2f p : pixels)
-    x0 = std::min(x0, p.x), x1 = std::max(x1, p.x), y0 = std::min(y0, p.y), y1 = std::max(y1, p.y);
-  const float more = float(margin) * std::max(x1 - x0, y1 - y0);
-  const int left = std::max(0, int(x0 - more)), top = std::max(0, int(y0 - more));
-  return {left, top, std::min(limit.width, int(x1 + more) + 1) - left,
-          std::min(limit.height, int(y1 + more) + 1) - top};
 }
 
 std::optional<Vec2d> photo_pixel(const View& v, Vec3d point) {

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <vector>
 
 #include "core/image/image.h"
 #include "core/math/pixel_box.h"
@@ -13,9 +12,6 @@
 namespace cei3d {
 
 PixelBox whole(const View&);  // all of the photograph
-
-// Around the pixels and wider by a share of its longer side, within the limit. Width 0: there are none.
-PixelBox box_around(const std::vector<Vec2f>& pixels, double margin, const PixelBox& limit);
 
 // Where the photograph shows a point; none: it does not.
 std::optional<Vec2d> photo_pixel(const View&, Vec3d point);

@@ -140,9 +140,9 @@ std::vector<Hit> trace_rays(const Device& device, const Field& sdf, const Surfac
 }
 
 std::vector<Hit> trace_rays(const Device& device, const Scene& scene, std::span<const Ray> rays,
-                            std::vector<uint32_t>& ray_of_hit) {
+                            std::vector<uint32_t>& ray_of_hit, OnSurface on) {
   std::vector<Hit> hits = mesh_hits(*scene.surface, rays, ray_of_hit);
-  refine_hits(device, scene, hits);
+  if (on == OnSurface::field) refine_hits(device, scene, hits);
   return hits;
 }
 
@@ -163,7 +163,7 @@ struct PixelHits {
 };
 
 PixelHits trace_pixels(const Device& device, const Scene& scene, const Camera& camera,
-                       std::span<const uint32_t> pixels, int samples) {
+                       std::span<const uint32_t> pixels, int samples, OnSurface on) {
   const uint32_t each = uint32_t(samples * samples);
   std::vector<Ray> rays;
   rays.reserve(pixels.size() * each);
@@ -175,7 +175,7 @@ PixelHits trace_pixels(const Device& device, const Scene& scene, const Camera& c
     }
   PixelHits out;
   std::vector<uint32_t> ray_of_hit;
-  out.hits = trace_rays(device, scene, rays, ray_of_hit);
+  out.hits = trace_rays(device, scene, rays, ray_of_hit, on);
   out.start.assign(pixels.size() + 1, 0);
   for (const uint32_t ray : ray_of_hit) {
     out.sub_pixels.push_back(uint16_t(ray % each));
@@ -226,15 +226,16 @@ PixelHits replaced(const PixelHits& view, std::span<const uint32_t> pixels, cons
 
 }  // namespace
 
-GBuffer trace_view(const Device& device, const Scene& scene, const Camera& camera, int samples) {
+GBuffer trace_view(const Device& device, const Scene& scene, const Camera& camera, int samples,
+                   OnSurface on) {
   std::vector<uint32_t> pixels(size_t(camera.width) * camera.height);
   std::iota(pixels.begin(), pixels.end(), 0u);
   GBuffer g{
       camera.width, camera.height, std::vector<uint8_t>(pixels.size(), uint8_t(samples)), {}, {}, {}, {}};
-  PixelHits view = trace_pixels(device, scene, camera, pixels, samples);
+  PixelHits view = trace_pixels(device, scene, camera, pixels, samples, on);
   if (samples > 1) {
     const std::vector<uint32_t> rim = on_silhouette(view, camera.width, camera.height, samples);
-    view = replaced(view, rim, trace_pixels(device, scene, camera, rim, 2 * samples));
+    view = replaced(view, rim, trace_pixels(device, scene, camera, rim, 2 * samples, on));
     for (const uint32_t p : rim) g.samples[p] = uint8_t(2 * samples);
   }
   const Vec3f forward = camera.forward(), center = to_float(camera.center);

@@ -41,8 +41,8 @@ OnnxTensors decoder_input(const SamImage& image, std::span<const Vec2f> positive
   OnnxTensor coords, labels;
   const auto add = [&](Vec2f p, float label) {
     // The network itself adds half a frame pixel.
-    coords.data.push_back((p.x - float(image.x0)) * image.scale - 0.5f);
-    coords.data.push_back((p.y - float(image.y0)) * image.scale - 0.5f);
+    coords.data.push_back((p.x - image.x0) * image.scale - 0.5f);
+    coords.data.push_back((p.y - image.y0) * image.scale - 0.5f);
     labels.data.push_back(label);
   };
   for (Vec2f p : positive) add(p, 1);
@@ -102,9 +102,9 @@ Image to_image(const std::vector<float>& plane, const SamImage& p) {
   constexpr float kStep = float(kFrame) / kLowRes;
   const auto last = float(kLowRes - 1);
   for (int y = 0; y < p.height; ++y) {
-    const float v = (float(y - p.y0) + 0.5f) * p.scale / kStep - 0.5f;
+    const float v = (float(y) - p.y0 + 0.5f) * p.scale / kStep - 0.5f;
     for (int x = 0; x < p.width; ++x) {
-      const float u = (float(x - p.x0) + 0.5f) * p.scale / kStep - 0.5f;
+      const float u = (float(x) - p.x0 + 0.5f) * p.scale / kStep - 0.5f;
       if (u < -0.5f || v < -0.5f || u > last + 0.5f || v > last + 0.5f) continue;
       const float cu = std::clamp(u, 0.0f, last - 0.001f), cv = std::clamp(v, 0.0f, last - 0.001f);
       const int i = int(cu), j = int(cv);
@@ -126,6 +126,16 @@ std::filesystem::path installed_sam() {
   for (const auto& folder : {first, program / "sam", program.parent_path() / "share/cei3d/sam"})
     if (std::filesystem::exists(folder / "encoder.onnx", ignored)) return folder;
   return first;
+}
+
+SamImage of_whole(SamImage section, int width, int height, const PixelBox& box, double scale) {
+  SamImage image = std::move(section);
+  image.width = width;
+  image.height = height;
+  image.x0 = float(box.x0 + image.x0 / scale);
+  image.y0 = float(box.y0 + image.y0 / scale);
+  image.scale *= float(scale);
+  return image;
 }
 
 Sam::Sam(const std::filesystem::path& folder, int threads)

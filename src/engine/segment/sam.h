@@ -15,6 +15,7 @@
 
 #include "core/image/image.h"
 #include "core/infer/onnx.h"
+#include "core/math/pixel_box.h"
 #include "core/math/vec.h"
 
 namespace cei3d {
@@ -28,9 +29,12 @@ std::filesystem::path installed_sam();
 struct SamImage {
   OnnxTensor embedding;
   int width = 0, height = 0;  // of the image
-  int x0 = 0, y0 = 0;         // where the frame begins in it
+  float x0 = 0, y0 = 0;       // where the frame begins in it
   float scale = 1;            // frame pixels per image pixel
 };
+
+// The same, for an image of that size of which a section was encoded, at `scale` pixels per pixel.
+SamImage of_whole(SamImage section, int width, int height, const PixelBox& box, double scale);
 
 class Sam {
  public:
@@ -56,7 +60,7 @@ class Sam {
 // longest side 1024. Exposed for tests.
 struct SamFrame {
   Image rgb;
-  int x0 = 0, y0 = 0;
+  float x0 = 0, y0 = 0;
   float scale = 1;
 };
 SamFrame sam_frame(const Image& rgba);

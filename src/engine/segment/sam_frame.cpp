@@ -91,8 +91,8 @@ SamFrame sam_frame(const Image& rgba) {
   const Box b = object_box(rgba);
   const int width = b.x1 - b.x0, height = b.y1 - b.y0;
   SamFrame f;
-  f.x0 = b.x0;
-  f.y0 = b.y0;
+  f.x0 = float(b.x0);
+  f.y0 = float(b.y0);
   f.scale = float(kFrame) / float(std::max(width, height));
   f.rgb = resize(displayed(rgba, b), std::max(int(float(width) * f.scale + 0.5f), 1),
                  std::max(int(float(height) * f.scale + 0.5f), 1));
