@@ -82,6 +82,12 @@ class SmallPaperRun : Owner<BoxCapture>, public AnyRun {
   SmallPaperRun() : AnyRun(own.capture(), own) { preset = shrunken(preset_by_name("paper")); }
 };
 
+// Of the field and of a network of colors over position and direction.
+class SmallCoupledRun : Owner<BoxCapture>, public AnyRun {
+ public:
+  SmallCoupledRun() : AnyRun(own.capture(), own) { preset.color = ColorChoice::coupled; }
+};
+
 class SmallRunFromASphere : Owner<BoxCapture>, public AnyRun {
  public:
   SmallRunFromASphere() : AnyRun(own.capture(), own) { preset.start = StartChoice::sphere; }
@@ -326,6 +332,16 @@ TEST(Reconstruct, TheJointDescentAloneIsResumedAnywhere) {
 TEST(Reconstruct, ThePapersRunIsResumedAnywhere) {
   SmallPaperRun small;
   expect_resumed_anywhere(small, {"loading", "joint", "surface", "done"});
+}
+
+TEST(Reconstruct, CoupledColorIsResumedAnywhere) {
+  SmallCoupledRun small;
+  const Reference reference(small);
+  EXPECT_EQ(reference.progress.checks.count("color"), 1u);
+  MemoryCheckpoints again;
+  const Checkpoints::State object = with_interruptions(small, again, reference.progress, 1);
+  expect_same(object.tensors, reference.scene.tensors, "the object");
+  EXPECT_EQ(object.head, reference.scene.head);
 }
 
 TEST(Reconstruct, FromASphereIsResumedAnywhere) {

@@ -87,15 +87,30 @@ TEST(TimedRun, EveryPresetEndsInTimeWithTheStagesOfItsPlan) {
   }
 }
 
-TEST(TimedRun, RefinesTheAlbedoOfManyPixels) {
+TEST(TimedRun, RefinesTheAlbedoOfManyPixelsAndIsResumedThere) {
   const BoxCapture capture(24, 32);
   Preset preset = preset_for_time("fast");
   preset.max_hits = 1500;
   TimedRun r(capture, preset, 400);
   r.run();
-  EXPECT_TRUE(r.has("albedo 1"));
+  ASSERT_TRUE(r.has("albedo 1"));
   EXPECT_LE(r.seconds(), 1.05 * 400);  // a tick is long
   expect_complete(r.scene, "with refinements");
+
+  const std::vector<std::string>& stages = r.progress->stages;
+  const auto at = std::find(stages.begin(), stages.end(), "albedo 1");
+  const int checks = r.progress->checks.at("albedo 1");
+  for (const auto how : {ScriptedProgress::How::cancel, ScriptedProgress::How::kill}) {
+    TimedRun again(capture, preset, 400);
+    again.checkpoints.latest_state = r.checkpoints.after.at(*(at - 1));
+    again.progress->stop_at("albedo 1", checks / 2, how);
+    EXPECT_ANY_THROW(again.run());
+    again.progress = std::make_unique<ScriptedProgress>();
+    again.progress->stop_at(*(at + 1), 1);
+    EXPECT_THROW(again.run(), Error);
+    expect_same(again.checkpoints.after.at("albedo 1").tensors, r.checkpoints.after.at("albedo 1").tensors,
+                "after the refinement");
+  }
 }
 
 TEST(TimedRun, ResumedKeepsItsPlanAndItsTime) {
