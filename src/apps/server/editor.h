@@ -160,8 +160,8 @@ class Editor : public HttpApp, private JobListener {
   // sockets.cpp
   void on_progress(const std::string& job, const ProgressReport&) override;
   void broadcast(Json);
-  void welcome(const SocketPtr&, const Json& hello);
-  void show_view(const SocketPtr&, const std::string& tab, const Json& message);
+  void hello(const SocketPtr&, JsonReader& message);
+  void show_view(const SocketPtr&, const std::string& tab, JsonReader& message);
 
   EditorOptions options_;
   Guard guard_;

@@ -148,15 +148,27 @@ TEST_F(EditorTest, AWindowThatWasAwayForLongGetsTheState) {
   EXPECT_EQ(back->texts[1]["revision"], state()["revision"]);
 }
 
-TEST_F(EditorTest, AWindowWithoutTheKeyIsClosed) {
+TEST_F(EditorTest, AWindowWithoutTheKeyOrThatSaysMoreIsClosed) {
+  const std::string with_more = Json{{"type", "hello"}, {"token", kTestToken}, {"after_all", 1}}.dump();
   for (const char* first : {R"({"type": "hello", "token": "0123456789abcdee"})", R"({"type": "hello"})",
-                            R"({"type": "view", "seq": 1})", "nonsense"}) {
+                            R"({"type": "view", "seq": 1})", "nonsense", with_more.c_str()}) {
     const auto socket = std::make_shared<FakeSocket>();
     editor_->opened(socket);
     editor_->received(socket, first);
     EXPECT_TRUE(socket->closed) << first;
     editor_->closed(socket);
   }
+}
+
+TEST_F(EditorTest, AMessageWithAnUnknownKeyIsAnError) {
+  const auto at = window(*editor_);
+  for (const Json& message : {Json{{"type", "rest"}, {"now", true}}, Json{{"type", "view"}, {"sequence", 1}}}) {
+    const size_t before = at->texts.size();
+    editor_->received(at, message.dump());
+    ASSERT_EQ(at->texts.size(), before + 1) << message;
+    EXPECT_EQ(at->texts.back()["type"], "error") << message;
+  }
+  editor_->closed(at);
 }
 
 }  // namespace

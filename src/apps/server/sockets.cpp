@@ -111,29 +111,29 @@ void Editor::received(const SocketPtr& socket, const std::string& text) {
     tab = tabs_[socket];
   }
   const Json j = parse_json(text);
-  const std::string type =
-      j.is_object() && j.contains("type") && j["type"].is_string() ? j["type"].get<std::string>() : "";
-  if (!tab.trusted) {
-    if (type != "hello" || !j.contains("token") || !j["token"].is_string() ||
-        !guard_.knows(j["token"].get<std::string>()))
-      return socket->close();
-    return welcome(socket, j);
-  }
-  if (type == "rest") return worker_->drop_frame(tab.name);
   try {
-    if (type != "view") fail_usage("There is no message '{}'.", type);
-    show_view(socket, tab.name, j);
+    JsonReader message(j, "The message");
+    const auto type = message.require<std::string>("type");
+    if (!tab.trusted) return type == "hello" ? hello(socket, message) : socket->close();
+    if (type == "view") return show_view(socket, tab.name, message);
+    if (type != "rest") fail_usage("There is no message '{}'.", type);
+    message.finish();
+    worker_->drop_frame(tab.name);
   } catch (const std::exception& e) {
+    if (!tab.trusted) return socket->close();
     socket->send(Json{{"type", "error"}, {"error", e.what()}}.dump());
   }
 }
 
-void Editor::welcome(const SocketPtr& socket, const Json& hello) {
-  const bool same_run = hello.contains("run") && hello["run"] == run_ && hello.contains("after") &&
-                        hello["after"].is_number_unsigned();
+void Editor::hello(const SocketPtr& socket, JsonReader& message) {
+  const auto token = message.require<std::string>("token");
+  const auto run = message.optional<std::string>("run");
+  const auto after = message.optional<uint64_t>("after");
+  message.finish();
+  if (!guard_.knows(token)) return socket->close();
+  const bool same_run = run == run_ && after;
   const std::lock_guard lock(mutex_);
-  const uint64_t after = same_run ? hello["after"].get<uint64_t>() : 0;
-  const uint64_t missed = event_ - std::min(after, event_);
+  const uint64_t missed = event_ - std::min(after.value_or(0), event_);
   const bool complete = same_run && missed <= news_.size();
   tabs_[socket].trusted = true;
   socket->send(Json{
@@ -145,9 +145,7 @@ void Editor::welcome(const SocketPtr& socket, const Json& hello) {
     socket->send(state_news(state_).dump());
 }
 
-void Editor::show_view(const SocketPtr& socket, const std::string& tab, const Json& message) {
-  JsonReader reader(message, "The view");
-  reader.has("type");
+void Editor::show_view(const SocketPtr& socket, const std::string& tab, JsonReader& reader) {
   const auto seq = reader.require<uint64_t>("seq");
   FrameRequest request = frame_request(reader, uploads_);
   const auto token = reader.optional<std::string>("preview");

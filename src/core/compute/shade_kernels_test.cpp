@@ -229,6 +229,60 @@ TEST(ShadeKernels, AdjointEqualsDifferencesOfTheForwardPass) {
     }
 }
 
+// The lobes of the scene against square roots of radiance on some cells, and the loss that the kernels descend,
+// in double precision.
+struct LobeFit {
+  LobeScene scene;
+  std::vector<float> roots = noise(3 * kPoints, 8), weights = noise(kPoints, 12);
+
+  LobeFit() {
+    for (float& r : roots) r = std::abs(r);
+    for (float& w : weights) w = 0.1f + std::abs(w);
+  }
+  std::vector<float> gradient(const Device& d) const {
+    std::vector<float> d_radiance(3 * kPoints), d_lobes(7 * kLobes);
+    const SgFitArgs a{scene.planes(),  kPoints,           scene.normals.data(), roots.data(),
+                      weights.data(), d_radiance.data(), d_lobes.data()};
+    d.launch<SgFitResidual>(a, kPoints);
+    d.launch<SgFitGather>(a, kLobes);
+    return d_lobes;
+  }
+  double radiance(int cell, int channel) const {
+    const auto lobe = [&](int row, int k) { return double(scene.lobes[size_t(row) * kLobes + size_t(k)]); };
+    double sum = 0;
+    for (int k = 0; k < kLobes; ++k) {
+      double cosine = 0;
+      for (int c = 0; c < 3; ++c) cosine += double(scene.normals[size_t(c * kPoints + cell)]) * lobe(c, k);
+      sum += lobe(4 + channel, k) * std::exp(lobe(3, k) * (cosine - 1));
+    }
+    return sum;
+  }
+  double loss() const {
+    double sum = 0;
+    for (int i = 0; i < kPoints; ++i)
+      for (int c = 0; c < 3; ++c)
+        sum += double(weights[size_t(i)]) *
+               square(std::sqrt(radiance(i, c) + 1e-4) - double(roots[size_t(c * kPoints + i)]));
+    return sum;
+  }
+};
+
+TEST(ShadeKernels, GradientOfTheFitOfLobesEqualsDifferencesOfItsLoss) {
+  LobeFit fit;
+  const std::vector<float> g = fit.gradient(make_device("cpu/scalar"));
+  for (int row = 0; row < 7; ++row)
+    for (const int k : {0, 7, 31}) {
+      const size_t at = size_t(row) * kLobes + size_t(k);
+      const float x = fit.scene.lobes[at], h = 1e-3f * std::max(0.1f, std::abs(x));
+      fit.scene.lobes[at] = x + h;
+      const double up = fit.loss(), width = double(fit.scene.lobes[at]);
+      fit.scene.lobes[at] = x - h;
+      const double slope = (up - fit.loss()) / (width - double(fit.scene.lobes[at]));
+      fit.scene.lobes[at] = x;
+      EXPECT_NEAR(g[at], slope, 3e-3 * std::abs(slope) + 1e-3) << row << ' ' << k;
+    }
+}
+
 TEST(ShadeKernels, AdjointOfAnAxisEqualsDifferencesAlongTheSphere) {
   const Device device = make_device("cpu/scalar");
   LobeScene s;

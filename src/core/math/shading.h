@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shading model: the radiance that a surface point sends to the viewer, and its adjoint. The
 // metallic-roughness model of glTF: the diffuse term is (1 - metalness) albedo / pi, F0 is metalness * albedo
-// + (1 - metalness) * kDielectricF0 * specular; the specular term is the split sum. This is the only place
-// of the program where these formulas are written out; `lit` in src/web/shaders.js repeats for WebGL what
-// tables cannot hold, and tests/e2e/page.sh compares its pictures with the program's. [paper eq. 2-5, 13-15]
+// + (1 - metalness) * kDielectricF0 * specular; the specular term is the split sum. In the whole program these
+// formulas are written out here and, for a reflection that is the sum of two lobes, in reflection_axis.h;
+// `lit` in src/web/shaders.js repeats for WebGL what tables cannot hold, and tests/e2e/page.sh compares its
+// pictures with the program's. [paper eq. 2-5, 13-15]
 #pragma once
 
 #include "core/math/mirror.h"
@@ -55,6 +56,11 @@ HD Vec3<T> f0_of(Vec3<T> albedo, T specular, T metalness) {
   const T dielectric = dielectric_f0(specular, metalness);
   return albedo * metalness + Vec3<T>{dielectric, dielectric, dielectric};
 }
+// Fraction of the irradiance that a white surface sends to the viewer, but for diffuse_view().
+template <class T>
+HD T diffuse_share(T metalness) {
+  return (T(1.0f) - metalness) * T(1 / kPi);
+}
 // Fraction of the reflected radiance that reaches the viewer, of one channel or of three.
 template <class T>
 HD T reflectance(SplitSum<T> s, T f0) {
@@ -85,7 +91,7 @@ HD ShadingTerms<T> shading_terms(const float* table, const ShadingPoint<T>& p) {
   const T view = diffuse_view(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)), p.diffuse_light);
   const Vec3<T> white{one, one, one}, black{zero, zero, zero};
   const Vec3<T> offset = reflectance(s, f0_of(black, p.specular, p.metalness));
-  return {p.irradiance * ((one - p.metalness) * T(1 / kPi) * view),
+  return {p.irradiance * (diffuse_share(p.metalness) * view),
           p.reflected * ((white * p.metalness) * s.scale), p.reflected * offset};
 }
 
@@ -93,7 +99,7 @@ HD ShadingTerms<T> shading_terms(const float* table, const ShadingPoint<T>& p) {
 template <class T>
 HD ShadingPoint<T> shading_grad(const float* table, const ShadingPoint<T>& p, Vec3<T> d_diffuse,
                                 Vec3<T> d_specular) {
-  const T zero(0.0f), one(1.0f), k = (one - p.metalness) * T(1 / kPi);
+  const T zero(0.0f), one(1.0f), k = diffuse_share(p.metalness);
   const SplitSumGrad<T> s = split_sum_grad(table, p.nv, p.roughness);
   const DiffuseViewGrad<T> view =
       diffuse_view_grad(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)), p.diffuse_light);

@@ -74,12 +74,13 @@ std::optional<bool> has_ended(const fs::path& attempt) {
   const Json j = parse_json(bytes);
   if (!j.is_object()) return std::nullopt;  // it begins just now
   JsonReader r(j, attempt.string());
-  const Job job = present_job();
-  if (!job.name.empty() && r.require<std::string>("job") == job.name &&
-      r.require<int>("restart") < job.restart)
-    return true;
-  const auto runs =
-      is_running({r.require<std::string>("space"), r.require<int>("pid"), r.require<uint64_t>("started")});
+  const Job job = present_job(), its{r.require<std::string>("job"), r.require<int>("restart")};
+  const ProcessId process{r.require<std::string>("space"), r.require<int>("pid"),
+                          r.require<uint64_t>("started")};
+  r.require<std::string>("host");  // for people
+  r.finish();
+  if (!job.name.empty() && its.name == job.name && its.restart < job.restart) return true;
+  const auto runs = is_running(process);
   return runs ? std::optional(!*runs) : std::nullopt;
 }
 

@@ -14,12 +14,13 @@ namespace {
 
 constexpr const char* kStepFile = "step.json";
 
-// What a step found, if its folder holds its results; else null.
+// What a step found, if its folder holds its results; else null: it is made again.
 Json found_in(const fs::path& folder, const std::string& key) {
   std::error_code error;
   if (!fs::exists(folder / kStepFile, error)) return nullptr;
   const Json j = parse_json(read_file(folder / kStepFile));
-  return j.is_object() && j.value("key", "") == key ? j.value("found", Json::object()) : Json();
+  const bool known = j.is_object() && j.size() == 2 && j.contains("key") && j.contains("found");
+  return known && j["key"] == key ? j["found"] : Json();
 }
 
 class ItemWork {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 
 #include "core/base/cancel.h"
 #include "core/math/loss.h"
@@ -110,7 +109,7 @@ std::shared_ptr<const Field> fit_branch(const Device& device, const BranchSample
     trainer.step(
         device, batch.x,
         options.loss == BranchLoss::l1 ? absolute_difference(batch.target) : cross_entropy_of(batch.target),
-        options.decay ? 0.5f * (1 + std::cos(kPi * fraction)) + 1e-3f : 1);
+        options.decay ? cosine_decay(fraction) : 1);
     if (step % 40 == 0) progress.report({"paint", 0.2 + 0.8 * fraction, -1, ""});
   }
   return field;

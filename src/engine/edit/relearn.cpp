@@ -2,7 +2,6 @@
 #include "engine/edit/relearn.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/base/cancel.h"
 #include "core/base/error.h"
@@ -56,7 +55,7 @@ std::shared_ptr<const Field> relearn(const Device& device, const Scene& scene, c
     const float fraction = float(step) / kSteps;
     const ColorSamples batch = batch_of(painted, beside, seed, step);
     trainer.step(device, batch.positions, absolute_difference(batch.colors),
-                 0.5f * (1 + std::cos(kPi * fraction)) + 1e-3f);
+                 cosine_decay(fraction));
     if (step % 50 == 0) progress.report({"paint", 0.2 + 0.8 * fraction, -1, ""});
   }
   return field;

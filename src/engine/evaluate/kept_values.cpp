@@ -10,7 +10,8 @@ namespace cei3d {
 Json KeptValues::find(const std::string& name, const Json& settings) const {
   if (!std::filesystem::exists(file(name))) return nullptr;
   const Json kept = parse_json(read_file(file(name)));
-  if (!kept.is_object() || !kept.contains("settings") || !kept.contains("value")) return nullptr;
+  if (!kept.is_object() || kept.size() != 2 || !kept.contains("settings") || !kept.contains("value"))
+    return nullptr;  // not by this version: it is computed again
   return kept.at("settings") == settings ? kept.at("value") : Json();
 }
 

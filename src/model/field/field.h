@@ -3,6 +3,7 @@
 // every edit are fields; presets differ in data (FieldConfig), not in code.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -77,6 +78,10 @@ struct FieldJet {
   float value;
   Vec3f gradient;
 };
+
+// Factor of the rates of a descent that ends in small steps: from 1 to a thousandth, along a half wave.
+// fraction: of the descent, [0, 1].
+inline float cosine_decay(float fraction) { return 0.5f * (1 + std::cos(kPi * fraction)) + 1e-3f; }
 
 // Fits a field to a loss on its values, by Adam.
 class FieldTrainer {

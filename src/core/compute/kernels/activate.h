@@ -2,6 +2,7 @@
 // Activations over `rows` rows of panels.
 #pragma once
 
+#include "core/compute/kernel.h"
 #include "core/compute/kernels/panel.h"
 #include "core/math/activation.h"
 

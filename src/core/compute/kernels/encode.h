@@ -3,6 +3,7 @@
 // stays in cache.
 #pragma once
 
+#include "core/compute/kernel.h"
 #include "core/compute/kernels/panel.h"
 #include "core/math/encoding.h"
 

@@ -3,6 +3,7 @@
 // the linear layers (docs/method.md#values-with-gradients).
 #pragma once
 
+#include "core/compute/kernel.h"
 #include "core/compute/kernels/panel.h"
 
 namespace cei3d {

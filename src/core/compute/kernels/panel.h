@@ -5,8 +5,8 @@
 
 #include <cstddef>
 
-#include "core/compute/kernel.h"
 #include "core/compute/linear.h"
+#include "core/math/scalar.h"
 #include "core/math/vec.h"
 
 namespace cei3d {

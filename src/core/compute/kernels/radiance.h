@@ -6,6 +6,7 @@
 // object's.
 #pragma once
 
+#include "core/compute/kernel.h"
 #include "core/compute/kernels/panel.h"
 #include "core/math/encoding.h"
 

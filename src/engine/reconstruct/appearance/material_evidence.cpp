@@ -73,8 +73,7 @@ LitSamples::RowLight LitSamples::light_of(const SplitRow& row, float roughness) 
     return incident_at(sky_, reflected_sky(row, part, roughness, light_height_), row);
   };
   return {reflected_parts(s, incident(ReflectionPart::base), incident(ReflectionPart::fresnel)),
-          row.diffuse_light * diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
-                                           light_directions_.at(row.normal).towards(row.to_camera))};
+          row.diffuse_light * diffuse_view_of(row, roughness, light_directions_)};
 }
 
 // Calls visit(row, its color, RowLight) for the vertex' samples. Returns their number.

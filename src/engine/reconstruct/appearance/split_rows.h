@@ -7,6 +7,7 @@
 
 #include "engine/reconstruct/appearance/hidden_sky.h"
 #include "engine/reconstruct/appearance/linear_split.h"
+#include "engine/render/light_direction.h"
 #include "model/geometry/shape/surface.h"
 
 namespace cei3d {
@@ -32,6 +33,11 @@ struct SplitRow {
   Vec3f far_diffuse_light{1, 1, 1};  // at the far point
   Vec3f far_radiance() const { return far_color * far_diffuse_light; }
 };
+
+// Of the row's point, seen by its camera under a light whose directions these are.
+inline float diffuse_view_of(const SplitRow& row, float roughness, const LightDirectionMap& light) {
+  return diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness, light.at(row.normal).towards(row.to_camera));
+}
 
 // A row for each sample of the random subset of options.max_hits samples.
 std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&);

@@ -49,8 +49,7 @@ SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {
   o.split_sum = split_sum(split_sum_table(), row.nv, roughness);
   o.gains = reflection_gains(o.split_sum, f0);
   o.far_gain = o.gain_of(1 - o.base.open, 1 - o.fresnel.open);
-  o.diffuse_view = diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness,
-                                light_directions_.at(row.normal).towards(row.to_camera));
+  o.diffuse_view = diffuse_view_of(row, roughness, light_directions_);
   return o;
 }
 

@@ -6,6 +6,7 @@
 #include "core/base/parallel.h"
 #include "core/compute/kernels/single_sg.h"
 #include "core/compute/planes.h"
+#include "core/math/shading.h"
 #include "engine/reconstruct/joint/logit.h"
 #include "engine/render/lobe_planes.h"
 
@@ -85,7 +86,7 @@ std::vector<ShadingTerms<float>> SgShading::terms(const SgMixture& light, const 
   for (size_t i = 0; i < batch.size(); ++i) {
     const Hit& h = batch.hits[i];
     out.push_back(
-        {irradiance_[i] * ((1 - m.metalness) / kPi),
+        {irradiance_[i] * diffuse_share(m.metalness),
          {0, 0, 0},
          mirrored_[i] * m.amplitude * mirror_gain(dot(h.normal, h.to_camera), m.roughness, m.specular)});
   }
@@ -95,7 +96,7 @@ std::vector<ShadingTerms<float>> SgShading::terms(const SgMixture& light, const 
 ShadingGrads SgShading::grad(const HitBatch& batch, std::span<const Vec3f> albedo,
                              std::span<const Vec3f> d_radiance) {
   const SgMaterial m = material();
-  const float matte = (1 - m.metalness) / kPi;
+  const float matte = diffuse_share(m.metalness);
   ShadingGrads out(batch.size());
   std::vector<Vec3f> d_mirrored(batch.size());
   double d_raw[kRows] = {};
@@ -112,7 +113,7 @@ ShadingGrads SgShading::grad(const HitBatch& batch, std::span<const Vec3f> albed
       d_raw[kAmplitude + c] += double(d[c] * mirrored[c] * m.amplitude[c] * gain.value);
     d_raw[kRoughness] += double(d_gain * gain.d_roughness);
     d_raw[kSpecular] += double(d_gain * gain.d_specular);
-    d_raw[kMetalness] -= double(dot(d, albedo[i] * lit) / kPi);
+    d_raw[kMetalness] -= double(dot(d, albedo[i] * lit) * diffuse_share(0.0f));
   }
   const Points points = points_of(batch);
   d_raw[kSharpness] = light_grad(batch, points, d_mirrored, out) * double(m.sharpness);
