@@ -16,6 +16,8 @@ import sys
 import numpy as np
 from PIL import Image
 
+from srgb import linear_from_srgb, srgb_from_linear
+
 FINE = 4  # samples of a pixel's side
 
 
@@ -36,21 +38,12 @@ def accessor(gltf, binary, index):
     return np.frombuffer(binary, kind, a['count'] * width, start).reshape(a['count'], width)
 
 
-def linear_of(srgb):
-    return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
-
-
-def srgb_of(linear):
-    linear = np.clip(linear, 0, 1)
-    return np.where(linear <= 0.0031308, linear * 12.92, 1.055 * linear ** (1 / 2.4) - 0.055)
-
-
 def base_color(gltf, binary):
     texture = gltf['materials'][0]['pbrMetallicRoughness']['baseColorTexture']['index']
     view = gltf['bufferViews'][gltf['images'][gltf['textures'][texture]['source']]['bufferView']]
     start = view.get('byteOffset', 0)
     picture = Image.open(io.BytesIO(binary[start:start + view['byteLength']])).convert('RGB')
-    return linear_of(np.asarray(picture, np.float32) / 255)
+    return linear_from_srgb(np.asarray(picture, np.float32) / 255)
 
 
 def lookup(texture, uv):
@@ -160,7 +153,7 @@ def main(asset, rendered, masks=None):
             inside &= np.asarray(Image.open(path).convert('L')) > 250
         if not inside.any():
             continue
-        scores.append(psnr(srgb_of(color)[inside], ours[..., :3][inside]))
+        scores.append(psnr(srgb_from_linear(np.clip(color, 0, 1))[inside], ours[..., :3][inside]))
         print(f"{camera['file']:24} {scores[-1]:.2f} dB, {int(inside.sum())} pixels")
     print(f'mean of {len(scores)} views: {np.mean(scores):.2f} dB, least {np.min(scores):.2f} dB')
 

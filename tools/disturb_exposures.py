@@ -15,13 +15,7 @@ import sys
 import numpy
 from PIL import Image
 
-
-def linear(srgb):
-    return numpy.where(srgb <= .04045, srgb / 12.92, ((srgb + .055) / 1.055) ** 2.4)
-
-
-def encoded(rgb):
-    return numpy.where(rgb <= .0031308, rgb * 12.92, 1.055 * rgb ** (1 / 2.4) - .055)
+from srgb import linear_from_srgb, srgb_from_linear
 
 
 def main():
@@ -37,7 +31,7 @@ def main():
         path = os.path.join(out, frame['file_path'] + '.png')
         factor = numpy.exp(exposure * random.normal() + balance * random.normal(size=3))
         image = numpy.asarray(Image.open(path)).astype(float) / 255
-        image[..., :3] = encoded(numpy.minimum(linear(image[..., :3]) * factor, 1))
+        image[..., :3] = srgb_from_linear(numpy.minimum(linear_from_srgb(image[..., :3]) * factor, 1))
         Image.fromarray((image * 255 + .5).astype(numpy.uint8)).save(path)
         factors[frame['file_path']] = factor.tolist()
     with open(os.path.join(out, 'exposures.json'), 'w', encoding='utf-8') as file:

@@ -14,18 +14,12 @@ import sys
 import numpy as np
 from PIL import Image
 
+from srgb import linear_from_srgb, srgb_from_linear
+
 SIZE = 192
 TRAIN = range(1, 100, 2)                       # of the scene's 100; 55 is the painted one
 TEST = [4, 6, 12, 20, 26, 28, 34, 36]          # of the scene's 40: those with a truth for paint and for light
 LIGHT, LIGHT_SIZE = 'venice', (128, 64)
-
-
-def linear(s):
-    return np.where(s <= 0.04045, s / 12.92, ((s + 0.055) / 1.055) ** 2.4)
-
-
-def srgb(c):
-    return np.where(c <= 0.0031308, 12.92 * c, 1.055 * np.maximum(c, 1e-9) ** (1 / 2.4) - 0.055)
 
 
 def weights(n, m):
@@ -51,10 +45,10 @@ def write(path, a):
 
 def color(source, target):
     a = read(source)
-    premultiplied = np.concatenate([linear(a[..., :3]) * a[..., 3:], a[..., 3:]], 2)
+    premultiplied = np.concatenate([linear_from_srgb(a[..., :3]) * a[..., 3:], a[..., 3:]], 2)
     p = shrink(premultiplied, SIZE, SIZE)
     alpha = np.round(p[..., 3:] * 255) / 255
-    straight = srgb(p[..., :3] / np.maximum(p[..., 3:], 1e-9))
+    straight = srgb_from_linear(p[..., :3] / np.maximum(p[..., 3:], 1e-9))
     write(target, np.concatenate([np.where(alpha > 0, straight, 0), alpha], 2))
 
 

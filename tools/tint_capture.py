@@ -13,18 +13,12 @@ import sys
 import numpy
 from PIL import Image
 
-
-def linear(s):
-    return numpy.where(s <= 0.04045, s / 12.92, ((s + 0.055) / 1.055) ** 2.4)
-
-
-def srgb(v):
-    return numpy.where(v <= 0.0031308, v * 12.92, 1.055 * v ** (1 / 2.4) - 0.055)
+from srgb import linear_from_srgb, srgb_from_linear
 
 
 def tint(path, factors):
     pixels = numpy.asarray(Image.open(path).convert('RGBA')).astype(float) / 255
-    pixels[..., :3] = srgb(numpy.clip(linear(pixels[..., :3]) * factors, 0, 1))
+    pixels[..., :3] = srgb_from_linear(numpy.clip(linear_from_srgb(pixels[..., :3]) * factors, 0, 1))
     Image.fromarray(numpy.round(pixels * 255).astype(numpy.uint8)).save(path)
 
 

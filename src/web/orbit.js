@@ -58,8 +58,8 @@ export class Orbit {
     const [x, y] = this.axes();
     const moved = plus(plus(this.target, x, -right * size), y, -down * size);
     const offset = plus(moved, this.center, -1), length = Math.hypot(...offset);
-    const most = 2 * this.radius;
-    this.target = length > most ? plus(this.center, offset, most / length) : moved;
+    const max = 2 * this.radius;
+    this.target = length > max ? plus(this.center, offset, max / length) : moved;
   }
 
   /** Right, down and forward of the camera. @returns {Vec3[]} */

@@ -32,12 +32,12 @@ async function packOf(kind) {
 
 /** The distance of the farthest vertex from the middle of the box. @param {Pack} shape */
 function radiusOf({head, arrays: {positions}}) {
-  let most = 0;
+  let radius = 0;
   for (let i = 0; i < positions.length; i += 4) {
     const offset = [0, 1, 2].map((k) => (positions[i + k] / 65535 - 0.5) * head.size[k]);
-    most = Math.max(most, Math.hypot(...offset));
+    radius = Math.max(radius, Math.hypot(...offset));
   }
-  return most;
+  return radius;
 }
 
 class Page {

@@ -13,7 +13,7 @@ import { actionOf, gestures, isSingle, keyTable } from '../../src/web/editor/key
 import { Pace, steps } from '../../src/web/editor/pace.js';
 import { lookText, partBall, partLooks, swatch } from '../../src/web/editor/looks.js';
 
-const near = (a, b, most = 1e-5) => assert.ok(Math.abs(a - b) < most, `${a} is not ${b}`);
+const near = (a, b, tolerance = 1e-5) => assert.ok(Math.abs(a - b) < tolerance, `${a} is not ${b}`);
 
 // Pixel of a world point by the pinhole equation.
 function pixelOf(camera, p) {

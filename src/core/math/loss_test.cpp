@@ -78,10 +78,10 @@ TEST(LinearLoss, GradientEqualsDualNumbers) {
 }
 
 TEST(DisplayLoss, HasTheSlopeOfTheDarkestBelowIt) {
-  const double least = display_loss(1e-4, 0.9).gradient;
-  EXPECT_DOUBLE_EQ(display_loss(0.0039, 0.9).gradient, least);
-  EXPECT_DOUBLE_EQ(display_loss(-0.1, 0.9).gradient, least);
-  EXPECT_LT(least, display_loss(0.0041, 0.9).gradient);
+  const double smallest = display_loss(1e-4, 0.9).gradient;
+  EXPECT_DOUBLE_EQ(display_loss(0.0039, 0.9).gradient, smallest);
+  EXPECT_DOUBLE_EQ(display_loss(-0.1, 0.9).gradient, smallest);
+  EXPECT_LT(smallest, display_loss(0.0041, 0.9).gradient);
 }
 
 TEST(CrossEntropy, GradientEqualsDualNumbers) {

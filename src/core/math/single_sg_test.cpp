@@ -77,10 +77,10 @@ TEST(SingleSg, IsTheRenderingIntegralOfItsLobe) {
   for (uint64_t i = 0; i < 12; ++i) {
     const Sample s = sample(i);
     const MirrorLobe<double> lobe = mirror_lobe(s.n, s.v, s.sharpness);
-    const double most =  // with the light in the middle of the lobe, seen along the normal
+    const double max_radiance =  // with the light in the middle of the lobe, seen along the normal
         mirror_gain(lobe.nv, s.roughness, s.specular) * sg_mirrored(s.lambda, lobe.sharpness, 0.0, 1.0, 1.0);
     EXPECT_NEAR(radiance(s.n, s.v, s.sharpness, s.roughness, s.specular, s.axis, s.lambda), by_quadrature(s),
-                0.015 * most)
+                0.015 * max_radiance)
         << i;
   }
 }

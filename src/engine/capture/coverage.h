@@ -17,7 +17,7 @@ inline constexpr double kSeenWithin = 30;  // degrees
 struct SeenSides {
   double share = 0;       // of all directions, within kSeenWithin of a camera
   double gap = 0;         // degrees from the direction that is farthest from all cameras to the nearest one
-  Vec3d unseen{0, 0, 1};  // that direction, unit, capture frame
+  Vec3d unseen{0, 0, 1};  // the direction farthest from all cameras, unit, capture frame
 };
 // cameras: directions from the object to them, unit. Over the directions that are `wanted`, none: over all.
 SeenSides seen_sides(std::span<const Vec3d> cameras, const std::function<bool(Vec3d)>& wanted = {});

@@ -162,7 +162,7 @@ SettingTable<DeformOptions> make_settings() {
       .add("handle_share", &DeformOptions::handle_share, {0.01, 0.9}, "of the radius",
            "Surface that moves rigidly with the handle, and over which bending is resisted")
       .add("iterations", &DeformOptions::iterations, {0, 10'000}, "iterations",
-           "Most rounds of the deformation of the mesh; 0: as many as a few seconds allow",
+           "Maximum number of rounds of the deformation; 0: as many as a few seconds allow",
            "[Sorkine and Alexa 2007]");
   deform.part("refit.", &DeformOptions::refit)
       .add("steps", &RefitOptions::steps, {1, 1e6}, "steps", "Training steps of the field",

@@ -79,8 +79,8 @@ Consensus agree(const MaskRequest& r, const Normalization& normalization) {
 // The consensus in the pixels of the photograph.
 struct PhotoArea {
   BelievedPixels pixels;
-  PixelBox object;  // around it; width 0: it is not seen
-  PixelBox box;     // the same with a margin
+  PixelBox object;  // around the object; width 0: it is not seen
+  PixelBox box;     // around the object, with a margin
 };
 
 PhotoArea photo_area(const View& view, const Camera& small, const Area& area) {

@@ -31,13 +31,14 @@ class Stack {
   size_t cursor() const { return cursor_; }    // entries before it are done, the others undone
   std::vector<std::string> active() const;     // ids that are done and on, in order
   bool contains(const std::string& id) const;  // also among those set aside
-  std::vector<std::string> all_ids() const;    // of those, too
+  std::vector<std::string> all_ids() const;    // also of those set aside
   const std::vector<SetAside>& set_aside() const { return set_aside_; }  // the oldest first
 
   std::string next_id(const std::string& op) const;  // "0003-paint"; a number is never used twice
 
-  void push(const std::string& id);    // adds an edit at the cursor; sets aside those that were undone
-  void amend(const std::string& id);   // the same, in place of the last edit that is done; error: none is
+  void push(const std::string& id);  // adds an edit at the cursor; sets aside those that were undone
+  // Puts this edit in place of the last one that is done; sets aside those that were undone. Error: none is.
+  void amend(const std::string& id);
   std::string undo();                  // id of the edit that is undone now; usage error: nothing left
   std::string redo();                  // id of the edit that is done again; usage error: nothing left
   bool toggle(const std::string& id);  // the new state; usage error: no such edit

@@ -21,8 +21,8 @@ struct Plan {
   int iterations = 0;     // steps of the geometry stage where `geometry` is 0
   int polish_rounds = 0;  // of polishing
   double look = 0;        // s that a round takes to make a mesh and estimate light and material briefly
-  double polish = 0;      // s of a round's descent after that, at most
-  int polish_steps = 0;   // of a round's descent, at most
+  double polish = 0;      // s of a polishing round's descent, at most
+  int polish_steps = 0;   // steps of a polishing round's descent, at most
   Effort effort = Effort::full;  // of the appearance stage
   double appearance = 0;         // s of the appearance stage
   int refinements = 0;           // of the albedo, each on another random subset of the pixels

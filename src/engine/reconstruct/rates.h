@@ -15,7 +15,7 @@ namespace cei3d {
 // Seconds per unit of work.
 struct Rates {
   double sdf_step = 0;     // a step of Adam on the SDF field alone, 2048 points
-  double trial_step = 0;   // the same for the network of the trials (Preset::trial)
+  double trial_step = 0;   // a step of Adam on the SDF field of the trials (Preset::trial), 2048 points
   double albedo_step = 0;  // a step of Adam on the albedo field, of the appearance stage's batch
   double mesh = 0;         // a surface of n x n x n cells, with visibility, takes mesh n^2
   double hit_traced = 0;   // a pixel's ray to its hit

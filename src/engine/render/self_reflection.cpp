@@ -38,7 +38,7 @@ class SelfReflection::Points {
 // Rays of reflection lobes, without those that the visibility table shows to be unoccluded.
 struct SelfReflection::Rays {
   std::vector<uint32_t> owner;  // the hit whose lobe each belongs to
-  std::vector<float> share;     // of that lobe
+  std::vector<float> share;     // of its lobe that each ray stands for
   std::vector<Vec3f> origins, directions;
 
   void reserve(size_t n) {

@@ -126,7 +126,7 @@ bool near_change(const Scene& scene, const GBuffer& g, size_t p) {
   return false;
 }
 
-// Samples of a pixel that meet nothing count as well: matter may have gone from there.
+// Samples of a pixel that meet nothing count as well: surface may have been there before.
 bool same_place(const GBuffer& a, const GBuffer& b, size_t p) {
   const int x = int(p) % a.width, y = int(p) / a.width;
   for (int qy = std::max(0, y - 1); qy <= std::min(a.height - 1, y + 1); ++qy)

@@ -269,7 +269,7 @@ struct ViewScore {
   std::string view;
   double psnr = 0, ssim = 0;
   std::optional<double> psnr_masked;   // none without object pixels
-  std::optional<double> psnr_exposed;  // the same with the render at the exposure of the photograph
+  std::optional<double> psnr_exposed;  // psnr_masked of the render at the exposure of the photograph
   std::optional<double> lpips;
   std::optional<double> flip;  // none in reports of older programs
 };
@@ -293,14 +293,14 @@ struct EditScore {
 struct EvalReport {
   std::vector<ViewScore> views;
   double psnr = 0, ssim = 0, psnr_masked = 0;  // means over views
-  std::optional<double> psnr_exposed;          // the same; none in reports of older programs
+  std::optional<double> psnr_exposed;          // mean over views; none in reports of older programs
   double psnr_worst = 0;
   std::string worst_view;
   bool residual = false;  // whether the images include the correction network
   struct Alone {
     double psnr = 0, psnr_masked = 0;
   };
-  std::optional<Alone> alone;        // the same without the correction network; none: the object has none
+  std::optional<Alone> alone;        // means without the correction network; none: the object has none
   std::optional<double> lpips, fid;  // fid: between renders and photographs
   std::optional<double> flip;        // mean over views; none in reports of older programs
   std::optional<EditScore> edit;

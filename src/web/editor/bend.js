@@ -47,8 +47,8 @@ export class BendTool {
     const p = this.selected;
     if (!p || p.pin) return [el('p', {}, this.points.length ? 'Select a handle to move and turn it.' : 'Click on the object to set handles and pins.')];
     const [right, down] = this.stage.camera.axes, size = this.store.object.radius, moved = sub(p.to, p.from);
-    const move = (/** @type {string} */ id, /** @type {string} */ label, /** @type {number} */ most, /** @type {number} */ value, /** @type {(v: number) => void} */ set) =>
-      field(label, id, [-most, most], value, (v) => v.toFixed(2), (v) => { set(v); this.stage.redraw(); this.preview(); });
+    const move = (/** @type {string} */ id, /** @type {string} */ label, /** @type {number} */ max, /** @type {number} */ value, /** @type {(v: number) => void} */ set) =>
+      field(label, id, [-max, max], value, (v) => v.toFixed(2), (v) => { set(v); this.stage.redraw(); this.preview(); });
     const along = (/** @type {Vec} */ axis) => (/** @type {number} */ v) => { p.to = add(p.to, mul(axis, v * size - dot(sub(p.to, p.from), axis))); };
     return [
       move('bend-right', 'Right', 1, dot(moved, right) / size, along(right)),

@@ -29,7 +29,7 @@ export class Input {
     this.reticle = null;
     /** @type {any} the tool that is dragged by keys; null: none is */
     this.held = null;
-    this.touches = { most: 0, moved: 0 };  // number of fingers that were down at once; pixels that they moved
+    this.touches = { max: 0, moved: 0 };  // maximum number of fingers that were down at once; pixels that they moved
     /** @type {number | null} pointer of the pen that is down */
     this.pen = null;
     this.penLifted = -Infinity;  // when, in milliseconds
@@ -65,9 +65,9 @@ export class Input {
     this.stage.view.focus({ preventScroll: true });
     this.stage.view.setPointerCapture(e.pointerId);
     this.down.set(e.pointerId, { x: e.clientX, y: e.clientY });
-    if (this.down.size === 1) this.touches = { most: 1, moved: 0 };
+    if (this.down.size === 1) this.touches = { max: 1, moved: 0 };
     if (this.down.size > 1) {
-      this.touches.most = Math.max(this.touches.most, this.down.size);
+      this.touches.max = Math.max(this.touches.max, this.down.size);
       if (this.doing === 'tool') this.used.cancel?.();
       this.doing = 'pinch';
       return;
@@ -150,7 +150,7 @@ export class Input {
     if (this.down.size > 0) return;
     this.doing = null;
     if (doing === 'pinch') {
-      if (this.touches.moved < 2 * kTap) this.touches.most > 2 ? this.actions.redo() : this.actions.undo();
+      if (this.touches.moved < 2 * kTap) this.touches.max > 2 ? this.actions.redo() : this.actions.undo();
       return;
     }
     if (doing === 'tool') return this.used.up?.(p);

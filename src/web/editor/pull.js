@@ -90,8 +90,8 @@ export class Pull {
     vertices.forEach((v, i) => {
       // At a handle the shares of the others are 0.
       const own = all.map((w, k) => w[v] * all.reduce((left, other, j) => (j === k ? left : left * (1.0001 - other[v])), 1));
-      const sum = own.reduce((a, b) => a + b), most = Math.max(...all.map((w, k) => (moving[k] ? w[v] : 0)));
-      own.forEach((o, k) => { shares[k][i] = most * o / sum; });
+      const sum = own.reduce((a, b) => a + b), largest = Math.max(...all.map((w, k) => (moving[k] ? w[v] : 0)));
+      own.forEach((o, k) => { shares[k][i] = largest * o / sum; });
     });
     const { triangles: corners } = this.shape.arrays, index = new Int32Array(n).fill(-1);
     vertices.forEach((v, i) => { index[v] = i; });

@@ -27,8 +27,8 @@ double difference(const Device& device, const Field& a, const Field& b, const st
   return std::sqrt(sum / double(of_a.size()));
 }
 
-// Shading of a known base color, and back.
-TEST(RefineAlbedo, FindsTheBaseColorBehindShadedPixels) {
+// Shading of a known albedo, and back.
+TEST(RefineAlbedo, FindsTheAlbedoBehindShadedPixels) {
   const Device device = make_device("cpu");
   const Scene scene = sphere_scene();
   const auto seen_from = [&](double turn) {

@@ -20,7 +20,7 @@ namespace {
 constexpr int kSize = 64, kViews = 16;
 const Material kMetal{0.2f, 0.5f, 1};
 
-// Base color 0.5 everywhere: a network without weights.
+// Albedo 0.5 everywhere: a network without weights.
 std::shared_ptr<const Field> gray_field() {
   FieldConfig c;
   c.encoding.levels = 4;

@@ -51,8 +51,8 @@ void MaterialDescent::accumulate(const Device& device, std::span<const Vec3f> po
   for (const Material& d : d_material) sum[0] += d.roughness, sum[1] += d.specular, sum[2] += d.metalness;
   const std::span<float> gradient = optimizer_.gradient(*logits_);
   for (int k = 0; k < 3; ++k) {
-    const float slope = Sigmoid::eval(logits_->value[size_t(k)], 1).first;
-    if (learned_[k]) gradient[size_t(k)] += float(sum[k]) * slope * (k == 0 ? kRoughnessRange : 1);
+    const float share_d_logit = Sigmoid::eval(logits_->value[size_t(k)], 1).first;
+    if (learned_[k]) gradient[size_t(k)] += float(sum[k]) * share_d_logit * (k == 0 ? kRoughnessRange : 1);
   }
 }
 

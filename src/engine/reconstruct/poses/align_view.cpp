@@ -86,7 +86,7 @@ RigidMotion motion_of(const Vector6& v) { return {{v(0), v(1), v(2)}, {v(3), v(4
 // Derivatives of the pixel position of a point, x and y, by a motion of the camera; of seven, the last by a
 // change of the focal length.
 template <int N>
-std::array<Vector<N>, 2> slopes_at(const Camera& camera, Vec3d point) {
+std::array<Vector<N>, 2> pixel_jacobian(const Camera& camera, Vec3d point) {
   const MotionGrad grad = motion_grad(camera, point);
   std::array<Vector<N>, 2> out;
   for (size_t k = 0; k < 2; ++k) out[k].template head<6>() = vector_of(grad.d_turn[k], grad.d_shift[k]);
@@ -148,12 +148,12 @@ void ViewAligner::add_point(const Point& p, const Image& rendered_image, const I
   const Sampled shown = sample(shown_image, at.x, at.y),
                 rendered = sample(rendered_image, p.x + 0.5, p.y + 0.5);
   if (shown.known < 0.999) return;
-  const std::array<Vector<N>, 2> slopes = slopes_at<N>(camera_, point);
+  const std::array<Vector<N>, 2> jacobian = pixel_jacobian<N>(camera_, point);
   for (int c = 0; c < 3; ++c) {
     const double r = shown.color[c] - rendered.color[c], w = huber_weight(r, kHuber);
     // The mean gradient of both images: the step is then right to second order [Malis 2004].
-    const Vector<N> row = 0.5 * (shown.d_x[c] + rendered.d_x[c]) * slopes[0] +
-                          0.5 * (shown.d_y[c] + rendered.d_y[c]) * slopes[1];
+    const Vector<N> row = 0.5 * (shown.d_x[c] + rendered.d_x[c]) * jacobian[0] +
+                          0.5 * (shown.d_y[c] + rendered.d_y[c]) * jacobian[1];
     e.matrix.template selfadjointView<Eigen::Lower>().rankUpdate(row, w);
     e.right -= w * r * row;
     e.squares += w * r * r;

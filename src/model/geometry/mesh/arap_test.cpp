@@ -162,7 +162,7 @@ TEST(Arap, ABentBarKeepsItsEdges) {
       const double change = std::abs(after / before - 1);
       sum += change, worst = std::max(worst, change), ++n;
     }
-  // A beam of half-height 0.1 bent to radius 0.64 strains its outermost fibres by 0.16.
+  // A beam of half-height 0.1 bent to radius 0.64 strains its outermost fibers by 0.16.
   EXPECT_LT(sum / n, 0.05);
   EXPECT_LT(worst, 0.25);
 }

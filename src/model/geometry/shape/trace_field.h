@@ -14,7 +14,7 @@ namespace cei3d {
 
 struct FieldTrace {
   bool hit = false;
-  float depth = 0;  // of the hit; of a miss, where the least value was met, near that of lowest_along()
+  float depth = 0;  // of the hit; of a miss, where the smallest value was met, near that of lowest_along()
   float value = 0;  // of the field there; of a hit within kTraceTolerance of 0
 };
 
@@ -27,8 +27,8 @@ inline constexpr float kTraceTolerance = 2e-6f;  // unit frame
 std::vector<FieldTrace> trace_field(const Device&, const Field& sdf, std::span<const Ray> rays,
                                     std::span<const float> starts = {});
 
-// The point of each ray, within the unit sphere, at which the field is least, among 48 samples; hit: whether
-// it is inside. For mask losses, which push it outside or pull it inside.
+// The point of each ray, within the unit sphere, at which the field is smallest, among 48 samples; hit:
+// whether it is inside. For mask losses, which push it outside or pull it inside.
 std::vector<FieldTrace> lowest_along(const Device&, const Field& sdf, std::span<const Ray> rays);
 
 }  // namespace cei3d
