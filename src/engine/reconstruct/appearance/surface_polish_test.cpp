@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/math/color.h"
+#include "core/math/fibonacci.h"
 #include "engine/reconstruct/start/start.h"
 #include "engine/render/render.h"
 #include "engine/render/sphere_scene.h"
@@ -38,8 +39,7 @@ SgMixture room() {
 }
 
 Camera camera_of(int view) {
-  const double z = 1 - (2 * view + 1.0) / kViews, r = std::sqrt(1 - z * z), a = 2.39996 * view;
-  return camera_towards_origin({3 * r * std::cos(a), 3 * r * std::sin(a), 3 * z}, kSize);
+  return camera_towards_origin(to_double(fibonacci_direction(view, kViews)) * 3.0, kSize);
 }
 
 PixelStore pictures() {

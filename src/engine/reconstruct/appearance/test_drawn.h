@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/math/fibonacci.h"
 #include "core/math/rng.h"
 #include "engine/reconstruct/appearance/find_light_frame.h"
 #include "engine/reconstruct/appearance/linear_split.h"
@@ -92,8 +93,7 @@ inline Camera looking_at_the_origin(Vec3f eye) {
 inline std::vector<Vec3f> look_at(Drawn& d) {
   std::vector<Vec3f> origins, directions;
   for (int view = 0; view < 40; ++view) {
-    const float z = 1 - (2 * float(view) + 1) / 40, r = std::sqrt(1 - z * z), a = 2.39996323f * float(view);
-    const Vec3f eye = Vec3f{r * std::cos(a), r * std::sin(a), z} * 3.0f;
+    const Vec3f eye = fibonacci_direction(view, 40) * 3.0f;
     d.cameras.push_back(looking_at_the_origin(eye));
     for (int k = 0; k < 800; ++k) {
       Rng rng(1, uint64_t(view), uint64_t(k));

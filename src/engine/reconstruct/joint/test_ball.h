@@ -4,6 +4,7 @@
 #pragma once
 
 #include "core/math/color.h"
+#include "core/math/fibonacci.h"
 #include "engine/reconstruct/joint/joint_descent.h"
 #include "engine/reconstruct/surface_and_hits.h"
 #include "engine/render/render.h"
@@ -14,8 +15,7 @@ namespace cei3d {
 struct BallViews {
   int count = 12, size = 48;
   Camera camera(int view) const {
-    const double z = 1 - (2 * view + 1.0) / count, r = std::sqrt(1 - z * z), a = 2.39996 * view;
-    return camera_towards_origin({3 * r * std::cos(a), 3 * r * std::sin(a), 3 * z}, size);
+    return camera_towards_origin(to_double(fibonacci_direction(view, count)) * 3.0, size);
   }
 };
 
