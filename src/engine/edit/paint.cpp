@@ -57,6 +57,7 @@ struct Paint {
   std::vector<Vec3f> targets;   // #hits, linear albedo
   std::vector<uint8_t> inside;  // #hits, 1 in the painted region, 0 just beside it
   std::vector<float> weights;   // #hits, that the color has there
+  std::vector<float> opacity;   // #hits, of the pixel that the color is from
   float pixel = 1e9f;           // of the finest scribble, on the surface, unit frame
 };
 
@@ -79,23 +80,25 @@ void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
     paint.targets.push_back(s.targets[i]);
     paint.inside.push_back(s.coverage[i] >= s.min_alpha);
     paint.weights.push_back(s.min_alpha < 0.5f ? s.coverage[i] : 1);
+    paint.opacity.push_back(s.opacity[i]);
   }
 }
 
-// The one color of all targets, as far as 8 bits and the weights of the paint show; none: there are several.
+// The one color of all targets, as far as 8 bits show; none: there are several. Browsers and many paint programs
+// keep colors multiplied by alpha, so that those of nearly transparent pixels are wrong by many steps.
 std::optional<Vec3f> only_color(const Paint& paint) {
   constexpr float kStep = 1.5f / 255;
   Vec3f sum{0, 0, 0};
   float weight = 0;
   for (size_t i = 0; i < paint.targets.size(); ++i) {
-    sum += paint.targets[i] * square(paint.weights[i]);
-    weight += square(paint.weights[i]);
+    sum += paint.targets[i] * square(paint.opacity[i]);
+    weight += square(paint.opacity[i]);
   }
   const Vec3f mean = sum / weight;
   for (size_t i = 0; i < paint.targets.size(); ++i)
     for (int c = 0; c < 3; ++c) {
       const float error = abs(srgb_from_linear(paint.targets[i][c]) - srgb_from_linear(mean[c]));
-      if (!(error * paint.weights[i] < kStep)) return std::nullopt;
+      if (!(error * paint.opacity[i] < kStep)) return std::nullopt;
     }
   return mean;
 }

@@ -226,6 +226,34 @@ TEST_F(PaintTest, SemiTransparentPaintIsMixedWithWhatLiesBelow) {
   }
 }
 
+// A soft disc of one color as browsers store it: 8 bits of the color times alpha, divided by alpha again.
+Image stored_by_a_browser(Vec3f color) {
+  Image s(kSize, kSize, 4);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const float r = std::hypot(float(x) - 48, float(y) - 48) / 14, alpha = std::max(0.0f, 1 - r * r);
+      float* p = s.at(x, y);
+      p[3] = std::round(255 * alpha) / 255;
+      for (int c = 0; c < 3; ++c)
+        p[c] = p[3] > 0 ? std::min(1.0f, std::round(255 * color[c] * p[3]) / 255 / p[3]) : 0;
+    }
+  return s;
+}
+
+TEST_F(PaintTest, SoftPaintOfOneColorIsStoredAsThatColor) {
+  const Image soft = stored_by_a_browser(kRed);
+  float largest = 0;  // error of the color
+  for (size_t i = 0; i < soft.data.size(); i += 4)
+    if (soft.data[i + 3] > 0) largest = std::max(largest, std::abs(soft.data[i] - kRed.x));
+  ASSERT_GT(largest, 20.0f / 255);
+  const Scene scene = painted(*before_, {{{front(), soft}}, "0001-paint"});
+  EXPECT_EQ(scene.layers[0].albedo->config().hidden_layers, 0);
+  const std::vector<Hit> middle = middle_hits(scene, front(), 1);
+  const Vec3f red = linear_from_srgb(kRed);
+  for (const Vec3f a : appearance_at(make_device(), scene, middle).albedo)
+    EXPECT_LT(length(a - red), 0.02f);
+}
+
 TEST_F(PaintTest, SmoothEdgesAreNotSemiTransparentPaint) {
   Image smooth = square(kRed, 1);
   for (int y = 30; y < 66; ++y) smooth.at(37, y)[3] = smooth.at(58, y)[3] = 0.25f + 0.5f * float(y % 2);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/math/color.h"
 #include "core/math/quantile.h"
@@ -52,9 +53,13 @@ void cut_out(const Image& rgba, const PixelBox& box, Stroke& stroke) {
   }
 }
 
-// Color of the painted pixel nearest to (u, v), in pixels of the crop; null: none is adjacent.
-const float* nearest_color(const Stroke& s, float u, float v) {
-  const float* best = nullptr;
+struct Pixel {
+  int x, y;
+};
+
+// The painted pixel nearest to (u, v), in pixels of the crop; none: none is adjacent.
+std::optional<Pixel> nearest_painted(const Stroke& s, float u, float v) {
+  std::optional<Pixel> best;
   float best_distance = 1e9f;
   const int cx = int(u), cy = int(v);
   for (int y = std::max(cy - 1, 0); y <= std::min(cy + 1, s.alpha.height - 1); ++y) {
@@ -63,7 +68,7 @@ const float* nearest_color(const Stroke& s, float u, float v) {
       const float d = square(float(x) + 0.5f - u) + square(float(y) + 0.5f - v);
       if (d >= best_distance) continue;
       best_distance = d;
-      best = s.colors.at(x, y);
+      best = {x, y};
     }
   }
   return best;
@@ -89,11 +94,12 @@ void add_hit(Stroke& s, const Projector& mask, int x, int y, const Hit& hit, flo
     s.beside.push_back(hit);
     s.beside_footprints.push_back(footprint(s.camera, hit, depth));
   }
-  const float* color =
-      nearest_color(s, (float(x) + 0.5f) / float(s.scale), (float(y) + 0.5f) / float(s.scale));
-  if (coverage <= 0 || !color) return;
+  const std::optional<Pixel> painted =
+      nearest_painted(s, (float(x) + 0.5f) / float(s.scale), (float(y) + 0.5f) / float(s.scale));
+  if (coverage <= 0 || !painted) return;
   s.hits.push_back(hit);
-  s.targets.push_back({color[0], color[1], color[2]});
+  s.targets.push_back(s.colors.rgb(painted->x, painted->y));
+  s.opacity.push_back(*s.alpha.at(painted->x, painted->y));
   s.coverage.push_back(coverage);
   s.footprints.push_back(footprint(s.camera, hit, depth));
 }

@@ -28,6 +28,7 @@ struct Stroke {
   int missed_pixels = 0;        // painted pixels without surface, or whose surface faces away (cosine <= 0.1)
   std::vector<Hit> hits;        // in and just around the paint, facing the camera
   std::vector<Vec3f> targets;   // #hits, linear albedo of the nearest painted pixel
+  std::vector<float> opacity;   // #hits, alpha of that pixel
   std::vector<float> coverage;  // #hits, interpolated alpha; >= min_alpha: painted
   // #hits, distance between neighboring rays on the surface, unit frame
   std::vector<float> footprints;

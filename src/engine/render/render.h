@@ -37,9 +37,11 @@ void refine_hits(const Device&, const Field& sdf, std::span<const Vec3f> directi
 // Moves hits on the mesh of the scene along their to_camera onto its surface, changes of shape included.
 void refine_hits(const Device&, const Scene&, std::vector<Hit>& hits);
 
-// trace_rays() for the scene with its changes of shape. With OnSurface::mesh hits stay where the mesh is,
-// with its normals: several times as fast, within about a hundredth of the field's surface.
+// Where hits are: on the zero set of the field, or on the mesh, with its normals, which is several times as fast
+// and at most about a hundredth away.
 enum class OnSurface { field, mesh };
+
+// trace_rays() for the scene with its changes of shape.
 std::vector<Hit> trace_rays(const Device&, const Scene&, std::span<const Ray> rays,
                             std::vector<uint32_t>& ray_of_hit, OnSurface = OnSurface::field);
 
