@@ -131,10 +131,12 @@ export class PaintTool {
   /** Of the brush, in pixels of the frame. @param {any} p */
   radius(p) { return Math.max(0.5, brush.size * this.stage.size().scale * (['size', 'both'].includes(brush.pen) ? 0.35 + 0.65 * p.pressure : 1)); }
 
+  color() { return this.erase ? '#ffffff' : brush.color; }
+
   /** @param {any} p */
   dab(p) {
     const c = /** @type {CanvasRenderingContext2D} */ (this.stroke?.canvas.getContext('2d')), r = this.radius(p);
-    const color = this.erase ? '#ffffff' : brush.color;
+    const color = this.color();
     if (brush.hardness >= 0.98) c.fillStyle = color;
     else {
       const g = c.createRadialGradient(p.x, p.y, r * brush.hardness, p.x, p.y, r);
@@ -165,15 +167,22 @@ export class PaintTool {
     this.store.emit('saving');
   }
 
-  /** Draws all strokes that are not stored into one picture. */
+  /** Draws all strokes that are not stored, which have one color, into one picture. */
   flatten() {
     const pending = this.pending, c = pending?.canvas.getContext('2d');
     if (!pending || !c) return;
-    c.clearRect(0, 0, pending.canvas.width, pending.canvas.height);
+    const { width, height } = pending.canvas;
+    c.clearRect(0, 0, width, height);
     for (const { canvas, opacity } of pending.strokes) {
       c.globalAlpha = opacity;
       c.drawImage(canvas, 0, 0);
     }
+    // Dabs over each other round their color again and again. Where it differs, the program takes it for a pattern.
+    c.globalAlpha = 1;
+    c.globalCompositeOperation = 'source-in';
+    c.fillStyle = this.color();
+    c.fillRect(0, 0, width, height);
+    c.globalCompositeOperation = 'source-over';
     this.stage.redraw();
   }
 
