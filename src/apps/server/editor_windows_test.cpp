@@ -162,7 +162,8 @@ TEST_F(EditorTest, AWindowWithoutTheKeyOrThatSaysMoreIsClosed) {
 
 TEST_F(EditorTest, AMessageWithAnUnknownKeyIsAnError) {
   const auto at = window(*editor_);
-  for (const Json& message : {Json{{"type", "rest"}, {"now", true}}, Json{{"type", "view"}, {"sequence", 1}}}) {
+  for (const Json& message :
+       {Json{{"type", "rest"}, {"now", true}}, Json{{"type", "view"}, {"sequence", 1}}}) {
     const size_t before = at->texts.size();
     editor_->received(at, message.dump());
     ASSERT_EQ(at->texts.size(), before + 1) << message;

@@ -229,8 +229,8 @@ TEST(ShadeKernels, AdjointEqualsDifferencesOfTheForwardPass) {
     }
 }
 
-// The lobes of the scene against square roots of radiance on some cells, and the loss that the kernels descend,
-// in double precision.
+// The lobes of the scene against square roots of radiance on some cells, and the loss that the kernels
+// descend, in double precision.
 struct LobeFit {
   LobeScene scene;
   std::vector<float> roots = noise(3 * kPoints, 8), weights = noise(kPoints, 12);
@@ -241,7 +241,7 @@ struct LobeFit {
   }
   std::vector<float> gradient(const Device& d) const {
     std::vector<float> d_radiance(3 * kPoints), d_lobes(7 * kLobes);
-    const SgFitArgs a{scene.planes(),  kPoints,           scene.normals.data(), roots.data(),
+    const SgFitArgs a{scene.planes(), kPoints,           scene.normals.data(), roots.data(),
                       weights.data(), d_radiance.data(), d_lobes.data()};
     d.launch<SgFitResidual>(a, kPoints);
     d.launch<SgFitGather>(a, kLobes);

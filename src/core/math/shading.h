@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The shading model: the radiance that a surface point sends to the viewer, and its adjoint. The
 // metallic-roughness model of glTF: the diffuse term is (1 - metalness) albedo / pi, F0 is metalness * albedo
-// + (1 - metalness) * kDielectricF0 * specular; the specular term is the split sum. In the whole program these
-// formulas are written out here and, for a reflection that is the sum of two lobes, in reflection_axis.h;
-// `lit` in src/web/shaders.js repeats for WebGL what tables cannot hold, and tests/e2e/page.sh compares its
-// pictures with the program's. [paper eq. 2-5, 13-15]
+// + (1 - metalness) * kDielectricF0 * specular; the specular term is the split sum. In the whole program
+// these formulas are written out here and, for a reflection that is the sum of two lobes, in
+// reflection_axis.h; `lit` in src/web/shaders.js repeats for WebGL what tables cannot hold, and
+// tests/e2e/page.sh compares its pictures with the program's. [paper eq. 2-5, 13-15]
 #pragma once
 
 #include "core/math/mirror.h"
@@ -91,8 +91,8 @@ HD ShadingTerms<T> shading_terms(const float* table, const ShadingPoint<T>& p) {
   const T view = diffuse_view(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)), p.diffuse_light);
   const Vec3<T> white{one, one, one}, black{zero, zero, zero};
   const Vec3<T> offset = reflectance(s, f0_of(black, p.specular, p.metalness));
-  return {p.irradiance * (diffuse_share(p.metalness) * view),
-          p.reflected * ((white * p.metalness) * s.scale), p.reflected * offset};
+  return {p.irradiance * (diffuse_share(p.metalness) * view), p.reflected * ((white * p.metalness) * s.scale),
+          p.reflected * offset};
 }
 
 // dL/d(every member of the point) from dL/d(diffuse) and dL/d(specular).

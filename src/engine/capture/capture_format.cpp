@@ -72,6 +72,8 @@ Json read_json_file(const std::filesystem::path& path) {
     return Json::parse(without_nan(text), limit_depth);
   } catch (const Json::parse_error& e) {
     fail("{} is not valid JSON (near byte {}). It may be truncated; write it again.", path.string(), e.byte);
+  } catch (const Json::out_of_range&) {
+    fail("{} has a number that is too large for any file of a capture.", path.string());
   }
 }
 

@@ -224,6 +224,7 @@ struct BadFile {
 constexpr BadFile kBadFiles[] = {
     {"transforms_train.json", "", "not valid JSON"},
     {"transforms_train.json", "{\"frames\": [", "not valid JSON"},
+    {"transforms_train.json", "{\"frames\": [1e999]}", "too large"},
     {"transforms_train.json", "[]", "no list of frames"},
     {"transforms_train.json", "{\"frames\": 3}", "no list of frames"},
     {"transforms_train.json", "{\"frames\": []}", "no views"},

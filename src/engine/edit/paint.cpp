@@ -84,8 +84,9 @@ void add_stroke(const Stroke& s, std::span<const Region> later, Paint& paint) {
   }
 }
 
-// The one color of all targets, as far as 8 bits show; none: there are several. Browsers and many paint programs
-// keep colors multiplied by alpha, so that those of nearly transparent pixels are wrong by many steps.
+// The one color of all targets, as far as 8 bits show; none: there are several. Browsers and many paint
+// programs keep colors multiplied by alpha, so that those of nearly transparent pixels are wrong by many
+// steps.
 std::optional<Vec3f> only_color(const Paint& paint) {
   constexpr float kStep = 1.5f / 255;
   Vec3f sum{0, 0, 0};

@@ -250,8 +250,7 @@ TEST_F(PaintTest, SoftPaintOfOneColorIsStoredAsThatColor) {
   EXPECT_EQ(scene.layers[0].albedo->config().hidden_layers, 0);
   const std::vector<Hit> middle = middle_hits(scene, front(), 1);
   const Vec3f red = linear_from_srgb(kRed);
-  for (const Vec3f a : appearance_at(make_device(), scene, middle).albedo)
-    EXPECT_LT(length(a - red), 0.02f);
+  for (const Vec3f a : appearance_at(make_device(), scene, middle).albedo) EXPECT_LT(length(a - red), 0.02f);
 }
 
 TEST_F(PaintTest, SmoothEdgesAreNotSemiTransparentPaint) {

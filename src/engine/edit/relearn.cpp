@@ -54,8 +54,7 @@ std::shared_ptr<const Field> relearn(const Device& device, const Scene& scene, c
     check_cancelled(progress, "Painting was interrupted; nothing was changed.");
     const float fraction = float(step) / kSteps;
     const ColorSamples batch = batch_of(painted, beside, seed, step);
-    trainer.step(device, batch.positions, absolute_difference(batch.colors),
-                 cosine_decay(fraction));
+    trainer.step(device, batch.positions, absolute_difference(batch.colors), cosine_decay(fraction));
     if (step % 50 == 0) progress.report({"paint", 0.2 + 0.8 * fraction, -1, ""});
   }
   return field;

@@ -68,9 +68,24 @@ int channel_count(const Imf::ChannelList& list) {
   return n;
 }
 
+constexpr size_t kStart = 8;  // bytes of the magic number and the version
+
+// The library takes memory for an attribute of the header by its stated size. An attribute is a name, a type,
+// which end with a zero, the size in 4 bytes, little-endian, and the value; an empty name ends the header.
+void require_attributes_fit(const std::string& bytes) {
+  for (size_t at = kStart; at < bytes.size() && bytes[at] != 0;) {
+    const size_t type = bytes.find('\0', at) + 1, size = type == 0 ? 0 : bytes.find('\0', type) + 1;
+    if (size == 0 || bytes.size() - size < 4) throw std::runtime_error("it ends too early");
+    uint32_t n = 0;
+    std::memcpy(&n, bytes.data() + size, 4);
+    if (n > bytes.size() - size - 4) throw std::runtime_error("its header has a value longer than the file");
+    at = size + 4 + n;
+  }
+}
+
 // Opening a file takes memory for rows of its stated width: before that, its header alone.
 void require_readable(const std::string& bytes, const std::string& name) {
-  constexpr size_t kStart = 8;  // after the magic number and the version
+  require_attributes_fit(bytes);
   Source source(bytes, name);
   int version = 0;
   if (bytes.size() < kStart) throw std::runtime_error("it ends too early");

@@ -114,6 +114,15 @@ TEST(ImageLimits, HugeSizesAreRefusedByNameAndSize) {
   }
 }
 
+// Found by fuzzing: the library would take 1.9 GB for a value of a type that it does not know.
+TEST(ImageLimits, ValuesInAnExrHeaderThatAreLongerThanTheFileAreRefused) {
+  std::string bytes = encode_exr(Image(8, 8, 3, 0.5f));
+  const size_t size = place(bytes, "pixelAspectRatio") + sizeof "pixelAspectRatio" + sizeof "float";
+  bytes.replace(size - sizeof "float", 5, "f1oat").replace(size, 4, little_endian(uint32_t{0x73690000}));
+  EXPECT_THAT(message([&] { decode_exr(bytes, "a.exr"); }),
+              AllOf(HasSubstr("a.exr"), HasSubstr("longer than the file")));
+}
+
 TEST(ImageLimits, FilesTooShortForTheirSizeAreRefused) {
   for (const Format& f : kFormats) {
     if (f.decode == decode_hdr) continue;  // its rows are as long as this bound asks for

@@ -37,8 +37,8 @@ void refine_hits(const Device&, const Field& sdf, std::span<const Vec3f> directi
 // Moves hits on the mesh of the scene along their to_camera onto its surface, changes of shape included.
 void refine_hits(const Device&, const Scene&, std::vector<Hit>& hits);
 
-// Where hits are: on the zero set of the field, or on the mesh, with its normals, which is several times as fast
-// and at most about a hundredth away.
+// Where hits are: on the zero set of the field, or on the mesh, with its normals, which is several times as
+// fast and at most about a hundredth away.
 enum class OnSurface { field, mesh };
 
 // trace_rays() for the scene with its changes of shape.
