@@ -9,7 +9,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kGrain = 4096;  // hits per chunk
+constexpr int kGrain = 16384;  // hits per chunk
 
 // One contribution to a hit's albedo.
 struct Op {
@@ -58,7 +58,7 @@ std::vector<int> layers_near(const Scene& scene, std::span<const Hit> hits) {
   return near;
 }
 
-// Walks through the layers of one hit, from the topmost down until nothing below can have an effect.
+// Visits the layers of one hit, from the topmost down until nothing below can have an effect.
 class Walk {
  public:
   Walk(const Scene& scene, const Hit& hit, uint32_t index, Chunk& chunk)
@@ -68,15 +68,8 @@ class Walk {
     shaped_ = scene.shape_versions.back()->shaped_in(hit.triangle);
   }
 
-  Route route(std::span<const int> layers) {
-    r_.material_begin = uint32_t(chunk_.materials.size());
-    for (const int l : layers) visit(l, scene_.layers[size_t(l)]);
-    r_.material_end = uint32_t(chunk_.materials.size());
-    return r_;
-  }
-
- private:
-  void visit(int l, const EditLayer& layer) {
+  // weights: of the layer.
+  void visit(int l, const EditLayer& layer, LayerWeights& weights) {
     const int version = max(layer.shape_version, 0);
     if (layer.reshape) visit_change(l, version + 1);
     const bool colors = r_.base && (layer.albedo || layer.erase || layer.tint);
@@ -88,15 +81,23 @@ class Walk {
     const bool old = born_ <= version;
     if (!old && !layer.everywhere) return;
     const SurfacePoint p = old ? in_version(scene_.shape_versions, hit_, version) : SurfacePoint{};
-    const float weight = layer.everywhere ? 1 : layer.weight(p.position, p.normal);
+    const float weight = weights.at(p.position, p.normal);
     if (weight <= 0) return;
     if (marks) r_.layer = l;
     if (changes && weight > kMaterialWeight) visit_material(l, layer);
     if (colors && old) visit_colors(l, layer, p, weight);
   }
 
+  Route route() {
+    r_.material_begin = uint32_t(chunk_.materials.size());
+    chunk_.materials.insert(chunk_.materials.end(), materials_.begin(), materials_.end());
+    r_.material_end = uint32_t(chunk_.materials.size());
+    return r_;
+  }
+
+ private:
   void visit_material(int l, const EditLayer& layer) {
-    if (shows(layer.material, covered_)) chunk_.materials.push_back(l);
+    if (shows(layer.material, covered_)) materials_.push_back(l);
     cover(covered_, layer.material);
     if (layer.erase_material) covered_ = {true, true, true};
   }
@@ -134,6 +135,7 @@ class Walk {
   Chunk& chunk_;
   int born_ = 0, shaped_ = 0;
   MaterialValues covered_;  // by the layers that were visited
+  std::vector<int> materials_;
   Route r_;
 };
 
@@ -144,11 +146,22 @@ struct Routes {
   Routes(const Scene& scene, std::span<const Hit> hits)
       : at(hits.size()), chunks((hits.size() + kGrain - 1) / kGrain) {
     if (scene.layers.empty()) return;
-    parallel_ranges(int(hits.size()), kGrain, [&](int begin, int end) {
-      const std::vector<int> near = layers_near(scene, hits.subspan(size_t(begin), size_t(end - begin)));
-      for (int i = begin; i < end; ++i)
-        at[i] = Walk(scene, hits[i], uint32_t(i), chunks[begin / kGrain]).route(near);
-    });
+    parallel_ranges(int(hits.size()), kGrain, [&](int begin, int end) { route(scene, hits, begin, end); });
+  }
+
+ private:
+  // One layer after the other, so that the data of each are read only once: a long session has more than fit
+  // in memory.
+  void route(const Scene& scene, std::span<const Hit> hits, int begin, int end) {
+    std::vector<Walk> walks;
+    for (int i = begin; i < end; ++i)
+      walks.emplace_back(scene, hits[i], uint32_t(i), chunks[size_t(begin / kGrain)]);
+    for (const int l : layers_near(scene, hits.subspan(size_t(begin), size_t(end - begin)))) {
+      const EditLayer& layer = scene.layers[size_t(l)];
+      LayerWeights weights(layer);
+      for (Walk& walk : walks) walk.visit(l, layer, weights);
+    }
+    for (int i = begin; i < end; ++i) at[size_t(i)] = walks[size_t(i - begin)].route();
   }
 };
 

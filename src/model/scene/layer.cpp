@@ -69,12 +69,21 @@ std::vector<Region> load_further(const Tensors& tensors, const Json& heads, cons
 
 }  // namespace
 
-float EditLayer::weight(Vec3f position, Vec3f normal) const {
-  if (everywhere) return 1;
-  float w = region.weight(position, normal);
-  for (const Region& r : also)
-    if (w < 1) w = max(w, r.weight(position, normal));
+LayerWeights::LayerWeights(const EditLayer& layer) : everywhere_(layer.everywhere) {
+  regions_.emplace_back(layer.region);
+  for (const Region& r : layer.also) regions_.emplace_back(r);
+}
+
+float LayerWeights::at(Vec3f position, Vec3f normal) {
+  if (everywhere_) return 1;
+  float w = 0;
+  for (Region::Weights& r : regions_)
+    if (w < 1) w = max(w, r.at(position, normal));
   return w;
+}
+
+float EditLayer::weight(Vec3f position, Vec3f normal) const {
+  return LayerWeights(*this).at(position, normal);
 }
 
 bool EditLayer::may_meet(const AxisBox& box) const {

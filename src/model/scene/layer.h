@@ -44,10 +44,21 @@ struct EditLayer {
 
   bool contains(Vec3f position, Vec3f normal) const { return weight(position, normal) > 0; }
   // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. The material changes
-  // where the weight is above kMaterialWeight.
+  // where the weight is above kMaterialWeight. For many points: LayerWeights.
   float weight(Vec3f position, Vec3f normal) const;
   // box: in the shape version of the region. False: the weight is 0 in all of it.
   bool may_meet(const AxisBox& box) const;
+};
+
+// EditLayer::weight() of many points, see Region::Weights. layer: must outlive this.
+class LayerWeights {
+ public:
+  explicit LayerWeights(const EditLayer& layer);
+  float at(Vec3f position, Vec3f normal);
+
+ private:
+  bool everywhere_;
+  std::vector<Region::Weights> regions_;
 };
 
 // Errors of loading: missing tensors or keys, sizes that disagree.

@@ -29,11 +29,12 @@ std::vector<uint8_t> inside_layer(const Scene& scene, const EditLayer& layer, st
   std::vector<uint8_t> inside(hits.size(), 0);
   const int version = max(layer.shape_version, 0);
   parallel_ranges(int(hits.size()), 1024, [&](int begin, int end) {
+    LayerWeights weights(layer);
     for (int i = begin; i < end; ++i) {
       if (!scene.shape_versions.empty() && scene.shape_versions.back()->born_in(hits[i].triangle) > version)
         continue;
       const SurfacePoint p = in_version(scene.shape_versions, hits[i], version);
-      inside[i] = layer.contains(p.position, p.normal);
+      inside[i] = weights.at(p.position, p.normal) > 0;
     }
   });
   return inside;

@@ -94,11 +94,12 @@ bool Region::contains(Vec3f position, Vec3f normal) const {
   return (!box_ || box_->contains(position)) && data_->contains(position, normal);
 }
 
-float Region::weight(Vec3f position, Vec3f normal) const {
-  if (box_ && !box_->contains(position)) return 0;
-  const auto data = data_.use();
-  if (!data->contains(position, normal)) return 0;
-  const Projector& projector = data->projector;
+float Region::Weights::at(Vec3f position, Vec3f normal) {
+  if (region_.box_ && !region_.box_->contains(position)) return 0;
+  if (!data_) data_ = region_.data_.use();
+  const Data& data = **data_;
+  if (!data.contains(position, normal)) return 0;
+  const Projector& projector = data.projector;
   if (!projector.soft()) return 1;
   const Vec3d p = projector.camera.project(to_double(position));
   return projector.alpha_at(p.x, p.y);

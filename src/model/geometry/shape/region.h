@@ -28,6 +28,8 @@
 namespace cei3d {
 
 class Region {
+  struct Data;
+
  public:
   Region() = default;  // contains nothing
   struct Points {
@@ -45,7 +47,17 @@ class Region {
   // normal: unit, outward.
   bool contains(Vec3f position, Vec3f normal) const;
   // Share of the edit at a point: 1 inside, 0 outside, the mask's alpha where the mask is soft.
-  float weight(Vec3f position, Vec3f normal) const;
+  float weight(Vec3f position, Vec3f normal) const { return Weights(*this).at(position, normal); }
+  // weight() of many points: the region's data are read at most once, and stay in memory while this lives.
+  class Weights {
+   public:
+    explicit Weights(const Region& region) : region_(region) {}  // which must outlive this
+    float at(Vec3f position, Vec3f normal);
+
+   private:
+    const Region& region_;
+    std::optional<Shelved<Data>::Use> data_;
+  };
   bool may_meet(const AxisBox& box) const { return !box_ || box_->meets(box); }  // false: no point is in both
   Points points() const { return data_->points; }
   Projector projector() const { return data_->projector; }
