@@ -5,7 +5,11 @@ import fs from 'node:fs';
 import test from 'node:test';
 
 const drawn = [];  // pictures on canvases, and how opaque
-const context = { globalAlpha: 1, drawImage(picture) { drawn.push([picture, this.globalAlpha]); }, transform(...map) { this.map = map; } };
+const filled = [];  // colors of rectangles, and how they are combined with what is there
+const context = {
+  globalAlpha: 1, globalCompositeOperation: 'source-over', drawImage(picture) { drawn.push([picture, this.globalAlpha]); }, transform(...map) { this.map = map; },
+  fillRect() { filled.push([this.fillStyle, this.globalCompositeOperation, this.globalAlpha]); },
+};
 for (const name of ['arc', 'beginPath', 'clearRect', 'fill', 'restore', 'save', 'stroke']) context[name] = () => {};
 const standIns = {
   location: { hash: '', host: '', protocol: 'http:', search: '' }, sessionStorage: { getItem: () => null }, WebSocket: class {},
@@ -314,6 +318,15 @@ test('a stroke keeps the opacity that it was drawn with', () => {
   assert.deepEqual(drawn.map(([, opacity]) => opacity), [0.3, 0.8]);
   tool.undo();
   assert.equal(drawn.at(-1)[1], 0.3);
+});
+
+test('strokes that are kept have one color, exactly', () => {
+  const { tool, stroke } = paintTool();
+  tool.setColor('#123456');
+  filled.length = 0;
+  stroke(0.3);
+  assert.deepEqual(filled, [['#123456', 'source-in', 1]]);
+  assert.equal(context.globalCompositeOperation, 'source-over');
 });
 
 test('a stroke that is being kept is seen until a picture has it, wherever the camera goes', async () => {
