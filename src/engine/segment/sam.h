@@ -33,7 +33,7 @@ struct SamImage {
   float scale = 1;            // frame pixels per image pixel
 };
 
-// The same, for an image of that size of which a section was encoded, at `scale` pixels per pixel.
+// For an image of that size, of which only a section (`box`) was encoded, at `scale` pixels per pixel.
 SamImage of_whole(SamImage section, int width, int height, const PixelBox& box, double scale);
 
 class Sam {

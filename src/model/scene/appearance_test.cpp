@@ -100,7 +100,7 @@ Expected one_by_one(const Scene& s, const Hit& hit) {
 
 TEST(Appearance, IsThatOfTheLayersOneAfterTheOther) {
   const Scene s = layered_scene();
-  const std::vector<Hit> hits = random_hits(3000);
+  const std::vector<Hit> hits = random_hits(20000);
   const Appearance got = appearance_at(make_device(), s, hits);
   int seen[4] = {0, 0, 0, 0};
   std::set<std::tuple<float, float, float>> materials;
@@ -196,7 +196,7 @@ TEST(Appearance, OutsideEveryRegionTheBaseIsBitIdenticalOnAllDevices) {
   edited.layers.pop_back();
   Scene base = edited;
   base.layers.clear();
-  const std::vector<Hit> hits = random_hits(5000);
+  const std::vector<Hit> hits = random_hits(20000);
   for (const Device& device : all_devices()) {
     const Appearance before = appearance_at(device, base, hits), after = appearance_at(device, edited, hits);
     for (size_t i = 0; i < hits.size(); ++i) {
@@ -263,6 +263,10 @@ TEST(Appearance, LayersOnAShelfGiveTheSameBits) {
   for (int round = 0; round < 2; ++round)
     EXPECT_TRUE(same(appearance_at(device, there, hits), appearance_at(device, scene, hits)));
   EXPECT_GT(shelf->reads(), 3u);
+  // Each region and each network at most once a round, whatever the number of hits.
+  size_t values = 0;
+  for (const EditLayer& l : there.layers) values += 2 + l.also.size();
+  EXPECT_LE(shelf->reads(), 2 * values);
 }
 
 TEST(Appearance, OfNothingIsNothing) {
