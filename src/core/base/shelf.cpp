@@ -2,7 +2,6 @@
 #include "core/base/shelf.h"
 
 #include <algorithm>
-#include <vector>
 
 #include "core/base/error.h"
 
@@ -48,20 +47,32 @@ void Shelf::keep(const std::string& name) {
   }
 }
 
-// Considers the slots in turn, at most twice each: a slot that was used since it was last considered stays,
-// and loses its mark, so that the second time it can be dropped.
+void Shelf::limit(size_t max_bytes) {
+  Values dropped;  // destroyed after the lock is released
+  const std::lock_guard lock(mutex_);
+  max_bytes_ = max_bytes;
+  dropped = drop(nullptr);
+}
+
 void Shelf::add(Slot& slot) {
-  std::vector<std::shared_ptr<const void>> dropped;  // destroyed after the lock is released
+  Values dropped;  // destroyed after the lock is released
   const std::lock_guard lock(mutex_);
   if (!slot.resident_) {
     resident_.push_back(&slot);
     bytes_ += slot.bytes_;
     slot.resident_ = true;
   }
+  dropped = drop(&slot);
+}
+
+// Considers the slots in turn, at most twice each: a slot that was used since it was last considered stays,
+// and loses its mark, so that the second time it can be dropped.
+Shelf::Values Shelf::drop(const Slot* but) {
+  Values dropped;
   for (size_t left = 2 * resident_.size(); bytes_ > max_bytes_ && resident_.size() > 1 && left > 0; --left) {
     Slot& oldest = *resident_.front();
     const std::lock_guard slot_lock(oldest.mutex_);
-    if (oldest.kept_ || oldest.used_ || &oldest == &slot) {
+    if (oldest.kept_ || oldest.used_ || &oldest == but) {
       oldest.used_ = false;
       resident_.splice(resident_.end(), resident_, resident_.begin());
       continue;
@@ -72,6 +83,7 @@ void Shelf::add(Slot& slot) {
     bytes_ -= oldest.bytes_;
     resident_.pop_front();
   }
+  return dropped;
 }
 
 void Shelf::remove(Slot& slot) {

@@ -13,6 +13,7 @@
 #include <mutex>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace cei3d {
 
@@ -29,12 +30,15 @@ class Shelf {
   // Keeps all values of that name in memory for as long as their slots live; call it before what they are
   // read from is deleted.
   void keep(const std::string& name);
+  void limit(size_t max_bytes);  // from now on
 
   size_t bytes() const;                    // of the values in memory
   size_t reads() const { return reads_; }  // how often a dropped value was read again
 
  private:
-  void add(Slot&);     // its value is in memory now; may drop others
+  void add(Slot&);  // its value is in memory now; may drop others
+  using Values = std::vector<std::shared_ptr<const void>>;
+  Values drop(const Slot* but);  // what is beyond the limit; the mutex is locked
   void remove(Slot&);  // the slot is destroyed
 
   size_t max_bytes_, bytes_ = 0;

@@ -41,6 +41,19 @@ TEST(Shelf, DropsWhatWasNotUsedAndReadsItAgain) {
   EXPECT_EQ(numbers.shelf->bytes(), 30u);
 }
 
+TEST(Shelf, ALowerLimitHoldsAtOnce) {
+  const Numbers numbers;
+  const Shelved<int> a = numbers.make(0), b = numbers.make(1), c = numbers.make(2);
+  EXPECT_EQ(numbers.shelf->bytes(), 30u);
+  numbers.shelf->limit(20);
+  EXPECT_EQ(numbers.shelf->bytes(), 20u);
+  EXPECT_EQ(*a.use() + *b.use() + *c.use(), 3);
+  EXPECT_EQ(numbers.shelf->bytes(), 20u);
+  numbers.shelf->limit(30);
+  EXPECT_EQ(*a.use() + *b.use() + *c.use(), 3);
+  EXPECT_EQ(numbers.shelf->bytes(), 30u);
+}
+
 TEST(Shelf, WhatIsInUseStaysWhereItIs) {
   const Numbers numbers;
   const Shelved<int> first = numbers.make(0);

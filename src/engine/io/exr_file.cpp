@@ -2,16 +2,19 @@
 #include "engine/io/exr_file.h"
 
 #include <ImfArray.h>
+#include <ImfAttribute.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfOutputFile.h>
+#include <ImfVersion.h>
 
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -70,32 +73,55 @@ int channel_count(const Imf::ChannelList& list) {
 
 constexpr size_t kStart = 8;  // bytes of the magic number and the version
 
-// The library takes memory for an attribute of the header by its stated size. An attribute is a name, a type,
-// which end with a zero, the size in 4 bytes, little-endian, and the value; an empty name ends the header.
-void require_attributes_fit(const std::string& bytes) {
-  for (size_t at = kStart; at < bytes.size() && bytes[at] != 0;) {
+// A value in a header, as its type reads it, which need not be as long as the header says.
+void require_whole(const std::string& type, const std::string& value, int version) {
+  Source source(value, type);
+  const std::unique_ptr<Imf::Attribute> attribute(Imf::Attribute::newAttribute(type.c_str()));
+  attribute->readValueFrom(source, int(value.size()), version);
+  if (source.tellg() != value.size()) throw std::runtime_error("its header has a value of a wrong size");
+}
+
+// The library takes memory for an attribute of an unknown type by its stated size, which it finds wherever the
+// value before ends. An attribute is a name, a type, which end with a zero, the size in 4 bytes, little-endian,
+// and the value; an empty name ends the header. Returns where it ends.
+size_t require_attributes_fit(const std::string& bytes, size_t at, int version) {
+  Imf::staticInitialize();  // the types
+  while (at < bytes.size() && bytes[at] != 0) {
     const size_t type = bytes.find('\0', at) + 1, size = type == 0 ? 0 : bytes.find('\0', type) + 1;
     if (size == 0 || bytes.size() - size < 4) throw std::runtime_error("it ends too early");
     uint32_t n = 0;
     std::memcpy(&n, bytes.data() + size, 4);
     if (n > bytes.size() - size - 4) throw std::runtime_error("its header has a value longer than the file");
+    const std::string type_name = bytes.substr(type, size - 1 - type);
+    if (Imf::Attribute::knownType(type_name.c_str()))
+      require_whole(type_name, bytes.substr(size + 4, n), version);
     at = size + 4 + n;
   }
+  return at + 1;
 }
 
-// Opening a file takes memory for rows of its stated width: before that, its header alone.
+void require_readable(const Imf::Header& header, size_t bytes, const std::string& name) {
+  for (const Imath::Box2i& box : {header.dataWindow(), header.displayWindow()})
+    readable_size(width_of(box), height_of(box), bytes, name);
+  if (channel_count(header.channels()) > kMaxChannels) throw std::runtime_error("it has too many channels");
+}
+
+// Opening a file takes memory for rows of its stated width: before that, its headers alone, of which a file of
+// several parts has one each, and an empty one at the end.
 void require_readable(const std::string& bytes, const std::string& name) {
-  require_attributes_fit(bytes);
-  Source source(bytes, name);
   int version = 0;
   if (bytes.size() < kStart) throw std::runtime_error("it ends too early");
   std::memcpy(&version, bytes.data() + 4, 4);
-  source.seekg(kStart);
-  Imf::Header header;
-  header.readFrom(source, version);
-  for (const Imath::Box2i& box : {header.dataWindow(), header.displayWindow()})
-    readable_size(width_of(box), height_of(box), bytes.size(), name);
-  if (channel_count(header.channels()) > kMaxChannels) throw std::runtime_error("it has too many channels");
+  Source source(bytes, name);
+  for (size_t at = kStart; at == kStart || (Imf::isMultiPart(version) && bytes[at] != 0);) {
+    const size_t end = require_attributes_fit(bytes, at, version);
+    if (end >= bytes.size()) throw std::runtime_error("it ends too early");
+    Imf::Header header;
+    source.seekg(at);
+    header.readFrom(source, version);
+    require_readable(header, bytes.size(), name);
+    at = end;
+  }
 }
 
 std::vector<std::string> wanted_channels(const Imf::ChannelList& list) {

@@ -123,6 +123,28 @@ TEST(ImageLimits, ValuesInAnExrHeaderThatAreLongerThanTheFileAreRefused) {
               AllOf(HasSubstr("a.exr"), HasSubstr("longer than the file")));
 }
 
+// Found by fuzzing: the library reads a list of channels to its end, whatever its stated size, and after that it
+// takes 1.9 GB for what it finds there.
+TEST(ImageLimits, ValuesInAnExrHeaderAreAsLongAsItSays) {
+  std::string bytes = encode_exr(Image(8, 8, 3, 0.5f));
+  const size_t size = place(bytes, "channels") + sizeof "channels" + sizeof "chlist";
+  bytes.replace(size, 4, little_endian(uint32_t{3 * 18 + 1 + 8}));
+  EXPECT_THAT(message([&] { decode_exr(bytes, "a.exr"); }),
+              AllOf(HasSubstr("a.exr"), HasSubstr("a value of a wrong size")));
+}
+
+// Found by fuzzing, as above, in a file that says that it has several parts.
+TEST(ImageLimits, HeadersOfAllPartsOfAnExrAreRead) {
+  std::string bytes = encode_exr(Image(8, 8, 3, 0.5f));
+  bytes[5] |= 0x10;  // several parts
+  const size_t end = place(bytes, "screenWindowWidth") + sizeof "screenWindowWidth" + sizeof "float" + 4 + 4;
+  ASSERT_EQ(bytes[end], 0);
+  using namespace std::string_literals;
+  bytes.insert(end + 1, "a\0f1oat\0"s + little_endian(uint32_t{0x73690000}));
+  EXPECT_THAT(message([&] { decode_exr(bytes, "a.exr"); }),
+              AllOf(HasSubstr("a.exr"), HasSubstr("longer than the file")));
+}
+
 TEST(ImageLimits, FilesTooShortForTheirSizeAreRefused) {
   for (const Format& f : kFormats) {
     if (f.decode == decode_hdr) continue;  // its rows are as long as this bound asks for

@@ -277,6 +277,10 @@ fs::path Project::new_run(const std::string& verb) {
   return folder;
 }
 
+void Project::share_layer_memory(size_t used) {
+  layers_->limit(kMaxLayerBytes - std::min(used, kMaxLayerBytes - kMinLayerBytes));
+}
+
 void Project::collect_garbage() {
   std::set<std::string> keep;
   const auto note = [&](const Json& j) { keep.insert(j.at("object").get<std::string>()); };

@@ -106,6 +106,8 @@ class Project {
   Scene scene() const;
   const SceneCache& scene_cache() const { return scenes_; }
   const Shelf& layer_shelf() const { return *layers_; }  // what the layers of scenes keep in memory
+  // Of the memory for layers, others use so much for what they have made of each layer.
+  void share_layer_memory(size_t used);
 
   // Adds an edit at the cursor, or in place of the last edit that is done. record.id must be
   // stack().next_id(record.op), which is also the layer's.
@@ -159,9 +161,10 @@ class Project {
   Scene with_results(const Scene& base, std::span<const StoredResult>) const;  // the base and those
   void collect_garbage();
 
-  // Memory for the layers' regions and networks: a thousand strokes. Where the layers of one view do not fit,
-  // each stroke reads most of them again.
-  static constexpr size_t kMaxLayerBytes = size_t(128) << 20;
+  // Memory for the layers' regions and networks, and for what others have made of each layer: a few hundred
+  // strokes. Where the layers of one view do not fit, a new view reads most of them again. At least so much is
+  // for the former.
+  static constexpr size_t kMaxLayerBytes = size_t(128) << 20, kMinLayerBytes = size_t(32) << 20;
   std::filesystem::path folder_;
   ProjectLock lock_;
   ProjectHead head_;

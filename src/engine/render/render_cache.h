@@ -45,6 +45,8 @@ class RenderCache {
   const CacheCount& transport_count() const { return transports_.count(); }
   const CacheCount& light_count() const { return lights_.count(); }
   const CacheCount& view_count() const { return views_.count(); }
+  // What it has made of each layer.
+  size_t layer_bytes() const { return seen_.bytes(); }
   // Hits of all frames so far whose light was computed, and whose light was taken over from the frame before.
   size_t hits_lit() const { return hits_lit_; }
   size_t hits_kept() const { return hits_kept_; }

@@ -29,20 +29,6 @@ SeenId share_of(uint32_t vertex, const Vec3f& albedo, const Material& m) {
   return id;
 }
 
-// Keeps one of them where all are the same.
-template <class T>
-void collapse(std::vector<T>& values) {
-  const auto as_first = [&](const T& v) { return same_bits(v, values.front()); };
-  if (!std::all_of(values.begin(), values.end(), as_first)) return;
-  values.resize(std::min<size_t>(values.size(), 1));
-  values.shrink_to_fit();
-}
-
-template <class T>
-const T& value_of(const std::vector<T>& values, size_t k) {
-  return values[values.size() == 1 ? 0 : k];
-}
-
 // Whether the layer was made while that shape version was the present one, or before.
 bool was_on(const EditLayer& l, int version) {
   return l.shape_version <= version && !(l.reshape && max(l.shape_version, 0) + 1 > version);
@@ -110,13 +96,13 @@ class Maker {
       change.id = {change.id.a + is.a - was.a, change.id.b + is.b - was.b};
       now_.albedo[v] = look.albedo[k];
       now_.material[v] = look.material[k];
-      change.vertices.push_back(v);
-      change.values.albedo.push_back(look.albedo[k]);
-      change.values.material.push_back(look.material[k]);
+      change.vertex_offset.push_back(v - uint32_t(change.vertex_offset.size()));
+      change.albedo.push_back(look.albedo[k]);
+      change.material.push_back(look.material[k]);
     }
-    collapse(change.values.albedo);
-    collapse(change.values.material);
-    change.vertices.shrink_to_fit();
+    change.vertex_offset.shrink_to_fit();
+    change.albedo.shrink_to_fit();
+    change.material.shrink_to_fit();
   }
 
   const Device& device_;
@@ -129,8 +115,7 @@ class Maker {
 }  // namespace
 
 size_t SeenChange::bytes() const {
-  return sizeof(SeenChange) + content.size() + vertices.size() * sizeof(uint32_t) +
-         values.albedo.size() * sizeof(Vec3f) + values.material.size() * sizeof(Material);
+  return sizeof(SeenChange) + content.size() + vertex_offset.bytes() + albedo.bytes() + material.bytes();
 }
 
 SeenHistory::SeenHistory(VertexMaterials as_reconstructed)
@@ -166,9 +151,13 @@ SeenHistory SeenHistory::through(const Device& device, const Scene& scene, int l
 const VertexMaterials& SeenHistory::Walk::after(int layer) {
   for (; int(next_) <= layer; ++next_) {
     const SeenChange& change = *history_.changes_[next_];
-    for (size_t k = 0; k < change.vertices.size(); ++k) {
-      now_.albedo[change.vertices[k]] = value_of(change.values.albedo, k);
-      now_.material[change.vertices[k]] = value_of(change.values.material, k);
+    RunList<uint32_t>::Reader offset(change.vertex_offset);
+    RunList<Vec3f>::Reader albedo(change.albedo);
+    RunList<Material>::Reader material(change.material);
+    for (uint32_t k = 0; k < change.vertex_offset.size(); ++k) {
+      const uint32_t v = offset.next() + k;
+      now_.albedo[v] = albedo.next();
+      now_.material[v] = material.next();
     }
   }
   return now_;

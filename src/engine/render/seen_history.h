@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/base/lru_cache.h"
+#include "core/base/run_list.h"
 #include "engine/render/vertex_light.h"
 #include "model/scene/scene.h"
 
@@ -24,10 +25,13 @@ struct SeenId {
 
 // What a layer changes.
 struct SeenChange {
-  std::string content;             // EditLayer::content
-  std::vector<uint32_t> vertices;  // vertices whose materials the layer changes
-  VertexMaterials values;          // #vertices, their materials after the layer; one if all are the same
-  SeenId id;                       // of the materials of all vertices after the layer
+  std::string content;  // EditLayer::content
+  // The vertices whose materials the layer changes, ascending: the k-th has the index vertex_offset[k] + k, so
+  // that successive ones make a run. Their values are those after the layer.
+  RunList<uint32_t> vertex_offset;
+  RunList<Vec3f> albedo;
+  RunList<Material> material;
+  SeenId id;  // of the materials of all vertices after the layer
 
   size_t bytes() const;
 };

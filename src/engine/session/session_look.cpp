@@ -61,6 +61,7 @@ std::unique_ptr<TiledFrame> Session::frame_of(const FrameRequest& request, Scene
   if (!request.light.is_own()) scene.residual = nullptr;
   if (request.as_photographed && request.light.env.empty()) scene = in_view(scene, request.camera);
   const Camera camera = scene.normalization.unit_from_capture(request.camera);
+  project().share_layer_memory(frames_->layer_bytes());
   return std::make_unique<TiledFrame>(*threads_, *frames_, std::move(scene), camera, request.samples,
                                       request.channel);
 }
