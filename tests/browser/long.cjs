@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// long.cjs PROGRAM PROJECT CHROMIUM [STROKES RELOADS KILLS [SEED]]: a long session on a copy of PROJECT: strokes, reloads, and kill -9
-// of the program at random moments, after which all acknowledged edits must be stored. Prints the growth of memory.
+// long.cjs PROGRAM PROJECT CHROMIUM [STROKES RELOADS KILLS [SEED [MINUTES]]]: a long session on a copy of PROJECT: strokes, spread over at
+// least so many minutes, reloads, and kill -9 of the program at random moments, after which all acknowledged edits must be stored. Prints
+// the growth of memory.
 const { execFileSync } = require('node:child_process');
 const { withEditor, settled, megabytes, median } = require('./serve.cjs');
 
 const [program, original, executablePath, ...counts] = process.argv.slice(2);
-const [strokes, reloads, kills, seed] = [1000, 100, 50, 1].map((n, i) => Number(counts[i] ?? n));
+const [strokes, reloads, kills, seed, minutes] = [1000, 100, 50, 1, 0].map((n, i) => Number(counts[i] ?? n));
 
 let dice = seed;
 /** In [0, 1). [Park and Miller 1988] */
@@ -52,9 +53,11 @@ async function killed(at, page, count) {
 async function strokesAndMore(at, page, count) {
   const reloadAt = moments(reloads), killAt = moments(kills);
   const heap = async () => page.evaluate(() => { globalThis.gc?.(); return performance.memory.usedJSHeapSize / 1e6; });
+  const start = Date.now();
   await page.goto(at.server.url);
   await settled(page);
   for (let i = 0; i < strokes; ++i) {
+    await page.waitForTimeout(Math.max(0, start + 60000 * minutes * i / strokes - Date.now()));
     const begin = Date.now(), before = await page.evaluate(() => globalThis.cei3d.store.state.done);
     await stroke(page);
     if (killAt.has(i)) {
@@ -80,7 +83,7 @@ async function strokesAndMore(at, page, count) {
 function report(count, there) {
   const tenth = Math.ceil(count.seconds.length / 10), middle = (list) => median(list).toFixed(2);
   console.log('| | |\n|---|---|');
-  console.log(`| strokes, reloads, kills | ${strokes}, ${reloads}, ${kills} |`);
+  console.log(`| strokes, reloads, kills, at least | ${strokes}, ${reloads}, ${kills}, ${minutes} minutes |`);
   console.log(`| edits in the page; in the project | ${count.done}; ${there} |`);
   console.log(`| kills after which an acknowledged edit was gone; after which one was there that was not yet acknowledged | ${count.lost}; ${count.unacknowledged} |`);
   console.log(`| stroke to kept edit, median of the first and of the last tenth | ${middle(count.seconds.slice(0, tenth))} s; ${middle(count.seconds.slice(-tenth))} s |`);
