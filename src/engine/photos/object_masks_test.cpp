@@ -104,6 +104,50 @@ TEST(ObjectMasks, GoOnWithWhatIsThere) {
   EXPECT_EQ(read_image(lost).data, before.data);
 }
 
+// Knows what draws the eye, too.
+class SeeingSegmenter final : public PhotoSegmenter {
+ public:
+  explicit SeeingSegmenter(const TestTable& t) : truth(t), table_(t) {}
+  Image log_odds(const View& view, const PixelBox& section, const Prompts& prompts,
+                 const std::optional<PixelBox>& around) override {
+    if (first_height == 0 && around) first_height = around->height;
+    return truth.log_odds(view, section, prompts, around);
+  }
+  // Half as large as the photograph.
+  std::optional<Image> saliency(const View& view) override {
+    if (!has_saliency) return std::nullopt;
+    Image out(view.camera.width / 2, view.camera.height / 2, 1);
+    for (int y = 0; y < out.height; ++y)
+      for (int x = 0; x < out.width; ++x)
+        *out.at(x, y) = sees_ball(table_, view.camera, {2 * x + 1.0, 2 * y + 1.0}) ? 0.9f : 0.1f;
+    return out;
+  }
+  TrueSegmenter truth;
+  bool has_saliency = true;
+  int first_height = 0;  // of the box around the object in the first photograph, in pixels
+
+ private:
+  const TestTable& table_;
+};
+
+// Where an object has no texture around its middle, its points are two groups, of which only one is taken for
+// the object. What draws the eye joins them.
+TEST(ObjectMasks, AnObjectOfTwoGroupsOfPointsIsOneBySaliency) {
+  TestTable t = test_table();
+  std::erase_if(t.on_ball, [](Vec3d p) { return p.z > 0.2 && p.z < 0.8; });
+  add_sightings(t);
+  const double diameter = 2 * t.radius * t.views[0].camera.fy / 3;  // pixels, from 3 units away
+  for (const bool has_saliency : {false, true}) {
+    const TempFolder folder;
+    SeeingSegmenter segmenter(t);
+    segmenter.has_saliency = has_saliency;
+    Progress progress;
+    make_masks(request_for(t, folder), segmenter, 0, 1, progress);
+    EXPECT_GT(segmenter.first_height, 0);
+    EXPECT_EQ(segmenter.first_height > 0.8 * diameter, has_saliency) << segmenter.first_height;
+  }
+}
+
 // The plate shows a texture; the photograph the same with noise and a disc on it.
 TEST(PlateSegmenter, FindsWhatDiffers) {
   const TempFolder folder;

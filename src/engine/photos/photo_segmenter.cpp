@@ -9,6 +9,7 @@
 #include "core/math/quantile.h"
 #include "engine/capture/capture_images.h"
 #include "engine/io/image_file.h"
+#include "engine/segment/saliency.h"
 #include "engine/segment/sam.h"
 
 namespace cei3d {
@@ -16,7 +17,8 @@ namespace {
 
 class SamSegmenter final : public PhotoSegmenter {
  public:
-  SamSegmenter(const std::filesystem::path& folder, int threads) : sam_(folder, threads) {}
+  SamSegmenter(const std::filesystem::path& folder, int threads)
+      : sam_(folder, threads), saliency_(Saliency::find(folder, threads)) {}
 
   Image log_odds(const View& view, const PixelBox& box, const Prompts& prompts,
                  const std::optional<PixelBox>& around) override {
@@ -40,8 +42,13 @@ class SamSegmenter final : public PhotoSegmenter {
                      box.width, box.height);
   }
 
+  std::optional<Image> saliency(const View& view) override {
+    return saliency_ ? std::optional(saliency_->map(load_photo(view))) : std::nullopt;
+  }
+
  private:
   Sam sam_;
+  std::optional<Saliency> saliency_;
 };
 
 // Distance between linear colors, relative to how bright they are; shadows and lamps change brightness more

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/image/image.h"
@@ -22,9 +23,11 @@ class PhotoSegmenter {
   // none: not known.
   virtual Image log_odds(const View& view, const PixelBox& section, const Prompts& prompts,
                          const std::optional<PixelBox>& around) = 0;
+  // What draws the eye: 1 channel, [0, 1], the whole photograph at any size and shape. None: not known.
+  virtual std::optional<Image> saliency(const View&) { return std::nullopt; }
 };
 
-// Segment Anything. folder: as Sam() wants it.
+// Segment Anything, and a network of saliency where there is one. folder: as Sam() and Saliency want it.
 std::unique_ptr<PhotoSegmenter> sam_segmenter(const std::filesystem::path& folder, int threads);
 
 // plate: a photograph of the same size without the object, from the same place, in the same light. What
