@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A list that is read from its beginning, in less memory where neighboring elements have often the same bits: a
-// value is kept once for a run of them.
+// A list that is read from its beginning, in less memory where neighboring elements have often the same bits:
+// a value is kept once for a run of them.
 #pragma once
 
 #include <cstddef>

@@ -39,7 +39,7 @@ class Shelf {
   void add(Slot&);  // its value is in memory now; may drop others
   using Values = std::vector<std::shared_ptr<const void>>;
   Values drop(const Slot* but);  // what is beyond the limit; the mutex is locked
-  void remove(Slot&);  // the slot is destroyed
+  void remove(Slot&);            // the slot is destroyed
 
   size_t max_bytes_, bytes_ = 0;
   std::atomic<size_t> reads_ = 0;

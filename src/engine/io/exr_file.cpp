@@ -81,9 +81,9 @@ void require_whole(const std::string& type, const std::string& value, int versio
   if (source.tellg() != value.size()) throw std::runtime_error("its header has a value of a wrong size");
 }
 
-// The library takes memory for an attribute of an unknown type by its stated size, which it finds wherever the
-// value before ends. An attribute is a name, a type, which end with a zero, the size in 4 bytes, little-endian,
-// and the value; an empty name ends the header. Returns where it ends.
+// The library takes memory for an attribute of an unknown type by its stated size, which it finds wherever
+// the value before ends. An attribute is a name, a type, which end with a zero, the size in 4 bytes,
+// little-endian, and the value; an empty name ends the header. Returns where it ends.
 size_t require_attributes_fit(const std::string& bytes, size_t at, int version) {
   Imf::staticInitialize();  // the types
   while (at < bytes.size() && bytes[at] != 0) {
@@ -106,8 +106,8 @@ void require_readable(const Imf::Header& header, size_t bytes, const std::string
   if (channel_count(header.channels()) > kMaxChannels) throw std::runtime_error("it has too many channels");
 }
 
-// Opening a file takes memory for rows of its stated width: before that, its headers alone, of which a file of
-// several parts has one each, and an empty one at the end.
+// Opening a file takes memory for rows of its stated width: before that, its headers alone, of which a file
+// of several parts has one each, and an empty one at the end.
 void require_readable(const std::string& bytes, const std::string& name) {
   int version = 0;
   if (bytes.size() < kStart) throw std::runtime_error("it ends too early");

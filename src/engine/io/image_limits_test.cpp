@@ -123,8 +123,8 @@ TEST(ImageLimits, ValuesInAnExrHeaderThatAreLongerThanTheFileAreRefused) {
               AllOf(HasSubstr("a.exr"), HasSubstr("longer than the file")));
 }
 
-// Found by fuzzing: the library reads a list of channels to its end, whatever its stated size, and after that it
-// takes 1.9 GB for what it finds there.
+// Found by fuzzing: the library reads a list of channels to its end, whatever its stated size, and after that
+// it takes 1.9 GB for what it finds there.
 TEST(ImageLimits, ValuesInAnExrHeaderAreAsLongAsItSays) {
   std::string bytes = encode_exr(Image(8, 8, 3, 0.5f));
   const size_t size = place(bytes, "channels") + sizeof "channels" + sizeof "chlist";

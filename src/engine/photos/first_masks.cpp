@@ -64,7 +64,8 @@ class FirstRound {
  private:
   static bool is_background(float belief) { return belief <= -1; }
 
-  // Points that draw the eye in the photographs that show them are rather on the object, the others rather not.
+  // Points that draw the eye in the photographs that show them are rather on the object, the others rather
+  // not.
   void heed_saliency(double done, Progress& progress) {
     std::vector<float> sum(belief_.size());
     std::vector<int> count(belief_.size());

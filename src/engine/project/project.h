@@ -162,8 +162,8 @@ class Project {
   void collect_garbage();
 
   // Memory for the layers' regions and networks, and for what others have made of each layer: a few hundred
-  // strokes. Where the layers of one view do not fit, a new view reads most of them again. At least so much is
-  // for the former.
+  // strokes. Where the layers of one view do not fit, a new view reads most of them again. At least so much
+  // is for the former.
   static constexpr size_t kMaxLayerBytes = size_t(128) << 20, kMinLayerBytes = size_t(32) << 20;
   std::filesystem::path folder_;
   ProjectLock lock_;

@@ -26,8 +26,8 @@ struct SeenId {
 // What a layer changes.
 struct SeenChange {
   std::string content;  // EditLayer::content
-  // The vertices whose materials the layer changes, ascending: the k-th has the index vertex_offset[k] + k, so
-  // that successive ones make a run. Their values are those after the layer.
+  // The vertices whose materials the layer changes, ascending: the k-th has the index vertex_offset[k] + k,
+  // so that successive ones make a run. Their values are those after the layer.
   RunList<uint32_t> vertex_offset;
   RunList<Vec3f> albedo;
   RunList<Material> material;

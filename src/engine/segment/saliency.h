@@ -13,9 +13,9 @@ namespace cei3d {
 
 class Saliency {
  public:
-  // folder: saliency.onnx, which takes [1, 3, 320, 320] and whose first output is [1, 1, 320, 320], and, unless
-  // the system has one, the runtime; as installed_sam(). None: there is no such file. threads: 0: all cores.
-  // Error: it is not such a network.
+  // folder: saliency.onnx, which takes [1, 3, 320, 320] and whose first output is [1, 1, 320, 320], and,
+  // unless the system has one, the runtime; as installed_sam(). None: there is no such file. threads: 0: all
+  // cores. Error: it is not such a network.
   static std::optional<Saliency> find(const std::filesystem::path& folder, int threads = 0);
 
   // rgba: linear. Returns the whole image in 320 x 320 pixels, 1 channel, from 0 to 1.
