@@ -13,6 +13,8 @@ let dice = seed;
 const random = () => (dice = dice * 48271 % 2147483647) / 2147483647;
 const logged = (project) => JSON.parse(execFileSync(program, ['log', project, '--json'], { maxBuffer: 1 << 30 })).edits.filter((e) => e.done && !e.set_aside).length;
 
+const tenth = (n) => Math.ceil(n / 10);
+
 /** At which strokes an event happens that happens n times. @param {number} n @returns {Set<number>} */
 function moments(n) {
   const chosen = new Set();
@@ -71,29 +73,33 @@ async function strokesAndMore(at, page, count) {
       await page.reload();
       await settled(page);
     }
-    if (i % Math.ceil(strokes / 10) === 0 || i === strokes - 1) {
-      count.memory.push([i + 1, megabytes(at.server.process.pid), await heap()]);
-      console.error(`${i + 1} strokes, ${Math.round(megabytes(at.server.process.pid))} MB`);
-    }
+    count.memory.push(megabytes(at.server.process.pid));
+    if ((i + 1) % tenth(strokes) && i !== strokes - 1) continue;
+    count.heap.push(await heap());
+    console.error(`${i + 1} strokes, ${Math.round(count.memory[i])} MB`);
   }
   await settled(page);
   count.done = await page.evaluate(() => globalThis.cei3d.store.state.done);
 }
 
 function report(count, there) {
-  const tenth = Math.ceil(count.seconds.length / 10), middle = (list) => median(list).toFixed(2);
+  const middle = (list) => median(list).toFixed(2), few = tenth(count.seconds.length);
   console.log('| | |\n|---|---|');
   console.log(`| strokes, reloads, kills, at least | ${strokes}, ${reloads}, ${kills}, ${minutes} minutes |`);
   console.log(`| edits in the page; in the project | ${count.done}; ${there} |`);
   console.log(`| kills after which an acknowledged edit was gone; after which one was there that was not yet acknowledged | ${count.lost}; ${count.unacknowledged} |`);
-  console.log(`| stroke to kept edit, median of the first and of the last tenth | ${middle(count.seconds.slice(0, tenth))} s; ${middle(count.seconds.slice(-tenth))} s |`);
-  for (const [i, program_, page_] of count.memory) console.log(`| memory after ${i} strokes: program; scripts of the page | ${Math.round(program_)} MB; ${page_.toFixed(1)} MB |`);
+  console.log(`| stroke to kept edit, median of the first and of the last tenth | ${middle(count.seconds.slice(0, few))} s; ${middle(count.seconds.slice(-few))} s |`);
+  count.heap.forEach((page, k) => {
+    const first = k * tenth(strokes), some = count.memory.slice(first, first + tenth(strokes));
+    console.log(`| memory, strokes ${first + 1} to ${first + some.length}: program, median and maximum; scripts of the page | ` +
+      `${Math.round(median(some))}, ${Math.round(Math.max(...some))} MB; ${page.toFixed(1)} MB |`);
+  });
 }
 
 withEditor({ program, project: original, executablePath, copy: true, args: ['--js-flags=--expose-gc', '--enable-precise-memory-info'] }, async (at) => {
   const page = await at.browser.newPage({ viewport: { width: 868, height: 674 } });
   const begun = logged(at.project);
-  const count = { lost: 0, unacknowledged: 0, done: 0, seconds: [], memory: [] }, refused = [];
+  const count = { lost: 0, unacknowledged: 0, done: 0, seconds: [], memory: [], heap: [] }, refused = [];
   page.on('response', async (r) => { if (r.status() >= 400) refused.push(`${r.status()} ${r.url()} ${await r.text().catch(String)}`); });
   try {
     await strokesAndMore(at, page, count);
