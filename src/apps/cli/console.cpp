@@ -69,13 +69,13 @@ void Console::on_report(const ProgressReport& r) {
   if (level_ < LogLevel::info) return;
   const Clock::time_point now = Clock::now();
   const auto since = [&](Clock::time_point t) { return std::chrono::duration<double>(now - t).count(); };
+  const double by_progress = time_left_.after(r.fraction, since(start_));
   const bool new_stage = r.stage != stage_;
   if (!terminal_ && since(start_) < kQuietStart) return;
   if (!new_stage && r.fraction < 1 && since(last_) < (terminal_ ? kRedrawSeconds : kLineSeconds)) return;
   last_ = now;
   stage_ = r.stage;
-  double seconds_left = r.seconds_left;
-  if (seconds_left < 0 && r.fraction > 0.05) seconds_left = since(start_) * (1 - r.fraction) / r.fraction;
+  const double seconds_left = r.seconds_left < 0 ? by_progress : r.seconds_left;
   if (terminal_)
     draw_bar(r, seconds_left);
   else

@@ -8,6 +8,7 @@
 
 #include "core/base/json_fwd.h"
 #include "core/base/progress.h"
+#include "core/base/time_left.h"
 
 namespace cei3d {
 
@@ -48,6 +49,7 @@ class Console : public Progress {
   LogLevel level_ = LogLevel::info;
   std::string stage_;
   Clock::time_point start_ = Clock::now(), last_{};
+  TimeLeft time_left_;
 };
 
 }  // namespace cei3d
