@@ -6,8 +6,8 @@ namespace cei3d {
 
 class TimeLeft {
  public:
-  // fraction: of the whole job, in ascending order; seconds: now, on any clock. Returns seconds; negative: not
-  // known yet. A job that is resumed leaps to where it was: only what comes after a leap counts.
+  // fraction: of the whole job, in ascending order; seconds: now, on any clock. Returns seconds; negative:
+  // not known yet. A job that is resumed leaps to where it was: only what comes after a leap counts.
   double after(double fraction, double seconds) {
     constexpr double kLeap = 0.05, kEnough = 0.02;
     if (fraction - last_ > kLeap || first_seconds_ < 0) first_ = fraction, first_seconds_ = seconds;
