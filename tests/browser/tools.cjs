@@ -70,6 +70,8 @@ async function names(page) {
 
 /** Compares the picture of the export dialog with a screenshot where the object is; elsewhere it must be white. */
 async function savesWhatIsSeen(page) {
+  // What was drawn last may not be on the screen yet.
+  await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
   const shot = await page.screenshot({ clip: await page.locator('#picture').boundingBox() });
   const { inside, worst, ground } = await page.evaluate(async (base64) => {
     const { stage } = globalThis.cei3d, { width, height } = stage.picture;
