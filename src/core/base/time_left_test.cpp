@@ -23,5 +23,12 @@ TEST(TimeLeft, WhatWasDoneBeforeAJobWasResumedDoesNotCount) {
     EXPECT_NEAR(left.after((kThere + t) / kJob, kStart + 2 + t), kJob - kThere - t, 1e-6) << t;
 }
 
+TEST(TimeLeft, OfAJobOfFewStepsIsKnownAfterTwo) {
+  TimeLeft left;
+  for (int step = 0; step < 2; ++step) EXPECT_LT(left.after(step / 8.0, kStart + 10 * step), 0) << step;
+  for (int step = 2; step <= 8; ++step)
+    EXPECT_NEAR(left.after(step / 8.0, kStart + 10 * step), 10 * (8 - step), 1e-6) << step;
+}
+
 }  // namespace
 }  // namespace cei3d

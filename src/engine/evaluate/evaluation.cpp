@@ -9,6 +9,7 @@
 #include "core/base/hash.h"
 #include "core/base/json.h"
 #include "core/base/parallel.h"
+#include "core/base/time_left.h"
 #include "engine/evaluate/evaluation_objects.h"
 #include "engine/session/stopwatch.h"
 
@@ -29,8 +30,8 @@ class RowProgress : public Progress {
  private:
   void on_report(const ProgressReport& r) override {
     elapsed_ += watch_.lap();
-    double left = r.seconds_left;
-    if (left < 0 && r.fraction > 0) left = elapsed_ * (1 - r.fraction) / r.fraction;
+    const double by_progress = time_left_.after(r.fraction, elapsed_);
+    const double left = r.seconds_left < 0 ? by_progress : r.seconds_left;
     whole_.report({name_, r.fraction, left, r.stage + (r.message.empty() ? "" : ", " + r.message)});
   }
   void on_log(const std::string& line) override { whole_.log(line); }
@@ -40,6 +41,7 @@ class RowProgress : public Progress {
   std::string name_;
   Stopwatch watch_;
   double elapsed_ = 0;  // seconds
+  TimeLeft time_left_;
 };
 
 double total_seconds(const EditSummary& s) {

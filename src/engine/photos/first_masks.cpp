@@ -12,10 +12,10 @@ namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr size_t kPrompts = 4;    // number of prompts of each kind
-constexpr float kPrior = 3;       // number of masks that outweigh what the place of a point says
-constexpr float kDrawn = 0.8f;    // what a point's belief gains at most because it draws the eye
-constexpr double kMargin = 0.05;  // margin of the box around the points, as a share of its longer side
+constexpr size_t kPrompts = 4;           // number of prompts of each kind
+constexpr float kPrior = 3;              // number of masks that outweigh what the place of a point says
+constexpr float kSaliencyWeight = 0.8f;  // what the belief in a point gains at most by its saliency
+constexpr double kMargin = 0.05;         // margin of the box around the points, as a share of its longer side
 
 float value_at(const Image& image, Vec2f p) {
   return *image.at(std::clamp(int(p.x), 0, image.width - 1), std::clamp(int(p.y), 0, image.height - 1));
@@ -49,7 +49,7 @@ class FirstRound {
 
   void run(double first, double last, Progress& progress) {
     const size_t n = request_.views.size();
-    if (request_.clicks.empty()) heed_saliency(first, progress);
+    if (request_.clicks.empty()) weigh_saliency(first, progress);
     std::vector<uint8_t> done(n);
     for (size_t i = 0; i < n; ++i) {
       check_cancelled(progress, "Interrupted; the same command goes on from here.");
@@ -64,14 +64,13 @@ class FirstRound {
  private:
   static bool is_background(float belief) { return belief <= -1; }
 
-  // Points that draw the eye in the photographs that show them are rather on the object, the others rather
-  // not.
-  void heed_saliency(double done, Progress& progress) {
+  // Salient points are more likely on the object than others.
+  void weigh_saliency(double done, Progress& progress) {
     std::vector<float> sum(belief_.size());
     std::vector<int> count(belief_.size());
     for (size_t v = 0; v < request_.views.size(); ++v) {
       check_cancelled(progress, "Interrupted; the same command goes on from here.");
-      progress.report({"masks", done, -1, "what draws the eye"});
+      progress.report({"masks", done, -1, "saliency"});
       const View& view = request_.views[v];
       const std::optional<Image> saliency = segmenter_.saliency(view);
       if (!saliency) return;
@@ -84,7 +83,8 @@ class FirstRound {
     }
     for (size_t p = 0; p < belief_.size(); ++p)
       if (count[p] > 0 && !is_background(belief_[p]))
-        belief_[p] = std::clamp(belief_[p] + kDrawn * (2 * sum[p] / float(count[p]) - 1), -1.0f, 1.0f);
+        belief_[p] =
+            std::clamp(belief_[p] + kSaliencyWeight * (2 * sum[p] / float(count[p]) - 1), -1.0f, 1.0f);
   }
 
   // Of the views that are not done the one that shows most points of the object; clicked views come first.
