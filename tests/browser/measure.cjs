@@ -121,6 +121,74 @@ async function paints(page, project) {
   row('the same by the command line', ms(Date.now() - t));
 }
 
+/** A handle in the middle of the object, dragged for two seconds; then what the program computes of it. Returns that edit's parameters. */
+async function bends(page) {
+  await page.keyboard.press('j');
+  const box = await page.locator('#view').boundingBox();
+  await page.mouse.click(box.x + box.width / 2, box.y + box.height / 2);
+  await page.waitForFunction(() => globalThis.cei3d.bend.points.length === 1, null, { timeout: 10000 });
+  const dragged = await page.evaluate(async () => {
+    const { bend, stage } = globalThis.cei3d, [point] = bend.points, size = globalThis.cei3d.store.object.radius;
+    const pull = async (k) => {
+      point.to = point.from.map((v, i) => v + 0.1 * size * stage.camera.axes[0][i] * Math.sin(k / 5));
+      bend.preview();
+      await new Promise(requestAnimationFrame);
+      await stage.live.drawing;
+    };
+    while (!stage.pulling) await pull(1);  // until the code for it is loaded
+    for (let k = 0; k < 12; ++k) await pull(k);
+    const began = performance.now();
+    let drawn = 0;
+    for (; performance.now() < began + 2000; ++drawn) await pull(drawn);
+    return drawn / (performance.now() - began) * 1000;
+  });
+  const made = await page.evaluate(async () => {
+    const { postJson } = await import(document.querySelector('link[href$="api.js"]').href);
+    const params = globalThis.cei3d.bend.params(), all = [];
+    let report;
+    for (let k = 0; k < 5; ++k) {
+      const t = performance.now();
+      ({ report } = await postJson('preview', { op: 'deform', params: { ...params, to: params.to.map((v) => v * (1 + 0.01 * k)) } }));
+      all.push(performance.now() - t);
+    }
+    return { all, vertices: report.vertices, params };
+  });
+  await page.evaluate(() => globalThis.cei3d.bend.drop());
+  await settled(page);
+  row('a dragged handle: pictures of the page', `${dragged.toFixed(1)} a second`);
+  row(`the same by the program, ${made.vertices} vertices`, ms(median(made.all)));
+  return made.params;
+}
+
+/** Pictures of the page while the camera turns for `seconds`: milliseconds between them. */
+const orbit = (page, seconds) => page.evaluate(async (time) => {
+  const { stage } = globalThis.cei3d, gaps = [], end = performance.now() + 1000 * time;
+  for (let before = performance.now(); before < end;) {
+    stage.camera.orbit(0.05, 0);
+    stage.moved();
+    await new Promise(requestAnimationFrame);
+    await stage.live.drawing;
+    gaps.push(performance.now() - before);
+    before = performance.now();
+  }
+  return gaps;
+}, seconds);
+
+/** The camera turns alone, and while the program computes an edit again and again. @param {object} bend its parameters */
+async function turns(page, bend) {
+  await orbit(page, 1);
+  const alone = await orbit(page, 3);
+  const busy = page.evaluate(async (params) => {
+    const { postJson } = await import(document.querySelector('link[href$="api.js"]').href);
+    for (const end = performance.now() + 3000; performance.now() < end;) await postJson('preview', { op: 'deform', params });
+  }, bend);
+  const beside = await orbit(page, 3);
+  await busy;
+  const text = (list) => `${ms(median(list))}, at most ${ms(Math.max(...list))}`;
+  row('the camera turns: between pictures, alone; while the program bends the object', `${text(alone)}; ${text(beside)}`);
+  await settled(page);
+}
+
 withEditor({ program, project: original, executablePath, copy: true }, async (at) => {
   const { server, project } = at, page = await at.browser.newPage({ viewport: { width: 868, height: 674 } });
   const start = Date.now();
@@ -139,6 +207,7 @@ withEditor({ program, project: original, executablePath, copy: true }, async (at
   await frames(page);
   await edits(page);
   await paints(page, project);
+  await turns(page, await bends(page));
   row('memory of the program; of the page’s scripts', `${Math.round(megabytes(server.process.pid))} MB; ${Math.round((await page.evaluate(() => performance.memory.usedJSHeapSize)) / 1e6)} MB`);
   bundle();
 }).catch((error) => { console.error(error); process.exit(1); });

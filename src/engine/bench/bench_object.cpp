@@ -11,6 +11,7 @@
 #include "engine/session/cameras.h"
 #include "engine/session/session.h"
 #include "engine/session/stopwatch.h"
+#include "engine/session/tiled_frame.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
@@ -71,6 +72,44 @@ void add_later_frames(const Device& device, const Project& project, const Camera
     figures.push_back(seconds_figure(subject, frame_name(samples) + "second frame", again));
     figures.push_back(seconds_figure(subject, frame_name(samples) + "second light", relit));
   }
+}
+
+// Another frame for the caches that shows the same: the picture is shifted by a thousandth of a pixel.
+Camera shifted(Camera camera, int k) {
+  camera.cx += 0.001 * k;
+  return camera;
+}
+
+// New frames of a session as a whole and in the tiles that a window is sent, both under a light that is known.
+// The longest tile is the time after which a newer request is heard. camera: capture frame.
+void add_tiles(Session& session, const fs::path& folder, const Camera& camera, const std::string& subject,
+               int repeats, std::vector<BenchFigure>& figures) {
+  session.open(folder, Session::Access::read);
+  const Scene scene = session.scene();
+  RenderCache frames(session.device());
+  frames.light(scene);
+  for (const int samples : {1, 2}) {
+    std::vector<double> whole, tiled, longest;
+    for (int k = 0; k <= repeats; ++k) {
+      FrameRequest request;
+      request.camera = shifted(camera, k);
+      request.samples = samples;
+      const double one =
+          frame_seconds(frames, scene, scene.normalization.unit_from_capture(request.camera), samples);
+      double all = 0, most = 0;
+      Stopwatch watch;
+      for (const auto frame = session.frame(request); frame->next();) {
+        const double tile = watch.lap();
+        all += tile, most = std::max(most, tile);
+      }
+      if (k == 0) continue;  // computes the light
+      whole.push_back(one), tiled.push_back(all), longest.push_back(most);
+    }
+    figures.push_back(seconds_figure(subject, frame_name(samples) + "new view", std::move(whole)));
+    figures.push_back(seconds_figure(subject, frame_name(samples) + "new view in tiles", std::move(tiled)));
+    figures.push_back(seconds_figure(subject, frame_name(samples) + "longest tile", std::move(longest)));
+  }
+  session.close();
 }
 
 // A disc of a third of the object's size about its middle, as the view shows it.
@@ -136,7 +175,7 @@ std::vector<BenchFigure> bench_object(Session& session, const fs::path& folder, 
                                       Progress& progress) {
   std::vector<BenchFigure> figures;
   std::string subject;
-  Camera camera;
+  Camera camera, seen;
   {
     const Project project = Project::open(folder, Project::Mode::read);
     if (!project.has_base()) fail("{} has no object yet; finish its reconstruction first.", folder.string());
@@ -144,11 +183,12 @@ std::vector<BenchFigure> bench_object(Session& session, const fs::path& folder, 
                           project.base().surface->mesh().triangles.size());
     progress.report({"frame", 0.7, -1, ""});
     const Scene scene = project.scene();
-    camera = scene.normalization.unit_from_capture(
-        choose_cameras(project, ProjectViews{}, kSize, kSize).front().camera);
+    seen = choose_cameras(project, ProjectViews{}, kSize, kSize).front().camera;
+    camera = scene.normalization.unit_from_capture(seen);
     add_frames(session.device(), scene, camera, subject, repeats, figures);
     add_later_frames(session.device(), project, camera, subject, repeats, figures);
   }
+  add_tiles(session, folder, seen, subject, repeats, figures);
   progress.report({"edit", 0.9, -1, ""});
   for (BenchFigure& f : paint_figures(session, folder, camera, subject, repeats, progress))
     figures.push_back(std::move(f));

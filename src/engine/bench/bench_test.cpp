@@ -104,7 +104,7 @@ TEST(Bench, ObjectIsNotChanged) {
   Progress quiet;
   const std::vector<BenchFigure> figures = bench_object(session, folder, 2, quiet);
   expect_sound(figures);
-  EXPECT_EQ(figures.size(), 11u);
+  EXPECT_EQ(figures.size(), 17u);
   session.open(folder, Session::Access::read);
   EXPECT_EQ(session.info().edits, 0u);
   session.close();
