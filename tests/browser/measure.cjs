@@ -189,6 +189,26 @@ async function turns(page, bend) {
   await settled(page);
 }
 
+/** Clicks for the network, if it is installed: the first one, others in the same view, and what they select in all views. */
+async function clicks(page) {
+  if (!await page.evaluate(() => globalThis.cei3d.store.object.segment)) return row('clicks for the network', 'not installed');
+  const times = await page.evaluate(async () => {
+    const { postJson } = await import(document.querySelector('link[href$="api.js"]').href), { stage } = globalThis.cei3d;
+    const camera = stage.json(), x = camera.width / 2, y = camera.height / 2;
+    const time = async (n, views) => {
+      const positive = Array.from({ length: n }, (_, i) => [x + 2 * i, y + i]), t = performance.now();
+      await postJson('preview', { op: 'part', params: { camera, positive, segmenter: 'sam', ...views } });
+      return performance.now() - t;
+    };
+    const own = [];
+    for (let n = 1; n <= 4; ++n) own.push(await time(n, { views: 1 }));
+    return { own, all: [await time(4, {}), await time(3, {})] };
+  });
+  const [first, ...more] = times.own;
+  row('a click for the network, by its own view: the first, with the loading of it; another one', `${ms(first)}; ${more.map(ms).join(', ')}`);
+  row('the same by all views: the first time; with another click', times.all.map(ms).join('; '));
+}
+
 withEditor({ program, project: original, executablePath, copy: true }, async (at) => {
   const { server, project } = at, page = await at.browser.newPage({ viewport: { width: 868, height: 674 } });
   const start = Date.now();
@@ -208,6 +228,7 @@ withEditor({ program, project: original, executablePath, copy: true }, async (at
   await edits(page);
   await paints(page, project);
   await turns(page, await bends(page));
+  await clicks(page);
   row('memory of the program; of the page’s scripts', `${Math.round(megabytes(server.process.pid))} MB; ${Math.round((await page.evaluate(() => performance.memory.usedJSHeapSize)) / 1e6)} MB`);
   bundle();
 }).catch((error) => { console.error(error); process.exit(1); });
