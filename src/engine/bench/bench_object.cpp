@@ -80,8 +80,8 @@ Camera shifted(Camera camera, int k) {
   return camera;
 }
 
-// New frames of a session as a whole and in the tiles that a window is sent, both under a light that is known.
-// The longest tile is the time after which a newer request is heard. camera: capture frame.
+// New frames of a session as a whole and in the tiles that a window is sent, both under a light that is
+// known. The longest tile is the time after which a newer request is heard. camera: capture frame.
 void add_tiles(Session& session, const fs::path& folder, const Camera& camera, const std::string& subject,
                int repeats, std::vector<BenchFigure>& figures) {
   session.open(folder, Session::Access::read);
