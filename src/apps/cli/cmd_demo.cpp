@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using Line = std::vector<std::string>;
 
 struct Options {
-  std::string out = "cei3d-demo", sample, time = "90s";
+  std::string out = "cei3d-demo", sample, time = "65s";
 };
 
 struct Step {
