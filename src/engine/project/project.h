@@ -105,7 +105,6 @@ class Project {
   // Base and the edits that are on, up to the cursor. Unchanged parts are kept in memory between calls.
   Scene scene() const;
   const SceneCache& scene_cache() const { return scenes_; }
-  const Shelf& layer_shelf() const { return *layers_; }  // what the layers of scenes keep in memory
   // Of the memory for layers, others use so much for what they have made of each layer.
   void share_layer_memory(size_t used);
 
