@@ -14,10 +14,10 @@ const seconds = (since) => (Date.now() - since) / 1000;
 async function begin(capture, object) {
   const child = spawn(program, ['reconstruct', capture, '-o', object, '--iterations', steps, '--quiet'], { stdio: 'ignore' });
   const ended = new Promise((resolve) => child.on('exit', resolve));
-  const planned = () => fs.existsSync(path.join(object, 'runs')) && fs.readdirSync(path.join(object, 'runs')).some((run) => fs.readFileSync(path.join(object, 'runs', run, 'log.jsonl')).includes('"plan"'));
-  const wait = (time) => new Promise((resolve) => setTimeout(resolve, 1000 * time));
-  while (!planned()) await wait(0.2);
-  await wait(5);
+  const runs = path.join(object, 'runs'), wait = (time) => new Promise((resolve) => setTimeout(resolve, 1000 * time));
+  const planned = (run) => fs.readFileSync(path.join(runs, run, 'log.jsonl')).includes('"plan"');
+  while (!(fs.existsSync(runs) && fs.readdirSync(runs).some(planned))) await wait(0.2);
+  await wait(5);  // an object without a step of training is not kept
   child.kill('SIGINT');
   await ended;
 }

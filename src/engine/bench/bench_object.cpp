@@ -96,14 +96,14 @@ void add_tiles(Session& session, const fs::path& folder, const Camera& camera, c
       request.samples = samples;
       const double one =
           frame_seconds(frames, scene, scene.normalization.unit_from_capture(request.camera), samples);
-      double all = 0, most = 0;
+      double sum = 0, max = 0;
       Stopwatch watch;
       for (const auto frame = session.frame(request); frame->next();) {
         const double tile = watch.lap();
-        all += tile, most = std::max(most, tile);
+        sum += tile, max = std::max(max, tile);
       }
       if (k == 0) continue;  // computes the light
-      whole.push_back(one), tiled.push_back(all), longest.push_back(most);
+      whole.push_back(one), tiled.push_back(sum), longest.push_back(max);
     }
     figures.push_back(seconds_figure(subject, frame_name(samples) + "new view", std::move(whole)));
     figures.push_back(seconds_figure(subject, frame_name(samples) + "new view in tiles", std::move(tiled)));
