@@ -51,13 +51,11 @@ TEST(Reflection, GaussiansHoldTheEnergyOfTheExactLobeRingByRing) {
     const auto exact = [&](double t) {
       return ggx_density(std::cos(t / 2), alpha) * smith_g1(std::cos(t), alpha);
     };
+    const ReflectionLobe<double> lobe = reflection_lobe(roughness);
     const auto mixture = [&](double t) {
       double sum = 0;
-      for (int j = 0; j < kReflectionLobes; ++j) {
-        const double s = reflection_node(j) * reflection_scale(roughness);
-        sum +=
-            reflection_share(j) * s / (2 * M_PI) / (1 - std::exp(-2 * s)) * std::exp(s * (std::cos(t) - 1));
-      }
+      for (int j = 0; j < kReflectionLobes; ++j)
+        sum += lobe.weight[j] * std::exp(lobe.lambda[j] * (std::cos(t) - 1));
       return sum;
     };
     const auto within = [](auto f, double angle) {

@@ -20,19 +20,17 @@ struct TablePair {
 };
 using PairTable = std::array<float, size_t(2) * kTableRows * kTableColumns>;  // [row][column][first, second]
 
-// value: double nv, double roughness -> TablePair<double>. It is never asked for an nv below 1e-3.
+// value: int node of roughness, int node of nv -> TablePair<double>.
 template <class F>
-PairTable make_pair_table(const F& value) {
-  constexpr double kMinCosine = 1e-3;
+PairTable make_pair_table_of_nodes(const F& value) {
   PairTable t;
   const auto node = [&](int row, int column) { return &t[2 * (size_t(row) * kTableColumns + column)]; };
   const auto extrapolate = [](float* out, const float* border, const float* inner) {
     for (int k = 0; k < 2; ++k) out[k] = 2 * border[k] - inner[k];
   };
   for (int r = 0; r < kTableRoughnesses; ++r) {
-    const double roughness = roughness_of_share(double(r) / (kTableRoughnesses - 1));
     for (int c = 0; c < kTableCosines; ++c) {
-      const TablePair<double> p = value(max(double(c) / (kTableCosines - 1), kMinCosine), roughness);
+      const TablePair<double> p = value(r, c);
       node(r + 1, c + 1)[0] = float(p.first);
       node(r + 1, c + 1)[1] = float(p.second);
     }
@@ -45,6 +43,16 @@ PairTable make_pair_table(const F& value) {
     extrapolate(node(kTableRows - 1, c), node(kTableRows - 2, c), node(kTableRows - 3, c));
   }
   return t;
+}
+
+// value: double nv, double roughness -> TablePair<double>. It is never asked for an nv below 1e-3.
+template <class F>
+PairTable make_pair_table(const F& value) {
+  constexpr double kMinCosine = 1e-3;
+  return make_pair_table_of_nodes([&](int r, int c) {
+    return value(max(double(c) / (kTableCosines - 1), kMinCosine),
+                 roughness_of_share(double(r) / (kTableRoughnesses - 1)));
+  });
 }
 
 template <class T>

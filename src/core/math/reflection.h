@@ -12,13 +12,12 @@ namespace cei3d {
 // Gaussians. For small angles t between light and mirror direction it is proportional to 1 / (1 + x)^2 with x
 // = (t / (2 alpha))^2, and 1 / (1 + x)^2 is the integral of s e^-s e^(-s x) ds: a mixture of Gaussians of
 // sharpness s / alpha^2. Five of them, fitted to the logarithm of the density and to the energy within each
-// angle over roughness 0.1 to 0.65, hold 99.5 % of the energy (root mean square error of the energy within an
-// angle: .01 up to roughness 0.45, .07 at 0.8). The broad ones carry the sun to points whose mirror direction
-// is dark.
+// angle over roughness 0.1 to 0.65, hold 99.5 % of the energy. The broad ones carry the sun to points whose
+// mirror direction is dark.
 inline constexpr int kReflectionLobes = 5;
-HD constexpr float reflection_node(int j) {
-  constexpr float kNodes[kReflectionLobes] = {0.0073650f, 0.0354975f, 0.1154150f, 0.3714659f, 1.3242071f};
-  return kNodes[j];
+HD constexpr float reflection_log_node(int j) {  // of nodes .00737, .0355, .1154, .3715, 1.3242
+  constexpr float kLogs[kReflectionLobes] = {-4.9110162f, -3.3382930f, -2.1592210f, -0.9902982f, 0.2808139f};
+  return kLogs[j];
 }
 // Fraction of the energy in each.
 HD constexpr float reflection_share(int j) {
@@ -26,16 +25,46 @@ HD constexpr float reflection_share(int j) {
   return kShares[j];
 }
 
-// Sharpness of Gaussian j is reflection_node(j) * reflection_scale(roughness).
+// Sharpness of Gaussian j is scale * node^spread. The horizon cuts off the tails of rough surfaces, so their
+// Gaussians are closer to one another: at roughness 1 there is but one. Fitted to the squared error of the
+// density of the reflected light.
 template <class T>
-HD T reflection_scale(T roughness) {
-  const T alpha = roughness * roughness;
-  return (T(1.0f) + alpha * (T(-0.3258968f) + T(5.6732834f) * alpha)) / (alpha * alpha);
+struct ReflectionShape {
+  T scale, spread;
+};
+// Share of the long tails, 1 for smooth surfaces.
+template <class T>
+HD T reflection_tails(T alpha) {
+  const T x = alpha * T(1 / 0.31627f), x3 = x * x * x;
+  return T(1.0f) / (T(1.0f) + x3 * x3);
 }
 template <class T>
-HD T reflection_scale_grad(T roughness) {  // d / d roughness
-  const T alpha = roughness * roughness, inverse = T(1.0f) / alpha;
-  return T(2.0f) * roughness * inverse * inverse * (T(0.3258968f) - T(2.0f) * inverse);
+HD ReflectionShape<T> reflection_shape(T roughness) {
+  const T alpha = roughness * roughness, tails = reflection_tails(alpha);
+  return {(T(0.33878f) + T(0.79402f) * tails) / (alpha * alpha) + T(1.59705f), T(1.0693f) * tails};
+}
+template <class T>
+HD ReflectionShape<T> reflection_shape_grad(T roughness) {  // d / d roughness
+  const T two(2.0f), alpha = roughness * roughness, inverse = T(1.0f) / alpha,
+          tails = reflection_tails(alpha);
+  const T d_tails = T(-6.0f) * tails * (T(1.0f) - tails) * inverse;  // by alpha
+  const T d_scale = (T(0.79402f) * d_tails - two * (T(0.33878f) + T(0.79402f) * tails) * inverse) *
+                    (inverse * inverse);
+  return {two * roughness * d_scale, two * roughness * T(1.0693f) * d_tails};
+}
+template <class T>
+HD T reflection_sharpness(const ReflectionShape<T>& shape, int j) {
+  return shape.scale * exp(shape.spread * T(reflection_log_node(j)));
+}
+
+// Tangent of half the angle between the axis and the cone about it that holds half of the energy.
+template <class T>
+HD T reflection_half_energy(T roughness) {
+  const ReflectionShape<T> shape = reflection_shape(max(roughness, T(kMinRoughness)));
+  // The sharpness times one minus the cosine, where the mixture without its part behind the axis holds half.
+  const T x = exp(T(-0.10679f) + shape.spread * (T(1.19589f) + T(-0.36008f) * shape.spread));
+  const T y = min(x / shape.scale, T(1.0f));
+  return sqrt(y / (T(2.0f) - y));
 }
 
 // The mixture for one roughness: sharpness lambda[j], and weight[j] of unit-height Gaussians, so that the
@@ -46,33 +75,22 @@ struct ReflectionLobe {
 };
 template <class T>
 HD ReflectionLobe<T> reflection_lobe(T roughness) {
-  const T scale = reflection_scale(max(roughness, T(kMinRoughness)));
+  const ReflectionShape<T> shape = reflection_shape(max(roughness, T(kMinRoughness)));
   ReflectionLobe<T> lobe;
   for (int j = 0; j < kReflectionLobes; ++j) {
-    lobe.lambda[j] = T(reflection_node(j)) * scale;
+    lobe.lambda[j] = reflection_sharpness(shape, j);
     lobe.weight[j] = T(reflection_share(j)) / sg_integral(lobe.lambda[j]);
   }
   return lobe;
 }
 
-// One minus the length of its mean direction: for sharp lobes the variance along every tangent.
-template <class T>
-HD T reflection_width(T roughness) {
-  const ReflectionLobe<T> lobe = reflection_lobe(roughness);
-  T sum(0.0f);
-  for (int j = 0; j < kReflectionLobes; ++j) {
-    const T e = exp(T(-2.0f) * lobe.lambda[j]), inverse = T(1.0f) / lobe.lambda[j];
-    sum += T(reflection_share(j)) * (inverse - T(2.0f) * e / (T(1.0f) - e));  // 1 - coth + 1 / lambda
-  }
-  return sum;
-}
-
 // The variance along a tangent of a Gaussian with the mean sharpness of the mixture: that of its peak.
 template <class T>
 HD T reflection_peak_width(T roughness) {
+  const ReflectionLobe<T> lobe = reflection_lobe(roughness);
   T sum(0.0f);
-  for (int j = 0; j < kReflectionLobes; ++j) sum += T(reflection_share(j) * reflection_node(j));
-  return T(1.0f) / (sum * reflection_scale(max(roughness, T(kMinRoughness))));
+  for (int j = 0; j < kReflectionLobes; ++j) sum += T(reflection_share(j)) * lobe.lambda[j];
+  return T(1.0f) / sum;
 }
 
 // The mixture stretched along the plane of incidence: at grazing angles the reflection of a rough surface is
@@ -103,16 +121,18 @@ struct LobeMaterialGrad {
 template <class T>
 HD LobeMaterialGrad<T> stretched_lobe_grad(T roughness, T stretch, const StretchedLobe<T>& d) {
   const T clamped = max(roughness, T(kMinRoughness)), shrink = T(1.0f) / stretch;
-  const T d_scale = select(roughness < T(kMinRoughness), T(0.0f), reflection_scale_grad(clamped));
+  const ReflectionShape<T> shape = reflection_shape(clamped), d_shape = reflection_shape_grad(clamped);
+  const T d_log_scale = d_shape.scale / shape.scale;
   const ReflectionLobe<T> round = reflection_lobe(roughness);
   LobeMaterialGrad<T> sum{T(0.0f), T(0.0f)};
   for (int j = 0; j < kReflectionLobes; ++j) {
     const T lambda = round.lambda[j],
             weight_by_lambda = -(round.weight[j] * sg_integral_grad(lambda) / sg_integral(lambda));
     const T d_lambda = d.along[j] * shrink + d.across[j] * stretch + d.weight[j] * weight_by_lambda;
-    sum.d_roughness += d_lambda * T(reflection_node(j)) * d_scale;
+    sum.d_roughness += d_lambda * lambda * (d_log_scale + d_shape.spread * T(reflection_log_node(j)));
     sum.d_stretch += lambda * (d.across[j] - d.along[j] * shrink * shrink);
   }
+  sum.d_roughness = select(roughness < T(kMinRoughness), T(0.0f), sum.d_roughness);
   return sum;
 }
 

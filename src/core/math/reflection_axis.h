@@ -4,28 +4,24 @@
 // 14 degrees), and they are narrower at grazing angles. The part of the reflection that Fresnel's term adds
 // at grazing angles, the bias of the split sum, has a lobe of its own: it is narrower and stays near the
 // mirror direction, and makes most of the highlights of rough dielectrics. The round lobe of
-// core/math/reflection.h, turned and scaled, gets the mean direction of each: its axis, and the length of the
-// mean as a measure of its width. The stretched lobe gets also the ratio of the standard deviations in the
-// plane of incidence and across it.
+// core/math/reflection.h, turned, scaled and stretched, is fitted to the density of each
+// (tools/fit_reflection.py). Its mean direction is not that of the reflected light: at grazing angles that
+// has a long tail towards the normal, and its peak is what shows in pictures.
 #pragma once
 
 #include "core/math/mirror.h"
+#include "core/math/reflection_pairs.h"
 #include "core/math/shading.h"
 
 namespace cei3d {
 
-// The parts of the split sum: base is scaled by F0, fresnel is what Fresnel's term adds to it at grazing
-// angles.
-enum class ReflectionPart { base, fresnel };
-
-// The table of (share of the normal in the axis, lobe's roughness over the surface's). Made on first use
-// (20 ms).
+// The table of (share of the normal in the axis, roughness of a round lobe over the surface's).
 const float* reflection_axis_table(ReflectionPart);
 
 template <class T>
 struct ReflectionAxis {
   Vec3<T> axis;  // unit
-  T roughness;   // for which reflection_lobe() is as wide
+  T roughness;   // of the reflection_lobe() nearest to the reflection
 };
 // n, v: unit normal and direction to the viewer. table: reflection_axis_table() of the part, or a copy of it
 // on the device that this runs on.
@@ -36,7 +32,7 @@ HD ReflectionAxis<T> reflection_axis(const float* table, Vec3<T> n, Vec3<T> v, T
   return {normalize(mirrored_direction(n, v) * (one - p.first) + n * p.first), roughness * p.second};
 }
 
-// The table of (the stretched lobe's roughness over the surface's, its stretch). Made on first use (20 ms).
+// The table of (the stretched lobe's roughness over the surface's, its stretch).
 const float* reflection_stretch_table(ReflectionPart);
 
 // Tables of one part, or copies of them on the device that this runs on.

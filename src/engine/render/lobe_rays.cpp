@@ -42,7 +42,7 @@ int lobe_ray_count(const Material& m, float nv) {
 }
 
 // Each at the radius that halves its share of the energy. The lobe 1 / (1 + r^2)^2 has the cumulative share
-// r^2 / (1 + r^2).
+// r^2 / (1 + r^2), half of it at r = 1.
 std::vector<Vec2f> lobe_points(int count) {
   std::vector<Vec2f> points;
   for (int k = 0; k < count; ++k) {
@@ -54,7 +54,7 @@ std::vector<Vec2f> lobe_points(int count) {
 
 LobeRays::LobeRays(const Hit& h, const Material& m) : normal_(h.normal) {
   const LobeFrame<float> lobe = mean_lobe(reflection_of(h, m));
-  const float width = 1 / std::sqrt(reflection_scale(max(lobe.roughness, kMinRoughness)));
+  const float width = reflection_half_energy(lobe.roughness);
   const float stretch = std::sqrt(lobe.stretch), turn = turn_of(h.position);
   axis_ = lobe.axis;
   const Vec3f along = normalize(cross(across(lobe), axis_));
@@ -63,11 +63,15 @@ LobeRays::LobeRays(const Hit& h, const Material& m) : normal_(h.normal) {
   y_ = shorter * std::cos(turn) - longer * std::sin(turn);
 }
 
-Vec3f LobeRays::at(Vec2f point) const {
+Vec3f LobeRays::unfolded(Vec2f point) const {
   Vec3f half = x_ * point.x + y_ * point.y;  // tangent of half the angle: at most 90 degrees from the axis
   half = half / max(1.0f, std::sqrt(dot(half, half)));
   const float s = dot(half, half);
-  const Vec3f ray = (axis_ * (1 - s) + half * 2.0f) / (1 + s);
+  return (axis_ * (1 - s) + half * 2.0f) / (1 + s);
+}
+
+Vec3f LobeRays::at(Vec2f point) const {
+  const Vec3f ray = unfolded(point);
   return ray - normal_ * (2 * min(dot(ray, normal_), 0.0f));
 }
 

@@ -50,7 +50,7 @@ TEST(LobeRays, AreAsWideAndAsLongAsTheLobe) {
     const Spread got = spread_of(h, m);
     // Half of 1 / (1 + r^2)^2 lies at most 3^-1/2 from a line through its middle, which is the tangent of
     // half an angle.
-    const double width = 2 / std::sqrt(3.0 * reflection_scale(double(lobe.roughness)));
+    const double width = 2 / std::sqrt(3.0) * reflection_half_energy(double(lobe.roughness));
     EXPECT_NEAR(got.along / got.across, lobe.stretch, 0.03 * lobe.stretch) << degrees;
     EXPECT_NEAR(got.along * got.across, width * width, 0.06 * width * width) << degrees;
   }

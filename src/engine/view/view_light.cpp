@@ -7,7 +7,7 @@
 #include "core/base/parallel.h"
 #include "core/compute/kernels/shade.h"
 #include "core/math/ladder.h"
-#include "core/math/lobe_triple.h"
+#include "core/math/lobe_row.h"
 #include "core/math/reflection_axis.h"
 #include "core/math/roughness.h"
 #include "core/math/sg.h"
@@ -76,7 +76,7 @@ struct Tables {
 void add_lobes(const PartTables& tables, float nv, float roughness, std::vector<float>& out) {
   const float share = table_pair_grad(tables.axis, nv, roughness).value.first;
   const TablePair<float> stretched = table_pair_grad(tables.stretch, nv, roughness).value;
-  const LobeTriple three = lobe_triple(roughness * stretched.first, max(stretched.second, 1.0f));
+  const LobeRow three = lobe_triple(roughness * stretched.first, max(stretched.second, 1.0f));
   out.insert(out.end(), {share, reflection_level(three.roughness), three.angle, 0});
 }
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "core/compute/kernels/shade.h"
-#include "core/math/lobe_triple.h"
+#include "core/math/lobe_row.h"
 #include "core/math/reflection_axis.h"
 #include "core/math/rng.h"
 #include "core/math/sg.h"

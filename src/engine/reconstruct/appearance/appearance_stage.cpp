@@ -97,7 +97,7 @@ AppearanceResult separate_light(const Device& device, const AppearanceInput& inp
   LobeFitOptions lobes;
   lobes.height = result.split.light.height;
   lobes.steps = options.lobe_steps;
-  lobes.seen_through = 0.5f * reflection_scale(result.split.smoothest);
+  lobes.seen_through = 0.5f * reflection_shape(result.split.smoothest).scale;
   result.light = fit_lobes(device, result.split.light, lobes, EnvUp::z, progress);
   result.material = fit_materials(device, input, options, result.split, progress);
   return result;

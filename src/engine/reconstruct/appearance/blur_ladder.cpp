@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "core/math/ladder.h"
-#include "core/math/lobe_triple.h"
 
 namespace cei3d {
 namespace {
@@ -39,15 +38,15 @@ ReflectedSky round_sky(const ReflectionAxis<float>& lobe, int height) {
 }
 
 ReflectedSky stretched_sky(const LobeFrame<float>& lobe, int height) {
-  const LobeTriple three = lobe_triple(lobe.roughness, lobe.stretch);
-  const Vec3f along = normalize(cross(lobe.across, lobe.axis)) * std::sin(three.angle);
-  ReflectedSky sky = round_sky({lobe.axis, three.roughness}, height);
-  sky.count = 3;
-  sky.weight[0] = kMiddleShare;
-  for (const int side : {1, 2}) {
-    const Vec3f axis = lobe.axis * std::cos(three.angle) + (side == 1 ? along : along * -1.0f);
-    sky.taps[side] = env_taps(axis, 2 * height, height);
-    sky.weight[side] = (1 - kMiddleShare) / 2;
+  const LobeRow row = lobe_row(lobe.roughness, lobe.stretch);
+  const Vec3f along = normalize(cross(lobe.across, lobe.axis));
+  ReflectedSky sky;
+  sky.lobe = BlurLadder::place(row.roughness);
+  sky.count = kRowLobes;
+  for (int i = 0; i < kRowLobes; ++i) {
+    const float angle = row.angle * float(i - kRowLobes / 2);
+    sky.taps[i] = env_taps(lobe.axis * std::cos(angle) + along * std::sin(angle), 2 * height, height);
+    sky.weight[i] = kRowShares[i];
   }
   return sky;
 }

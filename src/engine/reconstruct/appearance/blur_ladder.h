@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/math/lobe_row.h"
 #include "core/math/reflection_axis.h"
 #include "engine/reconstruct/appearance/lobe_blur.h"
 #include "engine/reconstruct/appearance/split_rows.h"
@@ -34,14 +35,14 @@ class BlurLadder {
   std::array<std::unique_ptr<LobeBlur>, kLevels> blurs_;
 };
 
-// Where a row reads the blurred light for a part of the split sum, given a roughness: a stretched lobe is the
-// weighted mean of three round ones in the plane of incidence, as in Gauss-Hermite quadrature.
+// Where a row reads the blurred light for a part of the split sum, given a roughness: a stretched lobe is a
+// lobe_row().
 struct ReflectedSky {
-  static constexpr int kMaxLobes = 3;
+  static constexpr int kMaxLobes = kRowLobes;
   BlurLadder::Place lobe;  // where the roughness of the round lobes lies on the ladder
   int count = 1;           // number of round lobes
   EnvTaps taps[kMaxLobes];
-  float weight[kMaxLobes] = {1, 0, 0};
+  float weight[kMaxLobes] = {1};
   float open = 1;  // share of the lobe that meets the sky
 };
 ReflectedSky reflected_sky(const SplitRow&, ReflectionPart, float roughness, int light_height);
