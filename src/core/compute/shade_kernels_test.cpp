@@ -50,7 +50,7 @@ struct LobeScene {
   }
   LobePlanes planes() const { return {lobes.data(), kLobes, kLobes}; }
   ReflectionPlanes points() const {
-    return {mirrors.data(), across.data(), roughness.data(), stretch.data()};
+    return {mirrors.data(), across.data(), normals.data(), roughness.data(), stretch.data()};
   }
 
   std::vector<float> irradiance(const Device& d) const {
@@ -91,15 +91,16 @@ struct LobeScene {
                           kLobes);
     return out;
   }
-  // [8][kPoints]: by axis, direction across, roughness and stretch.
+  // [11][kPoints]: by axis, direction across, roughness, stretch and normal.
   std::vector<float> point_gradient(const Device& d) const {
-    std::vector<float> out(8 * kPoints);
+    std::vector<float> out(11 * kPoints);
     d.launch<SgReflectionGrad>({.lobes = planes(),
                                 .stride = kPoints,
                                 .points = points(),
                                 .d_reflected = y2.data(),
                                 .d_axes = out.data(),
                                 .d_across = out.data() + 3 * kPoints,
+                                .d_normals = out.data() + 8 * kPoints,
                                 .d_roughness = out.data() + 6 * kPoints,
                                 .d_stretch = out.data() + 7 * kPoints},
                                kPoints);
@@ -307,6 +308,15 @@ TEST(ShadeKernels, AdjointOfTheDirectionAcrossEqualsDifferences) {
                            across(g.begin() + 3 * kPoints, g.begin() + 6 * kPoints);
   for (const size_t i : {0, 5, 40, 63})
     expect_slope_along_the_sphere(s, &LobeScene::across, kPoints, i, vector_at(across, kPoints, i), 0.005);
+}
+
+TEST(ShadeKernels, AdjointOfTheHorizonsNormalEqualsDifferencesAlongTheSphere) {
+  LobeScene s;
+  std::fill(s.y1.begin(), s.y1.end(), 0.0f);  // without the irradiance, which has an adjoint of its own
+  const std::vector<float> g = s.point_gradient(make_device("cpu/scalar")),
+                           normal(g.begin() + 8 * kPoints, g.end());
+  for (const size_t i : {0, 5, 40, 63})
+    expect_slope_along_the_sphere(s, &LobeScene::normals, kPoints, i, vector_at(normal, kPoints, i), 0.005);
 }
 
 void expect_slope(std::vector<float> LobeScene::*member, int i, float got) {

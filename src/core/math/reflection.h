@@ -46,10 +46,10 @@ HD ReflectionShape<T> reflection_shape(T roughness) {
 template <class T>
 HD ReflectionShape<T> reflection_shape_grad(T roughness) {  // d / d roughness
   const T two(2.0f), alpha = roughness * roughness, inverse = T(1.0f) / alpha,
-          tails = reflection_tails(alpha);
+                     tails = reflection_tails(alpha);
   const T d_tails = T(-6.0f) * tails * (T(1.0f) - tails) * inverse;  // by alpha
-  const T d_scale = (T(0.79402f) * d_tails - two * (T(0.33878f) + T(0.79402f) * tails) * inverse) *
-                    (inverse * inverse);
+  const T d_scale =
+      (T(0.79402f) * d_tails - two * (T(0.33878f) + T(0.79402f) * tails) * inverse) * (inverse * inverse);
   return {two * roughness * d_scale, two * roughness * T(1.0693f) * d_tails};
 }
 template <class T>
@@ -162,21 +162,22 @@ HD SgReflectedGrad<T> sg_reflected_grad(T lambda, const StretchedLobe<T>& lobe, 
   }
   return sum;
 }
-// Adds `d` times the derivatives by the lobe to d_lobe. Returns those by q and h.
+// Adds `d` times the derivatives by the lobe to d_lobe. Returns `d` times those by q and h, and the value.
 template <class T>
 struct SgDistanceGrad {
-  T d_q, d_h;
+  T value, d_q, d_h;
 };
 template <class T>
 HD SgDistanceGrad<T> sg_reflected_lobe_grad(T lambda, const StretchedLobe<T>& lobe, T q, T h, T d,
                                             StretchedLobe<T>& d_lobe) {
-  SgDistanceGrad<T> sum{T(0.0f), T(0.0f)};
+  SgDistanceGrad<T> sum{T(0.0f), T(0.0f), T(0.0f)};
   for (int j = 0; j < kReflectionLobes; ++j) {
     const SgStretchedInnerGrad<T> s = sg_stretched_inner_grad(lambda, lobe.along[j], lobe.across[j], q, h);
     const T weight = d * lobe.weight[j];
     d_lobe.along[j] += weight * s.d_along;
     d_lobe.across[j] += weight * s.d_across;
     d_lobe.weight[j] += d * s.value;
+    sum.value += lobe.weight[j] * s.value;
     sum.d_q += weight * s.d_q;
     sum.d_h += weight * s.d_h;
   }

@@ -46,6 +46,7 @@ struct LobeFrame {
   Vec3<T> axis;    // unit
   Vec3<T> across;  // unit, normal to the plane of incidence; shorter, down to 0, where the viewer is above
   T roughness, stretch;
+  Vec3<T> normal{T(0.0f), T(0.0f), T(0.0f)};  // unit, of the surface; 0: without a horizon
 };
 
 // 1 / sin of the angle between normal and viewer, bounded at 0.
@@ -59,7 +60,7 @@ HD LobeFrame<T> lobe_frame(const PartTables& tables, Vec3<T> n, Vec3<T> v, T rou
   const T nv = dot(n, v);
   const ReflectionAxis<T> round = reflection_axis(tables.axis, n, v, roughness);
   const TablePair<T> p = table_pair_grad(tables.stretch, nv, roughness).value;
-  return {round.axis, cross(n, v) * inverse_sine(nv), roughness * p.first, p.second};
+  return {round.axis, cross(n, v) * inverse_sine(nv), roughness * p.first, p.second, n};
 }
 
 template <class T>
@@ -82,7 +83,7 @@ HD LobeFrameGrad<T> lobe_frame_grad(const PartTables& tables, Vec3<T> n, Vec3<T>
   const T d_inverse = dot(d.across, cross(n, v));  // by inverse_sine(), whose derivative is nv inverse^3
   const T d_nv = d_share * a.d_nv.first + d_ratio * s.d_nv.first + d.stretch * s.d_nv.second +
                  d_inverse * nv * inverse * inverse * inverse;
-  const Vec3<T> by_n = d_sum * share + v * d_nv + cross(v, d.across) * inverse,
+  const Vec3<T> by_n = d_sum * share + v * d_nv + cross(v, d.across) * inverse + d.normal,
                 by_v = n * d_nv + cross(d.across, n) * inverse;
   LobeFrameGrad<T> g{by_n - n * dot(by_n, n), by_v - v * dot(by_v, v),
                      d_share * a.d_roughness.first + d.roughness * s.value.first +

@@ -45,8 +45,7 @@ class LobeDensity {
     const double across = square(dot(gap, frame_.across)), along = dot(gap, gap) - across;
     double sum = 0;
     for (int j = 0; j < kReflectionLobes; ++j)
-      sum += lobe_.weight[j] *
-             std::exp(-(lobe_.along[j] * along + lobe_.across[j] * across) / 2);
+      sum += lobe_.weight[j] * std::exp(-(lobe_.along[j] * along + lobe_.across[j] * across) / 2);
     return sum;
   }
 
@@ -74,10 +73,10 @@ struct Bound {
 // Seen from above, Fresnel's part is a thousandth of the light.
 TEST(ReflectionAxis, LobesAreNearTheReflectedLight) {
   constexpr double kAny = 2;
-  constexpr Bound kBounds[] = {
-      {0.2, 0.2, 0.12, 0.09}, {0.2, 0.4, 0.05, 0.05}, {0.2, 0.7, 0.025, 0.08}, {0.2, 1, 0.02, kAny},
-      {0.4, 0.2, 0.22, 0.14}, {0.4, 0.4, 0.13, 0.1},  {0.4, 0.7, 0.045, 0.13}, {0.4, 1, 0.025, kAny},
-      {0.7, 0.2, 0.18, 0.15}, {0.7, 0.4, 0.16, 0.14}, {0.7, 0.7, 0.1, 0.16},   {0.7, 1, 0.04, kAny}};
+  constexpr Bound kBounds[] = {{0.2, 0.2, 0.12, 0.09},  {0.2, 0.4, 0.05, 0.05}, {0.2, 0.7, 0.025, 0.08},
+                               {0.2, 1, 0.02, kAny},    {0.4, 0.2, 0.22, 0.14}, {0.4, 0.4, 0.13, 0.1},
+                               {0.4, 0.7, 0.045, 0.13}, {0.4, 1, 0.025, kAny},  {0.7, 0.2, 0.18, 0.15},
+                               {0.7, 0.4, 0.16, 0.14},  {0.7, 0.7, 0.1, 0.16},  {0.7, 1, 0.04, kAny}};
   for (const Bound& b : kBounds)
     for (const auto& [part, bound] :
          {std::pair{ReflectionPart::base, b.base}, std::pair{ReflectionPart::fresnel, b.fresnel}}) {

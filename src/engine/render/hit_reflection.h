@@ -16,7 +16,8 @@ inline SurfaceReflection<float> reflection_of(const Hit& h, const Material& m) {
 inline LobeFrame<float> mean_lobe(const SurfaceReflection<float>& r) {
   const auto mean = [&](auto base, auto fresnel) { return mean_of_lobes(r.share, base, fresnel); };
   return {normalize(mean(r.base.axis, r.fresnel.axis)), r.base.across,
-          mean(r.base.roughness, r.fresnel.roughness), mean(r.base.stretch, r.fresnel.stretch)};
+          mean(r.base.roughness, r.fresnel.roughness), mean(r.base.stretch, r.fresnel.stretch),
+          r.base.normal};
 }
 
 }  // namespace cei3d

@@ -147,6 +147,7 @@ LobeFrames frames_grad(const Device& device, const LobePlanes& light, const Lobe
                                    .d_reflected = d_reflected.row(0),
                                    .d_axes = d.axes(),
                                    .d_across = d.across(),
+                                   .d_normals = d.normals(),
                                    .d_roughness = d.roughness(),
                                    .d_stretch = d.stretch()},
                                   padded_to_panels(int(share.size())));

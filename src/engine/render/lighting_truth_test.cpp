@@ -62,7 +62,7 @@ struct Bound {
   double dielectric, metal;  // max error under any of the lights
 };
 // The rougher a metal, the farther its reflection is from a lobe of Gaussians.
-constexpr Bound kBounds[] = {{0.2f, 0.025, 0.035}, {0.5f, 0.03, 0.095}, {0.8f, 0.035, 0.12}};
+constexpr Bound kBounds[] = {{0.2f, 0.022, 0.025}, {0.5f, 0.022, 0.075}, {0.8f, 0.022, 0.09}};
 
 TEST(LightingTruth, ADielectricBallIsShadedAsPathTracingShowsIt) {
   for (const std::string& light : light_names())

@@ -63,15 +63,11 @@ LobeRays::LobeRays(const Hit& h, const Material& m) : normal_(h.normal) {
   y_ = shorter * std::cos(turn) - longer * std::sin(turn);
 }
 
-Vec3f LobeRays::unfolded(Vec2f point) const {
+Vec3f LobeRays::at(Vec2f point) const {
   Vec3f half = x_ * point.x + y_ * point.y;  // tangent of half the angle: at most 90 degrees from the axis
   half = half / max(1.0f, std::sqrt(dot(half, half)));
   const float s = dot(half, half);
-  return (axis_ * (1 - s) + half * 2.0f) / (1 + s);
-}
-
-Vec3f LobeRays::at(Vec2f point) const {
-  const Vec3f ray = unfolded(point);
+  const Vec3f ray = (axis_ * (1 - s) + half * 2.0f) / (1 + s);
   return ray - normal_ * (2 * min(dot(ray, normal_), 0.0f));
 }
 

@@ -25,7 +25,6 @@ class LobeRays {
   // Unit direction of the ray at a point of lobe_points(). Directions below the horizon are folded up: the
   // split sum already holds the masking.
   Vec3f at(Vec2f point) const;
-  Vec3f unfolded(Vec2f point) const;
 
  private:
   Vec3f normal_, axis_;

@@ -2,7 +2,6 @@
 #include "engine/render/self_reflection.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "core/compute/kernels/shade.h"
@@ -15,22 +14,9 @@ namespace {
 
 constexpr float kMinCosine = 0.02f;  // minimum cosine of normal and view of a surface seen in a reflection
 
-Vec3f ratio_or_one(Vec3f a, Vec3f b) {
-  const auto ratio = [](float x, float y) { return y > 0 ? x / y : 1.0f; };
-  return {ratio(a.x, b.x), ratio(a.y, b.y), ratio(a.z, b.z)};
-}
-
 Vec3f unblocked(Vec3f blocked, Vec3f all) {
   const auto rest = [](float part, float whole) { return whole > 0 ? max(1 - part / whole, 0.0f) : 1.0f; };
   return {rest(blocked.x, all.x), rest(blocked.y, all.y), rest(blocked.z, all.z)};
-}
-
-constexpr int kHorizonRays = 32;
-constexpr float kHorizonBlur = 0.1f;  // cosine over which rays about the horizon fade
-
-// Share of a ray that counts as above the horizon.
-float share_above(Vec3f ray, Vec3f normal) {
-  return clamp(0.5f + 0.5f * dot(ray, normal) / kHorizonBlur, 0.0f, 1.0f);
 }
 
 }  // namespace
@@ -182,28 +168,6 @@ Vec3f SelfReflection::sky_over(const HitBatch& batch, size_t hit, const std::vec
   return sum / float(points.size());
 }
 
-// The sky's mean radiance over the part of a lobe that is above the horizon, over that over all of it. The lobe
-// in closed form reaches below the horizon, where a surface reflects nothing.
-Vec3f SelfReflection::above_horizon(const HitBatch& batch, size_t hit) const {
-  static const std::vector<Vec2f> points = lobe_points(kHorizonRays);
-  const LobeRays lobe(batch.hits[hit], batch.materials[hit]);
-  std::array<Vec3f, kHorizonRays> rays;
-  std::array<float, kHorizonRays> share;
-  float sum_of_shares = 0;
-  for (size_t k = 0; k < points.size(); ++k) {
-    rays[k] = lobe.unfolded(points[k]);
-    sum_of_shares += share[k] = share_above(rays[k], batch.hits[hit].normal);
-  }
-  if (sum_of_shares == kHorizonRays) return {1, 1, 1};
-  Vec3f above{0, 0, 0}, all{0, 0, 0};
-  for (size_t k = 0; k < points.size(); ++k) {
-    const Vec3f sky = radiance_.at(batch.turned.in_room(hit, rays[k]));
-    above += sky * share[k];
-    all += sky;
-  }
-  return ratio_or_one(above * float(kHorizonRays), all * max(sum_of_shares, 1e-6f));
-}
-
 std::vector<SelfReflection::Reflected> SelfReflection::seen_by(const HitBatch& batch) const {
   const auto& [hits, materials, turned] = batch;
   Rays rays;
@@ -221,12 +185,9 @@ std::vector<SelfReflection::Reflected> SelfReflection::seen_by(const HitBatch& b
     out[i].radiance += radiance[k] * share;
     blocked[i] += radiance_.at(turned.in_room(i, rays.directions[met.ray[k]])) * share;
   }
-  for (size_t i = 0; i < hits.size(); ++i) {
-    out[i].visibility = above_horizon(batch, i);
+  for (size_t i = 0; i < hits.size(); ++i)
     if (dot(blocked[i], blocked[i]) > 0)
-      out[i].visibility =
-          out[i].visibility * unblocked(blocked[i], sky_over(batch, i, points.of(hits[i], materials[i])));
-  }
+      out[i].visibility = unblocked(blocked[i], sky_over(batch, i, points.of(hits[i], materials[i])));
   return out;
 }
 

@@ -24,8 +24,7 @@ class SelfReflection {
                  const DirectionMap& radiance, const VertexMaterials& seen);
 
   struct Reflected {
-    // Fraction of the sky's mean radiance over the lobe that is not blocked by the surface, per channel. Above 1
-    // where the lobe reaches below the horizon and the sky is brighter above it.
+    // Fraction of the sky's mean radiance over the lobe that is not blocked by the surface, per channel.
     Vec3f visibility{1, 1, 1};
     // Mean radiance over the whole lobe of the surface that blocks it; 0 where it is not blocked.
     Vec3f radiance{0, 0, 0};
@@ -39,7 +38,6 @@ class SelfReflection {
   struct Met;
   void add_rays(const Hit&, const Material&, uint32_t owner, const std::vector<Vec2f>& points, Rays&) const;
   Vec3f sky_over(const HitBatch&, size_t hit, const std::vector<Vec2f>& points) const;
-  Vec3f above_horizon(const HitBatch&, size_t hit) const;
   Met met_by(const Rays&, const TurnedHits&) const;
   std::vector<Vec3f> mirrored(const Met&, const std::vector<size_t>& which, const TurnedHits&) const;
   std::vector<Vec3f> reflected_at(const Met&, const TurnedHits&) const;

@@ -84,7 +84,7 @@ Vec3f traced_reflection(const Surface& surface, const SgMixture& sky, const Hit&
 // Mean error, relative, of the reflections of two balls close to each other, where the other one fills
 // `blocked` of the lobe or more.
 double error_between_balls(const MadeOf& lower, const MadeOf& upper, const SgMixture& sky = some_sky(),
-                           float blocked = 0.3f) {
+                           float blocked = 0.3f, size_t count = 400) {
   const Mesh mesh = two_spheres(-0.35f);
   const auto made_of = [&](Vec3f p) { return p.z < 0.175f ? lower : upper; };
   const auto surface = std::make_shared<const Surface>(mesh);
@@ -95,7 +95,7 @@ double error_between_balls(const MadeOf& lower, const MadeOf& upper, const SgMix
     vertices.material.push_back(made_of(p).material);
   }
   const Lighting lighting(device, surface, sky, vertex_light(Transport(surface), sky, vertices));
-  const auto hits = some_hits(surface->mesh(), 400);
+  const auto hits = some_hits(surface->mesh(), count);
   std::vector<Material> materials;
   std::vector<Vec3f> albedo;
   for (const Hit& h : hits) {
@@ -139,7 +139,7 @@ TEST(SelfReflection, ALampIsHiddenWhereTheObjectIsInFrontOfIt) {
   copper.material.roughness = 0.2f;
   const MadeOf black{{0, 0, 0}, {0.9f, 0, 0}};
   // .41 by the share of the lobe that is blocked
-  EXPECT_LT(error_between_balls(copper, black, lamps, 0.02f), 0.15);
+  EXPECT_LT(error_between_balls(copper, black, lamps, 0.02f, 1600), 0.15);
 }
 
 }  // namespace

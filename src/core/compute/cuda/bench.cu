@@ -210,7 +210,7 @@ struct FrameWork {
                       : row == 3 ? 64 * (0.2f + unit_noise(8, k))
                                  : unit_noise(9, k);
              }};
-  Twin axes = directions(kHits, 10);
+  Twin axes = directions(kHits, 10), normals = directions(kHits, 11);
   Twin across{size_t(3 * kHits), [](size_t k) {
                 const Vec3f side = normalize(cross(unit_direction(10, k % kHits), Vec3f{0.3f, 0.5f, 0.8f}));
                 return side[int(k / kHits)];
@@ -221,7 +221,7 @@ struct FrameWork {
       table{std::tuple_size_v<PairTable>, [](size_t i) { return split_sum_table()[i]; }};
   Twin d_out = noise(size_t(3 * kHits), 15), sky = Twin(size_t(3 * kHits)),
        terms = Twin(size_t(Shade::kOutputs) * kHits), d_points = Twin(size_t(ShadingRows::kRows) * kHits),
-       d_frames = Twin(size_t(8 * kHits));
+       d_frames = Twin(size_t(11 * kHits));
 
   // `run` is called with the arguments of each kernel for the hits from `begin` on.
   template <class Run>
@@ -229,7 +229,7 @@ struct FrameWork {
     const auto of = [=](Twin& t) { return (card ? t.on_card() : t.on_cpu()) + begin; };
     const auto whole = [=](Twin& t) { return card ? t.on_card() : t.on_cpu(); };
     const SgReflection::Args reflection{
-        {whole(lobes), kLobes, kLobes}, kHits, {of(axes), of(across), of(roughness), of(stretch)}, of(sky)};
+        {whole(lobes), kLobes, kLobes}, kHits, {of(axes), of(across), of(normals), of(roughness), of(stretch)}, of(sky)};
     run(SgReflection{}, reflection);
     run(SgReflection{}, reflection);
     run(Shade{}, Shade::Args{whole(table), kHits, of(points), of(terms)});
@@ -242,10 +242,11 @@ struct FrameWork {
     float* d = of(d_frames);
     const SgReflectionGrad::Args reflection{{whole(lobes), kLobes, kLobes},
                                             kHits,
-                                            {of(axes), of(across), of(roughness), of(stretch)},
+                                            {of(axes), of(across), of(normals), of(roughness), of(stretch)},
                                             of(d_out),
                                             d,
                                             d + 3 * kHits,
+                                            d + 8 * kHits,
                                             d + 6 * kHits,
                                             d + 7 * kHits};
     run(SgReflectionGrad{}, reflection);

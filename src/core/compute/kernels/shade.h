@@ -5,7 +5,7 @@
 #pragma once
 
 #include "core/compute/kernels/light.h"
-#include "core/math/reflection.h"
+#include "core/math/horizon.h"
 #include "core/math/shading.h"
 
 namespace cei3d {
@@ -32,6 +32,7 @@ struct SgIrradiance {
 // The reflection lobes of points, as planes; core/math/reflection_axis.h.
 struct ReflectionPlanes {
   const float *axes, *across;        // [3][stride] unit
+  const float* normals;              // [3][stride] unit; 0: without a horizon
   const float *roughness, *stretch;  // [stride]
 };
 
@@ -49,7 +50,8 @@ HD LobeGap<T> lobe_gap(Vec3<T> axis, Vec3<T> across, Vec3<T> light) {
   return {gap, dot(gap, across)};
 }
 
-// Mean radiance of the environment over the reflection lobe, without occlusion. Item: a point.
+// Mean radiance of the environment over the reflection lobe, as far as it is above the horizon, without
+// occlusion. Item: a point.
 struct SgReflection {
   struct Args {
     LobePlanes lobes;
@@ -60,13 +62,18 @@ struct SgReflection {
   template <class T>
   static HD void run(const Args& a, int i) {
     const Vec3<T> r = load_planes<T>(a.points.axes, a.stride, i),
-                  across = load_planes<T>(a.points.across, a.stride, i);
+                  across = load_planes<T>(a.points.across, a.stride, i),
+                  n = load_planes<T>(a.points.normals, a.stride, i);
     const StretchedLobe<T> lobe =
         stretched_lobe(load<T>(a.points.roughness + i), load<T>(a.points.stretch + i));
+    const Horizon<T> horizon = horizon_of(lobe, dot(n, r));
     Vec3<T> sum{T(0.0f), T(0.0f), T(0.0f)};
     for (int k = 0; k < a.lobes.count; ++k) {
-      const LobeGap<T> gap = lobe_gap(r, across, a.lobes.axis<T>(k));
-      sum += a.lobes.mu<T>(k) * sg_reflected(a.lobes.lambda<T>(k), lobe, gap.q(), gap.h());
+      const Vec3<T> axis = a.lobes.axis<T>(k);
+      const T lambda = a.lobes.lambda<T>(k);
+      const LobeGap<T> gap = lobe_gap(r, across, axis);
+      sum += a.lobes.mu<T>(k) *
+             (sg_reflected(lambda, lobe, gap.q(), gap.h()) * horizon.share(lambda, dot(n, axis)));
     }
     store_planes(a.out, a.stride, i, sum);
   }
@@ -78,31 +85,44 @@ struct SgReflectionGrad {
     LobePlanes lobes;
     int stride;
     ReflectionPlanes points;
-    const float* d_reflected;        // [3][stride]
-    float *d_axes, *d_across;        // [3][stride], written
-    float *d_roughness, *d_stretch;  // [stride], written
+    const float* d_reflected;              // [3][stride]
+    float *d_axes, *d_across, *d_normals;  // [3][stride], written
+    float *d_roughness, *d_stretch;        // [stride], written
   };
   template <class T>
   static HD void run(const Args& a, int i) {
     const Vec3<T> r = load_planes<T>(a.points.axes, a.stride, i),
                   across = load_planes<T>(a.points.across, a.stride, i),
+                  n = load_planes<T>(a.points.normals, a.stride, i),
                   g = load_planes<T>(a.d_reflected, a.stride, i);
     const T roughness = load<T>(a.points.roughness + i), stretch = load<T>(a.points.stretch + i), zero(0.0f);
     const StretchedLobe<T> lobe = stretched_lobe(roughness, stretch);
+    const Horizon<T> horizon = horizon_of(lobe, dot(n, r));
     StretchedLobe<T> d_lobe;
     for (int j = 0; j < kReflectionLobes; ++j) d_lobe.along[j] = d_lobe.across[j] = d_lobe.weight[j] = zero;
-    Vec3<T> d_axis{zero, zero, zero}, d_across{zero, zero, zero};
+    Vec3<T> d_axis{zero, zero, zero}, d_across{zero, zero, zero}, d_normal{zero, zero, zero};
+    T d_sharpness = zero, d_height = zero;
     for (int k = 0; k < a.lobes.count; ++k) {
-      const LobeGap<T> gap = lobe_gap(r, across, a.lobes.axis<T>(k));
-      const SgDistanceGrad<T> s = sg_reflected_lobe_grad(a.lobes.lambda<T>(k), lobe, gap.q(), gap.h(),
-                                                         dot(g, a.lobes.mu<T>(k)), d_lobe);
-      const T d_side = T(2.0f) * gap.across * s.d_h;
+      const Vec3<T> axis = a.lobes.axis<T>(k);
+      const T lambda = a.lobes.lambda<T>(k), d = dot(g, a.lobes.mu<T>(k));
+      const LobeGap<T> gap = lobe_gap(r, across, axis);
+      const HorizonShareGrad<T> above = horizon.share_grad(lambda, dot(n, axis));
+      const SgDistanceGrad<T> s =
+          sg_reflected_lobe_grad(lambda, lobe, gap.q(), gap.h(), d * above.value, d_lobe);
+      const T d_side = T(2.0f) * gap.across * s.d_h, d_above = d * s.value;
       d_axis += gap.along * (T(2.0f) * s.d_q) + across * d_side;
       d_across += gap.along * d_side;
+      d_normal += axis * (d_above * above.d_cosine);
+      d_sharpness += d_above * above.d_sharpness;
+      d_height += d_above * above.d_height;
     }
+    d_height = horizon_grad(dot(n, r), d_sharpness, d_height, d_lobe);
+    d_axis += n * d_height;
+    d_normal += r * d_height;
     const LobeMaterialGrad<T> d = stretched_lobe_grad(roughness, stretch, d_lobe);
     store_planes(a.d_axes, a.stride, i, d_axis);
     store_planes(a.d_across, a.stride, i, d_across);
+    store_planes(a.d_normals, a.stride, i, d_normal);
     store<T>(a.d_roughness + i, d.d_roughness);
     store<T>(a.d_stretch + i, d.d_stretch);
   }
@@ -150,12 +170,15 @@ struct SgLobesGrad {
       const SgCosineGrad<T> diffuse = sg_irradiance_grad(lambda, dot(n, axis));
       const T d_diffuse = dot(e, mu);
       const Vec3<T> g = point<T>(a.d_reflected, a.stride, h), across = point<T>(a.across, a.stride, h);
-      const LobeGap<T> gap = lobe_gap(point<T>(a.axes, a.stride, h), across, axis);
-      const SgReflectedGrad<T> specular = sg_reflected_grad(lambda, lobe<T>(a, h), gap.q(), gap.h());
-      const T d_specular = dot(g, mu);
-      d_mu += e * diffuse.value + g * specular.value;
-      d_lambda += d_diffuse * diffuse.d_lambda + d_specular * specular.d_lambda;
-      d_axis += n * (d_diffuse * diffuse.d_cosine) -
+      const Vec3<T> r = point<T>(a.axes, a.stride, h);
+      const LobeGap<T> gap = lobe_gap(r, across, axis);
+      const StretchedLobe<T> mirror = lobe<T>(a, h);
+      const SgReflectedGrad<T> specular = sg_reflected_grad(lambda, mirror, gap.q(), gap.h());
+      const HorizonShareGrad<T> above = horizon_of(mirror, dot(n, r)).share_grad(lambda, dot(n, axis));
+      const T d_specular = dot(g, mu) * above.value, d_above = dot(g, mu) * specular.value;
+      d_mu += e * diffuse.value + g * (specular.value * above.value);
+      d_lambda += d_diffuse * diffuse.d_lambda + d_specular * specular.d_lambda + d_above * above.d_lambda;
+      d_axis += n * (d_diffuse * diffuse.d_cosine + d_above * above.d_cosine) -
                 (gap.along * specular.d_q + across * (gap.across * specular.d_h)) * (T(2.0f) * d_specular);
     }
     store_planes(a.d_lobes, p, i, d_axis);

@@ -66,7 +66,9 @@ double slope(const Problem& p, int lobe, int member) {
     const SurfaceReflection<float> s = reflection_of(p.hits[i], p.materials[i]);
     const auto along = [&](const LobeFrame<float>& a) {
       const LobeGap<D> gap = lobe_gap(dual(a.axis), dual(a.across), axis);
-      return sg_reflected(x[3], stretched_lobe(D(a.roughness), D(a.stretch)), gap.q(), gap.h());
+      const StretchedLobe<D> lobe = stretched_lobe(D(a.roughness), D(a.stretch));
+      return sg_reflected(x[3], lobe, gap.q(), gap.h()) *
+             horizon_of(lobe, D(dot(a.axis, a.normal))).share(x[3], dot(dual(a.normal), axis));
     };
     const D e = sg_irradiance(x[3], dot(dual(p.hits[i].normal), axis)),
             r = D(s.share) * along(s.base) + D(1 - s.share) * along(s.fresnel);
@@ -129,7 +131,9 @@ double distance_to(const Problem& p, const SgMixture& light, const SgMixture& wa
     const SurfaceReflection<float> s = reflection_of(p.hits[i], p.materials[i]);
     const auto along = [](const LobeFrame<float>& a, const SgLobe& l) {
       const LobeGap<float> gap = lobe_gap(a.axis, a.across, l.axis);
-      return sg_reflected(l.lambda, stretched_lobe(a.roughness, a.stretch), gap.q(), gap.h());
+      const StretchedLobe<float> lobe = stretched_lobe(a.roughness, a.stretch);
+      return sg_reflected(l.lambda, lobe, gap.q(), gap.h()) *
+             horizon_of(lobe, dot(a.axis, a.normal)).share(l.lambda, dot(a.normal, l.axis));
     };
     for (const SgLobe& l : m.lobes)
       sum += l.mu * (reflected ? s.share * along(s.base, l) + (1 - s.share) * along(s.fresnel, l)

@@ -32,8 +32,8 @@ constexpr double kMaxSeveralRatio = 0.75, kNoise = 2e-4;
 // If the light was scaled up by more than this to keep the albedo at most 1, its strength is unknown.
 constexpr float kMaxKnownGain = 1.1f;
 // If the light was scaled up by more than this, it has faded in the separation: reflections do not determine
-// it. Dielectrics reflect at least 2 %, half of what is usual.
-constexpr float kFaded = 5;
+// it. White paint raises it by kMaxGain at most.
+constexpr float kMaxGain = 4, kFaded = 1.1f * kMaxGain;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
 constexpr double kSharedError = 0.1;
@@ -41,10 +41,10 @@ constexpr double kSharedError = 0.1;
 // of one material.
 constexpr double kMaxFirstRoundRatio = 0.85;
 // The roughness is the largest whose residual is so close to the smallest, relatively, where photographs are
-// explained worse than to 30 dB: what shape and reflections of the object in itself leave unexplained is
+// explained worse than to 25 dB: what shape and reflections of the object in itself leave unexplained is
 // smallest for surfaces that are too smooth. Where they are explained well, the smallest residual is nearer
 // to the truth.
-constexpr double kTolerance = 0.008, kBadlyExplained = 1e-3;
+constexpr double kTolerance = 0.008, kBadlyExplained = 3e-3;
 // Maximum roughness of the one material with which the search for several materials begins.
 constexpr float kFirstRoughness = 0.3f;
 
@@ -154,7 +154,7 @@ float brighten_light(const Transport& transport, const std::vector<uint32_t>& se
                      int height, const LightTurns* turns, Progress& progress) {
   constexpr double kKept = 0.98;  // share of the dielectric samples
   constexpr double kCost = 0.02;  // share of the residual that the bound may add to it
-  constexpr float kStep = 1.02f, kMaxGain = 4;
+  constexpr float kStep = 1.02f;
   constexpr int kRounds = 3;  // the bounce does not scale with the light
   float all = 1;
   for (int round = 0; round < kRounds; ++round) {

@@ -21,7 +21,7 @@ namespace {
 // error (docs/notebook/0022). Therefore every second round extrapolates the logarithm of the roughness by
 // kExtended. The plain rounds between correct overshoot (docs/notebook/0035), and they alone set the strength
 // of the light: with more of them it would drift where dielectrics hardly determine it.
-constexpr int kMinRounds = 6, kMaxRounds = 14;
+constexpr int kMinRounds = 6, kMaxRounds = 20;
 constexpr double kArrived = 0.98;
 constexpr float kExtended = 4;
 // Rounds of linearization for a turning light: without a guess, and with one.
