@@ -126,12 +126,16 @@ vec3 reflection(vec3 d, float level) {
                                    (level * (uReflectionLevels - 1.0) + 0.5) / uReflectionLevels)).rgb;
 }
 
-// Light over one of the two reflection lobes, as over three round ones. axis: written.
+// Light over one of the two reflection lobes, as over three round ones, as far as they are above the horizon.
+// axis: written.
 vec3 alongLobe(vec4 lobe, vec3 n, vec3 mirror, vec3 across, out vec3 axis) {
   axis = normalize(mix(mirror, n, lobe.x));
   vec3 side = cross(across, axis) * sin(lobe.z), middle = axis * cos(lobe.z);
-  return reflection(axis, lobe.y) * uMiddleShare +
-         (reflection(middle + side, lobe.y) + reflection(middle - side, lobe.y)) * (0.5 - 0.5 * uMiddleShare);
+  vec3 weights = vec3(uMiddleShare, vec2(0.5 - 0.5 * uMiddleShare));
+  vec3 above = vec3(dot(axis, n), dot(middle + side, n), dot(middle - side, n));
+  weights /= 1.0 + exp(-clamp(lobe.w * above, -40.0, 40.0));
+  return (reflection(axis, lobe.y) * weights.x + reflection(middle + side, lobe.y) * weights.y +
+          reflection(middle - side, lobe.y) * weights.z) / (weights.x + weights.y + weights.z);
 }
 
 // The reflection where the surface hides a part of the sky.

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/compute/kernels/shade.h"
+#include "core/math/horizon.h"
 #include "core/math/ladder.h"
 #include "core/math/lobe_row.h"
 #include "core/math/reflection_axis.h"
@@ -77,7 +78,9 @@ void add_lobes(const PartTables& tables, float nv, float roughness, std::vector<
   const float share = table_pair_grad(tables.axis, nv, roughness).value.first;
   const TablePair<float> stretched = table_pair_grad(tables.stretch, nv, roughness).value;
   const LobeRow three = lobe_triple(roughness * stretched.first, max(stretched.second, 1.0f));
-  out.insert(out.end(), {share, reflection_level(three.roughness), three.angle, 0});
+  const float steepness =
+      kLogisticScale * std::sqrt(horizon_sharpness(stretched_lobe(three.roughness, 1.0f)));
+  out.insert(out.end(), {share, reflection_level(three.roughness), three.angle, steepness});
 }
 
 Tables make_tables() {

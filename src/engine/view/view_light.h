@@ -24,7 +24,9 @@ std::string view_light(const Device&, const SgMixture&);
 // roughness (rows; from the head's min_roughness to 1), at equal distances, the outer nodes on the border.
 // The same for all objects. surface f32 [rows columns, 4]: scale and bias of the split sum, diffuse_view(),
 // 0. base, fresnel f32 [rows columns, 4], the two reflection lobes as three round ones
-// (core/math/lobe_row.h): share of the normal in the axis, reflection_level() of each, their angle, 0.
+// (core/math/lobe_row.h): share of the normal in the axis, reflection_level() of each, their angle,
+// and how steeply the horizon cuts them off: of the cosine of their axis and the normal, times that, the
+// logistic function is their share above it.
 // lobe f32 [rows, 4]: by how much visibility in bands 1 and 2 is smoothed by a lobe of that roughness, 0, 0.
 // Head: columns, rows, min_roughness, middle_share, dielectric_f0, metal_f0.
 std::string view_tables();
