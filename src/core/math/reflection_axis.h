@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Where the reflection lobes of a rough surface point and how wide they are. They are not round about the
-// mirror direction: masking and the horizon turn them towards the normal (at roughness .5 and 60 degrees by
-// 14 degrees), and they are narrower at grazing angles. The part of the reflection that Fresnel's term adds
+// mirror direction: masking turns them towards the normal (at roughness .5 and 60 degrees by 7 degrees, their
+// mean by 14), and they are narrower at grazing angles. The part of the reflection that Fresnel's term adds
 // at grazing angles, the bias of the split sum, has a lobe of its own: it is narrower and stays near the
 // mirror direction, and makes most of the highlights of rough dielectrics. The round lobe of
 // core/math/reflection.h, turned, scaled and stretched, is fitted to the density of each
