@@ -74,7 +74,8 @@ float search_roughness(F residual_at, const LinearSplitOptions& o) {
   while (last->second > best->second + rise) --last;
   if (best == tried.begin() || next == tried.end()) return last->first;
   const double steps = last_offset_within(std::prev(best)->second, best->second, next->second, rise);
-  return std::max(last->first, best->first * float(std::pow(next->first / best->first, steps)));
+  const float between = best->first * float(std::pow(next->first / best->first, steps));
+  return last == best ? between : std::max(last->first, between);
 }
 
 // Reflections of metals determine light and color only up to a factor per channel: the mean of the light is
