@@ -11,10 +11,10 @@
 
 namespace cei3d {
 
-// Three, with the nodes and weights of Gauss-Hermite quadrature: the outer ones are 1.7 standard deviations
-// apart, and leave gaps between them if the lobe is much longer than wide.
-inline constexpr float kMiddleShare =
-    2.0f / 3;  // weight of the lobe about the axis; the others share the rest
+// Three, with the nodes and weights of Gauss-Hermite quadrature: neighbors are 1.7 standard deviations apart,
+// and leave gaps between them if the lobe is much longer than wide. The middle one has this weight, the
+// others share the rest.
+inline constexpr float kMiddleShare = 2.0f / 3;
 inline constexpr float kMaxTripleStretch = 1.8f;
 
 // Five, with binomial weights: neighbors are one standard deviation apart.
