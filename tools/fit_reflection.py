@@ -112,7 +112,6 @@ def fit(node, start):
     pull = 1e-3  # towards the neighbor, where the density hardly tells
     best = least_squares(lambda p: np.concatenate([node.residual(*p), pull * (p - start)]),
                          np.clip(start, np.add(LOW, 1e-6), np.subtract(HIGH, 1e-6)), bounds=(LOW, HIGH)).x
-    # A lobe that is longer across the plane of incidence than in it is not allowed.
     round_ratio = least_squares(lambda p: node.residual(best[0], p[0], 1.0), [min(best[1], 2.4)],
                                 bounds=([LOW[1]], [HIGH[1]])).x[0]
     return best, round_ratio

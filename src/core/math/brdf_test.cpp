@@ -79,6 +79,19 @@ TEST(Reflection, GaussiansHoldTheEnergyOfTheExactLobeRingByRing) {
   }
 }
 
+// The angle is fitted; the energy within it is known.
+TEST(Reflection, HalfOfTheEnergyIsWithinTheAngleThatItNames) {
+  for (const double roughness : {0.1, 0.3, 0.5, 0.7}) {
+    const ReflectionLobe<double> lobe = reflection_lobe(roughness);
+    const double angle = 2 * std::atan(reflection_half_energy(roughness));
+    double within = 0;
+    for (int j = 0; j < kReflectionLobes; ++j)
+      within += reflection_share(j) * (1 - std::exp(lobe.lambda[j] * (std::cos(angle) - 1))) /
+                (1 - std::exp(-2 * lobe.lambda[j]));
+    EXPECT_NEAR(within, 0.5, 0.01) << roughness;
+  }
+}
+
 TEST(Brdf, DiffuseViewIsTheMeanOfBurleysTermOverUniformLight) {
   for (const double roughness : {0.1, 0.3, 0.6, 0.9})
     for (const double nv : {0.05, 0.2, 0.5, 0.8, 1.0}) {

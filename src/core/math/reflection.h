@@ -62,7 +62,7 @@ template <class T>
 HD T reflection_half_energy(T roughness) {
   const ReflectionShape<T> shape = reflection_shape(max(roughness, T(kMinRoughness)));
   // The sharpness times one minus the cosine, where the mixture without its part behind the axis holds half.
-  const T x = exp(T(-0.10679f) + shape.spread * (T(1.19589f) + T(-0.36008f) * shape.spread));
+  const T x = exp(T(-0.36008f) + shape.spread * (T(1.19589f) + T(-0.10679f) * shape.spread));
   const T y = min(x / shape.scale, T(1.0f));
   return sqrt(y / (T(2.0f) - y));
 }

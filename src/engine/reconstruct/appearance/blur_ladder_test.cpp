@@ -85,7 +85,7 @@ TEST(BlurLadder, StretchedLobesAreNearerToTheFacetsThanRoundOnes) {
         square_sum += square(want);
       }
   EXPECT_LT(stretched_error, 0.8 * round_error);
-  EXPECT_LT(stretched_error, 0.035 * square_sum);
+  EXPECT_LT(stretched_error, 0.005 * square_sum);
 }
 
 TEST(BlurLadder, LookupAndScatteringAreAdjoint) {
