@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/base/parallel.h"
+#include "core/math/quick_angles.h"
 
 namespace cei3d {
 
@@ -18,14 +19,35 @@ Vec3f env_direction(float u, float v, int width, int height, EnvUp up) {
   return {s * std::cos(phi), c, s * std::sin(phi)};
 }
 
-Vec2f env_pixel(Vec3f d, int width, int height, EnvUp up) {
+namespace {
+
+// angle_of_cosine, angle_of: acos() and atan2().
+template <class Acos, class Atan2>
+Vec2f pixel_of(Vec3f d, int width, int height, EnvUp up, Acos angle_of_cosine, Atan2 angle_of) {
   const float along = up == EnvUp::z ? d.z : d.y;
-  const float v = std::acos(clamp(along, -1.0f, 1.0f)) / kPi * float(height);
+  const float v = angle_of_cosine(clamp(along, -1.0f, 1.0f)) / kPi * float(height);
   const float turn =
-      up == EnvUp::z ? 0.5f - std::atan2(d.y, d.x) / (2 * kPi) : std::atan2(d.z, d.x) / (2 * kPi) + 0.25f;
+      up == EnvUp::z ? 0.5f - angle_of(d.y, d.x) / (2 * kPi) : angle_of(d.z, d.x) / (2 * kPi) + 0.25f;
   float u = (turn - std::floor(turn)) * float(width);
   if (u >= float(width)) u = 0;
   return {u, v};
+}
+
+EnvTaps taps_at(Vec2f p, int width, int height) {
+  const float x = p.x - 0.5f, y = clamp(p.y - 0.5f, 0.0f, float(height - 1));
+  const int x0 = int(std::floor(x)), y0 = std::min(int(y), height - 1), y1 = std::min(y0 + 1, height - 1);
+  const float fx = x - float(x0), fy = y - float(y0);
+  const int left = x0 < 0 ? x0 + width : x0, right = x0 + 1 < width ? x0 + 1 : 0;
+  return {{y0 * width + left, y0 * width + right, y1 * width + left, y1 * width + right},
+          {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
+}
+
+}  // namespace
+
+Vec2f env_pixel(Vec3f d, int width, int height, EnvUp up) {
+  return pixel_of(
+      d, width, height, up, [](float x) { return std::acos(x); },
+      [](float y, float x) { return std::atan2(y, x); });
 }
 
 float env_solid_angle(int v, int width, int height) {
@@ -34,13 +56,11 @@ float env_solid_angle(int v, int width, int height) {
 }
 
 EnvTaps env_taps(Vec3f direction, int width, int height, EnvUp up) {
-  const Vec2f p = env_pixel(direction, width, height, up);
-  const float x = p.x - 0.5f, y = clamp(p.y - 0.5f, 0.0f, float(height - 1));
-  const int x0 = int(std::floor(x)), y0 = std::min(int(y), height - 1), y1 = std::min(y0 + 1, height - 1);
-  const float fx = x - float(x0), fy = y - float(y0);
-  const int left = (x0 + width) % width, right = (x0 + 1) % width;
-  return {{y0 * width + left, y0 * width + right, y1 * width + left, y1 * width + right},
-          {(1 - fx) * (1 - fy), fx * (1 - fy), (1 - fx) * fy, fx * fy}};
+  return taps_at(env_pixel(direction, width, height, up), width, height);
+}
+
+EnvTaps quick_env_taps(Vec3f direction, int width, int height) {
+  return taps_at(pixel_of(direction, width, height, EnvUp::z, quick_acos, quick_atan2), width, height);
 }
 
 Vec3f env_radiance(const Image& map, Vec3f direction, EnvUp up) {

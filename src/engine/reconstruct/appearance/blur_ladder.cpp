@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/math/ladder.h"
+#include "model/light/envmap.h"
 
 namespace cei3d {
 namespace {
@@ -30,23 +31,36 @@ const LobeBlur& BlurLadder::level(int i) {
 
 namespace {
 
+void add_taps(Vec3f direction, float weight, int height, ReflectedSky& sky) {
+  const EnvTaps taps = quick_env_taps(direction, 2 * height, height);
+  for (size_t k = 0; k < 4; ++k) {
+    sky.pixel[size_t(sky.count) + k] = uint16_t(taps.pixel[k]);
+    sky.weight[size_t(sky.count) + k] = weight * taps.weight[k];
+  }
+  sky.count += 4;
+}
+
 ReflectedSky round_sky(const ReflectionAxis<float>& lobe, int height) {
   ReflectedSky sky;
   sky.lobe = BlurLadder::place(lobe.roughness);
-  sky.taps[0] = env_taps(lobe.axis, 2 * height, height);
+  add_taps(lobe.axis, 1, height, sky);
   return sky;
 }
 
+// The middle lobe is the first.
 ReflectedSky stretched_sky(const LobeFrame<float>& lobe, int height) {
   const LobeRow row = lobe_row(lobe.roughness, lobe.stretch);
   const Vec3f along = normalize(cross(lobe.across, lobe.axis));
+  const float cosine = std::cos(row.angle), sine = std::sin(row.angle);
   ReflectedSky sky;
   sky.lobe = BlurLadder::place(row.roughness);
-  sky.count = kRowLobes;
-  for (int i = 0; i < kRowLobes; ++i) {
-    const float angle = row.angle * float(i - kRowLobes / 2);
-    sky.taps[i] = env_taps(lobe.axis * std::cos(angle) + along * std::sin(angle), 2 * height, height);
-    sky.weight[i] = kRowShares[i];
+  add_taps(lobe.axis, kRowShares[kRowLobes / 2], height, sky);
+  for (const float side : {-1.0f, 1.0f}) {
+    Vec2f turned{cosine, side * sine};
+    for (int i = 1; i <= kRowLobes / 2; ++i) {
+      add_taps(lobe.axis * turned.x + along * turned.y, kRowShares[kRowLobes / 2 + i], height, sky);
+      turned = {turned.x * cosine - turned.y * side * sine, turned.y * cosine + turned.x * side * sine};
+    }
   }
   return sky;
 }
@@ -75,26 +89,37 @@ ReflectedSky reflected_sky(const SplitRow& row, ReflectionPart part, float rough
   return sky;
 }
 
+void Blurred::set(int level, const std::vector<Vec3f>& colors) {
+  auto& out = levels_[size_t(level)];
+  out.resize(colors.size());
+  for (size_t i = 0; i < colors.size(); ++i) out[i] = PaddedColor{colors[i].x, colors[i].y, colors[i].z, 0};
+}
+
+void Blurred::add_to(int level, std::vector<Vec3f>& sum) const {
+  const auto& of = levels_[size_t(level)];
+  for (size_t i = 0; i < of.size(); ++i) sum[i] += Vec3f{of[i][0], of[i][1], of[i][2]};
+}
+
 Vec3f radiance_at(const Blurred& blurred, const ReflectedSky& at) {
-  const auto &below = blurred[size_t(at.lobe.level)], &above = blurred[size_t(at.lobe.level) + 1];
-  Vec3f sum{0, 0, 0};
-  for (int l = 0; l < at.count; ++l)
-    for (int k = 0; k < 4; ++k) {
-      const int pixel = at.taps[l].pixel[k];
-      sum += (below[pixel] * (1 - at.lobe.above) + above[pixel] * at.lobe.above) *
-             (at.weight[l] * at.taps[l].weight[k]);
-    }
-  return sum * at.open;
+  const PaddedColor *below = blurred.of(at.lobe.level), *above = blurred.of(at.lobe.level + 1);
+  PaddedColor below_sum{}, above_sum{};
+  for (size_t k = 0; k < size_t(at.count); ++k) {
+    below_sum += below[at.pixel[k]] * at.weight[k];
+    above_sum += above[at.pixel[k]] * at.weight[k];
+  }
+  const PaddedColor sum = below_sum * (at.open * (1 - at.lobe.above)) + above_sum * (at.open * at.lobe.above);
+  return {sum[0], sum[1], sum[2]};
 }
 
 void scatter_radiance(const ReflectedSky& at, Vec3f radiance, Blurred& sum) {
-  auto &below = sum[size_t(at.lobe.level)], &above = sum[size_t(at.lobe.level) + 1];
-  for (int l = 0; l < at.count; ++l)
-    for (int k = 0; k < 4; ++k) {
-      const Vec3f part = radiance * (at.open * at.weight[l] * at.taps[l].weight[k]);
-      below[at.taps[l].pixel[k]] += part * (1 - at.lobe.above);
-      above[at.taps[l].pixel[k]] += part * at.lobe.above;
-    }
+  PaddedColor *below = sum.of(at.lobe.level), *above = sum.of(at.lobe.level + 1);
+  const PaddedColor color{radiance.x, radiance.y, radiance.z, 0};
+  const PaddedColor to_below = color * (at.open * (1 - at.lobe.above)),
+                    to_above = color * (at.open * at.lobe.above);
+  for (size_t k = 0; k < size_t(at.count); ++k) {
+    below[at.pixel[k]] += to_below * at.weight[k];
+    above[at.pixel[k]] += to_above * at.weight[k];
+  }
 }
 
 }  // namespace cei3d

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -10,7 +11,6 @@
 #include "core/math/reflection_axis.h"
 #include "engine/reconstruct/appearance/lobe_blur.h"
 #include "engine/reconstruct/appearance/split_rows.h"
-#include "model/light/envmap.h"
 
 namespace cei3d {
 
@@ -36,19 +36,33 @@ class BlurLadder {
 };
 
 // Where a row reads the blurred light for a part of the split sum, given a roughness: a stretched lobe is a
-// lobe_row().
+// lobe_row(), each of whose lobes has four taps.
 struct ReflectedSky {
-  static constexpr int kMaxLobes = kRowLobes;
+  static constexpr int kMaxTaps = 4 * kRowLobes;
   BlurLadder::Place lobe;  // where the roughness of the round lobes lies on the ladder
-  int count = 1;           // number of round lobes
-  EnvTaps taps[kMaxLobes];
-  float weight[kMaxLobes] = {1};
-  float open = 1;  // share of the lobe that meets the sky
+  int count = 0;           // number of taps
+  std::array<uint16_t, kMaxTaps> pixel;
+  std::array<float, kMaxTaps> weight;  // their sum is 1
+  float open = 1;                      // share of the lobe that meets the sky
 };
 ReflectedSky reflected_sky(const SplitRow&, ReflectionPart, float roughness, int light_height);
 
+// Linear red, green and blue, and a fourth that is not used, as processors read and add them at once.
+typedef float PaddedColor __attribute__((vector_size(16)));
+
 // Blurs of a light by level; empty: level not in use.
-using Blurred = std::array<std::vector<Vec3f>, BlurLadder::kLevels>;
+class Blurred {
+ public:
+  // All of 0.
+  void clear(int level, size_t cells) { levels_[size_t(level)].assign(cells, PaddedColor{}); }
+  void set(int level, const std::vector<Vec3f>& colors);
+  void add_to(int level, std::vector<Vec3f>& sum) const;
+  PaddedColor* of(int level) { return levels_[size_t(level)].data(); }
+  const PaddedColor* of(int level) const { return levels_[size_t(level)].data(); }
+
+ private:
+  std::array<std::vector<PaddedColor>, BlurLadder::kLevels> levels_;
+};
 Vec3f radiance_at(const Blurred&, const ReflectedSky&);
 // The radiance that the lobe of a row collects: that of the sky where it is open, else that of the surface
 // which hides the sky.

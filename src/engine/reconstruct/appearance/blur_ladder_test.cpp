@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/math/facets.h"
 #include "core/math/rng.h"
+#include "model/light/envmap.h"
 
 namespace cei3d {
 namespace {
@@ -30,8 +32,11 @@ Blurred blurs_of(BlurLadder& ladder) {
     light.push_back(radiance(env_direction(float(i % (2 * kHeight)) + 0.5f, float(i / (2 * kHeight)) + 0.5f,
                                            2 * kHeight, kHeight)));
   Blurred out;
-  for (int level = 0; level < BlurLadder::kLevels; ++level)
-    ladder.level(level).apply(light, out[size_t(level)]);
+  std::vector<Vec3f> blurred;
+  for (int level = 0; level < BlurLadder::kLevels; ++level) {
+    ladder.level(level).apply(light, blurred);
+    out.set(level, blurred);
+  }
   return out;
 }
 
@@ -75,11 +80,15 @@ TEST(BlurLadder, StretchedLobesAreNearerToTheFacetsThanRoundOnes) {
         row.to_camera = at(row.to_camera, turn);
         const double want = reflected(nv, roughness, turn);
         const ReflectedSky sky = reflected_sky(row, ReflectionPart::base, roughness, kHeight);
-        EXPECT_EQ(sky.count, ReflectedSky::kMaxLobes);
+        EXPECT_EQ(sky.count, ReflectedSky::kMaxTaps);
         const ReflectionAxis<float> round = reflection_axis(reflection_axis_table(ReflectionPart::base),
                                                             row.normal, row.to_camera, roughness);
-        ReflectedSky once{BlurLadder::place(round.roughness), 1, {}, {1}};
-        once.taps[0] = env_taps(round.axis, 2 * kHeight, kHeight);
+        ReflectedSky once = sky;
+        once.lobe = BlurLadder::place(round.roughness);
+        once.count = 4;
+        const EnvTaps taps = env_taps(round.axis, 2 * kHeight, kHeight);
+        std::copy(taps.pixel, taps.pixel + 4, once.pixel.begin());
+        std::copy(taps.weight, taps.weight + 4, once.weight.begin());
         stretched_error += square(radiance_at(blurred, sky).x - want);
         round_error += square(radiance_at(blurred, once).x - want);
         square_sum += square(want);
@@ -93,13 +102,14 @@ TEST(BlurLadder, LookupAndScatteringAreAdjoint) {
   const Blurred blurred = blurs_of(ladder);
   for (const float nv : {0.2f, 0.95f}) {
     const ReflectedSky sky = reflected_sky(seen_at(nv), ReflectionPart::base, 0.3f, kHeight);
-    EXPECT_EQ(sky.count, nv < 0.5f ? ReflectedSky::kMaxLobes : 1);
+    EXPECT_EQ(sky.count, nv < 0.5f ? ReflectedSky::kMaxTaps : 4);
     Blurred scattered;
-    for (auto& level : scattered) level.assign(kCells, {0, 0, 0});
+    for (int level = 0; level < BlurLadder::kLevels; ++level) scattered.clear(level, kCells);
     scatter_radiance(sky, {2, 0.5f, -1}, scattered);
     double sum = 0;
-    for (size_t level = 0; level < scattered.size(); ++level)
-      for (size_t i = 0; i < kCells; ++i) sum += double(dot(scattered[level][i], blurred[level][i]));
+    for (int level = 0; level < BlurLadder::kLevels; ++level)
+      for (size_t i = 0; i < kCells; ++i)
+        for (int c = 0; c < 3; ++c) sum += double(scattered.of(level)[i][c]) * blurred.of(level)[i][c];
     EXPECT_NEAR(sum, double(dot(radiance_at(blurred, sky), Vec3f{2, 0.5f, -1})), 1e-4 * std::abs(sum));
   }
 }

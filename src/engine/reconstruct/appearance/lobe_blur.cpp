@@ -46,9 +46,9 @@ std::vector<float> lobe_kernel(float roughness, int height) {
 
 LobeBlur::LobeBlur(float roughness, int height)
     : height_(height), width_(2 * height), frequencies_(height + 1) {
-  for (int f = 0; f < frequencies_; ++f)
-    for (int k = 0; k < width_; ++k) {
-      const double angle = 2 * M_PI * (f * k % width_) / width_;
+  for (int a = 0; a < width_; ++a)
+    for (int b = 0; b < width_; ++b) {
+      const double angle = 2 * M_PI * (a * b % width_) / width_;
       cosines_.push_back(float(std::cos(angle)));
       sines_.push_back(float(std::sin(angle)));
     }
@@ -71,29 +71,44 @@ std::vector<float> LobeBlur::spectrum_of(const std::vector<float>& kernel) const
   return spectrum;
 }
 
-namespace {
+// The inner loops run over neighboring floats, so that compilers vectorize them.
+LobeBlur::RowSpectrum LobeBlur::transformed(std::span<const Vec3f> row) const {
+  const int n = frequencies_;
+  RowSpectrum out(6 * size_t(n), 0.0f);
+  for (int k = 0; k < width_; ++k) {
+    const float *cosine = &cosines_[size_t(k) * width_], *sine = &sines_[size_t(k) * width_];
+    for (int c = 0; c < 3; ++c) {
+      const float value = row[size_t(k)][c];
+      float *re = &out[size_t(2 * c) * n], *im = re + n;
+      for (int f = 0; f < n; ++f) {
+        re[f] += value * cosine[f];
+        im[f] -= value * sine[f];
+      }
+    }
+  }
+  return out;
+}
 
-// Fourier coefficients of one row of a light: [6][frequency], real and imaginary parts of red, green, blue.
-using RowSpectrum = std::vector<float>;
-
-}  // namespace
+void LobeBlur::transform_back(const RowSpectrum& spectrum, std::span<Vec3f> row) const {
+  const int n = frequencies_;
+  std::vector<float> line(static_cast<size_t>(width_));
+  for (int c = 0; c < 3; ++c) {
+    const float *re = &spectrum[size_t(2 * c) * n], *im = re + n, *last = &cosines_[size_t(n - 1) * width_];
+    for (int d = 0; d < width_; ++d) line[size_t(d)] = re[0] + re[n - 1] * last[d];
+    for (int f = 1; f < n - 1; ++f) {
+      const float *cosine = &cosines_[size_t(f) * width_], *sine = &sines_[size_t(f) * width_];
+      for (int d = 0; d < width_; ++d) line[size_t(d)] += 2 * (re[f] * cosine[d] - im[f] * sine[d]);
+    }
+    for (int d = 0; d < width_; ++d) row[size_t(d)][c] = line[size_t(d)] / float(width_);
+  }
+}
 
 void LobeBlur::run(const std::vector<float>& spectrum, bool transposed, const std::vector<Vec3f>& in,
                    std::vector<Vec3f>& out) const {
   const int n = frequencies_;
-  const auto cosine = [&](int f, int k) { return cosines_[size_t(f) * width_ + k]; };
-  const auto sine = [&](int f, int k) { return sines_[size_t(f) * width_ + k]; };
-  std::vector<RowSpectrum> rows(height_);
+  std::vector<RowSpectrum> rows(static_cast<size_t>(height_));
   parallel_for(height_, [&](int j) {
-    rows[j].assign(6 * size_t(n), 0.0f);
-    for (int f = 0; f < n; ++f)
-      for (int k = 0; k < width_; ++k) {
-        const Vec3f v = in[size_t(j) * width_ + k];
-        for (int c = 0; c < 3; ++c) {
-          rows[j][size_t(2 * c) * n + f] += v[c] * cosine(f, k);
-          rows[j][size_t(2 * c + 1) * n + f] -= v[c] * sine(f, k);
-        }
-      }
+    rows[size_t(j)] = transformed(std::span(in).subspan(size_t(j) * width_, size_t(width_)));
   });
   out.resize(in.size());
   parallel_for(height_, [&](int i) {
@@ -101,15 +116,9 @@ void LobeBlur::run(const std::vector<float>& spectrum, bool transposed, const st
     for (int j = 0; j < height_; ++j) {
       const float* k = &spectrum[(transposed ? size_t(j) * height_ + i : size_t(i) * height_ + j) * n];
       for (int part = 0; part < 6; ++part)
-        for (int f = 0; f < n; ++f) sum[size_t(part) * n + f] += k[f] * rows[j][size_t(part) * n + f];
+        for (int f = 0; f < n; ++f) sum[size_t(part) * n + f] += k[f] * rows[size_t(j)][size_t(part) * n + f];
     }
-    for (int d = 0; d < width_; ++d)
-      for (int c = 0; c < 3; ++c) {
-        const float *re = &sum[size_t(2 * c) * n], *im = re + n;
-        float value = re[0] + re[n - 1] * cosine(n - 1, d);
-        for (int f = 1; f < n - 1; ++f) value += 2 * (re[f] * cosine(f, d) - im[f] * sine(f, d));
-        out[size_t(i) * width_ + d][c] = value / float(width_);
-      }
+    transform_back(sum, std::span(out).subspan(size_t(i) * width_, size_t(width_)));
   });
 }
 

@@ -2,6 +2,7 @@
 // A lat-long light blurred by the reflection lobe of a roughness.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "core/math/vec.h"
@@ -22,11 +23,15 @@ class LobeBlur {
 
  private:
   std::vector<float> spectrum_of(const std::vector<float>& kernel) const;
+  // Fourier coefficients of one row of a light: [6][frequency], real and imaginary parts of red, green, blue.
+  using RowSpectrum = std::vector<float>;
+  RowSpectrum transformed(std::span<const Vec3f> row) const;
+  void transform_back(const RowSpectrum&, std::span<Vec3f> row) const;
   void run(const std::vector<float>& spectrum, bool transposed, const std::vector<Vec3f>& in,
            std::vector<Vec3f>& out) const;
 
   int height_, width_, frequencies_;
-  std::vector<float> cosines_, sines_;   // [frequency][column]
+  std::vector<float> cosines_, sines_;   // [frequency][column], for all `width` frequencies: symmetric
   std::vector<float> spectrum_;          // [row out][row in][frequency]; real, because the lobe is symmetric
   std::vector<float> squared_spectrum_;  // of the squared entries
 };

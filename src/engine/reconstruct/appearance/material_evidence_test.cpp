@@ -9,6 +9,7 @@
 #include "core/math/fibonacci.h"
 #include "core/math/reflection_axis.h"
 #include "core/math/shading.h"
+#include "model/light/envmap.h"
 #include "model/light/sg_mixture.h"
 
 namespace cei3d {

@@ -6,6 +6,7 @@
 
 #include "core/base/parallel.h"
 #include "core/math/color.h"
+#include "model/light/envmap.h"
 
 namespace cei3d {
 namespace {

@@ -9,6 +9,7 @@
 #include "core/math/rng.h"
 #include "core/math/rotation.h"
 #include "engine/render/sphere_scene.h"
+#include "model/light/envmap.h"
 
 namespace cei3d {
 namespace {

@@ -11,6 +11,7 @@
 #include "core/math/color.h"
 #include "core/math/quantile.h"
 #include "engine/reconstruct/appearance/split_irradiance.h"
+#include "model/light/envmap.h"
 
 namespace cei3d {
 namespace {

@@ -71,8 +71,12 @@ void SplitSystem::set_materials(SplitMaterials materials) {
 
 SplitSystem::Sky SplitSystem::sky_of(const std::vector<Vec3f>& light) const {
   Sky out;
-  for (int i = 0; i < BlurLadder::kLevels; ++i)
-    if (in_use_[size_t(i)]) blurs_.level(i).apply(light, out.blurred[size_t(i)]);
+  std::vector<Vec3f> blurred;
+  for (int level = 0; level < BlurLadder::kLevels; ++level) {
+    if (!in_use_[size_t(level)]) continue;
+    blurs_.level(level).apply(light, blurred);
+    out.blurred.set(level, blurred);
+  }
   if (!diffuse_light_grad_.rows.empty()) out.harmonics = harmonics_.of(light);
   return out;
 }
@@ -148,8 +152,7 @@ void SplitSystem::gather_light(const std::vector<RowSums>& parts, std::vector<Ve
   for (int level = 0; level < BlurLadder::kLevels; ++level) {
     if (!in_use_[size_t(level)]) continue;
     std::vector<Vec3f> sum(cells(), Vec3f{0, 0, 0}), light;
-    for (const RowSums& part : parts)
-      for (size_t i = 0; i < cells(); ++i) sum[i] += part.sky[size_t(level)][i];
+    for (const RowSums& part : parts) part.sky.add_to(level, sum);
     blurs_.level(level).apply_transposed(sum, light);
     for (size_t i = 0; i < cells(); ++i) out[i] += light[i];
   }
@@ -163,8 +166,8 @@ void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
   parallel_for(kChunks, [&](int chunk) {
     RowSums& sum = parts[chunk];
     sum.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
-    for (size_t i = 0; i < BlurLadder::kLevels; ++i)
-      if (in_use_[i]) sum.sky[i].assign(cells(), {0, 0, 0});
+    for (int level = 0; level < BlurLadder::kLevels; ++level)
+      if (in_use_[size_t(level)]) sum.sky.clear(level, cells());
     const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
     for (size_t i = begin; i < end; ++i) add_row(i, row_value(i) * weights_[i], sum);
   });
@@ -246,7 +249,7 @@ SplitUnknowns SplitSystem::diagonal() const {
   SplitUnknowns d;
   d.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
   d.light.assign(cells(), {0, 0, 0});
-  Blurred mass;
+  std::array<std::vector<Vec3f>, BlurLadder::kLevels> mass;
   for (auto& m : mass) m.assign(cells(), {0, 0, 0});
   for (size_t i = 0; i < rows_.size(); ++i) {
     const SplitRow& row = rows_[i];
@@ -254,9 +257,8 @@ SplitUnknowns SplitSystem::diagonal() const {
     const Vec3f gg = row.weight * o.sky_gain() * o.sky_gain(), here = row.diffuse_light;
     for (int k = 0; k < 3; ++k)
       d.diffuse[row.vertices[k]] += row.weight * here * here * square(row.barycentric[k] * o.diffuse_view);
-    for (int k = 0; k < 4; ++k)
-      mass[size_t(o.base.lobe.level) + (o.base.lobe.above > 0.5f)][o.base.taps[0].pixel[k]] +=
-          gg * o.base.taps[0].weight[k];
+    const size_t level = size_t(o.base.lobe.level) + (o.base.lobe.above > 0.5f);
+    for (size_t k = 0; k < 4; ++k) mass[level][o.base.pixel[k]] += gg * o.base.weight[k];
   }
   for (int level = 0; level < BlurLadder::kLevels; ++level) {
     if (!in_use_[size_t(level)]) continue;
