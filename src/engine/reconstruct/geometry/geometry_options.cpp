@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/compute/kernels/radiance.h"
 #include "engine/reconstruct/rate_schedule.h"
 
 namespace cei3d {
@@ -23,6 +24,7 @@ GeometrySchedule schedule_at(const GeometryOptions& o, double u) {
   // costs half a decibel on thin rods (docs/notebook/0013).
   s.slack = u >= o.tight_grid_from ? 0.25f : 1;
   s.view_dependent = true;
+  s.octaves = kRadianceOctaves;
   s.anchor = o.loss.anchor * s.inv_s * float(std::max(0.0, 1 - u / o.anchor_until));
   return s;
 }

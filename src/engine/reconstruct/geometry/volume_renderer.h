@@ -51,7 +51,8 @@ class VolumeRenderer {
   FieldConfig sdf_;
   int rows_;        // outputs of the field
   int inputs_;      // of the radiance network
-  int padded_ = 0;  // samples, rounded up to whole panels
+  int padded_ = 0;     // samples, rounded up to whole panels
+  float octaves_ = 0;  // of the mirrored direction in use, in the forward pass
   FieldPass jet_;
   MlpPass color_;
   AlignedVector<float> points_, directions_;  // [panels][3][32]
