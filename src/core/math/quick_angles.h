@@ -21,8 +21,7 @@ inline float quick_acos(float x) {
 inline float quick_atan2(float y, float x) {
   const float a = std::fabs(x), b = std::fabs(y), large = max(a, b), t = large > 0 ? min(a, b) / large : 0.0f,
               u = t * t;
-  float angle =
-      t * (0.9998660f + u * (-0.3302995f + u * (0.1801410f + u * (-0.0851330f + 0.0208351f * u))));
+  float angle = t * (0.9998660f + u * (-0.3302995f + u * (0.1801410f + u * (-0.0851330f + 0.0208351f * u))));
   if (b > a) angle = kPi / 2 - angle;
   if (x < 0) angle = kPi - angle;
   return y < 0 ? -angle : angle;

@@ -14,9 +14,9 @@
 namespace cei3d {
 namespace {
 
-// Octaves of the mirrored direction that the radiance network reads where the light turns. In the frame of the
-// light that direction turns twice as fast as the object, and with all octaves from the start colors explain
-// views into a hollow by a surface that covers it.
+// Octaves of the mirrored direction that the radiance network reads where the light turns. In the frame of
+// the light that direction turns twice as fast as the object, and with all octaves from the start colors
+// explain views into a hollow by a surface that covers it.
 float turning_octaves(double u) {
   constexpr double kAllFrom = 0.5;  // position in the schedule
   return 1 + (kRadianceOctaves - 1) * float(std::min(u / kAllFrom, 1.0));
