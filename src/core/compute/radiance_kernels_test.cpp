@@ -59,22 +59,6 @@ TEST(Kernels, TurnedRadianceInputIsThatOfTurnedNormalsAndDirections) {
 TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
   expect_radiance_gradient({});
   expect_radiance_gradient({.turned = true});
-  expect_radiance_gradient({.turned = true, .octaves = 1.6f});
-}
-
-TEST(Kernels, OctavesThatAreNotInUseAreZeroAndTheLastFades) {
-  const Device device = make_device("cpu/scalar");
-  RadianceData all, some{.octaves = 1.25f};
-  device.launch<RadianceInput>(all.forward(), kN);
-  device.launch<RadianceInput>(some.forward(), kN);
-  const int rows = radiance_rows(kFeatures), first = rows - 6 * kRadianceOctaves;
-  for (int i = 0; i < kN; ++i)
-    for (int r = 0; r < rows; ++r) {
-      const int octave = (r - first) / 6;
-      const float share = r < first || octave == 0 ? 1 : octave == 1 ? 0.25f : 0;
-      const size_t at = panel_at(i, 1, 0, rows, r);
-      EXPECT_FLOAT_EQ(some.input[at], share * all.input[at]) << r;
-    }
 }
 
 }  // namespace

@@ -102,7 +102,6 @@ inline std::vector<float> turned_panels() {  // [panels][9][32]
 inline constexpr int kFeatures = 4;
 struct RadianceData {
   bool turned = false;
-  float octaves = kRadianceOctaves;
   std::vector<float> rotations = turned_panels();
   std::vector<float> points = noise(kN * 3, 10), directions = noise(kN * 3, 11),
                      jets = noise(kN * 4 * (1 + kFeatures), 12),
@@ -110,10 +109,10 @@ struct RadianceData {
                      input = std::vector<float>(kN * radiance_rows(kFeatures), 0.0f),
                      d_input = noise(kN * radiance_rows(kFeatures), 13);
   RadianceInput::Args forward() {
-    return {points.data(), directions.data(), jets.data(), input.data(), kFeatures, turns(), octaves};
+    return {points.data(), directions.data(), jets.data(), input.data(), kFeatures, turns()};
   }
   RadianceInputGrad::Args gradient() {
-    return {directions.data(), jets.data(), d_input.data(), d_jets.data(), kFeatures, turns(), octaves};
+    return {directions.data(), jets.data(), d_input.data(), d_jets.data(), kFeatures, turns()};
   }
   const float* turns() const { return turned ? rotations.data() : nullptr; }
 };

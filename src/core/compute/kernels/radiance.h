@@ -25,8 +25,6 @@ HD Mat3<T> load_rotation(const float* rotations, int i) {
   };
   return {{row(0), row(1), row(2)}};
 }
-// Weight of an octave of the mirrored direction if this many octaves are in use.
-HD float octave_weight(float octaves, int octave) { return clamp(octaves - float(octave), 0.0f, 1.0f); }
 HD void store_rotation(float* rotations, int i, const Mat3f& r) {  // [panels][9][32]
   for (int k = 0; k < 9; ++k) rotations[panel_at(i, 1, 0, 9, k)] = r.row[k / 3][k % 3];
 }
@@ -48,7 +46,6 @@ struct RadianceInput {
     float* input;             // [panels][radiance_rows][32], written
     int features;
     const float* rotations = nullptr;  // room_from_object of the light, as for rotated()
-    float octaves = kRadianceOctaves;  // in use; the others are 0, and the last may fade
   };
   template <class T>
   static HD void run(const Args& a, int i) {
@@ -73,8 +70,8 @@ struct RadianceInput {
       for (int k = 0; k < 3; ++k) {
         T value[2], by_r[2];
         frequency_eval(r[k], o, value, by_r);
-        put(value[0] * T(octave_weight(a.octaves, o)));
-        put(value[1] * T(octave_weight(a.octaves, o)));
+        put(value[0]);
+        put(value[1]);
       }
   }
 };
@@ -89,7 +86,6 @@ struct RadianceInputGrad {
     float* d_jets;            // like jets, added to
     int features;
     const float* rotations = nullptr;  // as in the forward pass
-    float octaves = kRadianceOctaves;  // likewise
   };
   template <class T>
   static HD void run(const Args& a, int i) {
@@ -114,7 +110,7 @@ struct RadianceInputGrad {
         T value[2], by_r[2];
         frequency_eval(r[k], o, value, by_r);
         const int row = at_r + 3 + 6 * o + 2 * k;
-        d_r[k] = d_r[k] + (by_r[0] * get(row) + by_r[1] * get(row + 1)) * T(octave_weight(a.octaves, o));
+        d_r[k] = d_r[k] + by_r[0] * get(row) + by_r[1] * get(row + 1);
       }
     const Vec3<T> d_n = get3(a.features) + v * get(a.features + 9) + (d_r * nv + v * dot(d_r, n)) * T(2.0f);
     const Vec3<T> d_g = rotated_back(a.rotations, i, (d_n - n * dot(n, d_n)) * inverse);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/compute/kernels/radiance.h"
 #include "engine/reconstruct/rate_schedule.h"
 
 namespace cei3d {
@@ -24,7 +23,6 @@ GeometrySchedule schedule_at(const GeometryOptions& o, double u) {
   // costs half a decibel on thin rods (docs/notebook/0013).
   s.slack = u >= o.tight_grid_from ? 0.25f : 1;
   s.view_dependent = true;
-  s.octaves = kRadianceOctaves;
   s.anchor = o.loss.anchor * s.inv_s * float(std::max(0.0, 1 - u / o.anchor_until));
   return s;
 }

@@ -57,14 +57,13 @@ struct GeometrySchedule {
   float slack;          // possible error of the occupancy grid, in half diagonals of its cells
   bool view_dependent;  // colors may depend on the view
   float anchor;         // weight of the distance to the start shape
-  float octaves;        // of the mirrored direction, as RadianceInput takes them
 };
 
 inline constexpr int kChunkRays = 64;                  // rays that one task renders
 inline constexpr int kChunkSamples = kChunkRays * 32;  // their samples, at most; about five per ray are usual
 
 int levels_at(const GeometryOptions&, double u);
-// For a start shape that is held, and colors that depend on the view by all octaves.
+// For a start shape that is held and colors that depend on the view.
 GeometrySchedule schedule_at(const GeometryOptions&, double u);
 // Factor of the Adam rates: a short warm-up, then a plateau and an exponential decay, or halvings.
 float rate_at(const GeometryOptions&, double u);

@@ -6,23 +6,11 @@
 
 #include "core/base/error.h"
 #include "core/base/parallel.h"
-#include "core/compute/kernels/radiance.h"
 #include "core/math/rng.h"
 #include "core/math/sub_pixel.h"
 #include "model/field/sphere_start.h"
 
 namespace cei3d {
-namespace {
-
-// Octaves of the mirrored direction that the radiance network reads where the light turns. In the frame of
-// the light that direction turns twice as fast as the object, and with all octaves from the start colors
-// explain views into a hollow by a surface that covers it.
-float turning_octaves(double u) {
-  constexpr double kAllFrom = 0.5;  // position in the schedule
-  return 1 + (kRadianceOctaves - 1) * float(std::min(u / kAllFrom, 1.0));
-}
-
-}  // namespace
 
 GeometryStage::GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
                              uint64_t seed)
@@ -54,7 +42,6 @@ void GeometryStage::prefit(const StartShape& start, const Progress& progress) {
 GeometryStage::Step GeometryStage::step_at(int64_t index, double u) const {
   GeometrySchedule s = schedule_at(options_, u);
   s.view_dependent = u >= matte_until_;
-  if (light_.motion != LightMotion::world) s.octaves = turning_octaves(u);
   if (!anchor_.n) s.anchor = 0;
   return {.index = index,
           .schedule = s,

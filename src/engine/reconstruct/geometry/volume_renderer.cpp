@@ -38,8 +38,7 @@ void VolumeRenderer::forward(const GeometryNetworks& n, const GeometrySchedule& 
                                   .jets = jet_.output(),
                                   .input = color_.input(),
                                   .features = rows_ - 1,
-                                  .rotations = turns(batch),
-                                  .octaves = octaves_ = s.octaves},
+                                  .rotations = turns(batch)},
                                  padded_);
   color_.forward(n.device, n.radiance_weights, padded_, inputs_, 3);
   composite(s, batch, samples);
@@ -108,8 +107,7 @@ void VolumeRenderer::backward_networks(const GeometryNetworks& n, const RayBatch
                                       .d_input = d_color_input_.data(),
                                       .d_jets = jet_.d_output(),
                                       .features = rows_ - 1,
-                                      .rotations = turns(batch),
-                                      .octaves = octaves_},
+                                      .rotations = turns(batch)},
                                      padded_);
   sdf.reset(sdf_, n.sdf_weights.gradient_size(), padded_, 4);
   std::copy(points_.begin(), points_.begin() + std::ptrdiff_t(padded_) * 3, sdf.points.begin());

@@ -49,10 +49,9 @@ class VolumeRenderer {
   Vec3f color(int sample) const { return load_point<float>(color_.output(), sample); }
 
   FieldConfig sdf_;
-  int rows_;           // outputs of the field
-  int inputs_;         // of the radiance network
-  int padded_ = 0;     // samples, rounded up to whole panels
-  float octaves_ = 0;  // of the mirrored direction in use, in the forward pass
+  int rows_;        // outputs of the field
+  int inputs_;      // of the radiance network
+  int padded_ = 0;  // samples, rounded up to whole panels
   FieldPass jet_;
   MlpPass color_;
   AlignedVector<float> points_, directions_;  // [panels][3][32]
