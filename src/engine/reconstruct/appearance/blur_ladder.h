@@ -41,7 +41,7 @@ struct ReflectedSky {
   static constexpr int kMaxTaps = 4 * kRowLobes;
   BlurLadder::Place lobe;  // where the roughness of the round lobes lies on the ladder
   int count = 0;           // number of taps
-  std::array<uint16_t, kMaxTaps> pixel;
+  std::array<uint16_t, kMaxTaps> pixel;  // of a light of at most 181 rows
   std::array<float, kMaxTaps> weight;  // their sum is 1
   float open = 1;                      // share of the lobe that meets the sky
 };
