@@ -39,11 +39,11 @@ class BlurLadder {
 // lobe_row(), each of whose lobes has four taps.
 struct ReflectedSky {
   static constexpr int kMaxTaps = 4 * kRowLobes;
-  BlurLadder::Place lobe;  // where the roughness of the round lobes lies on the ladder
-  int count = 0;           // number of taps
+  BlurLadder::Place lobe;                // where the roughness of the round lobes lies on the ladder
+  int count = 0;                         // number of taps
   std::array<uint16_t, kMaxTaps> pixel;  // of a light of at most 181 rows
-  std::array<float, kMaxTaps> weight;  // their sum is 1
-  float open = 1;                      // share of the lobe that meets the sky
+  std::array<float, kMaxTaps> weight;    // their sum is 1
+  float open = 1;                        // share of the lobe that meets the sky
 };
 ReflectedSky reflected_sky(const SplitRow&, ReflectionPart, float roughness, int light_height);
 
