@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Angles by short polynomials [Abramowitz and Stegun 1964, 4.4.45, 4.4.48], in radians: several times as fast
-// as those of the standard library.
+// Angles by short polynomials [Abramowitz and Stegun 1964, 4.4.45, 4.4.48], in radians, for lookups in light
+// that need no more: faster than those of the standard library.
 #pragma once
 
 #include <cmath>

@@ -26,7 +26,7 @@ struct EnvTaps {
   float weight[4];
 };
 EnvTaps env_taps(Vec3f direction, int width, int height, EnvUp up = EnvUp::z);
-// The same within 1e-4 of the image's width, in a third of the time; EnvUp::z.
+// The same within 1e-4 of the image's width, in three fifths of the time; EnvUp::z.
 EnvTaps quick_env_taps(Vec3f direction, int width, int height);
 // Bilinear lookup. map: 3 or more channels.
 Vec3f env_radiance(const Image& map, Vec3f direction, EnvUp up = EnvUp::z);

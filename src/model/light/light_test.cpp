@@ -43,6 +43,21 @@ TEST(Envmap, PixelsAndDirectionsAreInverse) {
     }
 }
 
+TEST(Envmap, QuickTapsAreThoseOfTheExactAngles) {
+  const auto at = [](const EnvTaps& t) {  // a map that is smooth across the seam
+    Vec3f sum{0, 0, 0};
+    for (int k = 0; k < 4; ++k) {
+      const float turn = 2 * kPi * float(t.pixel[k] % 100) / 100;
+      sum += Vec3f{std::cos(turn), std::sin(turn), float(t.pixel[k] / 100) / 50} * t.weight[k];
+    }
+    return sum;
+  };
+  for (uint64_t i = 0; i < 2000; ++i) {
+    const Vec3f d = random_direction(i);
+    expect_near(at(quick_env_taps(d, 100, 50)), at(env_taps(d, 100, 50)), 1e-4f);
+  }
+}
+
 TEST(Envmap, SolidAnglesFillTheSphereAndResamplingKeepsTheIntegral) {
   Image map(50, 25, 3);
   for (size_t i = 0; i < map.data.size(); ++i) map.data[i] = Rng(1, 0, i).uniform();

@@ -47,7 +47,7 @@ ReflectedSky round_sky(const ReflectionAxis<float>& lobe, int height) {
   return sky;
 }
 
-// The middle lobe is the first.
+// The middle lobe comes first: its taps stand for all of them where one lobe suffices.
 ReflectedSky stretched_sky(const LobeFrame<float>& lobe, int height) {
   const LobeRow row = lobe_row(lobe.roughness, lobe.stretch);
   const Vec3f along = normalize(cross(lobe.across, lobe.axis));
@@ -89,8 +89,10 @@ ReflectedSky reflected_sky(const SplitRow& row, ReflectionPart part, float rough
   return sky;
 }
 
-void Blurred::set(int level, const std::vector<Vec3f>& colors) {
+void Blurred::set(int level, const std::vector<Vec3f>& light, BlurLadder& blurs) {
   auto& out = levels_[size_t(level)];
+  std::vector<Vec3f> colors;
+  blurs.level(level).apply(light, colors);
   out.resize(colors.size());
   for (size_t i = 0; i < colors.size(); ++i) out[i] = PaddedColor{colors[i].x, colors[i].y, colors[i].z, 0};
 }

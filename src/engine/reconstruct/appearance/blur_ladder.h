@@ -55,7 +55,7 @@ class Blurred {
  public:
   // All of 0.
   void clear(int level, size_t cells) { levels_[size_t(level)].assign(cells, PaddedColor{}); }
-  void set(int level, const std::vector<Vec3f>& colors);
+  void set(int level, const std::vector<Vec3f>& light, BlurLadder&);
   void add_to(int level, std::vector<Vec3f>& sum) const;
   PaddedColor* of(int level) { return levels_[size_t(level)].data(); }
   const PaddedColor* of(int level) const { return levels_[size_t(level)].data(); }

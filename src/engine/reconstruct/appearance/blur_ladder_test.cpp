@@ -32,11 +32,7 @@ Blurred blurs_of(BlurLadder& ladder) {
     light.push_back(radiance(env_direction(float(i % (2 * kHeight)) + 0.5f, float(i / (2 * kHeight)) + 0.5f,
                                            2 * kHeight, kHeight)));
   Blurred out;
-  std::vector<Vec3f> blurred;
-  for (int level = 0; level < BlurLadder::kLevels; ++level) {
-    ladder.level(level).apply(light, blurred);
-    out.set(level, blurred);
-  }
+  for (int level = 0; level < BlurLadder::kLevels; ++level) out.set(level, light, ladder);
   return out;
 }
 

@@ -59,11 +59,7 @@ LitSamples::LitSamples(size_t vertices, const std::vector<SplitRow>& rows, std::
                        BlurLadder& blurs, const std::vector<Vec3f>& light)
     : rows_(rows), colors_(std::move(colors)), light_height_(blurs.height()), start_(vertices + 1, 0) {
   light_directions_ = light_directions(sky_radiance(light_image(light, light_height_)));
-  std::vector<Vec3f> blurred;
-  for (int level = 0; level < kLevels; ++level) {
-    blurs.level(level).apply(light, blurred);
-    sky_.set(level, blurred);
-  }
+  for (int level = 0; level < kLevels; ++level) sky_.set(level, light, blurs);
   for (const SplitRow& r : rows) ++start_[nearest_vertex(r) + 1];
   for (size_t v = 0; v < vertices; ++v) start_[v + 1] += start_[v];
   order_.resize(rows.size());

@@ -71,12 +71,8 @@ void SplitSystem::set_materials(SplitMaterials materials) {
 
 SplitSystem::Sky SplitSystem::sky_of(const std::vector<Vec3f>& light) const {
   Sky out;
-  std::vector<Vec3f> blurred;
-  for (int level = 0; level < BlurLadder::kLevels; ++level) {
-    if (!in_use_[size_t(level)]) continue;
-    blurs_.level(level).apply(light, blurred);
-    out.blurred.set(level, blurred);
-  }
+  for (int level = 0; level < BlurLadder::kLevels; ++level)
+    if (in_use_[size_t(level)]) out.blurred.set(level, light, blurs_);
   if (!diffuse_light_grad_.rows.empty()) out.harmonics = harmonics_.of(light);
   return out;
 }
