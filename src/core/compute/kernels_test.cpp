@@ -97,8 +97,8 @@ std::vector<float> adam_case(const Device& device, bool skip_zero) {
   return value;
 }
 
-std::vector<float> radiance_case(const Device& device, bool gradient) {
-  RadianceData d;
+std::vector<float> radiance_case(const Device& device, bool gradient, bool turned) {
+  RadianceData d{turned};
   gradient ? device.launch<RadianceInputGrad>(d.gradient(), kN)
            : device.launch<RadianceInput>(d.forward(), kN);
   return gradient ? d.d_jets : d.input;
@@ -220,13 +220,15 @@ struct Parity<Adam> {
 template <>
 struct Parity<RadianceInput> {
   static Cases cases() {
-    return {{"", [](const Device& d) { return radiance_case(d, false); }}};
+    return {{"", [](const Device& d) { return radiance_case(d, false, false); }},
+            {"turned", [](const Device& d) { return radiance_case(d, false, true); }}};
   }
 };
 template <>
 struct Parity<RadianceInputGrad> {
   static Cases cases() {
-    return {{"", [](const Device& d) { return radiance_case(d, true); }}};
+    return {{"", [](const Device& d) { return radiance_case(d, true, false); }},
+            {"turned", [](const Device& d) { return radiance_case(d, true, true); }}};
   }
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Input of the radiance network: its gradient against finite differences.
+// Input of the radiance network: its gradient against finite differences, and what a turned light turns.
 #include <gtest/gtest.h>
 
 #include "core/compute/test_kernels.h"
@@ -7,8 +7,7 @@
 namespace cei3d {
 namespace {
 
-TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
-  RadianceData d;
+void expect_radiance_gradient(RadianceData d) {
   const Device device = make_device("cpu/scalar");
   const std::vector<float>& weights = d.d_input;
   device.launch<RadianceInputGrad>(d.gradient(), kN);
@@ -41,6 +40,31 @@ TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
     }
   }
   EXPECT_GT(checked, 10);
+}
+
+TEST(Kernels, UnderATurnedLightTheNormalAloneIsTurned) {
+  const Device device = make_device("cpu/scalar");
+  RadianceData turned{.turned = true}, still;
+  device.launch<RadianceInput>(turned.forward(), kN);
+  device.launch<RadianceInput>(still.forward(), kN);
+  const int rows = radiance_rows(kFeatures);
+  const auto at = [&](const RadianceData& d, int i, int row) {
+    return d.input[panel_at(i, 1, 0, rows, row)];
+  };
+  for (int i = 0; i < kN; ++i) {
+    const Vec3f normal{at(still, i, kFeatures), at(still, i, kFeatures + 1), at(still, i, kFeatures + 2)};
+    const Vec3f in_room = sample_rotation(i) * normal;
+    for (int row = 0; row < rows; ++row) {
+      const int k = row - kFeatures;
+      EXPECT_NEAR(at(turned, i, row), k >= 0 && k < 3 ? in_room[k] : at(still, i, row), 1e-5f)
+          << i << " " << row;
+    }
+  }
+}
+
+TEST(Kernels, RadianceInputGradientEqualsFiniteDifferences) {
+  expect_radiance_gradient({});
+  expect_radiance_gradient({.turned = true});
 }
 
 }  // namespace

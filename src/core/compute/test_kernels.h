@@ -15,6 +15,7 @@
 #include "core/compute/device.h"
 #include "core/compute/kernels/all.h"
 #include "core/math/rng.h"
+#include "core/math/rotation.h"
 
 namespace cei3d {
 
@@ -88,19 +89,32 @@ using ShadeKernels =
     KernelList<SgFitResidual, SgFitGather, SgIrradiance, SgReflection, SgReflectionGrad, ReflectionLobes,
                SgLobesGrad, Shade, ShadeGrad, SgMirror, SgMirrorGrad, SgMirrorLobesGrad>;
 
+// Another one for each sample.
+inline Mat3f sample_rotation(int i) {
+  return about_axis(normalize(Vec3f{1, 0.5f, -0.3f * float(i % 7)}), 0.37f * float(i));
+}
+inline std::vector<float> turned_panels() {  // [panels][9][32]
+  std::vector<float> out(kN * 9);
+  for (int i = 0; i < kN; ++i) store_rotation(out.data(), i, sample_rotation(i));
+  return out;
+}
+
 inline constexpr int kFeatures = 4;
 struct RadianceData {
+  bool turned = false;
+  std::vector<float> rotations = turned_panels();
   std::vector<float> points = noise(kN * 3, 10), directions = noise(kN * 3, 11),
                      jets = noise(kN * 4 * (1 + kFeatures), 12),
                      d_jets = std::vector<float>(kN * 4 * (1 + kFeatures), 0.0f),
                      input = std::vector<float>(kN * radiance_rows(kFeatures), 0.0f),
                      d_input = noise(kN * radiance_rows(kFeatures), 13);
   RadianceInput::Args forward() {
-    return {points.data(), directions.data(), jets.data(), input.data(), kFeatures};
+    return {points.data(), directions.data(), jets.data(), input.data(), kFeatures, turns()};
   }
   RadianceInputGrad::Args gradient() {
-    return {directions.data(), jets.data(), d_input.data(), d_jets.data(), kFeatures};
+    return {directions.data(), jets.data(), d_input.data(), d_jets.data(), kFeatures, turns()};
   }
+  const float* turns() const { return turned ? rotations.data() : nullptr; }
 };
 
 }  // namespace cei3d

@@ -58,6 +58,7 @@ void begin_as_sphere(const RunContext& run, RunState& state) {
   if (run.light) state.scene.light_frame = light_frame(*run.light, pixels.cameras(), turntable_axis(run));
   state.light_frame_known = run.light.has_value();
   state.geometry = std::make_unique<GeometryStage>(run.device, pixels, run.preset.geometry, run.seed);
+  state.geometry->set_light(state.scene.light_frame);
   state.geometry->begin_as_sphere(run.preset.start_radius);
 }
 
@@ -66,9 +67,8 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
   PixelStore& pixels = run.views.train;
   const double begin = run.progress.now();
   TrialOptions trial = run.preset.trial;
-  state.scene.light_frame = first_light_frame(run);
-  trial.light_turns = state.scene.light_frame.motion != LightMotion::world;
-  state.light_frame_known = run.light || trial.light_turns;
+  trial.light = state.scene.light_frame = first_light_frame(run);
+  state.light_frame_known = run.light || trial.light.motion != LightMotion::world;
   if (run.plan.trial_steps > 0) trial.steps = run.plan.trial_steps;
   trial.align = run.refine_poses;
   if (!can_change_focal(run.capture)) trial.focal_error = 0;
@@ -82,6 +82,7 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
   const double chosen = run.progress.now();
   state.start_seconds = chosen - begin;
   state.geometry = std::make_unique<GeometryStage>(run.device, pixels, run.preset.geometry, run.seed);
+  state.geometry->set_light(state.scene.light_frame);
   state.geometry->prefit(start, run.progress);
   run.progress.log(Json{{"stage", "prefit"}, {"seconds", run.progress.now() - chosen}}.dump());
 }

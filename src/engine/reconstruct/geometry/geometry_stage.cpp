@@ -69,6 +69,7 @@ void GeometryStage::refresh_grid(int64_t step, double u, const Progress& progres
 
 void GeometryStage::sample_training_rays(const Step& step, int chunk, Work& w) const {
   w.batch = training_rays(pixels_, errors_, {seed_, step.index, chunk * kChunkRays}, kChunkRays);
+  turn_light(light_, pixels_, w.batch);
   std::vector<float> jitter;
   for (int r = 0; r < kChunkRays; ++r)
     jitter.push_back(
@@ -85,7 +86,7 @@ GeometryStats GeometryStage::ray_gradients(const Step& step, int chunk, Work& w,
                     [&] { w.renderer.forward(step.networks, step.schedule, w.batch, w.samples); });
   StepTimes::thread(times_, StepPart::backward, [&] {
     step.objective.backward(w.batch, w.samples, w.renderer, stats);
-    w.renderer.backward_networks(step.networks, sdf_gradients_[chunk], radiance_gradients_[chunk]);
+    w.renderer.backward_networks(step.networks, w.batch, sdf_gradients_[chunk], radiance_gradients_[chunk]);
   });
   for (int r = 0; r < kChunkRays; ++r) {
     const Vec3f error = w.renderer.pixels()[r] - w.batch.targets[r].srgb;
@@ -168,7 +169,9 @@ GeometryStats GeometryStage::evaluate(const PixelStore& held_out, int rays, doub
   std::vector<GeometryStats> stats(chunks);
   parallel_for(chunks, [&](int c) {
     work_.with([&](Work& w) {
-      render(step, random_rays(held_out, {seed_, step.index, c * kChunkRays}, kChunkRays), w);
+      RayBatch rays = random_rays(held_out, {seed_, step.index, c * kChunkRays}, kChunkRays);
+      turn_light(light_, held_out, rays);
+      render(step, std::move(rays), w);
       for (int r = 0; r < w.batch.count(); ++r) {
         const Vec3f e = w.renderer.pixels()[r] - w.batch.targets[r].srgb;
         stats[c].squared_error += dot(e, e) / 3;
@@ -196,7 +199,10 @@ void GeometryStage::render_rays(const Camera& camera, int samples, const F& take
         rays.push_back(camera.ray(i % camera.width + at.x, i / camera.width + at.y));
       }
     work_.with([&](Work& w) {
-      render(step, view_rays(std::move(rays)), w);
+      RayBatch batch = view_rays(std::move(rays));
+      if (light_.motion != LightMotion::world)
+        batch.room_from_object.assign(batch.rays.size(), light_.room_from_object(camera.world_from_cam));
+      render(step, std::move(batch), w);
       for (int r = 0; r < w.batch.count(); ++r) take(c * pixels + r / per_pixel, r, w);
     });
   });
@@ -221,6 +227,20 @@ ModelView GeometryStage::render_view(const Camera& camera) {
   return out;
 }
 
+namespace {
+
+std::vector<float> values_of(const LightFrame& f) {
+  std::vector<float> out{float(f.motion), f.axis.x, f.axis.y, f.axis.z};
+  for (const Vec3f& row : f.reference.row) out.insert(out.end(), {row.x, row.y, row.z});
+  return out;
+}
+LightFrame light_frame_from(const std::vector<float>& v) {
+  const auto vec = [&](size_t i) { return Vec3f{v[i], v[i + 1], v[i + 2]}; };
+  return {LightMotion(int(v[0])), vec(1), {{vec(4), vec(7), vec(10)}}};
+}
+
+}  // namespace
+
 void GeometryStage::save(Tensors& out) const {
   sdf_.params().save(out, "sdf");
   radiance_.save(out, "radiance");
@@ -228,6 +248,7 @@ void GeometryStage::save(Tensors& out) const {
   const int64_t n = grid_.resolution();
   out["pixel_errors"] = {{int64_t(errors_.block_errors().size())}, errors_.block_errors(), {}};
   out["matte_until"] = {{1}, {matte_until_}, {}};
+  out["light_frame"] = {{13}, values_of(light_), {}};
   if (anchor_.n) out["anchor"] = {{anchor_.n, anchor_.n, anchor_.n}, anchor_.values, {}};
   // With cells that are out of date, so that a resumed run equals one that never stopped.
   out["occupancy"] = {{n, n, n}, grid_.values(), {}};
@@ -241,6 +262,7 @@ void GeometryStage::load(const Tensors& in) {
   grid_.set(require_tensor(in, "occupancy", {n, n, n}).f32);
   errors_.set_block_errors(require_tensor(in, "pixel_errors", {int64_t(errors_.block_errors().size())}).f32);
   matte_until_ = require_tensor(in, "matte_until", {1}).f32[0];
+  if (in.contains("light_frame")) light_ = light_frame_from(require_tensor(in, "light_frame", {13}).f32);
   if (const auto anchor = in.find("anchor"); anchor != in.end() && !anchor->second.shape.empty()) {
     const int64_t cells = anchor->second.shape[0];
     anchor_ = {int(cells), require_tensor(in, "anchor", {cells, cells, cells}).f32};

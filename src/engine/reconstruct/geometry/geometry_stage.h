@@ -45,6 +45,8 @@ class GeometryStage {
   GeometryStage(const Device& device, const PixelStore& pixels, const GeometryOptions& options,
                 uint64_t seed);
 
+  // The radiance network gets normals in the frame of this light from now on.
+  void set_light(const LightFrame& frame) { light_ = frame; }
   void begin_as_sphere(float radius);
   // Fits the field to a shape: descent then starts from the right object. Error: it is empty.
   void prefit(const StartShape&, const Progress& progress = Progress());
@@ -104,6 +106,7 @@ class GeometryStage {
   PixelErrors errors_;
   DistanceGrid anchor_;  // the start shape, if it is held; else empty
   float matte_until_ = 0;
+  LightFrame light_;
   Pool<Work> work_;
   StepTimes* times_ = nullptr;
   std::vector<ChunkGradients> sdf_gradients_;  // of the current step, by task

@@ -47,6 +47,13 @@ RayBatch random_rays(const PixelStore& store, const BatchKey& key, int count) {
   return batch;
 }
 
+void turn_light(const LightFrame& frame, const PixelStore& store, RayBatch& batch) {
+  if (frame.motion == LightMotion::world) return;
+  for (const size_t p : batch.pixels)
+    batch.room_from_object.push_back(
+        frame.room_from_object(store.cameras()[store.pixels()[p].view].world_from_cam));
+}
+
 RayBatch view_rays(std::vector<Ray> rays) {
   RayBatch batch;
   batch.rays = std::move(rays);

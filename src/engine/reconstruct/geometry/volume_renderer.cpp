@@ -26,6 +26,7 @@ VolumeRenderer::VolumeRenderer(const GeometryOptions& o)
       color_(radiance_config(o), kChunkSamples, 1),
       points_(size_t(kChunkSamples) * 3),
       directions_(size_t(kChunkSamples) * 3),
+      rotations_(size_t(kChunkSamples) * 9),
       d_color_input_(size_t(kChunkSamples) * inputs_) {}
 
 void VolumeRenderer::forward(const GeometryNetworks& n, const GeometrySchedule& s, const RayBatch& batch,
@@ -36,7 +37,8 @@ void VolumeRenderer::forward(const GeometryNetworks& n, const GeometrySchedule& 
                                   .directions = directions_.data(),
                                   .jets = jet_.output(),
                                   .input = color_.input(),
-                                  .features = rows_ - 1},
+                                  .features = rows_ - 1,
+                                  .rotations = turns(batch)},
                                  padded_);
   color_.forward(n.device, n.radiance_weights, padded_, inputs_, 3);
   composite(s, batch, samples);
@@ -50,6 +52,7 @@ void VolumeRenderer::place(const GeometrySchedule& s, const RayBatch& batch, con
       const Ray& ray = batch.rays[r];
       store_point(points_.data(), i, ray.origin + ray.direction * samples.depths[i]);
       store_point(directions_.data(), i, s.view_dependent ? ray.direction : none);
+      if (turns(batch)) store_rotation(rotations_.data(), i, batch.room_from_object[r]);
     }
   for (int i = samples.count(); i < padded_; ++i) {
     store_point(points_.data(), i, none);
@@ -95,7 +98,7 @@ void VolumeRenderer::backward_composite(const RayBatch& batch, const RaySamples&
   }
 }
 
-void VolumeRenderer::backward_networks(const GeometryNetworks& n, ChunkGradients& sdf,
+void VolumeRenderer::backward_networks(const GeometryNetworks& n, const RayBatch& batch, ChunkGradients& sdf,
                                        std::vector<float>& radiance) {
   radiance.assign(n.radiance_weights.gradient_size(), 0.0f);
   color_.backward(n.device, n.radiance_weights, padded_, inputs_, radiance.data(), d_color_input_.data());
@@ -103,7 +106,8 @@ void VolumeRenderer::backward_networks(const GeometryNetworks& n, ChunkGradients
                                       .jets = jet_.output(),
                                       .d_input = d_color_input_.data(),
                                       .d_jets = jet_.d_output(),
-                                      .features = rows_ - 1},
+                                      .features = rows_ - 1,
+                                      .rotations = turns(batch)},
                                      padded_);
   sdf.reset(sdf_, n.sdf_weights.gradient_size(), padded_, 4);
   std::copy(points_.begin(), points_.begin() + std::ptrdiff_t(padded_) * 3, sdf.points.begin());

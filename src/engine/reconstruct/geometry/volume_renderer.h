@@ -37,10 +37,14 @@ class VolumeRenderer {
   JetGradView d_jets() { return {jet_.d_output(), rows_}; }
   // The second part of the adjoint: back through the networks. Overwrites both gradients; radiance: layers,
   // as MlpWeights has them.
-  void backward_networks(const GeometryNetworks&, ChunkGradients& sdf, std::vector<float>& radiance);
+  void backward_networks(const GeometryNetworks&, const RayBatch&, ChunkGradients& sdf,
+                         std::vector<float>& radiance);
 
  private:
   void place(const GeometrySchedule&, const RayBatch&, const RaySamples&);
+  const float* turns(const RayBatch& batch) const {
+    return batch.room_from_object.empty() ? nullptr : rotations_.data();
+  }
   void composite(const GeometrySchedule&, const RayBatch&, const RaySamples&);
   Vec3f color(int sample) const { return load_point<float>(color_.output(), sample); }
 
@@ -51,6 +55,7 @@ class VolumeRenderer {
   FieldPass jet_;
   MlpPass color_;
   AlignedVector<float> points_, directions_;  // [panels][3][32]
+  AlignedVector<float> rotations_;            // [panels][9][32]; of the light, where it turns
   AlignedVector<float> d_color_input_;        // [panels][inputs_][32]
   std::vector<NeusSample<float>> alphas_;     // #samples
   std::vector<SampleWeight<float>> weights_;  // #samples

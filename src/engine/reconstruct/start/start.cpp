@@ -86,6 +86,7 @@ Trial tried(const Device& device, const PixelStore& pixels, const TrialOptions& 
   Trial trial{start_shape(pixels, start, seed, options.shapes, progress),
               std::make_unique<GeometryStage>(device, pixels, options.geometry, seed)};
   GeometryStage& stage = *trial.trained;
+  stage.set_light(options.light);
   stage.prefit(trial.shape, progress);
   for (int step = 0; step < options.steps; ++step) {
     check_cancelled(progress);
@@ -163,7 +164,7 @@ StartShape choose_start(const Device& device, PixelStore& pixels, const TrialOpt
     const auto& [start, name] = kStarts[i];
     check_cancelled(progress);
     // Carving takes the colors of a point for the same in all views.
-    if (start == Start::carved && options.light_turns) continue;
+    if (start == Start::carved && options.light.motion != LightMotion::world) continue;
     const double done = double(i) / kStarts.size();
     Trial trial = tried(device, pixels, options, start, seed, done, progress);
     if (start == Start::hull && !options.exposures.empty())

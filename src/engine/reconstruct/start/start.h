@@ -31,9 +31,9 @@ struct TrialOptions {
   ShapeOptions shapes;
   GeometryOptions geometry;
   int steps = 400;
-  int rays = 32768;          // number of random training pixels of the comparison
-  bool light_turns = false;  // against the object, in the training views
-  bool align = false;        // whether cameras are moved where that pays
+  int rays = 32768;    // number of random training pixels of the comparison
+  LightFrame light;    // in the training views
+  bool align = false;  // whether cameras are moved where that pays
   // With `align`: standard deviation of the logarithm of the focal length as it is given; 0: it is right,
   // or its error is not known. That of EXIF notes is wrong by some percent, that of a calibration by less.
   double focal_error = 0;
