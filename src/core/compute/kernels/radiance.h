@@ -57,11 +57,11 @@ struct RadianceInput {
     };
     for (int f = 0; f < a.features; ++f) put(load<T>(a.jets + panel_at(i, 4, 0, 1 + a.features, 1 + f)));
     const Vec3<T> n = normalize(load_sdf_gradient<T>(a.jets, i, 1 + a.features));
-    const Vec3<T> lit_normal = rotated(a.rotations, i, n);
+    const Vec3<T> normal_in_room = rotated(a.rotations, i, n);
     const Vec3<T> x = load_point<T>(a.points, i), d = load_point<T>(a.directions, i);
     const Vec3<T> v = -d, r = mirrored(n, v);
     const T nv = dot(n, v);
-    for (int k = 0; k < 3; ++k) put(lit_normal[k]);
+    for (int k = 0; k < 3; ++k) put(normal_in_room[k]);
     for (int k = 0; k < 3; ++k) put(x[k]);
     for (int k = 0; k < 3; ++k) put(d[k]);
     put(nv);
