@@ -7,6 +7,7 @@
 
 #include "engine/reconstruct/appearance/light_scale.h"
 #include "engine/reconstruct/appearance/split_system.h"
+#include "model/geometry/mesh/adjacency.h"
 
 namespace cei3d {
 
@@ -70,8 +71,21 @@ struct BestMaterials {
 };
 BestMaterials best_materials(const float* errors);
 
+// The neighbors of every vertex, with weights in (0, 1] by how similar their colors are.
+struct SimilarNeighbors {
+  SimilarNeighbors(const Mesh&, const std::vector<Vec3f>& colors);  // colors: #V, linear
+  VertexLists lists;
+  std::vector<float> weight;  // #lists.items
+};
+
 // Replaces the sums of each vertex by sums over its surroundings of similar color: `steps` steps of diffusion
-// between neighbors. colors: #V, linear.
-void diffuse_evidence(const Mesh&, const std::vector<Vec3f>& colors, int steps, MaterialEvidence&);
+// between neighbors.
+void diffuse_evidence(const SimilarNeighbors&, int steps, MaterialEvidence&);
+
+// Probability of each vertex to be a metal: #V. What the samples of a vertex say (even odds at `even`, the
+// ratio of the errors of metal and dielectric) is weighed against the vertices that a random walk from it
+// over surface of similar color passes. So a patch that neither explains well takes the kind of material that
+// surrounds it. [Grady 2006]
+std::vector<float> metal_probability(const SimilarNeighbors&, const MaterialEvidence&, float even);
 
 }  // namespace cei3d

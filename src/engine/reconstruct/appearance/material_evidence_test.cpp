@@ -86,31 +86,74 @@ TEST(MaterialEvidence, FindsTheRoughnessAndTheKindOfAMaterial) {
   }
 }
 
-// A strip of vertices of two colors. Evidence spreads within a color and does not cross the border.
+// A strip of vertices, two a column, of two colors with the border in the middle.
+struct Strip {
+  Mesh mesh;
+  std::vector<Vec3f> colors;
+  MaterialEvidence evidence;
+
+  explicit Strip(uint32_t columns) {
+    for (uint32_t i = 0; i < 2 * columns; ++i) {
+      mesh.positions.push_back({float(i / 2), float(i % 2), 0});
+      colors.push_back(i < columns ? Vec3f{0.8f, 0.2f, 0.1f} : Vec3f{0.1f, 0.3f, 0.9f});
+    }
+    for (uint32_t i = 0; i + 2 < 2 * columns; i += 2) {
+      mesh.triangles.push_back({i, i + 2, i + 1});
+      mesh.triangles.push_back({i + 1, i + 2, i + 3});
+    }
+    evidence.error.assign(size_t(2) * columns * MaterialEvidence::kHypotheses, 0);
+    evidence.samples.assign(size_t(2) * columns, 0);
+  }
+  SimilarNeighbors neighbors() const { return {mesh, colors}; }
+  // The errors of all dielectrics and of all metals at a vertex.
+  void set(uint32_t vertex, float dielectric, float metal) {
+    evidence.samples[vertex] = 1;
+    for (int h = 0; h < MaterialEvidence::kHypotheses; ++h)
+      evidence.error[size_t(vertex) * MaterialEvidence::kHypotheses + size_t(h)] =
+          h < BlurLadder::kLevels ? dielectric : metal;
+  }
+};
+
+// Evidence spreads within a color and does not cross the border.
 TEST(MaterialEvidence, SpreadsWithinAColor) {
   constexpr uint32_t kColumns = 12;
   constexpr int kH = MaterialEvidence::kHypotheses;
-  Mesh mesh;
-  std::vector<Vec3f> colors;
-  for (uint32_t i = 0; i < 2 * kColumns; ++i) {
-    mesh.positions.push_back({float(i / 2), float(i % 2), 0});
-    colors.push_back(i < kColumns ? Vec3f{0.8f, 0.2f, 0.1f} : Vec3f{0.1f, 0.3f, 0.9f});
-  }
-  for (uint32_t i = 0; i + 2 < 2 * kColumns; i += 2) {
-    mesh.triangles.push_back({i, i + 2, i + 1});
-    mesh.triangles.push_back({i + 1, i + 2, i + 3});
-  }
-  MaterialEvidence e;
-  e.error.assign(2 * kColumns * kH, 0);
-  e.samples.assign(2 * kColumns, 0);
+  Strip strip(kColumns);
+  MaterialEvidence& e = strip.evidence;
   e.samples[2] = 1;
   for (int h = 0; h < kH; ++h) e.error[2 * kH + size_t(h)] = float(h);
-  diffuse_evidence(mesh, colors, 60, e);
+  diffuse_evidence(strip.neighbors(), 60, e);
   for (uint32_t i = 0; i < 2 * kColumns; ++i) {
     const bool near = i < kColumns;
     EXPECT_EQ(e.samples[i] > 1e-3f, near) << i;
     for (int h = 0; h < kH; ++h)
       EXPECT_NEAR(e.of(i)[h], e.samples[i] * float(h), 1e-5f);  // one scale for all
+  }
+}
+
+// A metal with a few vertices that slightly favor a dielectric, beside a dielectric of another color with a
+// few that slightly favor a metal: both take after what surrounds them, and no further.
+TEST(MaterialEvidence, DoubtfulVerticesAreOfTheKindAroundThem) {
+  constexpr uint32_t kColumns = 40;
+  Strip strip(kColumns);
+  const auto doubtful = [](uint32_t v) { return v / 2 % 20 >= 9 && v / 2 % 20 < 12; };
+  for (uint32_t v = 0; v < 2 * kColumns; ++v) {
+    const float better = doubtful(v) ? 0.8f : 0.05f;
+    const bool metal = (v < kColumns) != doubtful(v);
+    strip.set(v, metal ? 1 : better, metal ? better : 1);
+  }
+  const std::vector<float> p = metal_probability(strip.neighbors(), strip.evidence, 1);
+  for (uint32_t v = 0; v < 2 * kColumns; ++v) EXPECT_EQ(p[v] > 0.5f, v < kColumns) << v;
+}
+
+// What vertices say where no others disagree: even odds at the given ratio of errors.
+TEST(MaterialEvidence, OddsAreEvenAtTheGivenRatio) {
+  constexpr uint32_t kColumns = 4;
+  for (const float ratio : {0.5f, 0.84f, 0.86f, 2.0f}) {
+    Strip strip(kColumns);
+    for (uint32_t v = 0; v < 2 * kColumns; ++v) strip.set(v, 1, ratio);
+    for (const float p : metal_probability(strip.neighbors(), strip.evidence, 0.85f))
+      EXPECT_EQ(p > 0.5f, ratio < 0.85f) << ratio;
   }
 }
 

@@ -28,7 +28,7 @@ constexpr float kExtended = 4;
 // Rounds of linearization for a turning light: without a guess, and with one.
 constexpr int kFirstTurns = 3, kTurns = 2;
 constexpr int kDiffusion = 20;  // steps, of evidence over the surface
-// Maximum ratio of the errors of a metal and a dielectric for a vertex to be a metal.
+// Ratio of the errors of a metal and a dielectric at which a vertex is as likely one as the other.
 constexpr float kMaxMetalRatio = 0.85f;
 // Upper bounds of the diffuse albedo of a vertex, in multiples of white: while the scale of the light is
 // uncertain, and afterwards.
@@ -158,11 +158,13 @@ void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, flo
                                    SplitMaterials& materials) {
   const std::vector<Vec3f> white = white_radiance({x, materials, 0}, max_albedo);
   MaterialEvidence evidence = lit_samples(x).evidence(white);
-  diffuse_evidence(mesh_, mean_colors(mesh_.positions.size(), rows_), kDiffusion, evidence);
+  const SimilarNeighbors near(mesh_, mean_colors(mesh_.positions.size(), rows_));
+  diffuse_evidence(near, kDiffusion, evidence);
+  const std::vector<float> metals = metal_probability(near, evidence, kMaxMetalRatio);
   for (size_t v = 0; v < materials.of.size(); ++v) {
     if (evidence.samples[v] <= 0) continue;
     const BestMaterials b = best_materials(evidence.of(v));
-    const bool metal = b.metal_error < kMaxMetalRatio * b.dielectric_error;
+    const bool metal = metals[v] > 0.5f;
     float roughness = metal ? b.metal_roughness : b.dielectric_roughness;
     if (const float before = materials.of[v].roughness; metal == materials.is_metal(uint32_t(v)))
       roughness = clamp(before * std::pow(roughness / before, extended), BlurLadder::roughness(0),
