@@ -261,14 +261,14 @@ float next_probability(const SimilarNeighbors& near, uint32_t v, float samples, 
 
 // By Jacobi's method, which is stopped before its end. Among six neighbors of the same color a walk has 200
 // steps in the mean, which reach 14 vertices far.
-std::vector<float> metal_probability(const SimilarNeighbors& near, const MaterialEvidence& e, float even) {
-  constexpr int kSteps = 150;
+std::vector<float> metal_probability(const SimilarNeighbors& near, const MaterialEvidence& e, float even,
+                                     int steps) {
   const auto n = uint32_t(e.samples.size());
   std::vector<float> own(n, 0.0f);
   for (uint32_t v = 0; v < n; ++v)
     if (e.samples[v] > 0) own[v] = own_probability(e, v, even);
   std::vector<float> present = own, next = own;
-  for (int step = 0; step < kSteps; ++step) {
+  for (int step = 0; step < steps; ++step) {
     parallel_ranges(int(n), kGrain, [&](int begin, int end) {
       for (int v = begin; v < end; ++v)
         next[size_t(v)] = next_probability(near, uint32_t(v), e.samples[size_t(v)], own[size_t(v)], present);

@@ -85,7 +85,7 @@ void diffuse_evidence(const SimilarNeighbors&, int steps, MaterialEvidence&);
 // Probability of each vertex to be a metal: #V. What the samples of a vertex say (even odds at `even`, the
 // ratio of the errors of metal and dielectric) is weighed against the vertices that a random walk from it
 // over surface of similar color passes. So a patch that neither explains well takes the kind of material that
-// surrounds it. [Grady 2006]
-std::vector<float> metal_probability(const SimilarNeighbors&, const MaterialEvidence&, float even);
+// surrounds it. steps: of the iteration that follows the walks; 0: each vertex for itself. [Grady 2006]
+std::vector<float> metal_probability(const SimilarNeighbors&, const MaterialEvidence&, float even, int steps);
 
 }  // namespace cei3d

@@ -142,7 +142,7 @@ TEST(MaterialEvidence, DoubtfulVerticesAreOfTheKindAroundThem) {
     const bool metal = (v < kColumns) != doubtful(v);
     strip.set(v, metal ? 1 : better, metal ? better : 1);
   }
-  const std::vector<float> p = metal_probability(strip.neighbors(), strip.evidence, 1);
+  const std::vector<float> p = metal_probability(strip.neighbors(), strip.evidence, 1, 150);
   for (uint32_t v = 0; v < 2 * kColumns; ++v) EXPECT_EQ(p[v] > 0.5f, v < kColumns) << v;
 }
 
@@ -152,8 +152,9 @@ TEST(MaterialEvidence, OddsAreEvenAtTheGivenRatio) {
   for (const float ratio : {0.5f, 0.84f, 0.86f, 2.0f}) {
     Strip strip(kColumns);
     for (uint32_t v = 0; v < 2 * kColumns; ++v) strip.set(v, 1, ratio);
-    for (const float p : metal_probability(strip.neighbors(), strip.evidence, 0.85f))
-      EXPECT_EQ(p > 0.5f, ratio < 0.85f) << ratio;
+    for (const int steps : {0, 150})
+      for (const float p : metal_probability(strip.neighbors(), strip.evidence, 0.85f, steps))
+        EXPECT_EQ(p > 0.5f, ratio < 0.85f) << ratio;
   }
 }
 

@@ -28,6 +28,9 @@ constexpr float kExtended = 4;
 // Rounds of linearization for a turning light: without a guess, and with one.
 constexpr int kFirstTurns = 3, kTurns = 2;
 constexpr int kDiffusion = 20;  // steps, of evidence over the surface
+// Steps of metal_probability(). In the first rounds each vertex decides for itself: under a light that is
+// still wrong most are in doubt, and would all be of one kind.
+constexpr int kWalk = 150;
 // Ratio of the errors of a metal and a dielectric at which a vertex is as likely one as the other.
 constexpr float kMaxMetalRatio = 0.85f;
 // Upper bounds of the diffuse albedo of a vertex, in multiples of white: while the scale of the light is
@@ -154,13 +157,13 @@ LitSamples SplitSolver::lit_samples(const SplitUnknowns& x) {
 }
 
 // A vertex far from all samples keeps its material.
-void SplitSolver::choose_materials(const SplitUnknowns& x, float max_albedo, float extended,
+void SplitSolver::choose_materials(const SplitUnknowns& x, bool settled, float extended,
                                    SplitMaterials& materials) {
-  const std::vector<Vec3f> white = white_radiance({x, materials, 0}, max_albedo);
+  const std::vector<Vec3f> white = white_radiance({x, materials, 0}, settled ? kLastWhite : kFirstWhite);
   MaterialEvidence evidence = lit_samples(x).evidence(white);
   const SimilarNeighbors near(mesh_, mean_colors(mesh_.positions.size(), rows_));
   diffuse_evidence(near, kDiffusion, evidence);
-  const std::vector<float> metals = metal_probability(near, evidence, kMaxMetalRatio);
+  const std::vector<float> metals = metal_probability(near, evidence, kMaxMetalRatio, settled ? kWalk : 0);
   for (size_t v = 0; v < materials.of.size(); ++v) {
     if (evidence.samples[v] <= 0) continue;
     const BestMaterials b = best_materials(evidence.of(v));
@@ -246,8 +249,7 @@ SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {
     check_cancelled(progress_);
     const bool extended = round % 2 == 0;
     system_.set_materials(s.materials);
-    choose_materials(s.x, round + 1 < kMinRounds ? kFirstWhite : kLastWhite, extended ? kExtended : 1,
-                     s.materials);
+    choose_materials(s.x, round + 1 >= kMinRounds, extended ? kExtended : 1, s.materials);
     system_.set_materials(s.materials);
     s.materials.color = system_.fit_metal_color(s.x);
     if (!extended) fix_scale(s);

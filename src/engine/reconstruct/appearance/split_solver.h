@@ -61,8 +61,9 @@ class SplitSolver {
   SplitSolution with_fitted_metals(SplitSolution, int rounds, int steps);
   SplitSolution finish(SplitSolution, bool metal, float roughness);
   LitSamples lit_samples(const SplitUnknowns&);
-  // extended: by which the change of a roughness is multiplied, over its logarithm.
-  void choose_materials(const SplitUnknowns&, float max_albedo, float extended, SplitMaterials&);
+  // settled: the scale of the light is known well enough. extended: by which the change of a roughness is
+  // multiplied, over its logarithm.
+  void choose_materials(const SplitUnknowns&, bool settled, float extended, SplitMaterials&);
   void fix_scale(SplitSolution&);
   std::vector<Vec3f> white_radiance(const SplitSolution&, float albedo) const;
 
