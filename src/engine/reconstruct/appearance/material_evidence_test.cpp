@@ -131,14 +131,14 @@ TEST(MaterialEvidence, SpreadsWithinAColor) {
   }
 }
 
-// A metal with a few vertices that slightly favor a dielectric, beside a dielectric of another color with a
-// few that slightly favor a metal: both take after what surrounds them, and no further.
+// A metal with a few vertices that slightly favor a dielectric, which take after what surrounds them. Beside
+// it a dielectric of another color that is in doubt everywhere: the metal does not spread over it.
 TEST(MaterialEvidence, DoubtfulVerticesAreOfTheKindAroundThem) {
   constexpr uint32_t kColumns = 40;
   Strip strip(kColumns);
   const auto doubtful = [](uint32_t v) { return v / 2 % 20 >= 9 && v / 2 % 20 < 12; };
   for (uint32_t v = 0; v < 2 * kColumns; ++v) {
-    const float better = doubtful(v) ? 0.8f : 0.05f;
+    const float better = doubtful(v) || v >= kColumns ? 0.8f : 0.05f;
     const bool metal = (v < kColumns) != doubtful(v);
     strip.set(v, metal ? 1 : better, metal ? better : 1);
   }

@@ -28,11 +28,11 @@ constexpr float kExtended = 4;
 // Rounds of linearization for a turning light: without a guess, and with one.
 constexpr int kFirstTurns = 3, kTurns = 2;
 constexpr int kDiffusion = 20;  // steps, of evidence over the surface
-// Steps of metal_probability(). In the first rounds each vertex decides for itself: under a light that is
-// still wrong most are in doubt, and would all be of one kind.
+// Steps of metal_probability(). In the first rounds, under a light that is still wrong, each vertex decides
+// for itself (docs/notebook/0039).
 constexpr int kWalk = 150;
 // Ratio of the errors of a metal and a dielectric at which a vertex is as likely one as the other.
-constexpr float kMaxMetalRatio = 0.85f;
+constexpr float kEvenRatio = 0.85f;
 // Upper bounds of the diffuse albedo of a vertex, in multiples of white: while the scale of the light is
 // uncertain, and afterwards.
 constexpr float kFirstWhite = 3, kLastWhite = 1.3f;
@@ -163,7 +163,7 @@ void SplitSolver::choose_materials(const SplitUnknowns& x, bool settled, float e
   MaterialEvidence evidence = lit_samples(x).evidence(white);
   const SimilarNeighbors near(mesh_, mean_colors(mesh_.positions.size(), rows_));
   diffuse_evidence(near, kDiffusion, evidence);
-  const std::vector<float> metals = metal_probability(near, evidence, kMaxMetalRatio, settled ? kWalk : 0);
+  const std::vector<float> metals = metal_probability(near, evidence, kEvenRatio, settled ? kWalk : 0);
   for (size_t v = 0; v < materials.of.size(); ++v) {
     if (evidence.samples[v] <= 0) continue;
     const BestMaterials b = best_materials(evidence.of(v));
