@@ -113,13 +113,44 @@ async function framesPart(page) {
   await settled(page);
 }
 
+/** What the mask of a part covers of the picture, in pixels. */
+const covered = (page) => page.evaluate(() => {
+  const canvas = document.getElementById('overlay'), { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+  return data.filter((alpha, i) => i % 4 === 3 && alpha > 0).length;
+});
+
+/** Selects a part, does something before the part's mask has arrived, and lets it arrive. */
+async function beforeMask(page, part, action) {
+  await page.evaluate(() => globalThis.cei3d.store.select(null));
+  let acted;
+  const over = new Promise((resolve) => { acted = resolve; });
+  const asked = page.waitForRequest('**/api/mask'), arrived = page.waitForResponse('**/api/mask');
+  await page.route('**/api/mask', async (route) => {
+    await over;
+    await route.continue();
+  });
+  await page.evaluate((name) => globalThis.cei3d.store.select(name), part);
+  await asked;
+  await action();
+  acted();
+  await (await arrived).finished();
+  await page.unroute('**/api/mask');
+  await page.waitForTimeout(200);  // for the page to decode it
+}
+
 async function hides(page) {
   const at = await middle(page);
   await page.keyboard.press('v');
   await settled(page);
   await page.focus('#view');
-  await page.keyboard.press('h');
-  await settled(page);
+  await beforeMask(page, 'patch', () => {});
+  const pixelsOfPart = await covered(page);
+  check(`the mask of a selected part covers ${pixelsOfPart} pixels`, pixelsOfPart > 50);
+  await beforeMask(page, 'patch', async () => {
+    await page.keyboard.press('h');
+    await settled(page);
+  });
+  check('a mask that arrives after the picture has changed is not shown', (await covered(page)) === 0);
   check('a part is hidden', (await page.getAttribute('[data-hide="patch"]', 'aria-pressed')) === 'true');
   const there = (p) => p.evaluate(([x, y]) => {
     const { stage } = globalThis.cei3d;

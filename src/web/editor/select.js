@@ -40,7 +40,10 @@ export class PartOverlay {
     this.asked = 0;  // number of the last request
     /** @type {string | null} of the preview that is shown */
     this.token = null;
-    stage.addEventListener('moved', () => { this.mask = null; });
+    stage.addEventListener('moved', () => {
+      this.mask = null;
+      ++this.asked;  // a mask that is on its way is one for the previous camera
+    });
     stage.addEventListener('exact', () => { if (!this.mask) this.refresh(); });
     store.on('part', () => this.refresh());
     store.on('revision', () => this.refresh());
