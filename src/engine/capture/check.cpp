@@ -230,6 +230,36 @@ void check_polarity(const std::vector<Checked>& all, CaptureReport& report) {
        }});
 }
 
+// Makes pixels of the mask unknown.
+void forget(const Area& area, std::vector<uint8_t>& mask) {
+  for (size_t i = 0; i < area.size(); ++i)
+    if (area[i]) mask[i] = kUnknown;
+}
+
+// Where the masks contradict each other. What a moved part explains is not held against a mask.
+void doubt_masks(std::vector<JudgedMask> masks, CaptureReport& report) {
+  std::vector<Area> unsure(masks.size());
+  if (report.normalization) unsure = check_moves(masks, *report.normalization, report.findings);
+  std::vector<std::vector<uint8_t>> kept;
+  kept.reserve(masks.size());
+  for (size_t i = 0; i < masks.size(); ++i) {
+    kept.emplace_back(masks[i].mask.begin(), masks[i].mask.end());
+    forget(unsure[i], kept[i]);
+    masks[i].mask = kept[i];
+  }
+  const std::vector<MaskDoubt> doubts = check_silhouettes(masks, report.normalization, report.findings);
+  for (size_t i = 0; i < masks.size(); ++i) {
+    const View& view = *masks[i].view;
+    Area area = std::move(unsure[i]);
+    if (i < doubts.size() && doubts[i].stands_out) {
+      const Area doubtful = doubtful_area(doubts[i], view.camera.width, view.camera.height);
+      area.resize(doubtful.size());
+      for (size_t k = 0; k < area.size(); ++k) area[k] |= doubtful[k];
+    }
+    if (!area.empty()) report.doubts.push_back({view.name, std::move(area)});
+  }
+}
+
 void diagnose(const Capture& capture, const std::vector<Checked>& all, CaptureReport& report) {
   check_polarity(all, report);
   check_intrinsics(capture, report.findings);
@@ -247,12 +277,7 @@ void diagnose(const Capture& capture, const std::vector<Checked>& all, CaptureRe
   const auto cut = [](const Checked& c) { return c.result.has[kCut]; };
   if (report.normalization && 2 * size_t(std::count_if(all.begin(), all.end(), cut)) > all.size())
     masks.clear();
-  const std::vector<MaskDoubt> doubts = check_silhouettes(masks, report.normalization, report.findings);
-  for (size_t i = 0; i < doubts.size(); ++i)
-    if (doubts[i].stands_out) {
-      const Camera& c = masks[i].view->camera;
-      report.doubts.push_back({masks[i].view->name, doubtful_area(doubts[i], c.width, c.height)});
-    }
+  doubt_masks(masks, report);
   if (report.normalization) check_photographs(photos, report.normalization->center, report.findings);
 }
 

@@ -42,6 +42,11 @@ std::vector<MaskDoubt> check_silhouettes(std::span<const JudgedMask> masks,
                                          const std::optional<Normalization>& normalization,
                                          std::vector<Finding>& findings);
 
+// A part that was moved between two photographs, in the order of their names. Returns, for each mask, the
+// pixels of its view where the part may be, if fewer views show it as this one does; else nothing.
+std::vector<Area> check_moves(std::span<const JudgedMask> masks, const Normalization&,
+                              std::vector<Finding>& findings);
+
 // What is compared between photographs.
 struct PhotoLook {
   bool seen = false;

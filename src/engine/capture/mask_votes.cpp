@@ -7,12 +7,12 @@
 
 #include "core/base/parallel.h"
 #include "core/math/quantile.h"
-#include "core/math/ray_sphere.h"
+#include "engine/capture/cell_votes.h"
 
 namespace cei3d {
 namespace {
 
-constexpr int kCells = 96;         // per axis of [-1, 1]^3
+constexpr Cells kCells{96};
 constexpr double kAgainst = 0.15;  // share of the other views that may see background in a cell of the object
 // Number of views nearest in direction: a hole that is really there is seen by most of them.
 constexpr size_t kNear = 8;
@@ -24,41 +24,14 @@ constexpr double kShare = 0.01,
 
 constexpr double kAlike = 0.1;  // focal lengths of one camera differ by less
 
-enum class MaskSample { nothing, background, object };
-
-MaskSample sample_mask(const HullMask& view, Vec3d p) {
-  const Vec3d at = view.camera.project(p);
-  if (!(at.z > 0 && at.x >= 0 && at.y >= 0 && at.x < view.camera.width && at.y < view.camera.height))
-    return MaskSample::nothing;
-  const uint8_t pixel = view.mask[size_t(at.y) * size_t(view.camera.width) + size_t(at.x)];
-  return pixel == kUnknown  ? MaskSample::nothing
-         : pixel == kObject ? MaskSample::object
-                            : MaskSample::background;
-}
-
-Vec3d cell_center(int x, int y, int z) {
-  return Vec3d{x + 0.5, y + 0.5, z + 0.5} * (2.0 / kCells) - Vec3d{1, 1, 1};
-}
-
 class Votes {
  public:
-  explicit Votes(const std::vector<HullMask>& views)
-      : views_(views), seen_(size_t(kCells) * kCells * kCells), against_(seen_.size()) {
-    parallel_for(kCells, [&](int z) {
-      for (int y = 0; y < kCells; ++y)
-        for (int x = 0; x < kCells; ++x) count(x, y, z);
-    });
+  explicit Votes(const std::vector<HullMask>& views) : views_(views), cells_(kCells, kAgainst) {
+    for (const HullMask& view : views) cells_.add(samples_of(view, kCells));
     for (size_t v = 0; v < views.size(); ++v) near_.push_back(near_views(v));
   }
 
-  // Whether nearly all other views show the object at p. own: what this view itself shows there.
-  bool supported(Vec3d p, MaskSample own) const {
-    const int cell = cell_of(p);
-    if (cell < 0) return false;
-    const int seen = seen_[size_t(cell)] - (own != MaskSample::nothing),
-              against = against_[size_t(cell)] - (own == MaskSample::background);
-    return seen >= std::max(2, int(views_.size()) / 3) && against <= kAgainst * seen;
-  }
+  const CellVotes& cells() const { return cells_; }
   // Whether most views from nearly the same direction show the object at p.
   bool supported_nearby(size_t view, Vec3d p) const {
     size_t for_it = 0, against = 0;
@@ -70,21 +43,6 @@ class Votes {
   }
 
  private:
-  void count(int x, int y, int z) {
-    const Vec3d p = cell_center(x, y, z);
-    const size_t i = (size_t(z) * kCells + y) * kCells + x;
-    for (const HullMask& view : views_) {
-      const MaskSample s = sample_mask(view, p);
-      seen_[i] = uint16_t(seen_[i] + (s != MaskSample::nothing));
-      against_[i] = uint16_t(against_[i] + (s == MaskSample::background));
-    }
-  }
-  static int cell_of(Vec3d p) {
-    const auto at = [](double v) { return int(std::floor((v + 1) / 2 * kCells)); };
-    const int x = at(p.x), y = at(p.y), z = at(p.z);
-    const bool inside = x >= 0 && y >= 0 && z >= 0 && x < kCells && y < kCells && z < kCells;
-    return inside ? (z * kCells + y) * kCells + x : -1;
-  }
   std::vector<size_t> near_views(size_t view) const {
     const auto direction = [&](size_t v) { return normalize(views_[v].camera.center); };
     std::vector<std::pair<double, size_t>> others;
@@ -99,21 +57,15 @@ class Votes {
   }
 
   const std::vector<HullMask>& views_;
-  std::vector<uint16_t> seen_, against_;
+  CellVotes cells_;
   std::vector<std::vector<size_t>> near_;
 };
 
 // Whether the ray of a pixel meets the object, by the other views. own: what the pixel itself shows.
 bool meets_object(const Votes& votes, const HullMask& view, size_t index, int x, int y, MaskSample own) {
-  const Ray ray = view.camera.ray(x + 0.5, y + 0.5);
-  const Vec3d origin = to_double(ray.origin), direction = to_double(ray.direction);
-  const auto [first, last] = sphere_span(origin, direction, 1.0);
-  for (double t = first; t < last; t += 1.0 / kCells) {
-    const Vec3d p = origin + direction * t;
-    if (votes.supported(p, own) && (own == MaskSample::object || votes.supported_nearby(index, p)))
-      return true;
-  }
-  return false;
+  return ray_meets(view.camera, x, y, kCells, [&](Vec3d p) {
+    return votes.cells().supported(p, own) && (own == MaskSample::object || votes.supported_nearby(index, p));
+  });
 }
 
 MaskDoubt judge(const Votes& votes, const HullMask& view, size_t index) {

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/capture/moved_part.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "core/base/error.h"
+#include "core/math/ray_sphere.h"
+#include "engine/capture/doctor.h"
+#include "engine/synthetic/views.h"
+
+namespace cei3d {
+namespace {
+
+// A ball with a knob, in the unit frame.
+struct Ball {
+  Vec3d center;
+  double radius;
+};
+constexpr Ball kBody{{0, 0, 0}, 0.5}, kKnob{{0.5, 0, 0.2}, 0.2}, kMovedKnob{{0.45, 0.25, 0.25}, 0.2};
+constexpr int kSize = 72;
+
+Area seen_balls(std::span<const Ball> balls, const Camera& camera) {
+  Area out(size_t(camera.width) * size_t(camera.height));
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x) {
+      const Ray ray = camera.ray(x + 0.5, y + 0.5);
+      for (const Ball& b : balls) {
+        const auto [near, far] =
+            sphere_span(to_double(ray.origin) - b.center, to_double(ray.direction), b.radius);
+        out[size_t(y) * size_t(camera.width) + size_t(x)] |= near < far;
+      }
+    }
+  return out;
+}
+
+// Views from all sides, as of an object that was turned before each photograph, of which the first `before`
+// show the knob in its first place.
+SmallMasks masks_of(int before, int after, Ball moved = kMovedKnob) {
+  SmallMasks out;
+  for (const bool later : {false, true})
+    for (const Camera& c : spread_cameras(later ? after : before, lens_of_size(kSize, kSize))) {
+      const Ball balls[] = {kBody, later ? moved : kKnob};
+      out.cameras.push_back(c);
+      out.masks.push_back(seen_balls(balls, c));  // kBackground is 0, kObject 1
+    }
+  return out;
+}
+// A silhouette of one position may fit the hull of the views of the other, which are few.
+constexpr size_t kUncertain = 2;  // views
+
+double share_of(const Area& part, const Area& whole) {
+  size_t both = 0;
+  for (size_t i = 0; i < part.size(); ++i) both += part[i] && whole[i];
+  return double(both) / double(pixels_in(whole));
+}
+
+TEST(MovedPart, IsFoundWithTheTimeOfItsMove) {
+  const std::optional<MovedPart> part = find_moved_part(masks_of(26, 17));
+  ASSERT_TRUE(part.has_value());
+  EXPECT_NEAR(double(part->first), 26, kUncertain);
+  EXPECT_TRUE(part->shown_by_most(0));
+  EXPECT_FALSE(part->shown_by_most(26));
+}
+
+TEST(MovedPart, KeepsThePositionThatMostViewsShow) {
+  const std::optional<MovedPart> part = find_moved_part(masks_of(15, 30));
+  ASSERT_TRUE(part.has_value());
+  EXPECT_NEAR(double(part->first), 15, kUncertain);
+  EXPECT_FALSE(part->shown_by_most(0));
+  EXPECT_TRUE(part->shown_by_most(15));
+}
+
+// What sticks out of the body in one position and not in the other lies in the place, and little else does.
+TEST(MovedPart, ItsPlaceHoldsWhatMoved) {
+  const SmallMasks masks = masks_of(26, 17);
+  const std::optional<MovedPart> part = find_moved_part(masks);
+  ASSERT_TRUE(part.has_value());
+  for (const Camera& camera : masks.cameras) {
+    const Ball before[] = {kBody, kKnob}, after[] = {kBody, kMovedKnob}, both[] = {kKnob, kMovedKnob};
+    const Area place = seen_hull(part->place, camera), was = seen_balls(before, camera),
+               is = seen_balls(after, camera);
+    Area changed(was.size());
+    for (size_t i = 0; i < changed.size(); ++i) changed[i] = was[i] != is[i];
+    if (pixels_in(changed) > 0) {
+      EXPECT_GT(share_of(place, changed), 0.95);
+    }
+    EXPECT_GT(share_of(dilated(seen_balls(both, camera), kSize, kSize, 4), place), 0.95);
+  }
+}
+
+TEST(MovedPart, ThereIsNoneWhereMasksAgree) {
+  EXPECT_FALSE(find_moved_part(masks_of(26, 17, kKnob)).has_value());
+}
+
+// Some wrong masks are not a move.
+TEST(MovedPart, ThereIsNoneWhereSomeMasksAreWrong) {
+  SmallMasks masks = masks_of(26, 17, kKnob);
+  for (const size_t view : {3, 11, 20, 33, 40})
+    for (size_t i = 0; i < masks.masks[view].size() / 3; ++i) masks.masks[view][i] = kObject;
+  EXPECT_FALSE(find_moved_part(masks).has_value());
+}
+
+// Views in any order; the numbers in their names say when they were taken.
+TEST(MovedPart, IsReportedByNameAndLeftOutOfTheFewerViews) {
+  const SmallMasks masks = masks_of(26, 17);
+  const size_t n = masks.masks.size();
+  std::vector<View> views(n);
+  std::vector<JudgedMask> judged;
+  for (size_t k = 0; k < n; ++k) {
+    const size_t i = k * 5 % n;
+    views[i].name = fmt::format("img_{}", i + 1);
+    views[i].camera = masks.cameras[i];
+    judged.push_back({&views[i], masks.masks[i]});
+  }
+  std::vector<Finding> findings;
+  const std::vector<Area> unsure = check_moves(judged, Normalization(), findings);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_THAT(findings[0].what, testing::MatchesRegex(".*moved between img_2[456] and img_2[567]:.*"));
+  for (size_t k = 0; k < n; ++k) {
+    const size_t i = k * 5 % n;
+    if (i >= 26 - kUncertain && i < 26) continue;
+    EXPECT_EQ(unsure[k].empty(), i < 26) << judged[k].view->name;
+  }
+}
+
+TEST(SeenHull, OfACubeIsItsSilhouette) {
+  const Camera camera = spread_cameras(5, lens_of_size(kSize, kSize))[3];
+  std::vector<Vec3d> corners;
+  for (const double x : {-0.3, 0.3})
+    for (const double y : {-0.3, 0.3})
+      for (const double z : {-0.3, 0.3}) corners.push_back({x, y, z});
+  const Area hull = seen_hull(corners, camera);
+  for (int y = 0; y < kSize; ++y)
+    for (int x = 0; x < kSize; ++x) {
+      const Ray ray = camera.ray(x + 0.5, y + 0.5);
+      double first = 0, last = 1e9;  // where the ray is between the planes of opposite faces
+      for (int k = 0; k < 3; ++k) {
+        const double a = (-0.3 - ray.origin[k]) / ray.direction[k],
+                     b = (0.3 - ray.origin[k]) / ray.direction[k];
+        first = std::max(first, std::min(a, b)), last = std::min(last, std::max(a, b));
+      }
+      if (std::abs(first - last) < 1e-3) continue;
+      EXPECT_EQ(hull[size_t(y) * kSize + size_t(x)] != 0, first < last) << x << " " << y;
+    }
+}
+
+}  // namespace
+}  // namespace cei3d
