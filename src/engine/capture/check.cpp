@@ -240,12 +240,12 @@ void forget(const Area& area, std::vector<uint8_t>& mask) {
 void doubt_masks(std::vector<JudgedMask> masks, CaptureReport& report) {
   std::vector<Area> unsure(masks.size());
   if (report.normalization) unsure = check_moves(masks, *report.normalization, report.findings);
-  std::vector<std::vector<uint8_t>> kept;
-  kept.reserve(masks.size());
+  std::vector<std::vector<uint8_t>> changed(masks.size());
   for (size_t i = 0; i < masks.size(); ++i) {
-    kept.emplace_back(masks[i].mask.begin(), masks[i].mask.end());
-    forget(unsure[i], kept[i]);
-    masks[i].mask = kept[i];
+    if (unsure[i].empty()) continue;
+    changed[i].assign(masks[i].mask.begin(), masks[i].mask.end());
+    forget(unsure[i], changed[i]);
+    masks[i].mask = changed[i];
   }
   const std::vector<MaskDoubt> doubts = check_silhouettes(masks, report.normalization, report.findings);
   for (size_t i = 0; i < masks.size(); ++i) {

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "core/base/error.h"
+#include "core/base/parallel.h"
 #include "engine/capture/doctor.h"
 #include "engine/capture/moved_part.h"
 
@@ -43,9 +44,11 @@ std::vector<Area> check_moves(std::span<const JudgedMask> masks, const Normaliza
   std::vector<Area> unsure(masks.size());
   const std::optional<MovedPart> part = find_moved_part(small_masks(hull, normalization, kMaxSide));
   if (!part) return unsure;
-  for (size_t k = 0; k < order.size(); ++k)
-    if (!part->shown_by_most(k))
-      unsure[order[k]] = seen_hull(part->place, normalization.unit_from_capture(hull[k].camera));
+  parallel_for(int(order.size()), [&](int k) {
+    if (!part->shown_by_most(size_t(k)))
+      unsure[order[size_t(k)]] =
+          seen_hull(part->place, normalization.unit_from_capture(hull[size_t(k)].camera));
+  });
   findings.push_back(finding_of(*part, masks.size(), masks[order[part->first - 1]].view->name,
                                 masks[order[part->first]].view->name));
   return unsure;

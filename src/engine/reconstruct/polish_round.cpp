@@ -66,20 +66,19 @@ void forget_estimate(RunState& state) {
   state.descent_seconds = 0;
 }
 
-// Seconds of this round's descent, if the estimate before it took state.look_seconds and those of later
-// rounds take as long.
-double descent_seconds(const RunContext& run, const RunState& state, int round) {
-  const int rounds_left = run.plan.polish_rounds - round;
-  const double begin = run.progress.elapsed() - state.descent_seconds,
-               left = state.polish_deadline - begin - (rounds_left - 1) * state.look_seconds;
-  return std::clamp(left / rounds_left, std::min(1.0, run.plan.polish), run.plan.polish);
+// Of this round's descent, if the estimates of later rounds take as long as the one before it.
+double seconds_of_descent(const RunContext& run, const RunState& state, int round) {
+  const double begin = run.progress.elapsed() - state.descent_seconds;
+  return std::max(std::min(1.0, run.plan.polish),
+                  descent_seconds(state.polish_deadline - begin, run.plan.polish_rounds - round,
+                                  state.look_seconds, kMinPolishShare * run.plan.polish));
 }
 
 PolishOptions options_of(const RunContext& run, RunState& state, int round,
                          const Stage::Checkpoint& checkpoint) {
   PolishOptions options = run.preset.polish;
   options.steps = run.plan.polish_steps;
-  options.seconds = run.plan.polish > 0 ? descent_seconds(run, state, round) : 0;
+  options.seconds = run.plan.polish > 0 ? seconds_of_descent(run, state, round) : 0;
   options.spent = state.descent_seconds;
   options.clock = run.progress.clock();
   options.seed = run.seed + uint64_t(round);
@@ -92,6 +91,12 @@ PolishOptions options_of(const RunContext& run, RunState& state, int round,
 }
 
 }  // namespace
+
+double descent_seconds(double left, int rounds, double look, double least) {
+  const auto of_each = [&](int n) { return (left - (n - 1) * look) / n; };
+  while (rounds > 1 && of_each(rounds) < least) --rounds;
+  return of_each(rounds);
+}
 
 void polish(const RunContext& run, RunState& state, int round, const Stage::Checkpoint& checkpoint) {
   const bool begun = !state.descent.tensors.empty();

@@ -27,8 +27,8 @@ constexpr double kFar = 1.25;  // a residual this much above the best ends the s
 // of many colors the ratio is 1 (dtu24), on a metal 0.2 (teapot).
 constexpr double kMaxMetalRatio = 0.5;
 // Several materials always fit a little better than one. They are chosen only if the residual falls below
-// this factor, and by more than the noise of photographs, 37 dB.
-constexpr double kMaxSeveralRatio = 0.75, kNoise = 2e-4;
+// this factor, and by more than the noise of good photographs, 40 dB.
+constexpr double kMaxSeveralRatio = 0.75, kNoise = 1e-4;
 // If the light was scaled up by more than this to keep the albedo at most 1, its strength is unknown.
 constexpr float kMaxKnownGain = 1.1f;
 // If the light was scaled up by more than this, it has faded in the separation: reflections do not determine
