@@ -11,9 +11,6 @@
 namespace cei3d {
 namespace {
 
-// Minimum share of a descent's planned time; less is not worth another estimate of light and material.
-constexpr double kMinPolishShare = 1.0 / 6;
-
 // Sets the end of all rounds in the first.
 bool has_time(const RunContext& run, RunState& state, int round) {
   const Plan& plan = run.plan;
@@ -71,7 +68,7 @@ double seconds_of_descent(const RunContext& run, const RunState& state, int roun
   const double begin = run.progress.elapsed() - state.descent_seconds;
   return std::max(std::min(1.0, run.plan.polish),
                   descent_seconds(state.polish_deadline - begin, run.plan.polish_rounds - round,
-                                  state.look_seconds, kMinPolishShare * run.plan.polish));
+                                  state.look_seconds, run.plan.polish));
 }
 
 PolishOptions options_of(const RunContext& run, RunState& state, int round,
@@ -92,10 +89,11 @@ PolishOptions options_of(const RunContext& run, RunState& state, int round,
 
 }  // namespace
 
-double descent_seconds(double left, int rounds, double look, double least) {
+double descent_seconds(double left, int rounds, double look, double planned) {
   const auto of_each = [&](int n) { return (left - (n - 1) * look) / n; };
-  while (rounds > 1 && of_each(rounds) < least) --rounds;
-  return of_each(rounds);
+  int kept = rounds;
+  while (kept > 1 && of_each(kept) < kMinPolishShare * planned) --kept;
+  return std::min(of_each(kept), planned * rounds / kept);
 }
 
 void polish(const RunContext& run, RunState& state, int round, const Stage::Checkpoint& checkpoint) {

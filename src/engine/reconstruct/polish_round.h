@@ -8,8 +8,10 @@
 namespace cei3d {
 
 // Seconds of a round's descent. left: for it and all rounds after it, each of which begins with an estimate
-// of `look` seconds. Rounds whose descent would have less than `least` are left out, the last ones first.
-double descent_seconds(double left, int rounds, double look, double least);
+// of `look` seconds. planned: of each descent, at most. Rounds whose descent would have less than
+// kMinPolishShare of that are left out, the last ones first, and leave their time to the others.
+inline constexpr double kMinPolishShare = 1.0 / 6;
+double descent_seconds(double left, int rounds, double look, double planned);
 
 // Skipped if there is no time. round: from 0 on.
 void polish(const RunContext&, RunState&, int round, const Stage::Checkpoint&);

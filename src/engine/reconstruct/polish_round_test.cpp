@@ -7,15 +7,21 @@ namespace cei3d {
 namespace {
 
 TEST(PolishRound, RoundsShareWhatTheirEstimatesLeave) {
-  const double first = descent_seconds(200, 2, 40, 10);
+  const double first = descent_seconds(200, 2, 40, 90);
   EXPECT_DOUBLE_EQ(first, 80);
-  EXPECT_DOUBLE_EQ(descent_seconds(200 - first - 40, 1, 40, 10), 80);  // after the second estimate
+  EXPECT_DOUBLE_EQ(descent_seconds(200 - first - 40, 1, 40, 90), 80);  // after the second estimate
 }
 
 TEST(PolishRound, ARoundThatWouldBeTooShortLeavesItsTimeToThoseBefore) {
-  EXPECT_DOUBLE_EQ(descent_seconds(150, 2, 129, 11), 150);
-  EXPECT_DOUBLE_EQ(descent_seconds(150, 2, 127, 11), 11.5);
-  EXPECT_DOUBLE_EQ(descent_seconds(150, 3, 129, 11), 150);
+  EXPECT_DOUBLE_EQ(descent_seconds(150, 2, 131, 90), 150);
+  EXPECT_DOUBLE_EQ(descent_seconds(150, 2, 120, 90), 15);
+  EXPECT_DOUBLE_EQ(descent_seconds(150, 3, 131, 90), 150);
+}
+
+// What the plan has for later stages stays theirs.
+TEST(PolishRound, NoneTakesMoreThanWhatWasPlanned) {
+  EXPECT_DOUBLE_EQ(descent_seconds(250, 2, 10, 90), 90);
+  EXPECT_DOUBLE_EQ(descent_seconds(250, 2, 240, 90), 180);
 }
 
 }  // namespace
