@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/capture/cell_votes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/base/parallel.h"

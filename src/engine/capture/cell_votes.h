@@ -2,7 +2,6 @@
 // What the masks of several views say about places of the unit frame.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>

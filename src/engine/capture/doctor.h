@@ -42,8 +42,9 @@ std::vector<MaskDoubt> check_silhouettes(std::span<const JudgedMask> masks,
                                          const std::optional<Normalization>& normalization,
                                          std::vector<Finding>& findings);
 
-// A part that was moved between two photographs, in the order of their names. Returns, for each mask, the
-// pixels of its view where the part may be, if fewer views show it as this one does; else nothing.
+// A part that was moved between two photographs, which were taken in the order of their names. Returns one
+// area for each mask: in the views before the move or in those after it, whichever are fewer, the pixels
+// where the part may be in either position; in the others, and if nothing moved, an empty one.
 std::vector<Area> check_moves(std::span<const JudgedMask> masks, const Normalization&,
                               std::vector<Finding>& findings);
 

@@ -13,7 +13,8 @@ namespace cei3d {
 namespace {
 
 constexpr Cells kCells{96};
-constexpr double kAgainst = 0.15;  // share of the other views that may see background in a cell of the object
+constexpr double kTolerance =
+    0.15;  // share of the other views that may see background in a cell of the object
 // Number of views nearest in direction: a hole that is really there is seen by most of them.
 constexpr size_t kNear = 8;
 constexpr double kNearCosine = 0.64;  // 50 degrees
@@ -26,7 +27,7 @@ constexpr double kAlike = 0.1;  // focal lengths of one camera differ by less
 
 class Votes {
  public:
-  explicit Votes(const std::vector<HullMask>& views) : views_(views), cells_(kCells, kAgainst) {
+  explicit Votes(const std::vector<HullMask>& views) : views_(views), cells_(kCells, kTolerance) {
     for (const HullMask& view : views) cells_.add(samples_of(view, kCells));
     for (size_t v = 0; v < views.size(); ++v) near_.push_back(near_views(v));
   }

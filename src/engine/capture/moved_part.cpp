@@ -189,14 +189,18 @@ Area seen_hull(std::span<const Vec3d> points, const Camera& camera) {
   for (const Vec3d p : points)
     if (const Vec3d at = camera.project(p); at.z > 0) seen.push_back({at.x, at.y});
   const std::vector<Vec2d> outline = convex_hull(std::move(seen));
-  Area out(size_t(camera.width) * size_t(camera.height), outline.size() > 2);
-  for (size_t k = 0; k < outline.size() && outline.size() > 2; ++k) {
-    const Vec2d a = outline[k], b = outline[(k + 1) % outline.size()];
-    for (int y = 0; y < camera.height; ++y)
-      for (int x = 0; x < camera.width; ++x)
-        if ((b.x - a.x) * (y + 0.5 - a.y) < (b.y - a.y) * (x + 0.5 - a.x))
-          out[size_t(y) * size_t(camera.width) + size_t(x)] = 0;
-  }
+  Area out(size_t(camera.width) * size_t(camera.height));
+  if (outline.size() < 3) return out;
+  const auto inside = [&](Vec2d p) {
+    for (size_t k = 0; k < outline.size(); ++k) {
+      const Vec2d from = outline[k], to = outline[(k + 1) % outline.size()];
+      if (signed_area(to - from, p - from) < 0) return false;
+    }
+    return true;
+  };
+  for (int y = 0; y < camera.height; ++y)
+    for (int x = 0; x < camera.width; ++x)
+      out[size_t(y) * size_t(camera.width) + size_t(x)] = inside({x + 0.5, y + 0.5});
   return out;
 }
 

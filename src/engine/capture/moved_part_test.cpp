@@ -56,20 +56,14 @@ double share_of(const Area& part, const Area& whole) {
   return double(both) / double(pixels_in(whole));
 }
 
-TEST(MovedPart, IsFoundWithTheTimeOfItsMove) {
-  const std::optional<MovedPart> part = find_moved_part(masks_of(26, 17));
-  ASSERT_TRUE(part.has_value());
-  EXPECT_NEAR(double(part->first), 26, kUncertain);
-  EXPECT_TRUE(part->shown_by_most(0));
-  EXPECT_FALSE(part->shown_by_most(26));
-}
-
-TEST(MovedPart, KeepsThePositionThatMostViewsShow) {
-  const std::optional<MovedPart> part = find_moved_part(masks_of(15, 30));
-  ASSERT_TRUE(part.has_value());
-  EXPECT_NEAR(double(part->first), 15, kUncertain);
-  EXPECT_FALSE(part->shown_by_most(0));
-  EXPECT_TRUE(part->shown_by_most(15));
+TEST(MovedPart, IsFoundWithTheTimeOfItsMoveAndThePositionOfMostViews) {
+  for (const auto [before, after] : {std::pair{26, 17}, {15, 30}}) {
+    const std::optional<MovedPart> part = find_moved_part(masks_of(before, after));
+    ASSERT_TRUE(part.has_value()) << before;
+    EXPECT_NEAR(double(part->first), before, kUncertain);
+    EXPECT_EQ(part->shown_by_most(0), before > after) << before;
+    EXPECT_EQ(part->shown_by_most(size_t(before)), before < after) << before;
+  }
 }
 
 // What sticks out of the body in one position and not in the other lies in the place, and little else does.

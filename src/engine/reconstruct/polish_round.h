@@ -7,10 +7,11 @@
 
 namespace cei3d {
 
-// Seconds of a round's descent. left: for it and all rounds after it, each of which begins with an estimate
-// of `look` seconds. planned: of each descent, at most. Rounds whose descent would have less than
-// kMinPolishShare of that are left out, the last ones first, and leave their time to the others.
+// Minimum share of a descent's planned time; less is not worth another estimate of light and material.
 inline constexpr double kMinPolishShare = 1.0 / 6;
+// Seconds of a round's descent. left: for it and all rounds after it, each of which begins with an estimate
+// of `look` seconds. planned: for each descent. Rounds that would get less than the minimum share of that are
+// left out, the last ones first, and leave their time to the others.
 double descent_seconds(double left, int rounds, double look, double planned);
 
 // Skipped if there is no time. round: from 0 on.

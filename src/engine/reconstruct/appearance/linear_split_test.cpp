@@ -244,6 +244,20 @@ TEST(LinearSplit, FindsSeveralMaterialsAndTheirBorder) {
   EXPECT_LT(albedo.error, 0.2);
 }
 
+// A cap of rough metal: one dielectric explains the pictures to 36 dB, under a light that is wrong.
+TEST(LinearSplit, FindsRoughMetalBesideRoughPaint) {
+  const Material above{0.7f, 0.5f, 1}, below{0.7f, 0.5f, 0};
+  const Drawn d = draw([&](Vec3f p) { return p.z > 0.35 ? above : below; },
+                       [](Vec3f p) { return p.z > 0.35 ? gold_and_copper(p) : paint(p); });
+  Progress quiet;
+  const LinearSplit split = linear_split(*d.transport, d.samples(), small(), quiet);
+  ASSERT_EQ(split.materials.size(), d.base.size());
+  size_t wrong = 0;
+  for (const uint32_t v : seen(d))
+    wrong += (split.materials[v].metalness > 0.5f) != (d.surface->mesh().positions[v].z > 0.35);
+  EXPECT_LT(double(wrong), 0.1 * double(seen(d).size()));
+}
+
 TEST(LinearSplit, IsTheSameEveryTimeAndSaysWhenThereIsTooLittle) {
   const Drawn d = draw({0.3f, 0.5f, 0});
   LinearSplitOptions o = small();
