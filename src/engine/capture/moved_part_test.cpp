@@ -57,7 +57,7 @@ double share_of(const Area& part, const Area& whole) {
 }
 
 TEST(MovedPart, IsFoundWithTheTimeOfItsMoveAndThePositionOfMostViews) {
-  for (const auto [before, after] : {std::pair{26, 17}, {15, 30}}) {
+  for (const auto& [before, after] : {std::pair{26, 17}, {15, 30}}) {
     const std::optional<MovedPart> part = find_moved_part(masks_of(before, after));
     ASSERT_TRUE(part.has_value()) << before;
     EXPECT_NEAR(double(part->first), before, kUncertain);
