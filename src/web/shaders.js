@@ -155,8 +155,8 @@ vec3 lit(vec3 n, vec3 v, float roughness, float specular, float metalness) {
   vec4 surface = texture(uSurface, uv);
   vec2 smoothed = texture(uLobe, vec2(0.5, uv.y)).xy;
   float dielectric = (1.0 - metalness) * uDielectricF0 * specular;
-  float f0 = dielectric + metalness * uMetalF0;
-  float share = f0 * surface.x / max(f0 * surface.x + surface.y, 1e-6);
+  float f0 = dielectric + metalness * uMetalF0, f90 = mix(min(2.0 * specular, 1.0), 1.0, metalness);
+  float share = f0 * surface.x / max(f0 * surface.x + f90 * surface.y, 1e-6);
   vec3 mirror = normalize(2.0 * nv * n - v), across = cross(n, v);
   across /= max(length(across), 1e-4);
   vec3 baseAxis, fresnelAxis;
@@ -165,7 +165,7 @@ vec3 lit(vec3 n, vec3 v, float roughness, float specular, float metalness) {
   vec3 reflected = withObject(sky, n, mirror, normalize(mix(fresnelAxis, baseAxis, share)), smoothed);
   vec3 irradiance = texture(uIrradiance, octahedral(uRoom * n, uIrradianceSide)).rgb * vVisibility + vBounce;
   vec3 color = albedo * irradiance * ((1.0 - metalness) / kPi * surface.z) +
-               ((albedo * metalness + dielectric) * surface.x + surface.y) * reflected;
+               ((albedo * metalness + dielectric) * surface.x + f90 * surface.y) * reflected;
   return mix(max(color, 0.0) * uStrength, albedo, vAlbedo.a);
 }`, 'color = lit(n, v, vMaterial.x, vMaterial.y, vMaterial.z);');
 

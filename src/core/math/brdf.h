@@ -8,9 +8,9 @@
 
 namespace cei3d {
 
-// F0 of a dielectric is kDielectricF0 * specular, 0.04 for the default specular of 0.5. [Burley 2012, sec.
-// 5.5]
-inline constexpr float kDielectricF0 = 0.08f;
+// F0 of a dielectric is kDielectricF0 * specular [Burley 2012, sec. 5.5]; a usual one has a refractive index
+// of 1.5, hence 0.04.
+inline constexpr float kDielectricF0 = 0.08f, kUsualSpecular = 0.5f;
 
 // Smoother surfaces are shaded with this roughness: sharper lobes exceed single precision, and the difference
 // is not visible in images.

@@ -98,7 +98,7 @@ inline constexpr float kMetalF0 = 0.8f;
 template <class T>
 HD T base_share(SplitSum<T> s, T specular, T metalness) {
   const T f0 = dielectric_f0(specular, metalness) + metalness * T(kMetalF0);
-  return f0 * s.scale / max(reflectance(s, f0), T(1e-6f));
+  return f0 * s.scale / max(reflectance(s, f0, f90_of(specular, metalness)), T(1e-6f));
 }
 
 // The mean over both lobes of something that each of them has; share: base_share().
@@ -107,7 +107,7 @@ HD V mean_of_lobes(T share, V base, V fresnel) {
   return base * share + fresnel * (T(1.0f) - share);
 }
 
-// The reflection of a point is F0 * scale * (radiance along the base lobe) + bias * (radiance along
+// The reflection of a point is F0 * scale * (radiance along the base lobe) + F90 * bias * (radiance along
 // Fresnel's), which is mean_of_lobes() times reflectance() if F0 is the one that base_share() takes. As a
 // function of the radiance:
 template <class T>
@@ -120,10 +120,10 @@ struct ReflectionGains {
   }
 };
 template <class T>
-HD ReflectionGains<T> reflection_gains(SplitSum<T> s, Vec3<T> f0) {
-  return {f0 * s.scale, s.bias};
+HD ReflectionGains<T> reflection_gains(SplitSum<T> s, Vec3<T> f0, T f90) {
+  return {f0 * s.scale, s.bias * f90};
 }
-// The reflection of a point as a function of F0, for given radiance along the lobes.
+// The reflection of a point whose F90 is 1 as a function of F0, for given radiance along the lobes.
 template <class T>
 struct ReflectedParts {
   Vec3<T> base;     // per unit of F0
@@ -170,15 +170,18 @@ HD SurfaceReflectionGrad<T> surface_reflection_grad(const ReflectionTables& t, V
   const LobeFrameGrad<T> base = lobe_frame_grad(t.base, n, v, roughness, d.base),
                          fresnel = lobe_frame_grad(t.fresnel, n, v, roughness, d.fresnel);
   const SplitSumGrad<T> s = split_sum_grad(t.split_sum, nv, roughness);
-  const T f0 = dielectric_f0(specular, metalness) + metalness * T(kMetalF0), sum = reflectance(s.value, f0);
+  const T f0 = dielectric_f0(specular, metalness) + metalness * T(kMetalF0),
+          f90 = f90_of(specular, metalness), sum = reflectance(s.value, f0, f90);
   const T k = select(sum < T(1e-6f), zero, d.share / (max(sum, T(1e-6f)) * max(sum, T(1e-6f))));
-  const T d_f0 = k * s.value.scale * s.value.bias;  // share = f0 scale / (f0 scale + bias)
-  const T d_scale = k * f0 * s.value.bias, d_bias = -(k * f0 * s.value.scale);
+  // share = f0 scale / (f0 scale + f90 bias)
+  const T both = k * s.value.scale * s.value.bias, d_f0 = both * f90, d_f90 = -(both * f0);
+  const T d_scale = k * f0 * s.value.bias * f90, d_bias = -(k * f0 * s.value.scale * f90);
   const T d_nv = d_scale * s.d_nv.scale + d_bias * s.d_nv.bias;
   return {
       base.d_n + fresnel.d_n + (v - n * nv) * d_nv, base.d_v + fresnel.d_v + (n - v * nv) * d_nv,
       base.d_roughness + fresnel.d_roughness + d_scale * s.d_roughness.scale + d_bias * s.d_roughness.bias,
-      d_f0 * (one - metalness) * T(kDielectricF0), d_f0 * (T(kMetalF0) - T(kDielectricF0) * specular)};
+      (one - metalness) * (d_f0 * T(kDielectricF0) + d_f90 * f90_slope(specular)),
+      d_f0 * (T(kMetalF0) - T(kDielectricF0) * specular) + d_f90 * (one - f90_of(specular, zero))};
 }
 
 }  // namespace cei3d

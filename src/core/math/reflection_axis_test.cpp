@@ -128,13 +128,14 @@ Vec3<D> moved(Vec3d x, Vec3d along, double by) {
   return {D(x.x, along.x * by), D(x.y, along.y * by), D(x.z, along.z * by)};
 }
 
-void expect_adjoint(Vec3d n, Vec3d v, double roughness, double metalness) {
+void expect_adjoint(Vec3d n, Vec3d v, double roughness, double specular, double metalness) {
   const Vec3d tangent = normalize(cross(n, Vec3d{0.2, 0.5, 0.8})), other = cross(n, tangent);
   const Vec3d side = normalize(cross(v, Vec3d{0.7, 0.1, 0.3})), up = cross(v, side);
   const ReflectionTables tables = reflection_tables();
   const SurfaceReflection<double> d{
       {{0.3, -0.7, 0.5}, {0.8, 0.1, -0.4}, 0.4, -0.6}, {{-0.2, 0.6, 0.9}, {-0.5, 0.2, 0.3}, -0.8, 0.7}, 0.55};
-  const SurfaceReflectionGrad<double> g = surface_reflection_grad(tables, n, v, roughness, 0.5, metalness, d);
+  const SurfaceReflectionGrad<double> g =
+      surface_reflection_grad(tables, n, v, roughness, specular, metalness, d);
   const double got[kMoves] = {dot(g.d_n, tangent), dot(g.d_n, other), dot(g.d_v, side), dot(g.d_v, up),
                               g.d_roughness,       g.d_specular,      g.d_metalness};
   for (int k = 0; k < kMoves; ++k) {
@@ -142,7 +143,7 @@ void expect_adjoint(Vec3d n, Vec3d v, double roughness, double metalness) {
     const Vec3<D> dn = moved(n, tangent * on(0) + other * on(1), 1),
                   dv = moved(v, side * on(2) + up * on(3), 1);
     const SurfaceReflection<D> r =
-        surface_reflection(tables, dn, dv, D(roughness, on(4)), D(0.5, on(5)), D(metalness, on(6)));
+        surface_reflection(tables, dn, dv, D(roughness, on(4)), D(specular, on(5)), D(metalness, on(6)));
     const auto along = [](Vec3<D> x, Vec3d by) {
       return derivative_of(x.x) * by.x + derivative_of(x.y) * by.y + derivative_of(x.z) * by.z;
     };
@@ -163,12 +164,30 @@ TEST(ReflectionAxis, ReflectionIsTheSameByGainsByPartsAndByTheMean) {
     for (const double nv : {0.1, 0.5, 0.95}) {
       const SplitSum<double> s = split_sum(split_sum_table(), nv, 0.4);
       const Vec3d albedo{kMetalF0, kMetalF0, kMetalF0}, f0 = f0_of(albedo, 0.5, metalness), white{1, 1, 1};
-      const Vec3d want = mean_of_lobes(base_share(s, 0.5, metalness), base, fresnel) * reflectance(s, f0);
-      EXPECT_NEAR(length(reflection_gains(s, f0).added_to(white, base, fresnel) - white - want), 0, 1e-12);
+      const Vec3d want =
+          mean_of_lobes(base_share(s, 0.5, metalness), base, fresnel) * reflectance(s, f0, 1.0);
+      EXPECT_NEAR(length(reflection_gains(s, f0, 1.0).added_to(white, base, fresnel) - white - want), 0,
+                  1e-12);
       const ReflectedParts<double> parts = reflected_parts(s, base, fresnel);
       EXPECT_NEAR(length(parts.sum(f0) - want), 0, 1e-12);
       EXPECT_NEAR(length(parts.removed_from(white, f0) + want - white), 0, 1e-12);
     }
+}
+
+// Below the usual strength.
+TEST(ReflectionAxis, TheStrengthScalesTheWholeReflectionOfADielectric) {
+  const ReflectionTables tables = reflection_tables();
+  const Vec3d n{0, 0, 1}, v = normalize(Vec3d{0.8, 0, 0.3}), black{0, 0, 0};
+  const SplitSum<double> s = split_sum(split_sum_table(), dot(n, v), 0.4);
+  const auto share = [&](double specular) {
+    return surface_reflection(tables, n, v, 0.4, specular, 0.0).share;
+  };
+  const auto strength = [&](double specular) {
+    return reflectance(s, f0_of(black, specular, 0.0), f90_of(specular, 0.0)).x;
+  };
+  EXPECT_NEAR(share(0.1), share(0.5), 1e-12);
+  EXPECT_NEAR(strength(0.1), strength(0.5) / 5, 1e-12);
+  EXPECT_NEAR(strength(1.0) - strength(0.5), 0.04 * s.scale, 1e-8);
 }
 
 TEST(ReflectionAxis, AdjointEqualsDualNumbersInEveryArgument) {
@@ -176,7 +195,8 @@ TEST(ReflectionAxis, AdjointEqualsDualNumbersInEveryArgument) {
     Rng rng(5, 0, i);
     const auto direction = [&] { return normalize(Vec3d{rng.normal(), rng.normal(), rng.normal()}); };
     const Vec3d n = direction(), v = normalize(direction() + n * 1.3);
-    expect_adjoint(n, v, 0.06 + 0.9 * double(rng.uniform()), i % 3 == 0 ? 0.0 : double(rng.uniform()));
+    expect_adjoint(n, v, 0.06 + 0.9 * double(rng.uniform()), i % 2 == 0 ? 0.5 : double(rng.uniform()),
+                   i % 3 == 0 ? 0.0 : double(rng.uniform()));
   }
 }
 

@@ -56,6 +56,19 @@ HD Vec3<T> f0_of(Vec3<T> albedo, T specular, T metalness) {
   const T dielectric = dielectric_f0(specular, metalness);
   return albedo * metalness + Vec3<T>{dielectric, dielectric, dielectric};
 }
+// Reflectance at grazing angles (F90). A dielectric that reflects less than usual along the normal does so at
+// all angles, as one with pores does: below kUsualSpecular the strength is that of the whole reflection, like
+// glTF's specularFactor.
+template <class T>
+HD T f90_of(T specular, T metalness) {
+  const T one(1.0f);
+  return metalness + (one - metalness) * min(specular * T(1 / kUsualSpecular), one);
+}
+// Its derivative by `specular`, of a dielectric.
+template <class T>
+HD T f90_slope(T specular) {
+  return select(specular < T(kUsualSpecular), T(1 / kUsualSpecular), T(0.0f));
+}
 // Fraction of the irradiance that a white surface sends to the viewer, but for diffuse_view().
 template <class T>
 HD T diffuse_share(T metalness) {
@@ -63,12 +76,12 @@ HD T diffuse_share(T metalness) {
 }
 // Fraction of the reflected radiance that reaches the viewer, of one channel or of three.
 template <class T>
-HD T reflectance(SplitSum<T> s, T f0) {
-  return f0 * s.scale + s.bias;
+HD T reflectance(SplitSum<T> s, T f0, T f90) {
+  return f0 * s.scale + f90 * s.bias;
 }
 template <class T>
-HD Vec3<T> reflectance(SplitSum<T> s, Vec3<T> f0) {
-  return f0 * s.scale + Vec3<T>{s.bias, s.bias, s.bias};
+HD Vec3<T> reflectance(SplitSum<T> s, Vec3<T> f0, T f90) {
+  return f0 * s.scale + Vec3<T>{s.bias, s.bias, s.bias} * f90;
 }
 
 // The radiance as a linear function of the albedo: diffuse = diffuse_gain * albedo, specular = specular_gain
@@ -90,7 +103,8 @@ HD ShadingTerms<T> shading_terms(const float* table, const ShadingPoint<T>& p) {
   const SplitSum<T> s = split_sum(table, p.nv, p.roughness);
   const T view = diffuse_view(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)), p.diffuse_light);
   const Vec3<T> white{one, one, one}, black{zero, zero, zero};
-  const Vec3<T> offset = reflectance(s, f0_of(black, p.specular, p.metalness));
+  const Vec3<T> offset =
+      reflectance(s, f0_of(black, p.specular, p.metalness), f90_of(p.specular, p.metalness));
   return {p.irradiance * (diffuse_share(p.metalness) * view), p.reflected * ((white * p.metalness) * s.scale),
           p.reflected * offset};
 }
@@ -104,6 +118,7 @@ HD ShadingPoint<T> shading_grad(const float* table, const ShadingPoint<T>& p, Ve
   const DiffuseViewGrad<T> view =
       diffuse_view_grad(clamp(p.nv, zero, one), max(p.roughness, T(kMinRoughness)), p.diffuse_light);
   const Vec3<T> f0 = f0_of(p.albedo, p.specular, p.metalness);
+  const T f90 = f90_of(p.specular, p.metalness), dielectric_f90 = f90_of(p.specular, zero);
   const T lit = dot(d_diffuse, p.albedo * p.irradiance), mirrored = dot(d_specular, p.reflected),
           mirrored_f0 = dot(d_specular, p.reflected * f0),
           mirrored_albedo = dot(d_specular, p.reflected * p.albedo);
@@ -113,13 +128,15 @@ HD ShadingPoint<T> shading_grad(const float* table, const ShadingPoint<T>& p, Ve
   d.albedo =
       d_diffuse * p.irradiance * (k * view.value) + d_specular * p.reflected * (p.metalness * s.value.scale);
   d.roughness = lit * k * select(roughness_clamped, zero, view.d_roughness) +
-                mirrored_f0 * s.d_roughness.scale + mirrored * s.d_roughness.bias;
-  d.specular = mirrored * s.value.scale * (one - p.metalness) * T(kDielectricF0);
-  d.metalness = (mirrored_albedo - mirrored * T(kDielectricF0) * p.specular) * s.value.scale -
-                lit * T(1 / kPi) * view.value;
-  d.nv = lit * k * select(nv_clamped, zero, view.d_nv) + mirrored_f0 * s.d_nv.scale + mirrored * s.d_nv.bias;
+                mirrored_f0 * s.d_roughness.scale + mirrored * s.d_roughness.bias * f90;
+  d.specular = mirrored * (one - p.metalness) *
+               (s.value.scale * T(kDielectricF0) + s.value.bias * f90_slope(p.specular));
+  d.metalness = (mirrored_albedo - mirrored * T(kDielectricF0) * p.specular) * s.value.scale +
+                mirrored * s.value.bias * (one - dielectric_f90) - lit * T(1 / kPi) * view.value;
+  d.nv = lit * k * select(nv_clamped, zero, view.d_nv) + mirrored_f0 * s.d_nv.scale +
+         mirrored * s.d_nv.bias * f90;
   d.irradiance = d_diffuse * p.albedo * (k * view.value);
-  d.reflected = d_specular * reflectance(s.value, f0);
+  d.reflected = d_specular * reflectance(s.value, f0, f90);
   d.diffuse_light = {lit * k * view.d_light.lv, lit * k * view.d_light.grazing,
                      lit * k * view.d_light.grazing_lv};
   return d;

@@ -29,14 +29,20 @@ Picture exact(const Image& image, const std::string& name, PictureKind kind) {
 
 Image srgb(const Image& linear) {
   Image out(linear.width, linear.height, 3);
-  const size_t texels = size_t(out.width) * out.height;
-  parallel_ranges(int(texels), 1 << 16, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i)
-      for (int c = 0; c < 3; ++c) {
-        const float* p = &linear.data[size_t(i) * linear.channels];
-        out.data[3 * size_t(i) + c] = srgb_from_linear(p[linear.channels == 3 ? c : 0]);
-      }
+  parallel_ranges(int(out.data.size()), 1 << 16, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) out.data[size_t(i)] = srgb_from_linear(linear.data[size_t(i)]);
   });
+  return out;
+}
+
+// AssetPictures::specular.
+Image specular_picture(const Image& strength) {
+  Image out(strength.width, strength.height, 4);
+  for (size_t i = 0; i < strength.data.size(); ++i) {
+    const float s = strength.data[i], color = srgb_from_linear(max(s, kUsualSpecular));
+    const float texel[] = {color, color, color, f90_of(s, 0.0f)};
+    std::copy(std::begin(texel), std::end(texel), &out.data[4 * i]);
+  }
   return out;
 }
 
@@ -62,7 +68,7 @@ AssetPictures encode(const Textures& t, PictureKind kind) {
       [&] { out.base_color = encoded(srgb(t.base_color), "base_color", kind); },
       [&] { out.orm = encoded(t.orm, "occlusion_roughness_metalness", kind); },
       [&] {
-        if (!t.specular.empty()) out.specular = encoded(srgb(t.specular), "specular", kind);
+        if (!t.specular.empty()) out.specular = exact(specular_picture(t.specular), "specular", kind);
       }};
   parallel_for(int(std::size(jobs)), [&](int i) { jobs[i](); });
   return out;

@@ -23,10 +23,11 @@ struct Picture {
 };
 
 struct AssetPictures {
-  Picture base_color;               // RGB, sRGB
-  Picture orm;                      // R: occlusion, G: roughness, B: metalness
-  Picture normal;                   // tangent space, y up
-  std::optional<Picture> specular;  // RGB, sRGB: specular strength; none: the same everywhere
+  Picture base_color;  // RGB, sRGB
+  Picture orm;         // R: occlusion, G: roughness, B: metalness
+  Picture normal;      // tangent space, y up
+  // RGBA, of a specular strength s. RGB, sRGB: max(s, 0.5); alpha: min(2 s, 1). None: the same everywhere.
+  std::optional<Picture> specular;
   float middle_specular = 0.5f;
 };
 

@@ -18,8 +18,8 @@ struct MeshMaterials {
 };
 
 // Writes POSITION, NORMAL and COLOR_0 (linear, float) where the mesh has them; one primitive per used
-// material, with roughness and metalness as factors; a specular other than 0.5 as KHR_materials_specular with
-// F0 = 0.08 specular. Vertices stay in the capture frame; the node holds the placement.
+// material, with roughness and metalness as factors; a specular other than 0.5 as KHR_materials_specular.
+// Vertices stay in the capture frame; the node holds the placement.
 std::string encode_glb(const Mesh& mesh, const MeshMaterials& materials, const Placement& placement);
 
 }  // namespace cei3d

@@ -90,7 +90,7 @@ class Description {
     json_["extensionsUsed"].push_back("KHR_materials_specular");
     Json& extension = m["extensions"]["KHR_materials_specular"];
     extension = specular_extension(p.specular ? 1 : p.middle_specular);
-    if (p.specular) extension["specularColorTexture"] = texture(*p.specular);
+    if (p.specular) extension["specularTexture"] = extension["specularColorTexture"] = texture(*p.specular);
     return m;
   }
 

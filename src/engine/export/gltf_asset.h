@@ -11,7 +11,7 @@ namespace cei3d {
 
 // Everything in one file. Named parts are nodes of their own below the object's. One material: base color,
 // metallic-roughness with occlusion, tangent-space normals; a specular strength other than 0.5 as
-// KHR_materials_specular, F0 = 0.08 specular; WebP pictures by EXT_texture_webp. Vertices stay in the capture
+// KHR_materials_specular; WebP pictures by EXT_texture_webp. Vertices stay in the capture
 // frame; the node holds the placement.
 std::string encode_glb(const Asset& asset);
 

@@ -7,7 +7,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/math/axis_box.h"
-#include "core/math/brdf.h"
+#include "core/math/shading.h"
 
 namespace cei3d {
 namespace {
@@ -80,9 +80,8 @@ Json gltf_head(const std::string& name, const Placement& p) {
 }
 
 Json specular_extension(float specular) {
-  constexpr float kCoreF0 = 0.04f;  // of glTF without extensions
-  const float s = kDielectricF0 / kCoreF0 * specular;
-  return {{"specularColorFactor", {s, s, s}}};
+  const float s = max(specular / kUsualSpecular, 1.0f);
+  return {{"specularFactor", f90_of(specular, 0.0f)}, {"specularColorFactor", {s, s, s}}};
 }
 
 std::string glb_of(Json gltf, GltfBuffer buffer) {

@@ -40,8 +40,8 @@ class GltfBuffer {
 // asset, scene and the one node; `mesh` 0 is left to the caller.
 Json gltf_head(const std::string& name, const Placement& placement);
 
-// KHR_materials_specular of a specular strength. Its F0 is 0.04 specularColorFactor; its specularFactor would
-// dim grazing reflections, too.
+// KHR_materials_specular of a specular strength. Its F0 is 0.04 specularColorFactor * specularFactor, its F90
+// specularFactor.
 Json specular_extension(float specular);
 
 // Error: larger than the format can say.

@@ -53,9 +53,19 @@ TEST(Gltf, HoldsTheMeshAndTheMaterial) {
   EXPECT_EQ(j["accessors"][0]["max"], Json({1.0, 2.0, 3.0}));
   EXPECT_EQ(j["materials"][0]["pbrMetallicRoughness"]["roughnessFactor"], 0.25f);
   EXPECT_EQ(j["materials"][0]["pbrMetallicRoughness"]["metallicFactor"], 1.0f);
-  EXPECT_EQ(j["materials"][0]["extensions"]["KHR_materials_specular"]["specularColorFactor"][0], 1.4f);
+  const Json& specular = j["materials"][0]["extensions"]["KHR_materials_specular"];
+  EXPECT_EQ(specular["specularColorFactor"][0], 1.4f);
+  EXPECT_EQ(specular["specularFactor"], 1);
   EXPECT_EQ(j["extensionsUsed"][0], "KHR_materials_specular");
   EXPECT_FALSE(parse_glb(encode_glb(m, {{{}}, {}}, upright({0, 0, 1}))).json.contains("extensionsUsed"));
+}
+
+// Weaker at all angles, as glTF's factor is.
+TEST(Gltf, WritesAWeakReflectionAsAFactorOnTheWhole) {
+  const Json j = parse_glb(encode_glb(tetrahedron(), {{{0.25f, 0.1f, 0}}, {}}, upright({0, 0, 1}))).json;
+  const Json& specular = j["materials"][0]["extensions"]["KHR_materials_specular"];
+  EXPECT_EQ(specular["specularColorFactor"][0], 1);
+  EXPECT_EQ(specular["specularFactor"], 0.2f);
 }
 
 TEST(Gltf, EveryMaterialHasItsTriangles) {

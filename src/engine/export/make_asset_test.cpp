@@ -8,6 +8,8 @@
 
 #include "core/base/error.h"
 #include "core/base/json.h"
+#include "core/math/color.h"
+#include "core/math/shading.h"
 #include "engine/export/gltf_asset.h"
 #include "engine/export/obj.h"
 #include "engine/export/tangents.h"
@@ -137,6 +139,27 @@ TEST_F(MakeAsset, MaterialsVaryFromTexelToTexel) {
   EXPECT_GT(rough, 1000u);
   EXPECT_GT(smooth, 1000u);
   EXPECT_TRUE(made_->textures.specular.empty());
+}
+
+// With the factors that the file gives them, glTF's F0 and F90 are those of the shading model.
+TEST_F(MakeAsset, APictureOfStrengthsHoldsBothOfGltfsFactors) {
+  Textures textures = made_->textures;
+  textures.specular = Image(4, 1, 1);
+  textures.specular.data = {0, 0.2f, 0.5f, 1};
+  Asset asset = made_->asset;
+  asset.pictures = encode(textures, PictureKind::png);
+  const Json material = Json::parse(gltf_files(asset, "ball.gltf").back().bytes)["materials"][0];
+  const Json& specular = material["extensions"]["KHR_materials_specular"];
+  EXPECT_EQ(specular["specularTexture"]["index"], specular["specularColorTexture"]["index"]);
+  const Image picture = decode_png(asset.pictures.specular->bytes, "specular.png");
+  ASSERT_EQ(picture.channels, 4);
+  for (int x = 0; x < 4; ++x) {
+    const float strength = textures.specular.data[size_t(x)], *texel = picture.at(x, 0);
+    const float factor = texel[3] * specular["specularFactor"].get<float>(),
+                color = linear_from_srgb(texel[0]) * specular["specularColorFactor"][0].get<float>();
+    EXPECT_NEAR(factor, f90_of(strength, 0.0f), 0.005);
+    EXPECT_NEAR(0.04f * color * factor, dielectric_f0(strength, 0.0f), 0.0005);
+  }
 }
 
 TEST_F(MakeAsset, GltfNamesItsFilesAndTheBufferHoldsTheArrays) {

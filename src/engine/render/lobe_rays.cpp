@@ -35,7 +35,8 @@ int lobe_ray_count(const Material& m, float nv) {
   const bool metal = m.metalness > 0;
   if (!metal) {
     const SplitSum<float> s = split_sum(split_sum_table(), nv, m.roughness);
-    if (reflectance(s, dielectric_f0(m.specular, m.metalness)) < kFaint) return kMinLobeRays;
+    const float f0 = dielectric_f0(m.specular, m.metalness), f90 = f90_of(m.specular, m.metalness);
+    if (reflectance(s, f0, f90) < kFaint) return kMinLobeRays;
   }
   const float rays = m.roughness * (metal ? kMetalRays : kDielectricRays);
   return std::clamp(int(rays + 0.5f), kMinLobeRays, metal ? kMaxMetalRays : kMaxDielectricRays);

@@ -20,7 +20,7 @@ struct Path {
 };
 
 // Continues it in a random direction; false where it ends.
-bool reflect(Path& path, Vec3f& out, Vec3f f0, float roughness, Rng& rng) {
+bool reflect(Path& path, Vec3f& out, Vec3f f0, float f90, float roughness, Rng& rng) {
   const float alpha = roughness * roughness, u = rng.uniform(), a = 2 * kPi * rng.uniform();
   const float c = std::sqrt((1 - u) / (1 + (alpha * alpha - 1) * u)), r = std::sqrt(1 - c * c);
   const Vec3f n = path.normal, v = path.to_camera;
@@ -32,7 +32,8 @@ bool reflect(Path& path, Vec3f& out, Vec3f f0, float roughness, Rng& rng) {
   const float nl = dot(n, out);
   if (vh <= 0 || nl <= 0 || nv <= 0) return false;
   for (int k = 0; k < 3; ++k)
-    path.weight[k] *= fresnel(f0[k], vh) * smith_g1(nv, alpha) * smith_g1(nl, alpha) * vh / (c * nv);
+    path.weight[k] *= f90 * fresnel(f0[k] / max(f90, 1e-6f), vh) * smith_g1(nv, alpha) * smith_g1(nl, alpha) *
+                      vh / (c * nv);
   return true;
 }
 
@@ -62,8 +63,9 @@ Vec3f traced_reflection(const Surface& surface, const SgMixture& sky, const Hit&
       const bool choose = m < 1 && bounce > 0;
       if (choose) path.weight = path.weight * 2.0f;
       Vec3f l;
-      if (!(choose && rng.uniform() < 0.5f ? scatter(path, l, diffuse, rng)
-                                           : reflect(path, l, f0, material.roughness, rng)))
+      if (!(choose && rng.uniform() < 0.5f
+                ? scatter(path, l, diffuse, rng)
+                : reflect(path, l, f0, f90_of(material.specular, m), material.roughness, rng)))
         break;
       const Vec3f from = path.position + path.normal * kRayLift;
       Surface::RayHit far;

@@ -17,6 +17,7 @@ Scattering::Scattering(Vec3f normal, Vec3f to_viewer, const Material& m, Vec3f a
       roughness_(m.roughness),
       alpha_(m.roughness * m.roughness),
       f0_(f0_of(albedo, m.specular, m.metalness)),
+      f90_(f90_of(m.specular, m.metalness)),
       model_(model) {
   diffuse_ = albedo * (1 - m.metalness);
   const float mirror = fresnel(luminance(f0_), nv_), base = luminance(diffuse_);
@@ -26,13 +27,13 @@ Scattering::Scattering(Vec3f normal, Vec3f to_viewer, const Material& m, Vec3f a
 Vec3f Scattering::reflected(Vec3f l) const {
   const float nl = dot(normal_, l);
   if (nl <= 0) return {0, 0, 0};
-  // Fresnel's term, and with it the whole, is linear in F0.
-  const float at_0 = microfacet_brdf(normal_, view_, l, 0.0f, roughness_),
-              at_1 = microfacet_brdf(normal_, view_, l, 1.0f, roughness_);
+  // Fresnel's term, and with it the whole, is linear in F0 and F90.
+  const float grazing = microfacet_brdf(normal_, view_, l, 0.0f, roughness_),
+              both = microfacet_brdf(normal_, view_, l, 1.0f, roughness_);
   float base = 1;
   if (model_ == Diffuse::burley)
     base = burley_diffuse(min(nl, 1.0f), min(nv_, 1.0f), dot(l, normalize(l + view_)), roughness_);
-  const Vec3f mirror = Vec3f{at_0, at_0, at_0} + f0_ * (at_1 - at_0);
+  const Vec3f mirror = Vec3f{grazing, grazing, grazing} * f90_ + f0_ * (both - grazing);
   return (mirror + diffuse_ * (base / kPi)) * nl;
 }
 

@@ -29,6 +29,7 @@ class Scattering {
   Tangents<float> tangents_;
   float nv_, roughness_, alpha_;
   Vec3f f0_, diffuse_;  // diffuse_: times pi
+  float f90_;
   float mirror_share_;  // probability that sample() takes a facet instead of the diffuse base
   Diffuse model_;
 };

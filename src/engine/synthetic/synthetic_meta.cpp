@@ -22,13 +22,14 @@ Json material_json(const SyntheticScene& scene, bool lambert) {
          {"color_linear", vector_json(f.color)}};
     if (f.second_color) r["second_color_linear"] = vector_json(*f.second_color);
   }
-  return {
-      {"model",
-       fmt::format("GGX microfacets (alpha = roughness^2, Smith masking, Fresnel's term of index 1.5, F0 = "
-                   "(1 - metalness) 0.08 specular + metalness albedo) over a {} diffuse base (1 - "
-                   "metalness) albedo / pi",
-                   lambert ? "Lambertian" : "Burley")},
-      {"regions", regions}};
+  return {{"model",
+           fmt::format(
+               "GGX microfacets (alpha = roughness^2, Smith masking, Fresnel's term of index 1.5, F0 = "
+               "(1 - metalness) 0.08 specular + metalness albedo, F90 = (1 - metalness) min(2 specular, 1) + "
+               "metalness) over a {} diffuse base (1 - "
+               "metalness) albedo / pi",
+               lambert ? "Lambertian" : "Burley")},
+          {"regions", regions}};
 }
 
 Json lighting_json(const SynthRequest& r, const SyntheticScene& scene,

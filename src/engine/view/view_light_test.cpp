@@ -47,7 +47,7 @@ class PageLight {
   Vec3f reflected(Vec3f n, Vec3f v, const Material& m) const {
     const Vec3f split = look_up(surface_, dot(n, v), m.roughness);
     const float f0 = dielectric_f0(m.specular, m.metalness) + m.metalness * kMetalF0,
-                share = f0 * split.x / (f0 * split.x + split.y);
+                share = f0 * split.x / (f0 * split.x + f90_of(m.specular, m.metalness) * split.y);
     return along(base_, n, v, m.roughness) * share + along(fresnel_, n, v, m.roughness) * (1 - share);
   }
 

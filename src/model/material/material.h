@@ -6,16 +6,15 @@
 #include <cstdint>
 #include <span>
 
-namespace cei3d {
+#include "core/math/brdf.h"
 
-// Specular strength of a dielectric with a refractive index of 1.5, which is typical: F0 = 0.04.
-inline constexpr float kUsualSpecular = 0.5f;
+namespace cei3d {
 
 // The metallic-roughness model that glTF, Blender and Disney share; its formulas are in core/math/shading.h.
 // The albedo is a field of its own.
 struct Material {
   float roughness = 0.3f;           // [0, 1]; alpha of GGX is its square
-  float specular = kUsualSpecular;  // [0, 1]; of the dielectric part: F0 = 0.08 specular
+  float specular = kUsualSpecular;  // [0, 1]; of the dielectric part: F0 = 0.08 specular, and f90_of()
   float metalness = 0;              // [0, 1]
 
   bool operator==(const Material&) const = default;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/appearance/find_light_frame.h"
 
+#include <algorithm>
+
 #include "core/base/json.h"
 #include "core/math/quantile.h"
 
@@ -10,6 +12,8 @@ namespace {
 // Maximum ratio of the residuals of a turning light and of one that stands still, for a light to be taken for
 // turning. A light that stands still and leaves less than kExplained, 43 dB, is kept without comparison.
 constexpr double kMaxTurningRatio = 0.8, kExplained = 5e-5;
+// The same where only the light that stands still fades: reflections that move otherwise average out.
+constexpr double kMaxRatioOfFaded = 0.95;
 constexpr float kRoughness = 0.3f;
 constexpr int kLightHeight = 24;  // a low resolution suffices
 constexpr int kHoldOut = 5;       // every n-th view is held out to compare, if there are at least 2n
@@ -43,21 +47,26 @@ LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16
   options.seed = seed;
   options.hold_out = cameras.size() >= 2 * kHoldOut ? kHoldOut : 0;
   const Transport transport(input.surface);
-  const auto residuals = [&](LightMotion motion) {
+  const auto fit = [&](LightMotion motion) {
     const auto turns = turns_of(light_frame(motion, cameras, axis), cameras);
     SurfaceSamples samples = input.samples;
     samples.turned = {turns.get(), views};
-    return dielectric_residuals(transport, samples, options, kRoughness, progress);
+    return fit_dielectric(transport, samples, options, kRoughness, progress);
   };
-  const std::vector<double> still = residuals(LightMotion::world);
-  if (still.empty() || median(still) < kExplained) return {};
-  double smallest = kMaxTurningRatio;
+  const DielectricFit still = fit(LightMotion::world);
+  if (still.residuals.empty() || median(still.residuals) < kExplained) return {};
+  double smallest = 1;
   LightMotion best = LightMotion::world;
   for (const LightMotion motion : {LightMotion::camera, LightMotion::turntable}) {
-    const double ratio = median_ratio(residuals(motion), still);
-    progress.log(
-        Json{{"stage", "light motion"}, {"motion", light_motion_name(motion)}, {"ratio", ratio}}.dump());
-    if (ratio >= smallest) continue;
+    const DielectricFit turning = fit(motion);
+    const double ratio = median_ratio(turning.residuals, still.residuals);
+    progress.log(Json{{"stage", "light motion"},
+                      {"motion", light_motion_name(motion)},
+                      {"ratio", ratio},
+                      {"faded", {{"still", still.faded}, {"turning", turning.faded}}}}
+                     .dump());
+    const bool stronger = still.faded && !turning.faded;
+    if (ratio >= std::min(smallest, stronger ? kMaxRatioOfFaded : kMaxTurningRatio)) continue;
     smallest = ratio;
     best = motion;
   }

@@ -352,13 +352,15 @@ LinearSplit separate_by_shading(const Transport& transport, const SurfaceSamples
 
 }  // namespace
 
-std::vector<double> dielectric_residuals(const Transport& transport, const SurfaceSamples& samples,
-                                         const LinearSplitOptions& options, float roughness,
-                                         Progress& progress) {
+DielectricFit fit_dielectric(const Transport& transport, const SurfaceSamples& samples,
+                             const LinearSplitOptions& options, float roughness, Progress& progress) {
   SplitSolver solver(transport, samples, options, progress);
-  std::vector<double> out;
-  for (const SplitSystem::ViewError& e : solver.errors_of_views(solver.dielectric(roughness)))
-    if (e.count > 0) out.push_back(e.mean());
+  SplitSolution s = solver.dielectric(roughness);
+  DielectricFit out;
+  for (const SplitSystem::ViewError& e : solver.errors_of_views(s))
+    if (e.count > 0) out.residuals.push_back(e.mean());
+  out.faded = brighten_light(transport, seen_vertices(transport.surface().mesh(), samples), s,
+                             options.light_height, samples.turned.turns, progress) > kFaded;
   return out;
 }
 

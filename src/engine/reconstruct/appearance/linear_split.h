@@ -73,9 +73,14 @@ struct LinearSplit {
 
 LinearSplit linear_split(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&);
 
-// Residuals of the separation for one dielectric of that roughness (LinearSplit::Trial::residual): one for
-// each view that is held out (options.hold_out) and has samples, in the order of the views.
-std::vector<double> dielectric_residuals(const Transport&, const SurfaceSamples&, const LinearSplitOptions&,
-                                         float roughness, Progress&);
+// The separation for one dielectric of that roughness.
+struct DielectricFit {
+  // LinearSplit::Trial::residual of each view that is held out (options.hold_out) and has samples, in the
+  // order of the views.
+  std::vector<double> residuals;
+  bool faded;  // whether the light of the reflections is much too weak for an albedo of at most 1
+};
+DielectricFit fit_dielectric(const Transport&, const SurfaceSamples&, const LinearSplitOptions&,
+                             float roughness, Progress&);
 
 }  // namespace cei3d

@@ -36,18 +36,19 @@ SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
 SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {
   const auto& v = row.vertices;
   const auto& b = row.barycentric;
-  float roughness = 0;
+  float roughness = 0, f90 = 0;
   Vec3f f0{0, 0, 0};
   for (int k = 0; k < 3; ++k) {
     const Material& m = materials_.of[v[k]];
     roughness += m.roughness * b[k];
     f0 += f0_of(materials_.color[v[k]], m.specular, m.metalness) * b[k];
+    f90 += f90_of(m.specular, m.metalness) * b[k];
   }
   Optics o;
   o.base = reflected_sky(row, ReflectionPart::base, roughness, options_.light_height);
   o.fresnel = reflected_sky(row, ReflectionPart::fresnel, roughness, options_.light_height);
   o.split_sum = split_sum(split_sum_table(), row.nv, roughness);
-  o.gains = reflection_gains(o.split_sum, f0);
+  o.gains = reflection_gains(o.split_sum, f0, f90);
   o.far_gain = o.gain_of(1 - o.base.open, 1 - o.fresnel.open);
   o.diffuse_view = diffuse_view_of(row, roughness, light_directions_);
   return o;
