@@ -11,9 +11,6 @@
 namespace cei3d {
 namespace {
 
-// Share of the planned appearance stage by which it is late under a turning light (docs/notebook/0040).
-constexpr double kTurningLateness = 0.5;
-
 // Sets the end of all rounds in the first.
 bool has_time(const RunContext& run, RunState& state, int round) {
   const Plan& plan = run.plan;
@@ -53,14 +50,6 @@ void estimate(const RunContext& run, RunState& state) {
   scene.albedo = std::move(made.albedo);
   state.hits = std::move(all.hits);
   state.look_seconds = run.progress.elapsed() - begin;
-}
-
-// An estimate that takes longer than planned says that the last one, of the finished surface, will, too; and
-// a turning light makes that one longer still. Their time is taken from polishing, not from the stages after
-// it.
-void leave_time_for_the_last_estimate(const RunContext& run, bool turning, RunState& state) {
-  state.polish_deadline -= std::max(0.0, state.look_seconds - run.plan.look) +
-                           (turning ? kTurningLateness * run.plan.appearance : 0.0);
 }
 
 void forget_estimate(RunState& state) {
@@ -114,7 +103,6 @@ void polish(const RunContext& run, RunState& state, int round, const Stage::Chec
   find_hits(run, state);
   const Scene& scene = state.scene;
   const Turns turns = light_turns(run, state, scene.surface, state.hits);
-  if (!begun && round == 0) leave_time_for_the_last_estimate(run, turns != nullptr, state);
   polish_surface(run.device, *state.geometry, {scene.surface, state.hits.samples(turns.get())},
                  {scene.light, scene.material, scene.albedo, {}}, options_of(run, state, round, checkpoint),
                  run.progress);
