@@ -29,18 +29,15 @@ bool has_time(const RunContext& run, RunState& state, int round) {
 void estimate(const RunContext& run, RunState& state) {
   const double begin = run.progress.elapsed();
   const Field& sdf = state.geometry->sdf();
-  const PixelStore& pixels = run.views.train;
-  SurfaceAndHits all = extract_surface_and_hits(run.device, sdf, run.preset.meshing, pixels,
+  SurfaceAndHits all = extract_surface_and_hits(run.device, sdf, run.preset.meshing, run.views.train,
                                                 run.preset.max_hits, run.progress);
-  const ObjectHits fewer =
-      object_hits(run.device, sdf, *all.surface, pixels, {run.preset.brief_hits}, run.progress);
   AppearanceOptions brief = run.preset.appearance;
   brief.effort = Effort::brief;
   brief.seed = run.seed;
   brief.light_color = run.light_color;
-  const Turns turns = light_turns(run, state, all.surface, fewer);
+  const Turns turns = light_turns(run, state, all.surface, all.hits);
   AppearanceResult made =
-      fit_appearance(run.device, {all.surface, fewer.samples(turns.get())}, brief, run.progress);
+      fit_appearance(run.device, {all.surface, all.hits.samples(turns.get())}, brief, run.progress);
   check_cancelled(run.progress);
   Scene& scene = state.scene;
   scene.sdf = std::make_shared<const Field>(sdf);

@@ -12,7 +12,7 @@ Turns light_turns(const RunContext& run, RunState& state, const std::shared_ptr<
   const std::vector<Camera>& cameras = run.views.train.cameras();
   LightFrame& frame = state.scene.light_frame;
   if (!state.light_frame_known)
-    frame = find_light_frame({surface, hits.samples()}, hits.views, cameras, turntable_axis(run), run.seed,
+    frame = find_light_frame({surface, hits.samples()}, hits.views, cameras, turntable_axis(run), {run.seed},
                              run.progress);
   state.light_frame_known = true;
   return turns_of(frame, cameras);

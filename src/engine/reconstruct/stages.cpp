@@ -50,7 +50,8 @@ LightFrame first_light_frame(const RunContext& run) {
   coarse.resolution = std::min(coarse.resolution, kCells);
   const SurfaceAndHits hull =
       extract_surface_and_hits(run.device, rough.sdf(), coarse, pixels, kHits, run.progress);
-  return find_light_frame(hull.input(nullptr), hull.hits.views, cameras, axis, run.seed, run.progress);
+  return find_light_frame(hull.input(nullptr), hull.hits.views, cameras, axis, {run.seed, false},
+                          run.progress);
 }
 
 void begin_as_sphere(const RunContext& run, RunState& state) {

@@ -25,6 +25,7 @@ LinearSplitOptions split_options(const AppearanceOptions& o, bool turning) {
   if (o.effort == Effort::brief) {
     s.max_hits = 200000;
     s.search_hits = 120000;
+    s.material_hits = 300000;
     s.light_height = 32;
   }
   if (o.effort == Effort::brief && turning) s.scan_step = 1.7f;  // each solve takes twice as long

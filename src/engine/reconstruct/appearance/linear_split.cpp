@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 
@@ -180,10 +181,17 @@ std::vector<Vec3f> clamped(std::vector<Vec3f> v, float high) {
   return v;
 }
 
-LinearSplitOptions search_options(const LinearSplitOptions& options, int hits) {
+LinearSplitOptions material_search_options(const LinearSplitOptions& options) {
   LinearSplitOptions o = options;
-  o.max_hits = hits;
+  o.max_hits = options.material_hits;
   o.light_height = options.search_height;
+  return o;
+}
+
+LinearSplitOptions search_options(const LinearSplitOptions& options) {
+  LinearSplitOptions o = material_search_options(options);
+  o.max_hits = options.search_hits;
+  o.in_patches = true;
   return o;
 }
 
@@ -266,11 +274,10 @@ Solved solve(const Transport& transport, const SurfaceSamples& samples, const Li
   const auto solver = [&](const LinearSplitOptions& o) {
     return SplitSolver(transport, samples, o, progress, guess);
   };
-  const OneMaterial found =
-      search_one_material(solver(search_options(options, options.search_hits)), options, trials, guess);
+  const OneMaterial found = search_one_material(solver(search_options(options)), options, trials, guess);
   std::optional<SplitMaterials> materials;
   if (options.fixed_roughness <= 0)
-    materials = search_materials(solver(search_options(options, options.material_hits)), found, guess);
+    materials = search_materials(solver(material_search_options(options)), found, guess);
   SplitSolver fine = solver(options);
   SplitSolution best = found.is_metal ? fine.metal(found.roughness) : fine.dielectric(found.roughness);
   trials.insert(trials.end(), fine.trials.begin(), fine.trials.end());
@@ -339,7 +346,7 @@ LinearSplit separate_by_shading(const Transport& transport, const SurfaceSamples
   SkyRadiance sky = light_of_shading(transport, faded.diffuse, options.seed).sky;
   if (const Vec3f color = options.light_color.color; options.light_color.kind == LightColorPrior::Kind::known)
     for (Vec3f& l : sky) l = l * color / luminance(color);
-  const LinearSplitOptions fewer = search_options(options, options.search_hits);
+  const LinearSplitOptions fewer = search_options(options);
   SplitSolver search(transport, samples, fewer, progress), fine(transport, samples, options, progress);
   const float roughness = search_roughness(
       [&](float r) { return search.under_light(grid_of_sky(sky, fewer.light_height), r).residual; }, fewer);
@@ -352,15 +359,15 @@ LinearSplit separate_by_shading(const Transport& transport, const SurfaceSamples
 
 }  // namespace
 
-DielectricFit fit_dielectric(const Transport& transport, const SurfaceSamples& samples,
-                             const LinearSplitOptions& options, float roughness, Progress& progress) {
+std::vector<double> held_out_residuals(const Transport& transport, const SurfaceSamples& samples,
+                                       const LinearSplitOptions& options, float roughness,
+                                       bool several_materials, Progress& progress) {
   SplitSolver solver(transport, samples, options, progress);
   SplitSolution s = solver.dielectric(roughness);
-  DielectricFit out;
+  if (several_materials) s = solver.several(std::move(s), std::numeric_limits<double>::infinity());
+  std::vector<double> out;
   for (const SplitSystem::ViewError& e : solver.errors_of_views(s))
-    if (e.count > 0) out.residuals.push_back(e.mean());
-  out.faded = brighten_light(transport, seen_vertices(transport.surface().mesh(), samples), s,
-                             options.light_height, samples.turned.turns, progress) > kFaded;
+    if (e.count > 0) out.push_back(e.mean());
   return out;
 }
 

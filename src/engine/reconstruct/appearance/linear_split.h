@@ -34,7 +34,10 @@ struct SurfaceSamples {
 };
 
 struct LinearSplitOptions {
-  int max_hits = 600000;       // maximum number of samples of the final solve; beyond it a random subset
+  int max_hits = 600000;  // maximum number of samples of the final solve; beyond it a random subset
+  // Whether that subset is of patches of the surface with all of their samples. Only vertices with several
+  // samples say something of the light, so that this needs fewer; but the rest of the surface has none.
+  bool in_patches = false;
   int light_height = 48;       // rows of the light's lat-long grid, EnvUp::z
   int rounds = 4;              // of conjugate gradients; negative light is clamped and frozen between rounds
   int steps = 12;              // of conjugate gradients per round
@@ -73,14 +76,10 @@ struct LinearSplit {
 
 LinearSplit linear_split(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&);
 
-// The separation for one dielectric of that roughness.
-struct DielectricFit {
-  // LinearSplit::Trial::residual of each view that is held out (options.hold_out) and has samples, in the
-  // order of the views.
-  std::vector<double> residuals;
-  bool faded;  // whether the light of the reflections is much too weak for an albedo of at most 1
-};
-DielectricFit fit_dielectric(const Transport&, const SurfaceSamples&, const LinearSplitOptions&,
-                             float roughness, Progress&);
+// How well views that are held out (options.hold_out) are explained by one dielectric of that roughness, or,
+// beginning with it, by a material per vertex: LinearSplit::Trial::residual of each of those views that has
+// samples, in their order.
+std::vector<double> held_out_residuals(const Transport&, const SurfaceSamples&, const LinearSplitOptions&,
+                                       float roughness, bool several_materials, Progress&);
 
 }  // namespace cei3d

@@ -55,7 +55,7 @@ TEST(LinearSplit, FindsAlbedoUnderALightThatTurns) {
   const Drawn d = draw([](Vec3f) { return Material{0.3f, 0.5f, 0}; }, paint, LightMotion::turntable);
   Progress quiet;
   const LightFrame frame =
-      find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, 1, quiet);
+      find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, {}, quiet);
   ASSERT_EQ(frame.motion, LightMotion::turntable);
   const auto turns = turns_of(frame, d.cameras);
   SurfaceSamples samples = d.samples();
@@ -75,25 +75,25 @@ TEST(LinearSplit, ADarkPhotographDoesNotHideThatTheLightTurns) {
   for (size_t i = 0; i < d.colors.size(); ++i)
     if (d.views[i] == kDark) d.colors[i] = d.colors[i] * 0.3f;
   Progress quiet;
-  EXPECT_EQ(find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, 1, quiet).motion,
+  EXPECT_EQ(find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, {}, quiet).motion,
             LightMotion::turntable);
 }
 
-// Where no light explains much, here because of noise of a quarter, the residuals are too similar to tell.
-// But only the light that stands still fades.
-TEST(LinearSplit, ALightThatFadesOnlyWhereItStandsStillTurns) {
+// Where no light explains much, here because of noise of a quarter, the residuals of one material are too
+// similar to tell.
+TEST(LinearSplit, MaterialsOfTheVerticesTellWhereOneMaterialCannot) {
   Drawn d = draw([](Vec3f) { return Material{0.3f, 0.5f, 0}; }, paint, LightMotion::camera);
   Rng rng(3, 0, 0);
   for (Vec3f& c : d.colors) c = c * (1 + 0.25f * rng.normal());
   Progress quiet;
-  EXPECT_EQ(find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, 1, quiet).motion,
+  EXPECT_EQ(find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, {}, quiet).motion,
             LightMotion::camera);
 }
 
 TEST(LinearSplit, TakesALightThatStandsStillForWhatItIs) {
   const Drawn d = draw({0.3f, 0.5f, 0});
   Progress quiet;
-  EXPECT_EQ(find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, 1, quiet).motion,
+  EXPECT_EQ(find_light_frame({d.surface, d.samples()}, d.views, d.cameras, {0, 0, 1}, {}, quiet).motion,
             LightMotion::world);
 }
 

@@ -59,11 +59,13 @@ LitSamples::LitSamples(size_t vertices, const std::vector<SplitRow>& rows, std::
     : rows_(rows), colors_(std::move(colors)), light_height_(blurs.height()), start_(vertices + 1, 0) {
   light_directions_ = light_directions(sky_radiance(light_image(light, light_height_)));
   for (int level = 0; level < kLevels; ++level) sky_.set(level, light, blurs);
-  for (const SplitRow& r : rows) ++start_[nearest_vertex(r) + 1];
+  for (const SplitRow& r : rows)
+    if (!r.held_out) ++start_[nearest_vertex(r) + 1];
   for (size_t v = 0; v < vertices; ++v) start_[v + 1] += start_[v];
-  order_.resize(rows.size());
+  order_.resize(start_.back());
   std::vector<uint32_t> at(start_.begin(), start_.end() - 1);
-  for (uint32_t i = 0; i < rows.size(); ++i) order_[at[nearest_vertex(rows[i])]++] = i;
+  for (uint32_t i = 0; i < rows.size(); ++i)
+    if (!rows[i].held_out) order_[at[nearest_vertex(rows[i])]++] = i;
 }
 
 LitSamples::RowLight LitSamples::light_of(const SplitRow& row, float roughness) const {

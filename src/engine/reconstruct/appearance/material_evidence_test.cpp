@@ -86,6 +86,18 @@ TEST(MaterialEvidence, FindsTheRoughnessAndTheKindOfAMaterial) {
   }
 }
 
+// Views that judge a separation have no say in it.
+TEST(MaterialEvidence, IsNotOfSamplesThatAreHeldOut) {
+  BlurLadder blurs(kHeight);
+  const std::vector<SplitRow> matte = samples_of({0.4f, 0.5f, 0}, {0.15f, 0.1f, 0.05f}, {});
+  std::vector<SplitRow> rows = matte;
+  for (SplitRow row : samples_of({0.22f, 0.5f, 1}, {}, {0.9f, 0.6f, 0.3f})) {
+    row.held_out = true;
+    rows.push_back(row);
+  }
+  EXPECT_EQ(best_of(blurs, rows).dielectric_error, best_of(blurs, matte).dielectric_error);
+}
+
 // A strip of vertices, two a column, of two colors with the border in the middle.
 struct Strip {
   Mesh mesh;

@@ -23,8 +23,7 @@ const Drawn& matte() {
 }
 
 std::vector<Vec3f> diffuse_radiance(float brightness) {
-  std::vector<Vec3f> out =
-      mean_colors(matte().base.size(), make_split_rows(*matte().surface, matte().samples(), small()));
+  std::vector<Vec3f> out = mean_colors(matte().surface->mesh(), matte().samples(), small());
   for (Vec3f& d : out) d = d * brightness;
   return out;
 }

@@ -39,10 +39,11 @@ inline float diffuse_view_of(const SplitRow& row, float roughness, const LightDi
   return diffuse_view(clamp(row.nv, 0.0f, 1.0f), roughness, light.at(row.normal).towards(row.to_camera));
 }
 
-// A row for each sample of the random subset of options.max_hits samples.
-std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&);
+// Mean linear color of each vertex's samples that are not held out, 0 where there are none. #V
+std::vector<Vec3f> mean_colors(const Mesh&, const SurfaceSamples&, const LinearSplitOptions&);
 
-// Mean linear color of each vertex's samples, 0 where there are none. #V
-std::vector<Vec3f> mean_colors(size_t vertices, const std::vector<SplitRow>&);
+// A row for each sample of the random subset of options.max_hits samples. colors: mean_colors().
+std::vector<SplitRow> make_split_rows(const Surface&, const SurfaceSamples&, const LinearSplitOptions&,
+                                      const std::vector<Vec3f>& colors);
 
 }  // namespace cei3d

@@ -47,7 +47,8 @@ SplitSolver::SplitSolver(const Transport& transport, const SurfaceSamples& sampl
     : transport_(transport),
       mesh_(transport.surface().mesh()),
       turns_(samples.turned.turns),
-      rows_(make_split_rows(transport.surface(), samples, options)),
+      colors_(mean_colors(mesh_, samples, options)),
+      rows_(make_split_rows(transport.surface(), samples, options, colors_)),
       options_(options),
       progress_(progress),
       system_(mesh_, rows_, options),
@@ -59,7 +60,7 @@ SplitUnknowns SplitSolver::uniform() const {
   Vec3f mean{0, 0, 0};
   for (const SplitRow& r : rows_) mean += r.color / float(rows_.size());
   const size_t cells = size_t(2) * options_.light_height * options_.light_height;
-  return {mean_colors(mesh_.positions.size(), rows_), std::vector<Vec3f>(cells, mean)};
+  return {colors_, std::vector<Vec3f>(cells, mean)};
 }
 
 SplitSolution SplitSolver::guess(SplitMaterials materials) {
@@ -130,8 +131,7 @@ SplitSolution SplitSolver::metal(float roughness) {
 }
 
 SplitSolution SplitSolver::under_light(const std::vector<Vec3f>& light, float roughness) {
-  SplitSolution s{{mean_colors(mesh_.positions.size(), rows_), light},
-                  one_material(mesh_.positions.size(), {roughness, kUsualSpecular, 0})};
+  SplitSolution s{{colors_, light}, one_material(mesh_.positions.size(), {roughness, kUsualSpecular, 0})};
   system_.set_light(light);
   system_.set_materials(s.materials);
   const LightScale found = lit_samples(s.x).light_scale(s.materials, mesh_.positions);
@@ -157,11 +157,10 @@ LitSamples SplitSolver::lit_samples(const SplitUnknowns& x) {
 }
 
 // A vertex far from all samples keeps its material.
-void SplitSolver::choose_materials(const SplitUnknowns& x, bool settled, float extended,
-                                   SplitMaterials& materials) {
+void SplitSolver::choose_materials(const SplitUnknowns& x, const SimilarNeighbors& near, bool settled,
+                                   float extended, SplitMaterials& materials) {
   const std::vector<Vec3f> white = white_radiance({x, materials, 0}, settled ? kLastWhite : kFirstWhite);
   MaterialEvidence evidence = lit_samples(x).evidence(white);
-  const SimilarNeighbors near(mesh_, mean_colors(mesh_.positions.size(), rows_));
   diffuse_evidence(near, kDiffusion, evidence);
   const std::vector<float> metals = metal_probability(near, evidence, kEvenRatio, settled ? kWalk : 0);
   for (size_t v = 0; v < materials.of.size(); ++v) {
@@ -244,12 +243,13 @@ LightScale SplitSolver::light_correction(const SplitSolution& s) {
 }
 
 SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {
+  const SimilarNeighbors near(mesh_, colors_);
   double before = std::numeric_limits<double>::infinity();
   for (int round = 0; round < kMaxRounds; ++round) {
     check_cancelled(progress_);
     const bool extended = round % 2 == 0;
     system_.set_materials(s.materials);
-    choose_materials(s.x, round + 1 >= kMinRounds, extended ? kExtended : 1, s.materials);
+    choose_materials(s.x, near, round + 1 >= kMinRounds, extended ? kExtended : 1, s.materials);
     system_.set_materials(s.materials);
     s.materials.color = system_.fit_metal_color(s.x);
     if (!extended) fix_scale(s);

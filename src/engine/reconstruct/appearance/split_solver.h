@@ -63,13 +63,15 @@ class SplitSolver {
   LitSamples lit_samples(const SplitUnknowns&);
   // settled: the scale of the light is known well enough. extended: by which the change of a roughness is
   // multiplied, over its logarithm.
-  void choose_materials(const SplitUnknowns&, bool settled, float extended, SplitMaterials&);
+  void choose_materials(const SplitUnknowns&, const SimilarNeighbors&, bool settled, float extended,
+                        SplitMaterials&);
   void fix_scale(SplitSolution&);
   std::vector<Vec3f> white_radiance(const SplitSolution&, float albedo) const;
 
   const Transport& transport_;
   const Mesh& mesh_;
   const LightTurns* turns_;
+  std::vector<Vec3f> colors_;  // #V, mean_colors()
   std::vector<SplitRow> rows_;
   LinearSplitOptions options_;
   Progress& progress_;

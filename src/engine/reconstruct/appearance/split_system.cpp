@@ -11,7 +11,7 @@
 namespace cei3d {
 namespace {
 
-constexpr int kChunks = 16;  // chunks of rows; fixed, so that sums are the same on any machine
+constexpr size_t kChunks = 16;
 
 }  // namespace
 
@@ -25,12 +25,28 @@ SplitSystem::SplitSystem(const Mesh& mesh, const std::vector<SplitRow>& rows,
                          const LinearSplitOptions& options)
     : mesh_(mesh),
       rows_(rows),
+      chunks_(chunks_of_rows()),
       options_(options),
       edges_(edges_of(mesh.triangles)),
       blurs_(options.light_height),
       harmonics_(options.light_height) {
   for (const SplitRow& row : rows) weights_.push_back(row.held_out ? Vec3f{0, 0, 0} : row.weight);
   for (const SplitRow& row : rows) views_ = std::max(views_, row.view + 1);
+}
+
+std::vector<SplitSystem::Chunk> SplitSystem::chunks_of_rows() const {
+  std::vector<Chunk> out;
+  for (size_t i = 0; i < kChunks; ++i) {
+    Chunk chunk{rows_.size() * i / kChunks, rows_.size() * (i + 1) / kChunks, 0, 0};
+    if (chunk.begin < chunk.end) chunk.first_vertex = rows_[chunk.begin].vertices[0];
+    for (size_t row = chunk.begin; row < chunk.end; ++row)
+      for (const uint32_t v : rows_[row].vertices) {
+        chunk.first_vertex = std::min(chunk.first_vertex, v);
+        chunk.vertices_end = std::max(chunk.vertices_end, v + 1);
+      }
+    out.push_back(chunk);
+  }
+  return out;
 }
 
 SplitSystem::Optics SplitSystem::optics_of(const SplitRow& row) const {
@@ -123,7 +139,8 @@ std::vector<Vec3f> SplitSystem::targets(const SplitUnknowns& x) const {
 
 // Sums of one chunk of rows.
 struct SplitSystem::RowSums {
-  std::vector<Vec3f> diffuse;  // #V
+  uint32_t first_vertex;
+  std::vector<Vec3f> diffuse;  // from first_vertex on
   Blurred sky;
   HarmonicLight harmonics{};
 };
@@ -133,7 +150,7 @@ void SplitSystem::add_row(size_t i, Vec3f y, RowSums& sum) const {
   const SplitRow& row = rows_[i];
   const Optics& o = optics_[i];
   const Vec3f here = y * row.diffuse_light * o.diffuse_view;
-  for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k]] += here * row.barycentric[k];
+  for (int k = 0; k < 3; ++k) sum.diffuse[row.vertices[k] - sum.first_vertex] += here * row.barycentric[k];
   if (!diffuse_light_grad_.rows.empty()) {
     const Vec3f weight = y * diffuse_light_grad_.rows[i].gain * o.diffuse_view;
     for (size_t j = 0; j < kHarmonics; ++j)
@@ -159,21 +176,21 @@ void SplitSystem::gather_light(const std::vector<RowSums>& parts, std::vector<Ve
 
 template <class F>
 void SplitSystem::accumulate(F row_value, SplitUnknowns& out) const {
-  std::vector<RowSums> parts(kChunks);
-  parallel_for(kChunks, [&](int chunk) {
-    RowSums& sum = parts[chunk];
-    sum.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
+  std::vector<RowSums> parts(chunks_.size());
+  parallel_for(int(chunks_.size()), [&](int i) {
+    const Chunk& chunk = chunks_[size_t(i)];
+    RowSums& sum = parts[size_t(i)];
+    sum.first_vertex = chunk.first_vertex;
+    sum.diffuse.assign(chunk.vertices_end - chunk.first_vertex, {0, 0, 0});
     for (int level = 0; level < BlurLadder::kLevels; ++level)
       if (in_use_[size_t(level)]) sum.sky.clear(level, cells());
-    const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
-    for (size_t i = begin; i < end; ++i) add_row(i, row_value(i) * weights_[i], sum);
+    for (size_t row = chunk.begin; row < chunk.end; ++row) add_row(row, row_value(row) * weights_[row], sum);
   });
   out.diffuse.assign(mesh_.positions.size(), {0, 0, 0});
-  parallel_ranges(int(out.diffuse.size()), 4096, [&](int begin, int end) {
-    for (const RowSums& part : parts)
-      for (int v = begin; v < end; ++v)
-        if (!materials_.is_metal(uint32_t(v))) out.diffuse[v] += part.diffuse[v];
-  });
+  for (const RowSums& part : parts)
+    for (size_t i = 0; i < part.diffuse.size(); ++i)
+      if (const uint32_t v = part.first_vertex + uint32_t(i); !materials_.is_metal(v))
+        out.diffuse[v] += part.diffuse[i];
   gather_light(parts, out.light);
 }
 
@@ -215,10 +232,9 @@ void SplitSystem::right_side(SplitUnknowns& out) const {
 
 std::vector<SplitSystem::ViewError> SplitSystem::errors_of_views(const SplitUnknowns& x) const {
   const Sky sky = sky_change(x.light);
-  std::vector<std::vector<ViewError>> parts(kChunks, std::vector<ViewError>(size_t(views_)));
-  parallel_for(kChunks, [&](int chunk) {
-    const size_t begin = rows_.size() * chunk / kChunks, end = rows_.size() * (chunk + 1) / kChunks;
-    for (size_t i = begin; i < end; ++i) {
+  std::vector<std::vector<ViewError>> parts(chunks_.size(), std::vector<ViewError>(size_t(views_)));
+  parallel_for(int(chunks_.size()), [&](int chunk) {
+    for (size_t i = chunks_[size_t(chunk)].begin; i < chunks_[size_t(chunk)].end; ++i) {
       const SplitRow& row = rows_[i];
       if (row.held_out != (options_.hold_out > 0)) continue;
       const Vec3f e = predict(i, x, sky) + far_reflected(i) - row.color;

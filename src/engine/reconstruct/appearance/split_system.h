@@ -107,6 +107,11 @@ class SplitSystem {
   void smooth(const SplitUnknowns& x, SplitUnknowns& out) const;  // out += gradient of the priors
   void release_bounds(const SplitUnknowns& x);                    // sets weights_
   struct RowSums;
+  struct Chunk {
+    size_t begin, end;                    // rows
+    uint32_t first_vertex, vertices_end;  // of these rows
+  };
+  std::vector<Chunk> chunks_of_rows() const;
   size_t cells() const { return size_t(2) * options_.light_height * options_.light_height; }
   void add_row(size_t row, Vec3f y, RowSums&) const;
   void gather_light(const std::vector<RowSums>&, std::vector<Vec3f>& light) const;
@@ -120,6 +125,7 @@ class SplitSystem {
 
   const Mesh& mesh_;
   const std::vector<SplitRow>& rows_;
+  std::vector<Chunk> chunks_;   // fixed in number, so that sums are the same on any machine
   int views_ = 0;               // number of cameras that rows are of
   std::vector<Vec3f> weights_;  // #rows; 0 where the prediction of a clipped channel is above its color
   LinearSplitOptions options_;
