@@ -272,7 +272,7 @@ void add_run(const Group<Preset>& g) {
       .add("max_hits", &Preset::max_hits, {100, 1e9}, "pixels",
            "Training pixels of the appearance stage, at most")
       .add("brief_hits", &Preset::brief_hits, {100, 1e9}, "pixels",
-           "Training pixels of the appearance between rounds of polishing, at most")
+           "Training pixels that make the handler points of a joint descent alone, at most")
       .add("max_residual_hits", &Preset::max_residual_hits, {100, 1e9}, "pixels",
            "Training pixels of the correction network, at most");
 }

@@ -47,7 +47,7 @@ struct Preset {
   int exposures_from_steps = 1000;  // geometry steps of a model that is compared with the exposures of views
   int trials_from_iterations = 4000;  // geometry steps from which an untimed run compares start shapes
   size_t max_hits = 1500000;          // training pixels of the appearance stage
-  size_t brief_hits = 300000;         // training pixels of brief appearance stages between polishing rounds
+  size_t brief_hits = 300000;         // training pixels that make the handler points of a joint descent alone
   // Training pixels of the correction network; it overfits the noise of fewer.
   size_t max_residual_hits = 4000000;
 };
