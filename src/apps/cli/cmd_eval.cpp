@@ -50,7 +50,7 @@ void add_samples(CLI::App* verb, int& samples) {
 void add_residual_switch(CLI::App* verb, bool& on) {
   verb->add_flag_callback(
       "--no-residual", [&on] { on = false; },
-      "Light and material alone, without the correction network (which is not used under other lights "
+      "Light and material alone, without the correction by photographs (which is not used under other lights "
       "either)");
 }
 

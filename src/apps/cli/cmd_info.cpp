@@ -26,9 +26,8 @@ std::string project_text(const ProjectInfo& i) {
                         i.handler_spacing);
     text += fmt::format("material    {}\n", i.object.material_text());
     if (i.object.explained)
-      text +=
-          fmt::format("explained   {:.1f} dB by light and material, {:.1f} dB with the correction network\n",
-                      i.object.explained->physical, i.object.explained->with_residual);
+      text += fmt::format("explained   {:.1f} dB by light and material, {:.1f} dB with the correction\n",
+                          i.object.explained->physical, i.object.explained->with_residual);
     if (const std::string w = i.object.warning(); !w.empty()) text += "            " + w + "\n";
     text += fmt::format("light       {} lobes; {}\n", i.lobes, i.object.light_text());
     text += fmt::format("edits       {}, {} of them on\n", i.edits, i.edits_active);

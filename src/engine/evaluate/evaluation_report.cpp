@@ -85,7 +85,7 @@ const std::vector<Column> kNovelViews{
     {"LPIPS", [](const EvaluationRow& r) { return or_nothing(r.scores.lpips, "{:.4f}"); }},
     {"FID", [](const EvaluationRow& r) { return or_nothing(r.scores.fid, "{:.1f}"); }},
     {"rendered with", [](const EvaluationRow& r) {
-       return std::string(r.scores.residual ? "light, material, correction network" : "light, material");
+       return std::string(r.scores.residual ? "light, material, correction" : "light, material");
      }}};
 const std::vector<Column> kFidelity{
     {"PSNR inside the edit",

@@ -28,15 +28,14 @@ void fit_color(const RunContext& run, RunState& state, const Stage::Checkpoint&)
   scene.light.lobes = {{{0, 0, 1}, 1, {0, 0, 0}}};
   scene.albedo = mean_colors(run.device, samples, run.preset.appearance.albedo, run.seed, run.progress);
   ResidualOptions options;
-  options.alone = true;
   options.seconds = plan.residual > 0 ? std::clamp(run.progress.left() - 0.5 * plan.reserve,
                                                    0.5 * plan.residual, plan.residual)
                                       : 0;
   options.clock = run.progress.clock();
   options.steps = plan.residual_steps;
   options.seed = run.seed;
-  ResidualFit fit = fit_residual(run.device, scene, samples, hits.views, options, run.progress);
-  scene.residual = std::make_shared<const Residual>(std::move(*fit.residual));
+  scene.residual = std::make_shared<const Residual>(
+      fit_residual(run.device, scene.sdf, samples, {}, options, run.progress));
   check_cancelled(run.progress);
 }
 

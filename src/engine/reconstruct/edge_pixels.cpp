@@ -23,13 +23,13 @@ bool same_surface(const Hit& hit, const Ray& beside, const Surface::RayHit& foun
 
 }  // namespace
 
-std::vector<uint8_t> on_edges(const Surface& surface, const PixelStore& pixels, std::span<const Hit> hits,
-                              std::span<const size_t> pixel_of) {
+std::vector<uint8_t> on_edges(const Surface& surface, std::span<const Camera> cameras,
+                              std::span<const Hit> hits, std::span<const SeenAt> seen) {
   std::vector<Ray> rays;
   std::vector<Vec3f> origins, directions;
-  for (const size_t p : pixel_of)
+  for (const SeenAt& p : seen)
     for (const Vec2f away : kBeside) {
-      rays.push_back(pixels.ray(pixels.pixels()[p], away));
+      rays.push_back(cameras[p.view].ray(float(p.x) + 0.5f + away.x, float(p.y) + 0.5f + away.y));
       origins.push_back(rays.back().origin);
       directions.push_back(rays.back().direction);
     }
@@ -38,7 +38,7 @@ std::vector<uint8_t> on_edges(const Surface& surface, const PixelStore& pixels, 
   std::vector<uint8_t> edge(hits.size());
   for (size_t i = 0; i < rays.size(); ++i) {
     const Hit& hit = hits[i / kBeside.size()];
-    const Camera& camera = pixels.cameras()[pixels.pixels()[pixel_of[i / kBeside.size()]].view];
+    const Camera& camera = cameras[seen[i / kBeside.size()].view];
     const float footprint = length(hit.position - to_float(camera.center)) / float(camera.fx);
     edge[i / kBeside.size()] |= !same_surface(hit, rays[i], found[i], footprint);
   }

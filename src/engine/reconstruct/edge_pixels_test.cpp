@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "engine/reconstruct/pixels.h"
 #include "engine/synthetic/views.h"
 #include "model/geometry/mesh/test_meshes.h"
 #include "model/geometry/shape/surface.h"
@@ -30,7 +31,7 @@ struct Plates {
   Surface surface;
   PixelStore pixels;
   std::vector<Hit> hits;
-  std::vector<size_t> pixel_of;
+  std::vector<SeenAt> seen;
 
   explicit Plates(float height) : surface(mesh(height)) {
     const Camera camera = look_at({0, 0, 3}, {0, 0, 0}, {kSize, kSize, 60}, {0, 1, 0});
@@ -39,7 +40,8 @@ struct Plates {
       const Ray ray = pixels.ray(pixels.pixels()[p]);
       const Vec3f above = at_height(ray, height);
       hits.push_back({in_plate(above) ? above : at_height(ray, 0), {0, 0, 1}, -ray.direction, 0, 0, 0});
-      pixel_of.push_back(p);
+      const Pixel& at = pixels.pixels()[p];
+      seen.push_back({at.view, at.x, at.y});
     }
   }
   static Mesh mesh(float height) {
@@ -57,7 +59,8 @@ struct Plates {
 TEST(EdgePixels, AreThoseWithinAPixelOfAnEdge) {
   constexpr float kHeight = 0.3f;
   const Plates plates(kHeight);
-  const std::vector<uint8_t> edge = on_edges(plates.surface, plates.pixels, plates.hits, plates.pixel_of);
+  const std::vector<uint8_t> edge =
+      on_edges(plates.surface, plates.pixels.cameras(), plates.hits, plates.seen);
   int edges = 0;
   for (size_t i = 0; i < edge.size(); ++i) {
     const auto above = [&](Vec2f away) {
@@ -73,7 +76,7 @@ TEST(EdgePixels, AreThoseWithinAPixelOfAnEdge) {
 
 TEST(EdgePixels, AreNotThoseAtALowStep) {
   const Plates plates(0.04f);  // a pixel is .05 wide
-  for (const uint8_t edge : on_edges(plates.surface, plates.pixels, plates.hits, plates.pixel_of))
+  for (const uint8_t edge : on_edges(plates.surface, plates.pixels.cameras(), plates.hits, plates.seen))
     EXPECT_EQ(edge, 0);
 }
 
@@ -85,7 +88,7 @@ TEST(EdgePixels, AreThoseAtTheBackground) {
   const Ray border = plates.pixels.ray(plates.pixels.pixels()[0]);
   // The hit of a pixel whose neighbors all miss.
   const std::vector<Hit> hit{{Plates::at_height(border, 0), {0, 0, 1}, -border.direction, 0, 0, 0}};
-  EXPECT_EQ(on_edges(surface, plates.pixels, hit, std::vector<size_t>{0})[0], 1);
+  EXPECT_EQ(on_edges(surface, plates.pixels.cameras(), hit, std::span(plates.seen).first(1))[0], 1);
 }
 
 }  // namespace

@@ -18,7 +18,8 @@ constexpr double kGeometryStep = 13;    // a step of the geometry stage, in Rate
 constexpr double kFirstLight = 4500;    // finding out how the light turns, in Rates::trial_step
 constexpr double kStartShapes = 20000;  // that, start shapes and poses, in Rates::trial_step
 constexpr double kPolishStep = 68;      // a step of polishing, in Rates::sdf_step
-constexpr double kResidualStep = 8;     // a training step of the correction network, in Rates::sdf_step
+// A pixel of the residual images, in times of tracing and shading a hit. A light that turns takes most.
+constexpr double kResidualPixel = 3;
 constexpr double kFullSplit = 2e7, kBriefSplit = 1.2e7;  // the linear separation, in Rates::hit_shaded
 // Fit of lobes and descents, in Rates::albedo_step.
 constexpr double kFullDescent = 7000, kBriefDescent = 750;
@@ -28,9 +29,9 @@ constexpr double kRefinementStep = 2;  // a step of a refinement, in Rates::albe
 constexpr double kReserve = 3;         // reading and writing files, in times of the first surface
 
 // Minimum shares of all steps; fewer are not worth the time.
-constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinResidualShare = 0.13,
-                 kMinJointShare = 0.25, kMinTrialShare = 0.4;
-constexpr size_t kUntimedResidualHits = 1000000;
+constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinJointShare = 0.25,
+                 kMinTrialShare = 0.4;
+constexpr size_t kUntimedResidualPixels = 1000000;
 
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
 // another subset. Refinements begin above the first ratio of pixels to max_hits, with one for each further
@@ -45,9 +46,8 @@ constexpr double kRefinementsShare = 0.1;
 constexpr double kJointShare = 0.1;
 constexpr double kFinerMeshShare = 1.0 / 40;
 constexpr double kCoupledShare = 0.3;   // of the network of a coupled color, in place of all that is left out
-constexpr double kResidualShare = 0.1;  // training of the correction network
-constexpr double kResidualShadingShare = 0.018;  // shading of the pixels of the correction network
-constexpr double kTrialsShare = 0.3;  // comparison of start shapes, as a share of the geometry stage
+constexpr double kResidualShare = 0.1;  // residual images
+constexpr double kTrialsShare = 0.3;    // comparison of start shapes, as a share of the geometry stage
 
 constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // minimum shares of the whole time
 
@@ -63,11 +63,10 @@ struct Costs {
   double trials_besides;  // start shapes and the first fits to them
   double brief_surface;   // with brief_hits
   double surface, full_appearance, brief_appearance, refinement, finer_mesh;
-  double look;      // of a polishing round
-  double polish;    // all steps of a round
-  double joint;     // all steps of it, hits and judgment
-  double residual;  // all steps of its training
-  double residual_hit;
+  double look;    // of a polishing round
+  double polish;  // all steps of a round
+  double joint;   // all steps of it, hits and judgment
+  double residual_pixel;
 };
 
 Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
@@ -89,8 +88,7 @@ Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
   c.refinement = hits * hit + kRefinementStep * preset.refinement_steps * r.albedo_step;
   c.joint = preset.joint_steps * kJointStep * r.sdf_step + c.surface + kJointHits * hits * hit;
   c.finer_mesh = mesh(preset.finer_meshing);
-  c.residual_hit = hit;
-  c.residual = preset.residual_steps * kResidualStep * r.sdf_step;
+  c.residual_pixel = kResidualPixel * hit;
   return c;
 }
 
@@ -123,8 +121,7 @@ Plan untimed_plan(const ReconstructOptions& options, const Preset& preset) {
   p.polish_steps = preset.polish_steps / 2;
   p.joint_steps = p.polish_rounds > 0 ? preset.joint_steps / 2 : 0;
   p.has_finer_mesh = has_finer_meshing(preset) && p.polish_rounds > 0;
-  p.residual_steps = std::min(preset.residual_steps, p.iterations) / 2;
-  p.residual_hits = std::min(preset.max_residual_hits, kUntimedResidualHits);
+  p.residual_pixels = std::min(preset.max_residual_pixels, kUntimedResidualPixels);
   return p;
 }
 
@@ -159,11 +156,9 @@ void plan_joint(double t, const Costs& c, const Preset& preset, bool wanted, Pla
 }
 
 void plan_residual(double t, const Costs& c, const Preset& preset, size_t pixels, Plan& p) {
-  if (kResidualShare * t < kMinResidualShare * c.residual) return;
-  p.residual_steps = preset.residual_steps;
-  p.residual_hits =
-      std::min({preset.max_residual_hits, pixels, size_t(kResidualShadingShare * t / c.residual_hit)});
-  p.residual = std::min(c.residual, kResidualShare * t) + c.residual_hit * double(p.residual_hits);
+  p.residual_pixels =
+      std::min({preset.max_residual_pixels, pixels, size_t(kResidualShare * t / c.residual_pixel)});
+  p.residual = c.residual_pixel * double(p.residual_pixels);
 }
 
 // Seconds of all but the geometry stage.
@@ -184,8 +179,8 @@ bool leave_one_out(const Costs& c, Plan& p) {
   } else if (p.has_finer_mesh) {
     p.has_finer_mesh = false;
     p.finer_mesh = 0;
-  } else if (p.residual_steps > 0) {
-    p.residual_steps = 0;
+  } else if (p.residual_pixels > 0) {
+    p.residual_pixels = 0;
     p.residual = 0;
   } else if (p.effort == Effort::full) {
     p.effort = Effort::brief;
@@ -227,9 +222,11 @@ Plan without_light(Plan p, double t, const Preset& preset, size_t pixels, const 
   p.color = ColorChoice::coupled;
   p.polish_rounds = p.refinements = p.joint_steps = 0;
   p.look = p.polish = p.appearance = p.refinement = p.joint = 0;
-  p.residual_steps = std::max(1, t > 0 ? preset.residual_steps : p.residual_steps);
+  p.residual_pixels = 0;
+  p.residual_steps =
+      std::max(1, t > 0 ? preset.residual_steps : std::min(preset.residual_steps, p.iterations) / 2);
+  p.residual_hits = std::min(preset.max_residual_hits, t > 0 ? pixels : kUntimedResidualPixels);
   if (t <= 0) return p;
-  p.residual_hits = std::min(preset.max_residual_hits, pixels);
   p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
   p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
   p.residual = kCoupledShare * t;
@@ -271,6 +268,7 @@ Json to_json(const Plan& p) {
           {"joint_steps", p.joint_steps},
           {"joint", p.joint},
           {"finer_mesh", p.finer_mesh},
+          {"residual_pixels", p.residual_pixels},
           {"residual_hits", p.residual_hits},
           {"residual", p.residual},
           {"reserve", p.reserve}};

@@ -14,7 +14,7 @@ namespace cei3d {
 // decide.
 struct Plan {
   StageChoice stages = StageChoice::all;
-  // Coupled: no polishing, appearance, refinements and joint descent; the correction network is the color.
+  // Coupled: no polishing, appearance, refinements and joint descent; a network is the color.
   ColorChoice color = ColorChoice::disentangled;
   int trial_steps = 0;    // of each training that tries one of three start shapes; 0: the visual hull
   double geometry = 0;    // s, the comparison of starts included
@@ -31,9 +31,10 @@ struct Plan {
   double joint = 0;              // s of the joint descent, with the judgment of its result
   bool has_finer_mesh = false;   // Preset::finer_meshing
   double finer_mesh = 0;         // s of the finer mesh
-  int residual_steps = 0;        // of training the correction network, at most; 0: none
-  size_t residual_hits = 0;      // training pixels of the correction network, at most
-  double residual = 0;           // s of the correction network: shading of its pixels and training
+  size_t residual_pixels = 0;    // of all residual images, at most; 0: none
+  int residual_steps = 0;        // of training the network of a coupled color, at most
+  size_t residual_hits = 0;      // training pixels of that network, at most
+  double residual = 0;           // s of the residual images, or of that network
   double reserve = 0;            // s for the first surface and for reading and writing files
 };
 

@@ -263,8 +263,8 @@ void add_run(const Group<Preset>& g) {
            "finer mesh")
       .add("trials_from_iterations", &Preset::trials_from_iterations, {0, 1e8}, "steps",
            "Training steps of the geometry stage from which a run by steps compares start shapes")
-      .add("residual_steps", &Preset::residual_steps, {0, 1e6}, "steps",
-           "Training steps of the correction network, at most; 0: no network")
+      .add("residual_steps", &Preset::residual_steps, {1, 1e6}, "steps",
+           "Training steps of the network of a coupled color, at most")
       .add("refinement_steps", &Preset::refinement_steps, {1, 1e6}, "steps",
            "Training steps of a refinement of the albedo")
       .add("larger_tables", &Preset::larger_tables, {0, 4}, "",
@@ -274,7 +274,9 @@ void add_run(const Group<Preset>& g) {
       .add("brief_hits", &Preset::brief_hits, {100, 1e9}, "pixels",
            "Training pixels that make the handler points of a joint descent alone, at most")
       .add("max_residual_hits", &Preset::max_residual_hits, {100, 1e9}, "pixels",
-           "Training pixels of the correction network, at most");
+           "Training pixels of the network of a coupled color, at most")
+      .add("max_residual_pixels", &Preset::max_residual_pixels, {0, 1e9}, "pixels",
+           "Pixels of all residual images, at most; photographs with more are reduced; 0: no such images");
 }
 
 SettingTable<Preset> make_table() {

@@ -40,16 +40,18 @@ struct Preset {
   int larger_tables = 0;               // added to the logarithm of the hash tables that it chooses
   int polish_steps = 600;              // of a round, at most; half of them in a run by steps
   int joint_steps = 0;                 // of the joint descent, at most; half of them in a run by steps
-  int residual_steps = 9000;           // at most; half of them in a run by steps
-  int refinement_steps = 600;          // of the albedo on another subset of the pixels
+  // Of the network of a coupled color, at most; half of them in a run by steps.
+  int residual_steps = 9000;
+  int refinement_steps = 600;  // of the albedo on another subset of the pixels
   int iterations = 0;  // of the main stage, geometry or joint, when neither a time nor a number is asked for
   int polish_from_iterations = 1000;  // geometry steps from which an untimed run polishes and meshes finer
   int exposures_from_steps = 1000;  // geometry steps of a model that is compared with the exposures of views
   int trials_from_iterations = 4000;  // geometry steps from which an untimed run compares start shapes
   size_t max_hits = 1500000;          // training pixels of the appearance stage
   size_t brief_hits = 300000;         // training pixels that make the handler points of a joint descent alone
-  // Training pixels of the correction network; it overfits the noise of fewer.
+  // Training pixels of the network of a coupled color; it overfits the noise of fewer.
   size_t max_residual_hits = 4000000;
+  size_t max_residual_pixels = 24000000;  // of all residual images; 0: none
 };
 
 // "fast" (hash grids), "balanced" (larger ones, for longer), "paper" (the paper's own method: the joint

@@ -6,7 +6,7 @@
 #include "core/base/cancel.h"
 #include "core/base/json.h"
 #include "engine/reconstruct/appearance/find_light_frame.h"
-#include "engine/reconstruct/appearance/residual_fit.h"
+#include "engine/reconstruct/appearance/residual_images_fit.h"
 #include "engine/reconstruct/coupled_stages.h"
 #include "engine/reconstruct/geometry/silhouette_level.h"
 #include "engine/reconstruct/geometry_training.h"
@@ -20,8 +20,8 @@ namespace cei3d {
 
 namespace {
 
-// Numbers of random subsets of the pixels; the albedo's refinements take 1, 2, ...
-constexpr uint64_t kResidualSubset = 1000, kJointSubset = 1001;
+// Number of a random subset of the pixels; the albedo's refinements take 1, 2, ...
+constexpr uint64_t kJointSubset = 1001;
 // Share of the joint stage's time that is descent; the rest is hits, a mesh and the judgment.
 constexpr double kJointDescentShare = 0.7;
 constexpr double kMinJointGain = 0.02;  // dB on pixels that the joint descent does not see
@@ -31,7 +31,7 @@ constexpr double kLightShare = 0.6;  // share of light in the planned time of li
 // Lengths of the stages of a run by steps, in steps of the geometry stage.
 constexpr double kStartSteps = 50, kTrialsSteps = 1500, kLookSteps = 350, kSurfaceSteps = 80,
                  kAppearanceSteps = 600, kFinerMeshSteps = 400, kPolishStepLength = 3, kJointStepLength = 2,
-                 kResidualStepLength = 0.4;
+                 kResidualSteps = 300, kColorStepLength = 0.4;
 
 // How the light turns in the training views, found on the visual hull if it is not given: the diffuse shading
 // of a rough shape mostly suffices.
@@ -239,22 +239,24 @@ void make_finer_mesh(const RunContext& run, RunState& state, const Stage::Checkp
   state.scene.surface = extract_surface(run.device, *state.scene.sdf, run.preset.finer_meshing, run.progress);
 }
 
-void fit_scene_residual(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+void make_residual_images(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   const Plan& plan = run.plan;
-  ResidualOptions options;
-  // If the run is late, at least half of the planned time: less training is useless.
-  const double left = run.progress.left() - 0.5 * plan.reserve;
-  options.seconds = plan.residual > 0 ? std::clamp(left, 0.5 * plan.residual, plan.residual) : 0;
+  ResidualImagesOptions options;
+  options.max_pixels = run.preset.max_residual_pixels;
+  if (plan.residual > 0)
+    options.seconds = std::max(run.progress.left() - 0.5 * plan.reserve, plan.residual);
+  else
+    options.max_pixels = plan.residual_pixels;
   options.clock = run.progress.clock();
-  options.steps = plan.residual_steps;
   options.seed = run.seed;
-  const ObjectHits hits = scene_hits(run, state.scene, {plan.residual_hits, kResidualSubset});
-  const Turns turns = light_turns(run, state, state.scene.surface, hits);
-  ResidualFit fit =
-      fit_residual(run.device, state.scene, hits.samples(turns.get()), hits.views, options, run.progress);
-  if (fit.residual) state.scene.residual = std::make_shared<const Residual>(std::move(*fit.residual));
+  const auto turns = turns_of(state.scene.light_frame, run.views.train.cameras());
+  const ResidualImagesFit fit =
+      fit_residual_images(run.device, state.scene, run.views.train, turns.get(), options, run.progress);
   state.scene.explained = fit.explained;
-  check_cancelled(run.progress);
+  if (!fit.images) return;
+  Residual residual;
+  residual.images = fit.images;
+  state.scene.residual = std::make_shared<const Residual>(std::move(residual));
 }
 
 // Lengths of the stages: those of the plan, or of a run by steps, estimated.
@@ -282,7 +284,7 @@ Budgets budgets_of(const Plan& p) {
           .refinement = 0,
           .joint = kJointStepLength * p.joint_steps,
           .finer_mesh = kFinerMeshSteps,
-          .residual = kResidualStepLength * p.residual_steps};
+          .residual = p.color == ColorChoice::coupled ? kColorStepLength * p.residual_steps : kResidualSteps};
 }
 
 }  // namespace
@@ -311,7 +313,7 @@ std::vector<Stage> stages_of(const Plan& plan) {
                       }});
   if (plan.joint_steps > 0) stages.push_back({"joint", budget.joint, descend_on_all});
   if (plan.has_finer_mesh) stages.push_back({"finer mesh", budget.finer_mesh, make_finer_mesh});
-  if (plan.residual_steps > 0) stages.push_back({"residual", budget.residual, fit_scene_residual});
+  if (plan.residual_pixels > 0) stages.push_back({"residual", budget.residual, make_residual_images});
   return stages;
 }
 

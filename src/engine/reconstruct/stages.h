@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stages of a reconstruction, from the start shape to the correction network.
+// The stages of a reconstruction, from the start shape to the correction.
 #pragma once
 
 #include "engine/reconstruct/stage.h"

@@ -59,7 +59,12 @@ void add_hits(const Device& device, const Field& sdf, const Surface& surface, co
   const std::vector<Hit> hits = trace_rays(device, sdf, surface, rays, ray_of_hit);
   std::vector<size_t> pixel_of;
   for (const uint32_t ray : ray_of_hit) pixel_of.push_back(slab[ray]);
-  const std::vector<uint8_t> edge = on_edges(surface, pixels, hits, pixel_of);
+  std::vector<SeenAt> seen;
+  for (const size_t i : pixel_of) {
+    const Pixel& p = pixels.pixels()[i];
+    seen.push_back({p.view, p.x, p.y});
+  }
+  const std::vector<uint8_t> edge = on_edges(surface, pixels.cameras(), hits, seen);
   for (size_t i = 0; i < hits.size(); ++i)
     if (!edge[i] || Rng(8, 0, pixel_of[i]).uniform() < edge_share) add_hit(pixels, pixel_of[i], hits[i], out);
   slab.clear();

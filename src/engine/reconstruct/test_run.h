@@ -136,7 +136,7 @@ inline Preset shrunken(Preset p) {
   p.resolution_from_views = false;
   p.max_hits = 2500;
   p.brief_hits = 2000;
-  p.max_residual_hits = 2000;
+  p.max_residual_hits = p.max_residual_pixels = 2000;
   p.polish_steps = 8;
   p.joint_steps = 8;
   p.joint.rays = 64;

@@ -53,8 +53,7 @@ class TimedRun {
 
 Preset preset_for_time(const std::string& name) {
   Preset preset = shrunken(preset_by_name(name));
-  preset.polish_steps = 600;  // so that the clock ends polishing and the residual's training
-  preset.residual_steps = 9000;
+  preset.polish_steps = 600;  // so that the clock ends polishing
   return preset;
 }
 

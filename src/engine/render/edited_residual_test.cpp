@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The correction network in the regions of edits.
+// The correction in the regions of edits.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For tests: a correction network that changes what is seen.
+// For tests: a correction that changes what is seen.
 #pragma once
 
 #include <memory>
@@ -9,7 +9,7 @@
 
 namespace cei3d {
 
-// A correction network of a field like the albedo's, whose last weights are random numbers of standard
+// A network of a field like the albedo's, whose last weights are random numbers of standard
 // deviation `size`.
 inline std::shared_ptr<const Residual> random_residual(const Field& albedo, float size) {
   FieldConfig config = albedo.config();

@@ -76,7 +76,7 @@ void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverag
   image.data[4 * pixel + 3] = coverage;
 }
 
-// Evaluates the correction network where the memory has no value.
+// Evaluates the correction where the memory has no value.
 void fill_residuals(const Device& device, const Scene& scene, const Photographed& photographed,
                     std::span<const Hit> hits, HitMemory& memory) {
   if (memory.residual != scene.residual || memory.residuals.size() != hits.size()) {
@@ -123,7 +123,7 @@ float kept_share(float now, float before) {
   return std::clamp((now + kBlack) / (before + kBlack), 0.0f, kMax);
 }
 
-// Output of the correction network, carried over to the edited surface: #hits, linear radiance.
+// The correction, carried over to the edited surface: #hits, linear radiance.
 std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const SceneLight& light,
                              const Shading& shading, std::span<const Hit> hits, HitMemory& memory) {
   std::vector<Vec3f> out(hits.size(), Vec3f{0, 0, 0});

@@ -172,7 +172,7 @@ std::string EvalReport::markdown() const {
         "\nFID between {} renders and as many photographs: so few bias it upwards; compare it with sets of "
         "the same size only.\n",
         views.size());
-  text += residual ? "\nWith the correction network.\n" : "\nLight and material alone.\n";
+  text += residual ? "\nWith the correction by photographs.\n" : "\nLight and material alone.\n";
   if (edit) text += edit_markdown(*edit);
   return text;
 }

@@ -19,7 +19,7 @@ std::string warning_of(double physical, double with_residual) {
 TEST(ObjectSummary, SaysWhereLightAndMaterialExplainMuchLessThanTheResidual) {
   EXPECT_THAT(ObjectSummary().warning(), IsEmpty());
   EXPECT_THAT(warning_of(34.0, 34.5), IsEmpty());
-  EXPECT_THAT(warning_of(27.0, 30.0), HasSubstr("27.0 dB, with the correction network 30.0 dB"));
+  EXPECT_THAT(warning_of(27.0, 30.0), HasSubstr("27.0 dB, with the correction 30.0 dB"));
 }
 
 TEST(ObjectSummary, SaysWhereNothingExplainsThePhotographs) {

@@ -153,8 +153,8 @@ std::string ObjectSummary::warning() const {
         explained->with_residual);
   if (explained->with_residual - explained->physical < kMuchLess) return {};
   return fmt::format(
-      "Light and material explain the photographs to {:.1f} dB, with the correction network {:.1f} dB: edits "
-      "and other light will look less realistic than the object as photographed.",
+      "Light and material explain the photographs to {:.1f} dB, with the correction {:.1f} dB: edits and "
+      "other light will look less realistic than the object as photographed.",
       explained->physical, explained->with_residual);
 }
 

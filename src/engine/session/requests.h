@@ -186,7 +186,7 @@ struct RenderRequest {
   int width = 0, height = 0;  // 0: the cameras' own
   LightChoice light;
   int samples = 2;       // per pixel and axis
-  bool residual = true;  // with the correction network, which is never used under another light
+  bool residual = true;  // with the correction, which is never used under another light
 };
 struct RenderReport {
   size_t views = 0;
@@ -258,7 +258,7 @@ struct EvalRequest {
   std::filesystem::path capture;  // empty: the project's own
   std::optional<Split> split;     // none: test when there is one, else all
   int samples = 2;
-  bool residual = true;  // with the correction network
+  bool residual = true;  // with the correction
   NetworkFiles networks;
   std::string edit;                    // also score this edit, an id of the log; empty: none
   std::filesystem::path truth, masks;  // with it: folders of images named like the views; both or none
@@ -296,11 +296,11 @@ struct EvalReport {
   std::optional<double> psnr_exposed;          // mean over views; none in reports of older programs
   double psnr_worst = 0;
   std::string worst_view;
-  bool residual = false;  // whether the images include the correction network
+  bool residual = false;  // whether the images include the correction
   struct Alone {
     double psnr = 0, psnr_masked = 0;
   };
-  std::optional<Alone> alone;        // means without the correction network; none: the object has none
+  std::optional<Alone> alone;        // means without the correction; none: the object has none
   std::optional<double> lpips, fid;  // fid: between renders and photographs
   std::optional<double> flip;        // mean over views; none in reports of older programs
   std::optional<EditScore> edit;

@@ -115,7 +115,7 @@ const EditLayer* layer_of(const Scene& scene, const std::string& edit) {
 struct ScoredScenes {
   Scene scene;
   Scene without;                  // the scene without the edit that is scored; the same if none is
-  std::optional<Scene> physical;  // the scene without the correction network; none: it has no such network
+  std::optional<Scene> physical;  // the scene without the correction; none: it has none
 };
 
 ScoredScenes scenes_to_score(const Project& project, const EvalRequest& request) {

@@ -50,11 +50,26 @@ FieldConfig small_field(int outputs) {
   return config;
 }
 
+// Of the sphere's upper part, from above.
+ResidualImage some_image() {
+  Camera camera;
+  camera.width = camera.height = 8;
+  camera.fx = camera.fy = 20;
+  camera.cx = camera.cy = 4;
+  camera.center = {0, 0, 3};
+  camera.world_from_cam = upright_rotation({0, 0, -1}, {0, 1, 0});
+  std::vector<std::array<uint16_t, 2>> pixels;
+  for (uint16_t i = 0; i < 64; ++i) pixels.push_back({uint16_t(i % 8), uint16_t(i / 8)});
+  return ResidualImage(camera, pixels, std::vector<Vec3f>(64, {0.1f, 0, -0.1f}),
+                       std::vector<float>(64, 2.6f));
+}
+
 // Corrections that can be seen, whether or not a reconstruction would keep any.
 std::shared_ptr<const Residual> some_residual(const Scene& scene) {
   Residual residual = make_residual(scene.sdf, 3);
   Param& last = residual.params.all()[residual.params.all().size() - 2];  // zero to start with
   for (size_t i = 0; i < last.count(); ++i) last.value[i] = 0.05f * Rng(5, 5, i).normal();
+  residual.images = std::make_shared<const ResidualImages>(std::vector{some_image()});
   return std::make_shared<const Residual>(std::move(residual));
 }
 

@@ -102,10 +102,13 @@ void ResidualPass::backward_features(const Device& device, const MlpWeights& fea
                    g.d_encoding.data());
 }
 
-std::vector<Vec3f> residual_at(const Device& device, const Residual& residual, std::span<const Hit> hits) {
-  constexpr int kGrain = 4096;
+namespace {
+
+constexpr int kGrain = 4096;
+
+void add_network(const Device& device, const Residual& residual, std::span<const Hit> hits,
+                 std::vector<Vec3f>& out) {
   const Field& features = *residual.features;
-  std::vector<Vec3f> out(hits.size());
   const MlpWeights feature_weights(mlp_config(features.config()), features.params()),
       weights(residual.network, residual.params);
   parallel_ranges(int(hits.size()), kGrain, [&](int begin, int end) {
@@ -116,9 +119,23 @@ std::vector<Vec3f> residual_at(const Device& device, const Residual& residual, s
       for (const Hit& h : hits.subspan(size_t(first), size_t(n)))
         turned.push_back(with_rotated_directions(h, residual.room_from_object));
       pass.forward(device, features, feature_weights, weights, turned);
-      for (int i = 0; i < n; ++i) out[first + i] = pass.output(i);
+      for (int i = 0; i < n; ++i) out[first + i] += pass.output(i);
     }
   });
+}
+
+void add_images(const ResidualImages& images, std::span<const Hit> hits, std::vector<Vec3f>& out) {
+  parallel_ranges(int(hits.size()), kGrain, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) out[i] += images.at(hits[i]);
+  });
+}
+
+}  // namespace
+
+std::vector<Vec3f> residual_at(const Device& device, const Residual& residual, std::span<const Hit> hits) {
+  std::vector<Vec3f> out(hits.size(), Vec3f{0, 0, 0});
+  if (residual.features) add_network(device, residual, hits, out);
+  if (residual.images) add_images(*residual.images, hits, out);
   return out;
 }
 

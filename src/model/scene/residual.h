@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The correction network ("residual" in code and files): the part of the photographs that light and material
-// do not explain. A small network over features of the point, the normal and the view direction, whose output
-// is added to the shaded radiance: under the reconstructed light, on surface that no edit moved or added.
-// Where an edit changed color or material, the output is scaled as the shading changed. The albedo does not
-// depend on it. docs/method.md#correction-network
+// The correction ("residual" in code and files): the part of the photographs that light and material do not
+// explain. It is added to the shaded radiance: under the reconstructed light, on surface that no edit moved
+// or added. Where an edit changed color or material, it is scaled as the shading changed. The albedo does not
+// depend on it. It is a blend of pictures of what is left, or, of a coupled color and in older projects, a
+// small network over features of the point, the normal and the view direction.
+// docs/method.md#correction-by-photographs
 #pragma once
 
 #include <memory>
@@ -15,16 +16,19 @@
 #include "model/field/field_pass.h"
 #include "model/field/gradients.h"
 #include "model/geometry/shape/hit.h"
+#include "model/scene/residual_images.h"
 
 namespace cei3d {
 
 struct Residual {
-  // Outputs 1.. are features of a point: the SDF, or a copy of it that was trained further.
+  // Outputs 1.. are features of a point: the SDF, or a copy of it that was trained further. Null: there is no
+  // network.
   std::shared_ptr<const Field> features;
   MlpConfig network;  // 3 outputs: linear radiance
   ParamSet params;
   // Rotation of a turning light: the network gets directions in the frame of the light.
   Mat3f room_from_object = Mat3f::identity();
+  std::shared_ptr<const ResidualImages> images;  // null: none
 };
 
 inline constexpr int kResidualLayers = 3, kMaxResidualLayers = 8;
@@ -56,7 +60,7 @@ class ResidualPass {
   AlignedVector<float> points_, directions_, jets_, d_jets_, d_input_;
 };
 
-// Linear radiance to add: #hits.
+// Linear radiance to add: #hits. hits: in shape version 0.
 std::vector<Vec3f> residual_at(const Device&, const Residual&, std::span<const Hit> hits);
 
 }  // namespace cei3d

@@ -67,6 +67,8 @@ std::shared_ptr<const HandlerPoints> load_handlers(const Tensors& tensors, JsonR
 
 void save_residual(const Residual& residual, const std::shared_ptr<const Field>& sdf, Tensors& tensors,
                    Json& head) {
+  if (residual.images) save_residual_images(*residual.images, tensors, head);
+  if (!residual.features) return;
   head["residual"] = {{"layers", residual.network.hidden_layers}};
   residual.params.save(tensors, "residual");
   if (residual.features != sdf) save_field(residual.features, "residual_features", tensors, head);
@@ -78,15 +80,26 @@ int layers_from(JsonReader head) {
   return layers;
 }
 
-std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const std::shared_ptr<const Field>& sdf,
-                                              JsonReader& reader) {
+Residual load_network(const Tensors& tensors, const std::shared_ptr<const Field>& sdf, JsonReader& reader) {
   // Objects of project version 2 have two layers over the SDF's own features.
   const int layers = reader.member("residual").is_object() ? layers_from(reader.object("residual")) : 2;
   if (layers < 1 || layers > kMaxResidualLayers) fail("The correction network has {} layers.", layers);
   const std::shared_ptr<const Field> own = load_field("residual_features", tensors, reader);
-  auto residual = std::make_shared<Residual>(make_residual(own ? own : sdf, 0, layers));
-  residual->params.load(tensors, "residual");
+  Residual residual = make_residual(own ? own : sdf, 0, layers);
+  residual.params.load(tensors, "residual");
   return residual;
+}
+
+std::shared_ptr<const Residual> load_residual(const Tensors& tensors, const std::shared_ptr<const Field>& sdf,
+                                              JsonReader& reader) {
+  const bool network = reader.has("residual"), images = reader.has("residual_images");
+  if (!network && !images) return nullptr;
+  Residual residual;
+  if (network) residual = load_network(tensors, sdf, reader);
+  if (images)
+    residual.images = std::make_shared<const ResidualImages>(
+        load_residual_images(tensors, reader.object("residual_images")));
+  return std::make_shared<const Residual>(std::move(residual));
 }
 
 void save_light_frame(const LightFrame& frame, Json& head) {
@@ -247,7 +260,7 @@ Scene load_scene(const Tensors& tensors, const Json& head, const std::string& wh
     scene.light = load_light(tensors, reader.object("light"));
     if (reader.has("light_error")) scene.light_error = to_float(vector_from(reader, "light_error"));
     if (reader.has("light_frame")) scene.light_frame = load_light_frame(reader);
-    if (reader.has("residual")) scene.residual = load_residual(tensors, scene.sdf, reader);
+    scene.residual = load_residual(tensors, scene.sdf, reader);
     if (reader.has("handlers")) scene.handlers = load_handlers(tensors, reader.object("handlers"));
     if (reader.has("explained")) {
       JsonReader explained = reader.object("explained");

@@ -24,8 +24,8 @@
 
 namespace cei3d {
 
-// PSNR (dB, display-encoded, on the object) on views that the correction network was not trained on: by light
-// and material alone, and with the correction network.
+// PSNR (dB, display-encoded, on the object) of training views: by light and material alone, and with a
+// correction that was not made from the view itself.
 struct Explained {
   double physical = 0, with_residual = 0;
 };
@@ -42,7 +42,7 @@ struct Scene {
   std::optional<Vec3f> light_error;
   LightFrame light_frame;  // of the reconstructed light; the light of an edit is fixed to the object
   MaterialField material;
-  // Correction network; null: none, or the light was changed.
+  // Correction; null: none, or the light was changed.
   std::shared_ptr<const Residual> residual;
   std::optional<Explained> explained;             // of the reconstruction; none: not measured
   RefinedCameras refined;                         // of the capture, as the reconstruction found out

@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "core/base/json.h"
-#include "core/math/rng.h"
 #include "engine/render/render.h"
 #include "engine/render/scene_light.h"
 #include "engine/render/sphere_scene.h"
@@ -33,15 +32,16 @@ struct Photographed {
       const std::vector<Hit> more =
           seen_from(device, scene, {3 * std::cos(turn), 3 * std::sin(turn), v % 2 ? 1.0 : -1.0});
       hits.insert(hits.end(), more.begin(), more.end());
-      views.insert(views.end(), more.size(), uint16_t(v));
     }
     const Shading s =
         SceneLight(device, scene, scene_transports(scene)).shade(hits, appearance_at(device, scene, hits));
-    for (size_t i = 0; i < hits.size(); ++i) colors.push_back(s.diffuse[i] + s.specular[i] + glow(hits[i]));
+    for (size_t i = 0; i < hits.size(); ++i) {
+      radiance.push_back(s.diffuse[i] + s.specular[i]);
+      colors.push_back(radiance[i] + glow(hits[i]));
+    }
   }
   std::vector<Hit> hits;
-  std::vector<Vec3f> colors;
-  std::vector<uint16_t> views;
+  std::vector<Vec3f> radiance, colors;  // without the glow, and with it
 };
 
 // Upper half: a layer's region.
@@ -69,9 +69,8 @@ struct ResidualTest : testing::Test {
     ResidualOptions options;
     options.steps = 250;
     scene.residual = std::make_shared<const Residual>(
-        fit_residual(device, scene, {photographed.hits, photographed.colors, {}, {}}, photographed.views,
-                     options, quiet)
-            .residual.value());
+        fit_residual(device, scene.sdf, {photographed.hits, photographed.colors, {}, {}},
+                     photographed.radiance, options, quiet));
   }
   static Scene without() {
     Scene plain = scene;
@@ -103,12 +102,9 @@ TEST_F(ResidualTest, AloneLearnsTheColorsThemselves) {
   Progress quiet;
   ResidualOptions options;
   options.steps = 250;
-  options.alone = true;
-  const ResidualFit fit =
-      fit_residual(device, without(), {lit.hits, lit.colors, {}, {}}, lit.views, options, quiet);
-  EXPECT_FALSE(fit.explained);  // nothing else explains anything
+  const Residual alone = fit_residual(device, scene.sdf, {lit.hits, lit.colors, {}, {}}, {}, options, quiet);
   const std::vector<Hit> hits = seen_from(device, scene, {2.2, 2.0, 0.3});
-  const std::vector<Vec3f> got = residual_at(device, *fit.residual, hits);
+  const std::vector<Vec3f> got = residual_at(device, alone, hits);
   double error = 0, all = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
     const Vec3f want = Vec3f{0.1f, 0.1f, 0.1f} + glow(hits[i]);
@@ -116,38 +112,6 @@ TEST_F(ResidualTest, AloneLearnsTheColorsThemselves) {
     all += dot(want, want);
   }
   EXPECT_LT(std::sqrt(error / all), 0.2);
-}
-
-// A surface without glow, photographed with uniform noise of that amplitude.
-ResidualFit fit_to_noise(const Device& device, const Scene& scene, float amplitude) {
-  Photographed noisy(device, scene);
-  for (size_t i = 0; i < noisy.hits.size(); ++i) {
-    Rng rng(1, 2, i);
-    const float noise = amplitude * (2 * rng.uniform() - 1);
-    noisy.colors[i] += Vec3f{noise, noise, noise} - glow(noisy.hits[i]);
-  }
-  Progress quiet;
-  ResidualOptions options;
-  options.steps = 30;
-  return fit_residual(device, scene, {noisy.hits, noisy.colors, {}, {}}, noisy.views, options, quiet);
-}
-
-TEST_F(ResidualTest, IsNotKeptWhereViewsThatItHasNotSeenGainNothing) {
-  const ResidualFit fit = fit_to_noise(device, without(), 0.025f);
-  EXPECT_FALSE(fit.residual);
-  // Uniform noise of +-.025 in linear colors: .0144 on average, and more as displayed.
-  ASSERT_TRUE(fit.explained);
-  EXPECT_NEAR(fit.explained->physical, fit.explained->with_residual, 0.2);
-  EXPECT_LT(fit.explained->physical, 37);
-}
-
-// Views that light and material were fitted to show less than what it gains on others.
-TEST_F(ResidualTest, IsKeptWherePhotographsAreExplainedBadlyIfItDoesNoHarm) {
-  const ResidualFit fit = fit_to_noise(device, without(), 0.15f);
-  ASSERT_TRUE(fit.explained);
-  EXPECT_LT(fit.explained->physical, 30);
-  EXPECT_NEAR(fit.explained->physical, fit.explained->with_residual, 0.2);
-  EXPECT_TRUE(fit.residual);
 }
 
 // Stripes that the distance field knows nothing of: its features are zero everywhere.
@@ -174,14 +138,12 @@ TEST_F(ResidualTest, FeaturesLearnWhatTheDistanceFieldDoesNotKnow) {
   Progress quiet;
   ResidualOptions options;
   options.steps = 250;
-  const auto got =
-      fit_residual(device, tabled, {striped.hits, striped.colors, {}, {}}, striped.views, options, quiet)
-          .residual;
-  ASSERT_TRUE(got);
-  EXPECT_NE(got->features, tabled.sdf);
+  const Residual got = fit_residual(device, tabled.sdf, {striped.hits, striped.colors, {}, {}},
+                                    striped.radiance, options, quiet);
+  EXPECT_NE(got.features, tabled.sdf);
   for (size_t k = 0; k < before.size(); ++k) EXPECT_EQ(before[k].value, sdf->params().all()[k].value);
   const std::vector<Hit> hits = seen_from(device, tabled, {2.2, 2.0, 0.3});
-  const std::vector<Vec3f> values = residual_at(device, *got, hits);
+  const std::vector<Vec3f> values = residual_at(device, got, hits);
   double error = 0, all = 0;
   for (size_t i = 0; i < hits.size(); ++i) {
     const Vec3f off = values[i] - stripes(hits[i]);

@@ -21,30 +21,45 @@ std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::
   return out;
 }
 
-std::vector<Vec3f> radiance_of(const Device& device, const Scene& scene, const SurfaceSamples& samples,
-                               const Progress& progress) {
+namespace {
+
+Lighting lighting_of(const Device& device, const Scene& scene, const LightTurns* turns,
+                     const Progress& progress) {
+  const std::vector<Vec3f>& vertices = scene.surface->mesh().positions;
+  return Lighting(device, scene.surface, scene.light,
+                  turned_vertex_lights(
+                      Transport(scene.surface, {}, progress), scene.light,
+                      {scene.albedo->eval3(device, vertices), scene.material.at(device, vertices)}, turns));
+}
+
+}  // namespace
+
+SampleShader::SampleShader(const Device& device, const Scene& scene, const LightTurns* turns,
+                           const Progress& progress)
+    : device_(device), scene_(scene), light_(lighting_of(device, scene, turns, progress)) {}
+
+std::vector<Vec3f> SampleShader::radiance(const SurfaceSamples& samples, const Progress& progress) const {
   // Number of hits between two checks for interruption: 5 s with the largest networks.
   constexpr size_t kSlab = 1 << 15;
-  const std::vector<Vec3f>& vertices = scene.surface->mesh().positions;
-  const Lighting light(
-      device, scene.surface, scene.light,
-      turned_vertex_lights(Transport(scene.surface, {}, progress), scene.light,
-                           {scene.albedo->eval3(device, vertices), scene.material.at(device, vertices)},
-                           samples.turned.turns));
   std::vector<Vec3f> out;
   out.reserve(samples.hits.size());
   for (size_t begin = 0; begin < samples.hits.size(); begin += kSlab) {
     check_cancelled(progress);
     const size_t n = std::min(kSlab, samples.hits.size() - begin);
     const std::span<const Hit> hits = samples.hits.subspan(begin, n);
-    const std::vector<Material> materials = scene.material.at(device, positions_of(hits));
+    const std::vector<Material> materials = scene_.material.at(device_, positions_of(hits));
     const std::vector<Vec3f> albedo =
-        pixel_colors(device, *scene.albedo, hits,
+        pixel_colors(device_, *scene_.albedo, hits,
                      samples.footprints.empty() ? samples.footprints : samples.footprints.subspan(begin, n));
-    const Shading shading = light.shade({hits, materials, samples.turned.part(begin, n)}, albedo);
+    const Shading shading = light_.shade({hits, materials, samples.turned.part(begin, n)}, albedo);
     for (size_t i = 0; i < n; ++i) out.push_back(shading.diffuse[i] + shading.specular[i]);
   }
   return out;
+}
+
+std::vector<Vec3f> radiance_of(const Device& device, const Scene& scene, const SurfaceSamples& samples,
+                               const Progress& progress) {
+  return SampleShader(device, scene, samples.turned.turns, progress).radiance(samples, progress);
 }
 
 double display_error(Vec3f radiance, Vec3f photo) {

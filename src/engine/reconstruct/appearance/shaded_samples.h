@@ -7,6 +7,7 @@
 
 #include "core/base/progress.h"
 #include "engine/reconstruct/appearance/linear_split.h"
+#include "engine/render/lighting.h"
 #include "model/scene/scene.h"
 
 namespace cei3d {
@@ -16,7 +17,21 @@ namespace cei3d {
 std::vector<Vec3f> pixel_colors(const Device&, const Field& albedo, std::span<const Hit> hits,
                                 std::span<const float> footprints);
 
-// Linear radiance by light and material, without the correction network: #samples. Error: interrupted.
+// Light and material of a scene, made ready once to shade many samples, without the correction.
+class SampleShader {
+ public:
+  // turns: of the samples' views; null: the light stands still. Scene and turns must outlive the object.
+  // Error: interrupted.
+  SampleShader(const Device&, const Scene&, const LightTurns* turns, const Progress&);
+  // Linear radiance: #samples. Error: interrupted.
+  std::vector<Vec3f> radiance(const SurfaceSamples&, const Progress&) const;
+
+ private:
+  const Device& device_;
+  const Scene& scene_;
+  Lighting light_;
+};
+// The same for one use.
 std::vector<Vec3f> radiance_of(const Device&, const Scene&, const SurfaceSamples&, const Progress&);
 
 // Squared error of a displayed pixel, summed over its channels. radiance, photo: linear; a display shows no
