@@ -49,7 +49,9 @@ constexpr double kCoupledShare = 0.3;   // of the network of a coupled color, in
 constexpr double kResidualShare = 0.1;  // residual images
 constexpr double kTrialsShare = 0.3;    // comparison of start shapes, as a share of the geometry stage
 
-constexpr double kReserveShare = 0.03, kMinGeometryShare = 0.35;  // minimum shares of the whole time
+// Minimum shares of the whole time. Before the residual images comes light at all vertices, which grows with
+// the object and not with its pixels.
+constexpr double kReserveShare = 0.03, kMinResidualShare = 0.02, kMinGeometryShare = 0.35;
 
 // Steps that the geometry stage gets before anything is polished or refined, unless they take more than a
 // share of the whole time.
@@ -158,7 +160,8 @@ void plan_joint(double t, const Costs& c, const Preset& preset, bool wanted, Pla
 void plan_residual(double t, const Costs& c, const Preset& preset, size_t pixels, Plan& p) {
   p.residual_pixels =
       std::min({preset.max_residual_pixels, pixels, size_t(kResidualShare * t / c.residual_pixel)});
-  p.residual = c.residual_pixel * double(p.residual_pixels);
+  if (p.residual_pixels > 0)
+    p.residual = std::max(kMinResidualShare * t, c.residual_pixel * double(p.residual_pixels));
 }
 
 // Seconds of all but the geometry stage.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/base/cancel.h"
 #include "core/base/json.h"
@@ -27,7 +28,7 @@ constexpr int kStrengthSteps = 20;  // strengths that are tried, from 0 to 1
 // What is known of a pixel that the images are judged by. Linear.
 struct Judged {
   Hit hit;
-  int view;
+  int image;  // of its own view
   Vec3f radiance, photo;
 };
 
@@ -52,7 +53,8 @@ class ImagesFit {
         seed_(seed),
         progress_(progress) {}
 
-  ResidualImage image_of(uint16_t view) {
+  // index: that the image will have.
+  ResidualImage image_of(uint16_t view, int index) {
     const Camera& camera = photos_.cameras()[view];
     const std::vector<PhotoBlocks::Block> blocks = photos_.of_view(view);
     const ViewHits seen = trace(view, blocks);
@@ -68,7 +70,7 @@ class ImagesFit {
       differences.push_back(difference(block, radiance[i]));
       distances.push_back(length(seen.hits[i].position - to_float(camera.center)));
       if (Rng(seed_, view, seen.block[i]).uniform() < share_)
-        judged_.push_back({seen.hits[i], view, radiance[i], block.color});
+        judged_.push_back({seen.hits[i], index, radiance[i], block.color});
     }
     return ResidualImage(camera, places, differences, distances);
   }
@@ -150,10 +152,20 @@ int affordable_size(const Making& m, double seconds, const Progress& progress) {
   if (m.options.seconds <= 0) return size;
   const double begin = m.options.clock();
   const PhotoBlocks photos(m.store, size);
-  m.fit(photos, progress).image_of(0);
+  m.fit(photos, progress).image_of(0, 0);
   const double took = (m.options.clock() - begin) * double(photos.cameras().size()),
                larger = std::ceil(std::sqrt(took / std::max(seconds, 1e-3)));
   return int(std::clamp(size * larger, double(size), double(PhotoBlocks::kLargest)));
+}
+
+// Neighbors in the capture are far from each other, so that where time is over, views from all around are
+// done.
+std::vector<uint16_t> spread_order(size_t views) {
+  size_t step = std::max<size_t>(1, size_t(0.618 * double(views)));
+  while (std::gcd(step, views) != 1) ++step;
+  std::vector<uint16_t> out;
+  for (size_t k = 0; k < views; ++k) out.push_back(uint16_t(k * step % views));
+  return out;
 }
 
 Made make_images(const Device& device, const Scene& scene, const PixelStore& store, const LightTurns* turns,
@@ -163,10 +175,11 @@ Made make_images(const Device& device, const Scene& scene, const PixelStore& sto
   const PhotoBlocks photos(store, affordable_size(m, options.seconds - (options.clock() - start), progress));
   ImagesFit fit = m.fit(photos, progress);
   Made out;
-  const size_t views = store.cameras().size();
-  for (size_t v = 0; v < views; ++v) {
-    progress.report({"residual", double(v) / double(views), -1, ""});
-    out.images.push_back(fit.image_of(uint16_t(v)));
+  for (const uint16_t view : spread_order(store.cameras().size())) {
+    const double past = options.clock() - start;
+    if (options.seconds > 0 && past > options.seconds && !out.images.empty()) break;
+    progress.report({"residual", double(out.images.size()) / double(store.cameras().size()), -1, ""});
+    out.images.push_back(fit.image_of(view, int(out.images.size())));
   }
   out.judged = fit.judged();
   return out;
@@ -178,7 +191,7 @@ Blends blends_of_others(const ResidualImages& images, const std::vector<Judged>&
   Blends out(judged.size());
   parallel_ranges(int(judged.size()), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; ++i)
-      out[size_t(i)] = images.blend(judged[size_t(i)].hit, judged[size_t(i)].view);
+      out[size_t(i)] = images.blend(judged[size_t(i)].hit, judged[size_t(i)].image);
   });
   return out;
 }

@@ -98,17 +98,22 @@ TEST(ResidualImagesFit, ReducesPhotographsThatHaveTooManyPixels) {
   EXPECT_LT(error_between_views(device, scene, *got.images), 0.2);
 }
 
-// Between two looks at the clock passes a second, one of two: what is left is a tenth of what ten images
-// take.
-TEST(ResidualImagesFit, ReducesPhotographsForWhichThereIsTooLittleTime) {
-  const Device device = make_device("cpu");
+// Between two looks at the clock passes a second.
+ResidualImagesFit fit_in(double seconds) {
   ResidualImagesOptions options;
-  options.seconds = 2;
-  options.clock = [seconds = 0]() mutable { return double(seconds++); };
-  const ResidualImagesFit got = fit(device, sphere_scene(), stripes, options);
-  ASSERT_TRUE(got.images);
-  EXPECT_EQ(got.images->images().size(), size_t(kViews));
-  EXPECT_LE(got.images->images()[0].camera().width, kSize / 4);
+  options.seconds = seconds;
+  options.clock = [now = 0]() mutable { return double(now++); };
+  return fit(make_device("cpu"), sphere_scene(), stripes, options);
+}
+
+TEST(ResidualImagesFit, ReducesPhotographsForWhichThereIsTooLittleTime) {
+  const ResidualImagesFit all = fit_in(1000), some = fit_in(8);
+  ASSERT_TRUE(all.images && some.images);
+  EXPECT_EQ(all.images->images().size(), size_t(kViews));
+  EXPECT_GT(all.images->images()[0].camera().width, kSize / 2);
+  EXPECT_LE(some.images->images()[0].camera().width, kSize / 2);  // ten seconds in the seven that are left
+  EXPECT_LT(some.images->images().size(), size_t(kViews));        // a second each that it could not foresee
+  EXPECT_GT(some.images->images().size(), size_t(kViews) / 2 - 1);
 }
 
 TEST(ResidualImagesFit, NoiseIsNoCorrection) {
