@@ -39,19 +39,21 @@ struct ViewHits {
   std::vector<float> footprints;
 };
 
+// What all views need to be made into images.
+struct Making {
+  const Device& device;
+  const Scene& scene;
+  const PixelStore& store;
+  const LightTurns* turns;
+  const ResidualImagesOptions& options;
+  const Progress& progress;
+  SampleShader shader;
+};
+
 class ImagesFit {
  public:
-  // share: of the blocks that are judged.
-  ImagesFit(const Device& device, const Scene& scene, const PhotoBlocks& photos, const LightTurns* turns,
-            const SampleShader& shader, double share, uint64_t seed, const Progress& progress)
-      : device_(device),
-        scene_(scene),
-        photos_(photos),
-        turns_(turns),
-        shader_(shader),
-        share_(share),
-        seed_(seed),
-        progress_(progress) {}
+  ImagesFit(const Making& making, const PhotoBlocks& photos)
+      : m_(making), photos_(photos), share_(double(kJudged) / double(std::max<size_t>(photos.count(), 1))) {}
 
   // index: that the image will have.
   ResidualImage image_of(uint16_t view, int index) {
@@ -60,7 +62,7 @@ class ImagesFit {
     const ViewHits seen = trace(view, blocks);
     const std::vector<uint16_t> views(seen.hits.size(), view);
     const std::vector<Vec3f> radiance =
-        shader_.radiance({seen.hits, {}, {}, seen.footprints, {turns_, views}}, progress_);
+        m_.shader.radiance({seen.hits, {}, {}, seen.footprints, {m_.turns, views}}, m_.progress);
     std::vector<std::array<uint16_t, 2>> places;
     std::vector<Vec3f> differences;
     std::vector<float> distances;
@@ -69,7 +71,7 @@ class ImagesFit {
       places.push_back({block.x, block.y});
       differences.push_back(difference(block, radiance[i]));
       distances.push_back(length(seen.hits[i].position - to_float(camera.center)));
-      if (Rng(seed_, view, seen.block[i]).uniform() < share_)
+      if (Rng(m_.options.seed, view, seen.block[i]).uniform() < share_)
         judged_.push_back({seen.hits[i], index, radiance[i], block.color});
     }
     return ResidualImage(camera, places, differences, distances);
@@ -83,7 +85,7 @@ class ImagesFit {
   ViewHits trace(uint16_t view, Blocks blocks) const {
     ViewHits out;
     for (size_t begin = 0; begin < blocks.size(); begin += kSlab) {
-      check_cancelled(progress_);
+      check_cancelled(m_.progress);
       add_hits(view, blocks.subspan(begin, std::min(kSlab, blocks.size() - begin)), begin, out);
     }
     return out;
@@ -95,10 +97,10 @@ class ImagesFit {
     std::vector<Ray> rays;
     for (const PhotoBlocks::Block& b : blocks) rays.push_back(camera.ray(b.x + 0.5, b.y + 0.5));
     std::vector<uint32_t> ray_of_hit;
-    const std::vector<Hit> hits = trace_rays(device_, *scene_.sdf, *scene_.surface, rays, ray_of_hit);
+    const std::vector<Hit> hits = trace_rays(m_.device, *m_.scene.sdf, *m_.scene.surface, rays, ray_of_hit);
     std::vector<SeenAt> seen;
     for (const uint32_t ray : ray_of_hit) seen.push_back({view, blocks[ray].x, blocks[ray].y});
-    const std::vector<uint8_t> edge = on_edges(*scene_.surface, photos_.cameras(), hits, seen);
+    const std::vector<uint8_t> edge = on_edges(*m_.scene.surface, photos_.cameras(), hits, seen);
     for (size_t i = 0; i < hits.size(); ++i) {
       if (edge[i]) continue;
       out.hits.push_back(hits[i]);
@@ -115,14 +117,9 @@ class ImagesFit {
     return d;
   }
 
-  const Device& device_;
-  const Scene& scene_;
+  const Making& m_;
   const PhotoBlocks& photos_;
-  const LightTurns* turns_;
-  const SampleShader& shader_;
-  double share_;
-  uint64_t seed_;
-  const Progress& progress_;
+  double share_;  // of the blocks that are judged
   std::vector<Judged> judged_;
 };
 
@@ -131,28 +128,13 @@ struct Made {
   std::vector<Judged> judged;
 };
 
-// What all views need to be made into images.
-struct Making {
-  const Device& device;
-  const Scene& scene;
-  const PixelStore& store;
-  const LightTurns* turns;
-  const ResidualImagesOptions& options;
-  SampleShader shader;
-
-  ImagesFit fit(const PhotoBlocks& photos, const Progress& progress) const {
-    const double share = double(kJudged) / double(std::max<size_t>(photos.count(), 1));
-    return ImagesFit(device, scene, photos, turns, shader, share, options.seed, progress);
-  }
-};
-
 // Side of a block in pixels, so that all images are made in `seconds` if they take as long as the first.
-int affordable_size(const Making& m, double seconds, const Progress& progress) {
+int affordable_size(const Making& m, double seconds) {
   const int size = PhotoBlocks::size_for(m.store, m.options.max_pixels);
   if (m.options.seconds <= 0) return size;
   const double begin = m.options.clock();
   const PhotoBlocks photos(m.store, size);
-  m.fit(photos, progress).image_of(0, 0);
+  ImagesFit(m, photos).image_of(0, 0);
   const double took = (m.options.clock() - begin) * double(photos.cameras().size()),
                larger = std::ceil(std::sqrt(took / std::max(seconds, 1e-3)));
   return int(std::clamp(size * larger, double(size), double(PhotoBlocks::kLargest)));
@@ -171,9 +153,10 @@ std::vector<uint16_t> spread_order(size_t views) {
 Made make_images(const Device& device, const Scene& scene, const PixelStore& store, const LightTurns* turns,
                  const ResidualImagesOptions& options, Progress& progress) {
   const double start = options.clock();
-  const Making m{device, scene, store, turns, options, SampleShader(device, scene, turns, progress)};
-  const PhotoBlocks photos(store, affordable_size(m, options.seconds - (options.clock() - start), progress));
-  ImagesFit fit = m.fit(photos, progress);
+  const Making m{
+      device, scene, store, turns, options, progress, SampleShader(device, scene, turns, progress)};
+  const PhotoBlocks photos(store, affordable_size(m, options.seconds - (options.clock() - start)));
+  ImagesFit fit(m, photos);
   Made out;
   for (const uint16_t view : spread_order(store.cameras().size())) {
     const double past = options.clock() - start;
