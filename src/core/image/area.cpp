@@ -32,6 +32,25 @@ Area opened(const Area& area, int width, int height, int radius) {
   return dilated(eroded(area, width, height, radius), width, height, radius);
 }
 
+Area parts_with(const Area& seeds, const Area& area, int width, int height) {
+  Area out(area.size(), 0);
+  std::vector<size_t> next;
+  const auto visit = [&](size_t i) {
+    if (area[i] && !out[i]) out[i] = 1, next.push_back(i);
+  };
+  for (size_t i = 0; i < seeds.size(); ++i)
+    if (seeds[i]) visit(i);
+  while (!next.empty()) {
+    const size_t i = next.back(), w = size_t(width);
+    next.pop_back();
+    if (i % w > 0) visit(i - 1);
+    if (i % w + 1 < w) visit(i + 1);
+    if (i >= w) visit(i - w);
+    if (i + w < w * size_t(height)) visit(i + w);
+  }
+  return out;
+}
+
 Image shown_in(const Image& image, const Area& area, float background) {
   Image out = image;
   for (size_t i = 0; i < area.size(); ++i)

@@ -21,6 +21,9 @@ Area eroded(const Area& area, int width, int height, int radius);
 // Eroded, then dilated: the area without its parts that are narrower than 2 radius + 1 pixels.
 Area opened(const Area& area, int width, int height, int radius);
 
+// The parts of the area, connected along the axes, that hold a pixel of `seeds`.
+Area parts_with(const Area& seeds, const Area& area, int width, int height);
+
 // The image with all channels set to `background` outside the area.
 Image shown_in(const Image& image, const Area& area, float background);
 

@@ -51,5 +51,25 @@ TEST(Area, OpenedKeepsTheSquaresThatFit) {
     }
 }
 
+// A part has a seed, or it has none: nothing of the area beside the result touches it.
+TEST(Area, PartsWithSeedsAreWholeAndNoOthersAreKept) {
+  const Area area = random_area(7);
+  Area seeds(area.size());
+  seeds[size_t(3) * kWidth + 5] = seeds[size_t(9) * kWidth + 12] = 1;
+  const Area out = parts_with(seeds, area, kWidth, kHeight);
+  EXPECT_GT(pixels_in(out), 0u);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const size_t i = size_t(y) * kWidth + x;
+      EXPECT_LE(out[i], area[i]);
+      EXPECT_GE(out[i], seeds[i] * area[i]);
+      const bool right = x + 1 < kWidth && area[i] && area[i + 1],
+                 below = y + 1 < kHeight && area[i] && area[i + kWidth];
+      EXPECT_TRUE(!right || out[i] == out[i + 1]);
+      EXPECT_TRUE(!below || out[i] == out[i + kWidth]);
+    }
+  EXPECT_EQ(pixels_in(parts_with(Area(area.size()), area, kWidth, kHeight)), 0u);
+}
+
 }  // namespace
 }  // namespace cei3d

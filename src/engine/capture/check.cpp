@@ -50,6 +50,7 @@ struct ViewResult {
   double coverage = 0;
   Mask mask;
   PhotoLook look;
+  MaskBorder border;
 };
 
 bool pose_is_sound(const Camera& c) {
@@ -75,9 +76,11 @@ int border_pixels(const Mask& m) {
 }
 
 void look_at_image(const View& view, ViewResult& out) {
-  out.look = look_at_photo(view, load_linear_rgba(view));  // decodes the whole file and rejects NaN
+  const Image rgba = load_linear_rgba(view);  // decodes the whole file and rejects NaN
+  out.look = look_at_photo(view, rgba);
   out.has[kProfile] = has_unusable_profile(view.image_path);
   out.mask = load_mask(view);
+  out.border = look_at_border(view, rgba, out.mask.object);
   const auto& object = out.mask.object;
   const bool full = std::count(object.begin(), object.end(), kBackground) == 0;
   const size_t set = size_t(std::count(out.mask.object.begin(), out.mask.object.end(), kObject));
@@ -230,34 +233,47 @@ void check_polarity(const std::vector<Checked>& all, CaptureReport& report) {
        }});
 }
 
-// Makes pixels of the mask unknown.
-void forget(const Area& area, std::vector<uint8_t>& mask) {
-  for (size_t i = 0; i < area.size(); ++i)
-    if (area[i]) mask[i] = kUnknown;
-}
+// Masks with the pixels that were found to be unsure.
+class DoubtedMasks {
+ public:
+  explicit DoubtedMasks(std::vector<JudgedMask> masks)
+      : masks_(std::move(masks)), unsure_(masks_.size()), known_(masks_.size()) {}
 
-// Where the masks contradict each other. What a moved part explains is not held against a mask.
-void doubt_masks(std::vector<JudgedMask> masks, CaptureReport& report) {
-  std::vector<Area> unsure(masks.size());
-  if (report.normalization) unsure = check_moves(masks, *report.normalization, report.findings);
-  std::vector<std::vector<uint8_t>> changed(masks.size());
-  for (size_t i = 0; i < masks.size(); ++i) {
-    if (unsure[i].empty()) continue;
-    changed[i].assign(masks[i].mask.begin(), masks[i].mask.end());
-    forget(unsure[i], changed[i]);
-    masks[i].mask = changed[i];
+  std::span<const JudgedMask> masks() const { return masks_; }
+  // Makes the pixels unknown. area: [height][width] of the view; empty: none of them.
+  void add(size_t i, const Area& area) {
+    if (area.empty()) return;
+    if (unsure_[i].empty()) known_[i].assign(masks_[i].mask.begin(), masks_[i].mask.end());
+    unsure_[i].resize(area.size());
+    for (size_t k = 0; k < area.size(); ++k)
+      if (area[k]) unsure_[i][k] = 1, known_[i][k] = kUnknown;
+    masks_[i].mask = known_[i];
   }
-  const std::vector<MaskDoubt> doubts = check_silhouettes(masks, report.normalization, report.findings);
-  for (size_t i = 0; i < masks.size(); ++i) {
-    const View& view = *masks[i].view;
-    Area area = std::move(unsure[i]);
-    if (i < doubts.size() && doubts[i].stands_out) {
-      const Area doubtful = doubtful_area(doubts[i], view.camera.width, view.camera.height);
-      area.resize(doubtful.size());
-      for (size_t k = 0; k < area.size(); ++k) area[k] |= doubtful[k];
-    }
-    if (!area.empty()) report.doubts.push_back({view.name, std::move(area)});
+  // The pixels of the views that have any.
+  std::vector<CaptureReport::Doubt> doubts() const {
+    std::vector<CaptureReport::Doubt> out;
+    for (size_t i = 0; i < masks_.size(); ++i)
+      if (!unsure_[i].empty()) out.push_back({masks_[i].view->name, unsure_[i]});
+    return out;
   }
+
+ private:
+  std::vector<JudgedMask> masks_;
+  std::vector<Area> unsure_;
+  std::vector<std::vector<uint8_t>> known_;
+};
+
+// Where the masks contradict each other. What one reason explains is not held against a mask for another.
+void doubt_masks(std::vector<JudgedMask> judged, CaptureReport& report) {
+  DoubtedMasks masks(std::move(judged));
+  const auto add = [&](const std::vector<Area>& areas) {
+    for (size_t i = 0; i < areas.size(); ++i) masks.add(i, areas[i]);
+  };
+  if (report.normalization) add(check_moves(masks.masks(), *report.normalization, report.findings));
+  add(check_silhouettes(masks.masks(), report.normalization, report.findings));
+  if (report.normalization) add(check_gaps(masks.masks(), *report.normalization, report.findings));
+  add(check_borders(masks.masks(), report.findings));
+  report.doubts = masks.doubts();
 }
 
 void diagnose(const Capture& capture, const std::vector<Checked>& all, CaptureReport& report) {
@@ -269,7 +285,7 @@ void diagnose(const Capture& capture, const std::vector<Checked>& all, CaptureRe
   for (const auto& [view, result] : all) {
     if (result.mask.object.empty() || result.has[kBadPose] || !result.mask.stated || result.has[kEmptyMask])
       continue;
-    masks.push_back({view, result.mask.object, &result.look.small});
+    masks.push_back({view, result.mask.object, &result.look.small, &result.border});
     photos.push_back({view, &result.look});
   }
   // Where most views show only a part of the object, what the others see of it does not say what a mask

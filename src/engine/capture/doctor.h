@@ -28,25 +28,43 @@ void check_tracks(const Capture& capture, std::vector<Finding>& findings);
 // Intrinsics that no camera has: a focal length in millimeters, a principal point of another image size.
 void check_intrinsics(const Capture& capture, std::vector<Finding>& findings);
 
+// Background along the outline of a mask.
+struct MaskBorder {
+  int width = 0, height = 0;  // of the reduced mask
+  double share = 0;           // of its object pixels
+  Area loose;                 // [height][width]; empty: little
+};
+// rgba: load_linear_rgba() of the view; mask: of its size.
+MaskBorder look_at_border(const View& view, const Image& rgba, std::span<const uint8_t> mask);
+
 struct JudgedMask {
   const View* view = nullptr;
-  std::span<const uint8_t> mask;      // of view->camera
-  const Image* photograph = nullptr;  // PhotoLook::small of the view; null: none
+  std::span<const uint8_t> mask;       // of view->camera
+  const Image* photograph = nullptr;   // PhotoLook::small of the view; null: none
+  const MaskBorder* border = nullptr;  // null: not known
 };
 
 // Views whose mask disagrees with the others. normalization: none if the masks have no volume in common;
 // then, or when most disagree, the usual mistakes that concern all cameras are tried. A mask that leaves out
-// what the others show is right where the photograph has the colors of the background there. Returns the
-// votes, one for each mask.
-std::vector<MaskDoubt> check_silhouettes(std::span<const JudgedMask> masks,
-                                         const std::optional<Normalization>& normalization,
-                                         std::vector<Finding>& findings);
+// what the others show is right where the photograph has the colors of the background there. Returns an area
+// for each mask: where it is not believed; empty: nowhere.
+std::vector<Area> check_silhouettes(std::span<const JudgedMask> masks,
+                                    const std::optional<Normalization>& normalization,
+                                    std::vector<Finding>& findings);
 
 // A part that was moved between two photographs, which were taken in the order of their names. Returns one
 // area for each mask: in the views before the move or in those after it, whichever are fewer, the pixels
 // where the part may be in either position; in the others, and if nothing moved, an empty one.
 std::vector<Area> check_moves(std::span<const JudgedMask> masks, const Normalization&,
                               std::vector<Finding>& findings);
+
+// Masks that fill gaps of the object. Returns an area for each mask: the filled gaps; empty: none.
+std::vector<Area> check_gaps(std::span<const JudgedMask> masks, const Normalization&,
+                             std::vector<Finding>& findings);
+
+// Masks that are drawn wider than the object. Returns an area for each mask: background along its outline;
+// empty: none, or hardly more than in most masks.
+std::vector<Area> check_borders(std::span<const JudgedMask> masks, std::vector<Finding>& findings);
 
 // What is compared between photographs.
 struct PhotoLook {

@@ -326,9 +326,9 @@ bool report_mistake(std::span<const JudgedMask> masks, std::vector<Finding>& fin
 
 }  // namespace
 
-std::vector<MaskDoubt> check_silhouettes(std::span<const JudgedMask> masks,
-                                         const std::optional<Normalization>& normalization,
-                                         std::vector<Finding>& findings) {
+std::vector<Area> check_silhouettes(std::span<const JudgedMask> masks,
+                                    const std::optional<Normalization>& normalization,
+                                    std::vector<Finding>& findings) {
   if (masks.size() < 4) return {};
   std::vector<HullMask> hull;
   for (const JudgedMask& m : masks) hull.push_back({m.view->camera, m.mask});
@@ -344,17 +344,20 @@ std::vector<MaskDoubt> check_silhouettes(std::span<const JudgedMask> masks,
   for (const MaskDoubt& d : doubts) unconfirmed.push_back(d.extra + d.missing);
   if (median(unconfirmed) > 1 - kAgree && report_mistake(masks, findings)) return {};
   std::vector<Suspect> poses, missing, extra;
+  std::vector<Area> areas(masks.size());
   for (size_t i = 0; i < doubts.size(); ++i) {
     if (!doubts[i].stands_out) continue;
     const Suspect s{&masks[i], &doubts[i], explanations[i]};
     const bool pose = !s.why.empty() || doubts[i].extra > kWrongPose ||
                       (doubts[i].missing > 0.05 && doubts[i].extra > 0.05);
     (pose ? poses : doubts[i].missing > doubts[i].extra ? missing : extra).push_back(s);
+    const Camera& camera = masks[i].view->camera;
+    areas[i] = enlarged(doubts[i].doubtful, doubts[i].width, doubts[i].height, camera.width, camera.height);
   }
   report_poses(poses, masks.size(), findings);
   report_masks(missing, masks.size(), "leave out parts of the object that the other views show", findings);
   report_masks(extra, masks.size(), "include what no other view takes for the object", findings);
-  return doubts;
+  return areas;
 }
 
 }  // namespace cei3d

@@ -168,15 +168,14 @@ std::vector<MaskDoubt> vote_on_masks(const SmallMasks& masks) {
   return doubts;
 }
 
-Area doubtful_area(const MaskDoubt& doubt, int width, int height) {
-  // Two pixels of the small mask more: its outline is coarse.
-  const Area grown = dilated(doubt.doubtful, doubt.width, doubt.height, 1);
-  const int n = std::max(1, width / std::max(doubt.width, 1));
+Area enlarged(const Area& area, int small_width, int small_height, int width, int height) {
+  const Area grown = dilated(area, small_width, small_height, 1);
+  const int n = std::max(1, width / std::max(small_width, 1));
   Area out(size_t(width) * height);
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x)
       out[size_t(y) * width + x] =
-          grown[size_t(std::min(y / n, doubt.height - 1)) * doubt.width + std::min(x / n, doubt.width - 1)];
+          grown[size_t(std::min(y / n, small_height - 1)) * small_width + std::min(x / n, small_width - 1)];
   return out;
 }
 

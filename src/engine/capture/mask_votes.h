@@ -40,7 +40,7 @@ struct MaskDoubt {
 // One for each mask.
 std::vector<MaskDoubt> vote_on_masks(const SmallMasks& masks);
 
-// The doubtful pixels at the size of the view.
-Area doubtful_area(const MaskDoubt&, int width, int height);
+// An area of a reduced mask at the size of the view, with a reduced pixel around it: its outline is coarse.
+Area enlarged(const Area& area, int small_width, int small_height, int width, int height);
 
 }  // namespace cei3d

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "engine/capture/test_balls.h"
 #include "engine/synthetic/picture.h"
 #include "engine/synthetic/shapes.h"
 #include "engine/synthetic/views.h"
@@ -45,12 +46,6 @@ class MaskVotes : public testing::Test {
   static SmallMasks masks_;
 };
 SmallMasks MaskVotes::masks_;
-
-double share_of(const Area& part, const Area& whole) {
-  size_t both = 0;
-  for (size_t i = 0; i < part.size(); ++i) both += part[i] && whole[i];
-  return double(both) / double(pixels_in(whole));
-}
 
 TEST_F(MaskVotes, TrueMasksStandForThemselves) {
   for (const MaskDoubt& d : vote_on_masks(masks_)) EXPECT_FALSE(d.stands_out) << d.missing << " " << d.extra;

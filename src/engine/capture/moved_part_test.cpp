@@ -8,32 +8,15 @@
 #include "core/base/error.h"
 #include "core/math/ray_sphere.h"
 #include "engine/capture/doctor.h"
+#include "engine/capture/test_balls.h"
 #include "engine/synthetic/views.h"
 
 namespace cei3d {
 namespace {
 
-// A ball with a knob, in the unit frame.
-struct Ball {
-  Vec3d center;
-  double radius;
-};
+// A ball with a knob.
 constexpr Ball kBody{{0, 0, 0}, 0.5}, kKnob{{0.5, 0, 0.2}, 0.2}, kMovedKnob{{0.45, 0.25, 0.25}, 0.2};
 constexpr int kSize = 72;
-
-Area seen_balls(std::span<const Ball> balls, const Camera& camera) {
-  Area out(size_t(camera.width) * size_t(camera.height));
-  for (int y = 0; y < camera.height; ++y)
-    for (int x = 0; x < camera.width; ++x) {
-      const Ray ray = camera.ray(x + 0.5, y + 0.5);
-      for (const Ball& b : balls) {
-        const auto [near, far] =
-            sphere_span(to_double(ray.origin) - b.center, to_double(ray.direction), b.radius);
-        out[size_t(y) * size_t(camera.width) + size_t(x)] |= near < far;
-      }
-    }
-  return out;
-}
 
 // Views from all sides, as of an object that was turned before each photograph, of which the first `before`
 // show the knob in its first place.
@@ -49,12 +32,6 @@ SmallMasks masks_of(int before, int after, Ball moved = kMovedKnob) {
 }
 // A silhouette of one position may fit the hull of the views of the other, which are few.
 constexpr size_t kUncertain = 2;  // views
-
-double share_of(const Area& part, const Area& whole) {
-  size_t both = 0;
-  for (size_t i = 0; i < part.size(); ++i) both += part[i] && whole[i];
-  return double(both) / double(pixels_in(whole));
-}
 
 TEST(MovedPart, IsFoundWithTheTimeOfItsMoveAndThePositionOfMostViews) {
   for (const auto& [before, after] : {std::pair{26, 17}, {15, 30}}) {

@@ -35,6 +35,7 @@ void estimate(const RunContext& run, RunState& state) {
   brief.effort = Effort::brief;
   brief.seed = run.seed;
   brief.light_color = run.light_color;
+  brief.several_materials = state.several_materials;
   const Turns turns = light_turns(run, state, all.surface, all.hits);
   AppearanceResult made =
       fit_appearance(run.device, {all.surface, all.hits.samples(turns.get())}, brief, run.progress);
@@ -45,6 +46,7 @@ void estimate(const RunContext& run, RunState& state) {
   scene.light = std::move(made.light);
   scene.material = made.material;
   scene.albedo = std::move(made.albedo);
+  state.several_materials = scene.material.varying() != nullptr;
   state.hits = std::move(all.hits);
   state.look_seconds = run.progress.elapsed() - begin;
 }

@@ -61,6 +61,7 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
           {"look_seconds", state.look_seconds},
           {"descent_seconds", state.descent_seconds},
           {"light_frame_known", state.light_frame_known},
+          {"several_materials", state.several_materials},
           {"alignments", state.alignments},
           {"has_geometry", bool(state.geometry)}};
   if (state.geometry) {
@@ -89,6 +90,7 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   const double of_older = reader.optional("joint_seconds", 0.0);  // before polishing had it, too
   state.descent_seconds = reader.optional("descent_seconds", of_older);
   state.light_frame_known = reader.optional("light_frame_known", false);
+  state.several_materials = reader.optional("several_materials", false);
   state.descent = {reader.optional<int64_t>("descent_step", 0), without_prefix(kDescent, tensors)};
   state.alignments = reader.optional("alignments", 0);
   const bool has_geometry = reader.require<bool>("has_geometry");

@@ -23,6 +23,7 @@ struct RunState {
   double polish_deadline = 0;      // end of all polishing rounds, s since the start of the run; 0: not begun
   double look_seconds = 0;         // s that the last round took to estimate light and material
   bool light_frame_known = false;  // whether scene.light_frame is final
+  bool several_materials = false;  // whether the last estimate found several
   int alignments = 0;              // of the poses that are done in the geometry stage
   // The finished parts of the object; in the middle of a round of polishing what it estimates, instead.
   Scene scene;

@@ -145,8 +145,10 @@ void estimate_light(const RunContext& run, RunState& state, const Stage::Checkpo
   Scene& scene = state.scene;
   find_hits(run, state);
   const Turns turns = light_turns(run, state, scene.surface, state.hits);
-  AppearanceResult made = separate_light(run.device, appearance_input(run, state, turns.get()),
-                                         appearance_options(run), run.progress);
+  AppearanceOptions options = appearance_options(run);
+  options.several_materials = state.several_materials;
+  AppearanceResult made =
+      separate_light(run.device, appearance_input(run, state, turns.get()), options, run.progress);
   check_cancelled(run.progress);
   scene.light = std::move(made.light);
   scene.light_error = relative_error(made.split.light_error);

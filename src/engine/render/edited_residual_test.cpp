@@ -110,6 +110,69 @@ TEST(EditedResidual, StaysBehindWhereSurfaceBecomesMuchBrighter) {
   }
 }
 
+// The sphere with one picture of the correction: columns of pixels that are brighter and darker by turns, and
+// brighter by .05 on average.
+Scene striped_sphere(const Camera& camera) {
+  Scene s = sphere_scene();
+  const Device device = make_device();
+  const GBuffer g = trace_view(device, s, camera, 1);
+  std::vector<std::array<uint16_t, 2>> pixels;
+  std::vector<Vec3f> differences;
+  std::vector<float> distances;
+  for (int p = 0; p < g.width * g.height; ++p)
+    for (uint32_t i = g.pixel_start[size_t(p)]; i < g.pixel_start[size_t(p) + 1]; ++i) {
+      pixels.push_back({uint16_t(p % g.width), uint16_t(p / g.width)});
+      const float v = p % g.width % 2 ? 0.15f : -0.05f;
+      differences.push_back({v, v, v});
+      distances.push_back(length(g.hits[i].position - to_float(camera.center)));
+    }
+  Residual r;
+  r.images = std::make_shared<const ResidualImages>(
+      std::vector<ResidualImage>{ResidualImage(camera, pixels, differences, distances)});
+  s.residual = std::make_shared<const Residual>(std::move(r));
+  s.albedo = uniform_field({0.4f, 0.4f, 0.4f});
+  return s;
+}
+
+// Largest step of the correction between neighboring pixels in the middle of the image; mean: of itself.
+float largest_step(const Frame& with, const Frame& without, double& mean) {
+  float largest = 0;
+  const int n = with.rgb.width;
+  for (int y = n * 2 / 5; y < n * 3 / 5; ++y)
+    for (int x = n * 2 / 5; x < n * 3 / 5; ++x) {
+      const auto correction = [&](int at) { return with.rgb.at(at, y)[1] - without.rgb.at(at, y)[1]; };
+      largest = std::max(largest, std::abs(correction(x + 1) - correction(x)));
+      mean += correction(x) / double(square(n * 3 / 5 - n * 2 / 5));
+    }
+  return largest;
+}
+
+// What the photographs show of the old surface is not seen on paint; that light and material make the surface
+// too dark still is corrected. A tint keeps what is below.
+TEST(EditedResidual, OnPaintItHasNoDetails) {
+  const Device device = make_device();
+  const Camera camera = camera_towards_origin({1, -3, 0.4}, 200);
+  const Scene scene = striped_sphere(camera);
+  Scene without = scene;
+  without.residual = nullptr;
+  const Vec3f color{0.3f, 0.45f, 0.45f};
+  EditLayer paint = everywhere(), tint = everywhere(), flat = everywhere();
+  paint.albedo = uniform_field(color);
+  tint.tint = Tint{color, true, {0.4f, 0.4f, 0.4f}};
+  flat.tint = Tint{color, false};
+  const GBuffer g = trace_view(device, scene, camera, 1);
+  const auto step = [&](const EditLayer& edit, double& mean) {
+    return largest_step(shade_view(device, with_layer(scene, edit), g),
+                        shade_view(device, with_layer(without, edit), g), mean);
+  };
+  double painted = 0, flattened = 0, tinted = 0;
+  EXPECT_LT(step(paint, painted), 0.01f);
+  EXPECT_LT(step(flat, flattened), 0.01f);
+  EXPECT_GT(step(tint, tinted), 0.04f);
+  EXPECT_NEAR(painted, tinted, 0.15 * tinted);
+  EXPECT_NEAR(flattened, painted, 1e-3);
+}
+
 TEST(EditedResidual, IsNotOnPaintThatShowsWithoutLight) {
   const Scene scene = corrected_sphere();
   EditLayer sign = everywhere();

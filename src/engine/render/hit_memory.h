@@ -12,12 +12,17 @@
 
 namespace cei3d {
 
+// What was evaluated at some of the hits of a buffer.
+struct SomeValues {
+  std::vector<Vec3f> values;   // #hits, linear radiance; valid where `known` is 1
+  std::vector<uint8_t> known;  // #hits
+};
+
 struct HitMemory {
   std::optional<LitHits> lit;                // none: no frame yet
   std::optional<AppearanceKey> shown;        // of the scene in `lit`
-  std::shared_ptr<const Residual> residual;  // the correction that gave `residuals`
-  std::vector<Vec3f> residuals;              // #hits, linear radiance; valid where has_residual is 1
-  std::vector<uint8_t> has_residual;         // #hits
+  std::shared_ptr<const Residual> residual;  // the correction that gave the following
+  SomeValues residuals, smooth_residuals;    // see residual_at()
 };
 
 }  // namespace cei3d

@@ -76,26 +76,39 @@ void put_mean(Image& image, size_t pixel, Vec3f sum, float weight, float coverag
   image.data[4 * pixel + 3] = coverage;
 }
 
-// Evaluates the correction where the memory has no value.
-void fill_residuals(const Device& device, const Scene& scene, const Photographed& photographed,
-                    std::span<const Hit> hits, HitMemory& memory) {
-  if (memory.residual != scene.residual || memory.residuals.size() != hits.size()) {
-    memory.residual = scene.residual;
-    memory.residuals.assign(hits.size(), Vec3f{0, 0, 0});
-    memory.has_residual.assign(hits.size(), 0);
-  }
-  std::vector<Hit> in_place;
+// Evaluates the correction where it is wanted and not known.
+void fill_residuals(const Device& device, const Residual& residual, std::span<const Hit> hits,
+                    std::span<const uint8_t> wanted, bool smooth, SomeValues& out) {
+  out.values.resize(hits.size(), Vec3f{0, 0, 0});
+  out.known.resize(hits.size(), 0);
+  std::vector<Hit> some;
   std::vector<size_t> of;
   for (size_t i = 0; i < hits.size(); ++i)
-    if (photographed.in_place[i] && !memory.has_residual[i]) {
-      in_place.push_back(hits[i]);
+    if (wanted[i] && !out.known[i]) {
+      some.push_back(hits[i]);
       of.push_back(i);
     }
-  const std::vector<Vec3f> values = residual_at(device, *scene.residual, in_place);
+  const std::vector<Vec3f> values = residual_at(device, residual, some, smooth);
   for (size_t k = 0; k < of.size(); ++k) {
-    memory.residuals[of[k]] = values[k];
-    memory.has_residual[of[k]] = 1;
+    out.values[of[k]] = values[k];
+    out.known[of[k]] = 1;
   }
+}
+
+// Hits that an edit's color covers get a correction without details as well: details belong to the surface
+// that was photographed.
+void fill_residuals(const Device& device, const Scene& scene, const Appearance& look,
+                    std::span<const Hit> hits, HitMemory& memory) {
+  if (memory.residual != scene.residual || memory.residuals.known.size() != hits.size()) {
+    memory.residual = scene.residual;
+    memory.residuals = memory.smooth_residuals = {};
+  }
+  const std::vector<uint8_t>& in_place = look.photographed.in_place;
+  fill_residuals(device, *scene.residual, hits, in_place, false, memory.residuals);
+  if (look.covered.empty()) return;
+  std::vector<uint8_t> covered(hits.size());
+  for (size_t i = 0; i < hits.size(); ++i) covered[i] = in_place[i] && look.covered[i] > 0;
+  fill_residuals(device, *scene.residual, hits, covered, true, memory.smooth_residuals);
 }
 
 // Radiance of the hits as they were photographed, under the present light. hits: indices.
@@ -129,11 +142,11 @@ std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const Sce
   std::vector<Vec3f> out(hits.size(), Vec3f{0, 0, 0});
   if (!scene.residual) return out;
   const Appearance& look = memory.lit->look;
-  fill_residuals(device, scene, look.photographed, hits, memory);
+  fill_residuals(device, scene, look, hits, memory);
   std::vector<size_t> edited;
   for (size_t i = 0; i < hits.size(); ++i) {
     if (!look.photographed.in_place[i]) continue;
-    out[i] = memory.residuals[i];
+    out[i] = memory.residuals.values[i];
     const Vec3f a = look.albedo[i], b = look.photographed.albedo[i];
     const bool same =
         a.x == b.x && a.y == b.y && a.z == b.z && look.material[i] == look.photographed.material[i];
@@ -143,6 +156,8 @@ std::vector<Vec3f> residuals(const Device& device, const Scene& scene, const Sce
   for (size_t k = 0; k < edited.size(); ++k) {
     const size_t i = edited[k];
     const Vec3f now = shading.diffuse[i] + shading.specular[i];
+    if (const float share = look.covered.empty() ? 0 : look.covered[i]; share > 0)
+      out[i] = (1 - share) * out[i] + share * memory.smooth_residuals.values[i];
     for (int c = 0; c < 3; ++c) out[i][c] *= kept_share(now[c], before[k][c]);
     if (!look.unlit.empty()) out[i] = out[i] * (1 - look.unlit[i]);
   }

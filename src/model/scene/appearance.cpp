@@ -196,7 +196,7 @@ std::vector<Vec3f> base_albedo(const Device& device, const Scene& scene, std::sp
   return albedo;
 }
 
-// Combines the contributions into albedo and unlit.
+// Combines the contributions into albedo, unlit and covered.
 void put_colors(const Device& device, const Scene& scene, std::span<const Hit> hits, Routes& routes,
                 Appearance& out) {
   eval_fields(device, scene, routes);
@@ -204,14 +204,24 @@ void put_colors(const Device& device, const Scene& scene, std::span<const Hit> h
   const auto& layers = scene.layers;
   if (std::any_of(layers.begin(), layers.end(), [](const EditLayer& l) { return l.unlit; }))
     out.unlit.assign(hits.size(), 0.0f);
+  if (std::any_of(layers.begin(), layers.end(), [](const EditLayer& l) { return l.covers(); }))
+    out.covered.assign(hits.size(), 0.0f);
+  const auto mix = [](std::vector<float>& shares, uint32_t hit, float weight, bool own) {
+    if (!shares.empty()) shares[hit] = shares[hit] * (1 - weight) + float(own) * weight;
+  };
   for (const Chunk& chunk : routes.chunks)
     for (auto op = chunk.ops.rbegin(); op != chunk.ops.rend(); ++op) {
       Vec3f& a = out.albedo[op->hit];
       const Vec3f c = op->kind == Op::Kind::tint ? tinted(*scene.layers[op->layer].tint, a) : op->color;
       a = op->weight < 1 ? a * (1 - op->weight) + c * op->weight : c;
-      if (out.unlit.empty() || op->kind == Op::Kind::tint) continue;
-      const bool unlit = op->kind == Op::Kind::branch && layers[op->layer].unlit;
-      out.unlit[op->hit] = out.unlit[op->hit] * (1 - op->weight) + float(unlit) * op->weight;
+      if (op->kind == Op::Kind::tint) {
+        const Tint& tint = *layers[op->layer].tint;
+        if (!tint.keep_texture) mix(out.covered, op->hit, op->weight * tint.blend, true);
+        continue;
+      }
+      const bool branch = op->kind == Op::Kind::branch;
+      mix(out.unlit, op->hit, op->weight, branch && layers[op->layer].unlit);
+      mix(out.covered, op->hit, op->weight, branch);
     }
 }
 

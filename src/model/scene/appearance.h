@@ -23,6 +23,7 @@ struct Appearance {
   std::vector<Material> material;  // #hits
   std::vector<int> layer;          // #hits, the last local layer that affects the hit; -1: none
   std::vector<float> unlit{};      // #hits, share of the albedo that is shown without light; empty: 0
+  std::vector<float> covered{};    // #hits, share of the albedo that an edit has covered; empty: 0
   // As the object was reconstructed; for the correction, empty where the scene has none.
   Photographed photographed{};
 };

@@ -74,9 +74,13 @@ Appearance appearance_after(const Device& device, const Scene& scene, std::span<
   put(out.albedo, now.albedo, which);
   put(out.material, now.material, which);
   put(out.layer, now.layer, which);
-  const bool unlit = std::any_of(scene.layers.begin(), scene.layers.end(), [](auto& l) { return l.unlit; });
-  out.unlit.resize(unlit ? hits.size() : 0, 0.0f);
-  if (unlit) put(out.unlit, now.unlit, which);
+  const auto put_shares = [&](std::vector<float>& all, const std::vector<float>& some, const auto& has) {
+    const bool any = std::any_of(scene.layers.begin(), scene.layers.end(), has);
+    all.resize(any ? hits.size() : 0, 0.0f);
+    if (any) put(all, some, which);
+  };
+  put_shares(out.unlit, now.unlit, [](const EditLayer& l) { return l.unlit; });
+  put_shares(out.covered, now.covered, [](const EditLayer& l) { return l.covers(); });
   if (!scene.residual) return out;
   put(out.photographed.albedo, now.photographed.albedo, which);
   put(out.photographed.material, now.photographed.material, which);

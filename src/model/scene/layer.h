@@ -42,6 +42,8 @@ struct EditLayer {
   std::shared_ptr<const Reshape> reshape;  // null: no change of shape
   std::shared_ptr<const Field> sdf;        // of the surface that `reshape` moved; null: see ShapeVersion::sdf
 
+  // Whether it has a color of its own, which covers the details of what is below.
+  bool covers() const { return albedo || (tint && !tint->keep_texture); }
   bool contains(Vec3f position, Vec3f normal) const { return weight(position, normal) > 0; }
   // Weight of the edit's color at a point, [0, 1]; strokes may be semi-transparent. The material changes
   // where the weight is above kMaterialWeight. For many points: LayerWeights.

@@ -124,18 +124,20 @@ void add_network(const Device& device, const Residual& residual, std::span<const
   });
 }
 
-void add_images(const ResidualImages& images, std::span<const Hit> hits, std::vector<Vec3f>& out) {
+void add_images(const ResidualImages& images, std::span<const Hit> hits, bool smooth,
+                std::vector<Vec3f>& out) {
   parallel_ranges(int(hits.size()), kGrain, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) out[i] += images.at(hits[i]);
+    for (int i = begin; i < end; ++i) out[i] += smooth ? images.smooth_at(hits[i]) : images.at(hits[i]);
   });
 }
 
 }  // namespace
 
-std::vector<Vec3f> residual_at(const Device& device, const Residual& residual, std::span<const Hit> hits) {
+std::vector<Vec3f> residual_at(const Device& device, const Residual& residual, std::span<const Hit> hits,
+                               bool smooth) {
   std::vector<Vec3f> out(hits.size(), Vec3f{0, 0, 0});
   if (residual.features) add_network(device, residual, hits, out);
-  if (residual.images) add_images(*residual.images, hits, out);
+  if (residual.images) add_images(*residual.images, hits, smooth, out);
   return out;
 }
 

@@ -60,7 +60,9 @@ class ResidualPass {
   AlignedVector<float> points_, directions_, jets_, d_jets_, d_input_;
 };
 
-// Linear radiance to add: #hits. hits: in shape version 0.
-std::vector<Vec3f> residual_at(const Device&, const Residual&, std::span<const Hit> hits);
+// Linear radiance to add: #hits. hits: in shape version 0. smooth: without the details that pictures have of
+// the surface.
+std::vector<Vec3f> residual_at(const Device&, const Residual&, std::span<const Hit> hits,
+                               bool smooth = false);
 
 }  // namespace cei3d

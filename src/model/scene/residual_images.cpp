@@ -27,6 +27,8 @@ constexpr float kGrazing = 0.15f;  // cosine between normal and direction to the
 constexpr float kSameSurface = 2;
 constexpr float kMinShown = 0.5f;  // share of the interpolation weights that show the surface, at least
 
+constexpr float kDetail = 0.06f;  // side of the squares over which details are averaged, unit frame
+
 constexpr size_t kBlended = 4;  // pictures
 constexpr size_t kTried = 12;  // pictures from the nearest directions that may turn out not to show the point
 constexpr float kDegree = std::numbers::pi_v<float> / 180;
@@ -196,8 +198,34 @@ ResidualImage ResidualImage::sharpened() const {
   return ResidualImage(camera_, places, values, distances);
 }
 
+ResidualImage ResidualImage::smoothed(float size) const {
+  const double pixels = size * camera_.fx / std::max(length(camera_.center), 1e-6);
+  const int n = std::clamp(int(std::lround(pixels)), 1, std::max(1, std::max(camera_.width, camera_.height)));
+  Camera small = scaled(camera_, n);
+  small.width = (camera_.width + n - 1) / n, small.height = (camera_.height + n - 1) / n;
+  Places places;
+  std::vector<Vec3f> differences;
+  std::vector<float> distances;
+  for (int y = 0; y < small.height; ++y)
+    for (int x = 0; x < small.width; ++x) {
+      Vec3f sum{0, 0, 0};
+      float far = 0, shown = 0;
+      for (int v = y * n; v < std::min((y + 1) * n, camera_.height); ++v)
+        for (int u = x * n; u < std::min((x + 1) * n, camera_.width); ++u)
+          if (const std::optional<float> t = distance(u, v)) sum += difference(u, v), far += *t, ++shown;
+      if (shown == 0) continue;
+      places.push_back({uint16_t(x), uint16_t(y)});
+      differences.push_back(sum / shown);
+      distances.push_back(far / shown);
+    }
+  return ResidualImage(small, places, differences, distances);
+}
+
 ResidualImages::ResidualImages(std::vector<ResidualImage> images) : images_(std::move(images)) {
   strengths_.fill(1);
+  smooth_.resize(images_.size());
+  parallel_for(int(images_.size()),
+               [&](int i) { smooth_[size_t(i)] = images_[size_t(i)].smoothed(kDetail); });
 }
 
 void ResidualImages::sharpen() {
@@ -210,14 +238,18 @@ size_t ResidualImages::nearest_angle(float angle) {
   return k;
 }
 
+namespace {
+
 // A picture's weight falls to zero where the next best one has its angle, so that the blend does not jump
 // where another picture comes in.
-std::optional<ResidualImages::Blend> ResidualImages::blend(const Hit& hit, int without) const {
-  const float farthest = kAngles.back() * kDegree;
+std::optional<ResidualImages::Blend> blend_of(std::span<const ResidualImage> images, const Hit& hit,
+                                              int without = -1) {
+  using Blend = ResidualImages::Blend;
+  const float farthest = ResidualImages::kAngles.back() * kDegree;
   std::vector<std::pair<float, size_t>> near;  // minus cosine, picture
-  for (size_t i = 0; i < images_.size(); ++i) {
+  for (size_t i = 0; i < images.size(); ++i) {
     if (int(i) == without) continue;
-    const Vec3f to_camera = normalize(to_float(images_[i].camera().center) - hit.position);
+    const Vec3f to_camera = normalize(to_float(images[i].camera().center) - hit.position);
     const float cosine = dot(to_camera, hit.to_camera);
     if (cosine > std::cos(farthest)) near.push_back({-cosine, i});
   }
@@ -225,7 +257,7 @@ std::optional<ResidualImages::Blend> ResidualImages::blend(const Hit& hit, int w
   std::partial_sort(near.begin(), near.begin() + std::ptrdiff_t(tried), near.end());
   std::vector<std::pair<float, Vec3f>> shown;  // angle, difference
   for (size_t k = 0; k < tried && shown.size() <= kBlended; ++k)
-    if (const std::optional<Vec3f> d = images_[near[k].second].at(hit.position, hit.normal))
+    if (const std::optional<Vec3f> d = images[near[k].second].at(hit.position, hit.normal))
       shown.push_back({std::acos(std::min(-near[k].first, 1.0f)), *d});
   if (shown.empty()) return {};
   const float none = shown.size() > kBlended ? std::max(shown.back().first, kNoAngle) : farthest;
@@ -241,6 +273,12 @@ std::optional<ResidualImages::Blend> ResidualImages::blend(const Hit& hit, int w
   return Blend{out.difference / total, out.angle / total};
 }
 
+}  // namespace
+
+std::optional<ResidualImages::Blend> ResidualImages::blend(const Hit& hit, int without) const {
+  return blend_of(images_, hit, without);
+}
+
 float ResidualImages::strength(float angle) const {
   const float degrees = angle / kDegree;
   for (size_t k = 1; k < kAngles.size(); ++k)
@@ -251,10 +289,11 @@ float ResidualImages::strength(float angle) const {
   return strengths_.back();
 }
 
-Vec3f ResidualImages::at(const Hit& hit) const {
-  const std::optional<Blend> b = blend(hit);
+Vec3f ResidualImages::weighed(const std::optional<Blend>& b) const {
   return b ? strength(b->angle) * b->difference : Vec3f{0, 0, 0};
 }
+Vec3f ResidualImages::at(const Hit& hit) const { return weighed(blend(hit)); }
+Vec3f ResidualImages::smooth_at(const Hit& hit) const { return weighed(blend_of(smooth_, hit)); }
 
 void save_residual_images(const ResidualImages& images, Tensors& tensors, Json& head) {
   Json list = Json::array();

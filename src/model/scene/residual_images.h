@@ -22,6 +22,7 @@ namespace cei3d {
 // the distance of the surface that it shows; most of a byte's steps are near zero.
 class ResidualImage {
  public:
+  ResidualImage() = default;  // shows nothing
   // camera: of the whole photograph, unit frame. pixels: its columns and rows, on the object. differences:
   // #pixels, linear. distances: #pixels, from the camera's center along the ray, unit frame.
   ResidualImage(const Camera& camera, std::span<const std::array<uint16_t, 2>> pixels,
@@ -39,6 +40,9 @@ class ResidualImage {
   std::optional<Vec3f> at(Vec3f position, Vec3f normal) const;
   // An image whose interpolated values, averaged over a pixel as renders do, are those of this one's pixels.
   ResidualImage sharpened() const;
+  // Of means over squares of the surface, whose side is `size` (unit frame) where it is as far away as the
+  // middle of the object.
+  ResidualImage smoothed(float size) const;
 
  private:
   // From the camera to the surface that a pixel shows; none: it shows nothing.
@@ -75,9 +79,13 @@ class ResidualImages {
   std::optional<Blend> blend(const Hit&, int without = -1) const;
   float strength(float angle) const;  // share of a blend that is added; angle: radians
   Vec3f at(const Hit&) const;         // linear radiance to add
+  // The same without the details of the surface: what is left of errors of light and material.
+  Vec3f smooth_at(const Hit&) const;
 
  private:
-  std::vector<ResidualImage> images_;
+  Vec3f weighed(const std::optional<Blend>&) const;
+
+  std::vector<ResidualImage> images_, smooth_;
   Strengths strengths_;
 };
 

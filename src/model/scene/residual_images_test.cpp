@@ -114,6 +114,21 @@ TEST(ResidualImage, IsAsSharpInARenderAsItsPhotograph) {
   EXPECT_LT(error_sharp, 0.01f);
 }
 
+// Squares of six pixels: stripes of two are lost, a ramp is not.
+TEST(ResidualImage, SmoothedHasNoDetails) {
+  const Color striped = [](Vec3f p) {
+    const float stripe = std::sin(p.x * 2 * kPi / (2 * kPixel) + 0.5f);
+    return ramp(p) + Vec3f{0.1f * stripe, 0.1f * stripe, 0.1f * stripe};
+  };
+  const ResidualImage smooth = picture(around(0), striped).smoothed(6 * kPixel);
+  for (const Vec3f p : {Vec3f{0.113f, 0.207f, 0}, Vec3f{-0.37f, 0.05f, 0}, Vec3f{0.31f, -0.34f, 0}}) {
+    const std::optional<Vec3f> got = smooth.at(p, {0, 0, 1});
+    ASSERT_TRUE(got);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR((*got)[c], ramp(p)[c], 0.01f);
+  }
+  EXPECT_FALSE(smooth.at({0.9f, 0, 0}, {0, 0, 1}));
+}
+
 TEST(ResidualImages, PictureOfTheViewItselfCountsAlone) {
   const ResidualImages images({picture(around(0), constant(0.1f)), picture(around(30), constant(0.5f))});
   const auto at = [&](float degrees) { return images.at(hit_seen_from({0.1f, 0, 0}, around(degrees))).x; };

@@ -22,6 +22,7 @@ LinearSplitOptions split_options(const AppearanceOptions& o, bool turning) {
   s.seed = o.seed;
   s.fixed_roughness = o.roughness;
   s.light_color = o.light_color;
+  s.several_expected = o.several_materials;
   if (o.effort == Effort::brief) {
     s.max_hits = 200000;
     s.search_hits = 120000;

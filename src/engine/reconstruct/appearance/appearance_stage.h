@@ -30,11 +30,12 @@ enum class Effort { brief, full };  // brief: fewer samples and steps, half the 
 
 struct AppearanceOptions {
   Effort effort = Effort::full;
-  int albedo_steps = -1;     // steps on the albedo field under the separated light; -1: by `effort`
-  int refine_steps = -1;     // steps on albedo, material and light together; -1: by `effort`
-  int lobe_steps = 800;      // steps of the fit of lobes to the separated light
-  int material_steps = 400;  // steps of the fit of a field to the separated materials
-  float roughness = 0;       // roughness of the object where it is known; 0: searched
+  int albedo_steps = -1;           // steps on the albedo field under the separated light; -1: by `effort`
+  int refine_steps = -1;           // steps on albedo, material and light together; -1: by `effort`
+  int lobe_steps = 800;            // steps of the fit of lobes to the separated light
+  int material_steps = 400;        // steps of the fit of a field to the separated materials
+  float roughness = 0;             // roughness of the object where it is known; 0: searched
+  bool several_materials = false;  // whether an earlier estimate of the object found several
   LightColorPrior light_color;
   uint64_t seed = 1;
   FieldConfig albedo;          // 3 outputs, sigmoid

@@ -30,6 +30,9 @@ constexpr double kMaxMetalRatio = 0.5;
 // Several materials always fit a little better than one. They are chosen only if the residual falls below
 // this factor, and by more than the noise of good photographs, 40 dB.
 constexpr double kMaxSeveralRatio = 0.75, kNoise = 1e-4;
+// This factor where they are expected: a surface that was polished with several materials should not be
+// explained by one after all because of noise.
+constexpr double kMaxExpectedRatio = 0.85;
 // If the light was scaled up by more than this to keep the albedo at most 1, its strength is unknown.
 constexpr float kMaxKnownGain = 1.1f;
 // If the light was scaled up by more than this, it has faded in the separation: reflections do not determine
@@ -284,7 +287,7 @@ Solved solve(const Transport& transport, const SurfaceSamples& samples, const Li
   if (materials) {
     SplitSolution several = fine.with_materials(*materials);
     progress.log(Json{{"stage", "materials"}, {"one", best.residual}, {"several", several.residual}}.dump());
-    if (several.residual < std::min(kMaxSeveralRatio * best.residual, best.residual - kNoise))
+    if (several_explain_more(best.residual, several.residual, options.several_expected))
       best = std::move(several);
   }
   const LightCovariance error = correct_light(fine, options, best, progress);
@@ -369,6 +372,11 @@ std::vector<double> held_out_residuals(const Transport& transport, const Surface
   for (const SplitSystem::ViewError& e : solver.errors_of_views(s))
     if (e.count > 0) out.push_back(e.mean());
   return out;
+}
+
+bool several_explain_more(double one, double several, bool expected) {
+  const double ratio = expected ? kMaxExpectedRatio : kMaxSeveralRatio;
+  return several < std::min(ratio * one, one - kNoise);
 }
 
 LinearSplit linear_split(const Transport& transport, const SurfaceSamples& samples,

@@ -47,6 +47,7 @@ struct LinearSplitOptions {
   float scan_step = 1.4f;      // factor between the roughnesses of the scan
   int refinements = 1;         // halvings of that step, about the best roughness of the scan
   float fixed_roughness = 0;   // > 0: known, not searched
+  bool several_expected = false;  // the object was already found to have several materials
   LightColorPrior light_color;
   // Weight of the light's smoothness, relative to the mean curvature of its unknowns.
   float smoothness = 1e-4f;
@@ -75,6 +76,10 @@ struct LinearSplit {
 };
 
 LinearSplit linear_split(const Transport&, const SurfaceSamples&, const LinearSplitOptions&, Progress&);
+
+// Whether several materials are chosen. one, several: residuals of one material and of several, see
+// LinearSplit::Trial.
+bool several_explain_more(double one, double several, bool expected);
 
 // How well views that are held out (options.hold_out) are explained by one dielectric of that roughness, or,
 // beginning with it, by a material per vertex: LinearSplit::Trial::residual of each of those views that has

@@ -283,5 +283,13 @@ TEST(LinearSplit, IsTheSameEveryTimeAndSaysWhenThereIsTooLittle) {
       Error);
 }
 
+TEST(LinearSplit, SeveralMaterialsThatAreExpectedNeedLessEvidence) {
+  EXPECT_TRUE(several_explain_more(2e-3, 1.4e-3, false));
+  EXPECT_FALSE(several_explain_more(2e-3, 1.6e-3, false));
+  EXPECT_TRUE(several_explain_more(2e-3, 1.6e-3, true));
+  EXPECT_FALSE(several_explain_more(2e-3, 1.8e-3, true));
+  EXPECT_FALSE(several_explain_more(1.5e-4, 0.6e-4, true));  // less than the noise of photographs
+}
+
 }  // namespace
 }  // namespace cei3d

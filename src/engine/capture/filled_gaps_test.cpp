@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "engine/capture/filled_gaps.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/capture/test_balls.h"
+#include "engine/synthetic/views.h"
+
+namespace cei3d {
+namespace {
+
+constexpr int kSize = 128, kViews = 40;
+
+// Balls on a circle about the axis y, which the camera of some view looks along, that touch each other: a
+// ring with a hole.
+std::vector<Ball> ring(int balls, double radius, double ball_radius) {
+  std::vector<Ball> out;
+  for (int i = 0; i < balls; ++i) {
+    const double angle = 2 * std::numbers::pi * i / balls;
+    out.push_back({{radius * std::cos(angle), 0, radius * std::sin(angle)}, ball_radius});
+  }
+  return out;
+}
+
+SmallMasks masks_of(std::span<const Ball> balls) {
+  SmallMasks out;
+  for (const Camera& c : spread_cameras(kViews, lens_of_size(kSize, kSize))) {
+    out.cameras.push_back(c);
+    out.masks.push_back(seen_balls(balls, c));  // kBackground is 0, kObject 1
+  }
+  return out;
+}
+
+// The view that looks most along the ring's axis.
+size_t view_through(const SmallMasks& masks) {
+  size_t best = 0;
+  const auto along = [&](size_t v) { return std::abs(normalize(masks.cameras[v].center).y); };
+  for (size_t v = 0; v < masks.cameras.size(); ++v)
+    if (along(v) > along(best)) best = v;
+  return best;
+}
+
+// Fills the hole of the ring in one mask; returns it.
+Area fill_hole(SmallMasks& masks, size_t view, double radius) {
+  const Ball plug{{0, 0, 0}, radius};
+  Area hole = seen_balls({&plug, 1}, masks.cameras[view]);
+  for (size_t i = 0; i < hole.size(); ++i) {
+    hole[i] = hole[i] && masks.masks[view][i] == kBackground;
+    if (hole[i]) masks.masks[view][i] = kObject;
+  }
+  return hole;
+}
+
+TEST(FilledGaps, AHoleThatOneMaskFillsIsFound) {
+  SmallMasks masks = masks_of(ring(24, 0.5, 0.2));
+  const size_t view = view_through(masks);
+  const Area hole = fill_hole(masks, view, 0.4);
+  ASSERT_GT(pixels_in(hole), 200u);
+  const std::vector<Area> gaps = filled_gaps(masks);
+  ASSERT_EQ(gaps.size(), masks.masks.size());
+  for (size_t v = 0; v < gaps.size(); ++v) EXPECT_EQ(gaps[v].empty(), v != view) << v;
+  ASSERT_FALSE(gaps[view].empty());
+  EXPECT_GT(share_of(gaps[view], hole), 0.6);
+  EXPECT_GT(share_of(hole, gaps[view]), 0.99);
+}
+
+// Also of an object of few pixels' thickness, whose cells nearly all views contradict.
+TEST(FilledGaps, TrueMasksFillNone) {
+  for (const double thickness : {0.2, 0.03})
+    for (const Area& gap : filled_gaps(masks_of(ring(thickness > 0.1 ? 24 : 120, 0.6, thickness))))
+      EXPECT_TRUE(gap.empty()) << thickness;
+}
+
+// One mask that has a hole where there is none does not speak against all others.
+TEST(FilledGaps, OneMaskWithAHoleDoesNotAccuseOthers) {
+  const Ball body[] = {{{0, 0, 0}, 0.7}}, hole[] = {{{0.2, 0.1, 0}, 0.2}};
+  SmallMasks masks = masks_of(body);
+  const Area cut = seen_balls(hole, masks.cameras[7]);
+  for (size_t i = 0; i < cut.size(); ++i)
+    if (cut[i]) masks.masks[7][i] = kBackground;
+  for (const Area& gap : filled_gaps(masks)) EXPECT_TRUE(gap.empty());
+}
+
+}  // namespace
+}  // namespace cei3d
