@@ -76,11 +76,13 @@ int border_pixels(const Mask& m) {
 }
 
 void look_at_image(const View& view, ViewResult& out) {
-  const Image rgba = load_linear_rgba(view);  // decodes the whole file and rejects NaN
-  out.look = look_at_photo(view, rgba);
-  out.has[kProfile] = has_unusable_profile(view.image_path);
   out.mask = load_mask(view);
-  out.border = look_at_border(view, rgba, out.mask.object);
+  {
+    const Image rgba = load_linear_rgba(view);  // decodes the whole file and rejects NaN
+    out.look = look_at_photo(view, rgba);
+    out.border = look_at_border(view, rgba, out.mask.object);
+  }
+  out.has[kProfile] = has_unusable_profile(view.image_path);
   const auto& object = out.mask.object;
   const bool full = std::count(object.begin(), object.end(), kBackground) == 0;
   const size_t set = size_t(std::count(out.mask.object.begin(), out.mask.object.end(), kObject));

@@ -68,8 +68,8 @@ class OtherViews {
   }
 
  private:
-  // How many show background at p, or `most`, if that is less. A place that few views see is not known to be
-  // the object's.
+  // How many show background at p, or `most`, if that is less. Of the few views that see a remote place, a
+  // quarter suffices to rule the object out.
   size_t against(Vec3d p, size_t most) const {
     size_t n = 0, seen = 0;
     for (size_t v = 0; v < views_.size() && n < most; ++v) {
@@ -78,7 +78,8 @@ class OtherViews {
       seen += s != MaskSample::nothing;
       n += s == MaskSample::background;
     }
-    return 3 * seen >= views_.size() ? n : most;
+    const bool few = 3 * seen < views_.size();
+    return few && 4 * n > seen ? most : n;
   }
 
   Views views_;

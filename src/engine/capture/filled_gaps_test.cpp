@@ -74,6 +74,20 @@ TEST(FilledGaps, TrueMasksFillNone) {
       EXPECT_TRUE(gap.empty()) << thickness;
 }
 
+// A part that most views do not show at all.
+TEST(FilledGaps, WhatFewViewsSeeIsNotAGap) {
+  const Ball body{{0, 0, 0}, 0.5}, knob{{0.45, 0.1, 0.3}, 0.2}, around{knob.center, 0.25};
+  const Ball both[] = {body, knob};
+  SmallMasks masks = masks_of(both);
+  for (size_t v = 0; v < masks.masks.size(); ++v) {
+    if (v % 6 == 0) continue;
+    const Area unknown = seen_balls({&around, 1}, masks.cameras[v]);
+    for (size_t i = 0; i < unknown.size(); ++i)
+      if (unknown[i]) masks.masks[v][i] = kUnknown;
+  }
+  for (const Area& gap : filled_gaps(masks)) EXPECT_TRUE(gap.empty());
+}
+
 // One mask that has a hole where there is none does not speak against all others.
 TEST(FilledGaps, OneMaskWithAHoleDoesNotAccuseOthers) {
   const Ball body[] = {{{0, 0, 0}, 0.7}}, hole[] = {{{0.2, 0.1, 0}, 0.2}};
