@@ -246,7 +246,7 @@ void make_residual_images(const RunContext& run, RunState& state, const Stage::C
   ResidualImagesOptions options;
   options.max_pixels = run.preset.max_residual_pixels;
   if (plan.residual > 0)
-    options.seconds = std::max(run.progress.left() - 0.5 * plan.reserve, plan.residual);
+    options.seconds = std::max(run.progress.left() - 0.5 * plan.reserve, 0.5 * plan.residual);
   else
     options.max_pixels = plan.residual_pixels;
   options.clock = run.progress.clock();

@@ -24,6 +24,9 @@ constexpr size_t kJudged = 200000;  // pixels that the strengths are found by, a
 constexpr size_t kFewest = 300;     // of them for the strength of an angle
 constexpr double kMinGain = 0.03;   // of the squared error
 constexpr int kStrengthSteps = 20;  // strengths that are tried, from 0 to 1
+// Share of the photographs that there should be time for; if there is, the rest is rather left out than all
+// made from larger blocks.
+constexpr double kEnough = 0.4;
 
 // What is known of a pixel that the images are judged by. Linear.
 struct Judged {
@@ -128,7 +131,7 @@ struct Made {
   std::vector<Judged> judged;
 };
 
-// Side of a block in pixels, so that all images are made in `seconds` if they take as long as the first.
+// Side of a block in pixels, so that enough images are made in `seconds` if they take as long as the first.
 int affordable_size(const Making& m, double seconds) {
   const int size = PhotoBlocks::size_for(m.store, m.options.max_pixels);
   if (m.options.seconds <= 0) return size;
@@ -136,7 +139,7 @@ int affordable_size(const Making& m, double seconds) {
   const PhotoBlocks photos(m.store, size);
   ImagesFit(m, photos).image_of(0, 0);
   const double took = (m.options.clock() - begin) * double(photos.cameras().size()),
-               larger = std::ceil(std::sqrt(took / std::max(seconds, 1e-3)));
+               larger = std::ceil(std::sqrt(kEnough * took / std::max(seconds, 1e-3)));
   return int(std::clamp(size * larger, double(size), double(PhotoBlocks::kLargest)));
 }
 

@@ -18,8 +18,8 @@ namespace cei3d {
 struct ResidualImagesOptions {
   // Of all images. Of photographs with more, blocks of pixels become one.
   size_t max_pixels = 24000000;
-  // Time limit: if, by the first photograph, all would take longer, blocks become larger; when it is over,
-  // the rest of the photographs is left out. 0: none.
+  // Time limit: if, by the first photograph, four in ten would take longer, blocks become larger; when it is
+  // over, the rest of the photographs is left out. 0: none.
   double seconds = 0;
   Clock clock = steady_seconds;
   uint64_t seed = 1;

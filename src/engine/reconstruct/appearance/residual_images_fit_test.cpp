@@ -98,22 +98,27 @@ TEST(ResidualImagesFit, ReducesPhotographsThatHaveTooManyPixels) {
   EXPECT_LT(error_between_views(device, scene, *got.images), 0.2);
 }
 
-// Between two looks at the clock passes a second.
-ResidualImagesFit fit_in(double seconds) {
+// Between two looks at the clock passes a second, until the first photograph is done; then `later`.
+ResidualImagesFit fit_in(double seconds, double later = 1) {
   ResidualImagesOptions options;
   options.seconds = seconds;
-  options.clock = [now = 0]() mutable { return double(now++); };
+  options.clock = [looks = 0, later]() mutable {
+    const int n = looks++;
+    return std::min(n, 3) + later * std::max(n - 3, 0);
+  };
   return fit(make_device("cpu"), sphere_scene(), stripes, options);
 }
 
-TEST(ResidualImagesFit, ReducesPhotographsForWhichThereIsTooLittleTime) {
-  const ResidualImagesFit all = fit_in(1000), some = fit_in(8);
-  ASSERT_TRUE(all.images && some.images);
+// By the first, ten photographs take ten seconds.
+TEST(ResidualImagesFit, LeavesPhotographsOutBeforeItReducesThem) {
+  const ResidualImagesFit all = fit_in(1000), some = fit_in(8), few = fit_in(4, 0.1);
+  ASSERT_TRUE(all.images && some.images && few.images);
   EXPECT_EQ(all.images->images().size(), size_t(kViews));
   EXPECT_GT(all.images->images()[0].camera().width, kSize / 2);
-  EXPECT_LE(some.images->images()[0].camera().width, kSize / 2);  // ten seconds in the seven that are left
-  EXPECT_LT(some.images->images().size(), size_t(kViews));        // a second each that it could not foresee
-  EXPECT_GT(some.images->images().size(), size_t(kViews) / 2 - 1);
+  EXPECT_GT(some.images->images()[0].camera().width, kSize / 2);  // there is time for half of them
+  EXPECT_LT(some.images->images().size(), size_t(kViews));
+  EXPECT_GT(some.images->images().size(), size_t(kViews) / 2 - 2);
+  EXPECT_LE(few.images->images()[0].camera().width, kSize / 2);
 }
 
 TEST(ResidualImagesFit, NoiseIsNoCorrection) {
