@@ -16,11 +16,16 @@ constexpr int kBorderMask = 640;  // pixels of the longer side, at most
 // Of the object's pixels. A mask stands out: share > kShare + kOutlier x median of all masks.
 constexpr double kShare = 0.002, kOutlier = 2;
 
-std::vector<std::string> names_of(std::span<const JudgedMask> masks, const std::vector<Area>& areas) {
+// Names the masks whose areas are not empty; nothing where there is none. what: of such masks.
+void report(std::span<const JudgedMask> masks, const std::vector<Area>& areas, Severity severity,
+            const std::string& what, const std::string& fix, std::vector<Finding>& findings) {
   std::vector<std::string> names;
   for (size_t i = 0; i < masks.size(); ++i)
     if (!areas[i].empty()) names.push_back(masks[i].view->name);
-  return names;
+  if (names.empty()) return;
+  findings.push_back(
+      {severity, fmt::format("{} of {} masks {}: {}.", names.size(), masks.size(), what, some_names(names)),
+       fix});
 }
 
 }  // namespace
@@ -37,14 +42,10 @@ std::vector<Area> check_gaps(std::span<const JudgedMask> masks, const Normalizat
     if (!areas[i].empty())
       areas[i] = enlarged(areas[i], reduced.width, reduced.height, full.width, full.height);
   });
-  const std::vector<std::string> names = names_of(masks, areas);
-  if (!names.empty())
-    findings.push_back(
-        {Severity::warning,
-         fmt::format("{} of {} masks fill gaps that the other views look through, or hold what they do not "
-                     "show: {}.",
-                     names.size(), masks.size(), some_names(names)),
-         "Correct these masks. Where they contradict the other views, `reconstruct` does not use them."});
+  report(masks, areas, Severity::warning,
+         "fill gaps that the other views look through, or hold what they do not show",
+         "Correct these masks. Where they contradict the other views, `reconstruct` does not use them.",
+         findings);
   return areas;
 }
 
@@ -57,8 +58,7 @@ MaskBorder look_at_border(const View& view, const Image& rgba, std::span<const u
   out.width = small.cameras[0].width, out.height = small.cameras[0].height;
   const Image photograph = downscale(rgba, reduction_of(rgba.width, rgba.height, kBorderMask));
   Area loose = loose_border(photograph, small.views()[0]);
-  const auto object = std::count(small.masks[0].begin(), small.masks[0].end(), kObject);
-  out.share = double(pixels_in(loose)) / double(std::max<std::ptrdiff_t>(object, 1));
+  out.share = share_of_object(loose, small.masks[0]);
   if (out.share > kShare) out.loose = std::move(loose);
   return out;
 }
@@ -75,14 +75,10 @@ std::vector<Area> check_borders(std::span<const JudgedMask> masks, std::vector<F
     const Camera& camera = masks[i].view->camera;
     areas[i] = enlarged(b.loose, b.width, b.height, camera.width, camera.height);
   }
-  const std::vector<std::string> names = names_of(masks, areas);
-  if (!names.empty())
-    findings.push_back(
-        {Severity::note,
-         fmt::format("{} of {} masks seem to be drawn wider than the object, by the colors of the "
-                     "photographs: {}.",
-                     names.size(), masks.size(), some_names(names)),
-         "`reconstruct` does not use the pixels along their outlines that look like the background."});
+  report(masks, areas, Severity::note,
+         "seem to be drawn wider than the object, by the colors of the photographs",
+         "`reconstruct` does not use the pixels along their outlines that look like the background.",
+         findings);
   return areas;
 }
 

@@ -102,11 +102,6 @@ Area gap_of(Views views, size_t index, const Area& cells) {
   return parts_with(opened(sure, w, h, kOpening), opened(likely, w, h, kOpening), w, h);
 }
 
-double share_of(const HullMask& view, const Area& area) {
-  const auto object = std::count(view.mask.begin(), view.mask.end(), kObject);
-  return double(pixels_in(area)) / double(std::max<std::ptrdiff_t>(object, 1));
-}
-
 }  // namespace
 
 std::vector<Area> filled_gaps(const SmallMasks& masks) {
@@ -117,7 +112,7 @@ std::vector<Area> filled_gaps(const SmallMasks& masks) {
   std::vector<double> shares(views.size());
   parallel_for(int(views.size()), [&](int v) {
     gaps[size_t(v)] = gap_of(views, size_t(v), cells);
-    shares[size_t(v)] = share_of(views[size_t(v)], gaps[size_t(v)]);
+    shares[size_t(v)] = share_of_object(gaps[size_t(v)], views[size_t(v)].mask);
   });
   const double usual = median(shares);
   for (size_t v = 0; v < views.size(); ++v)

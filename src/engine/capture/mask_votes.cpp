@@ -168,6 +168,11 @@ std::vector<MaskDoubt> vote_on_masks(const SmallMasks& masks) {
   return doubts;
 }
 
+double share_of_object(const Area& area, std::span<const uint8_t> mask) {
+  const auto object = std::count(mask.begin(), mask.end(), kObject);
+  return double(pixels_in(area)) / double(std::max<std::ptrdiff_t>(object, 1));
+}
+
 Area enlarged(const Area& area, int small_width, int small_height, int width, int height) {
   const Area grown = dilated(area, small_width, small_height, 1);
   const int n = std::max(1, width / std::max(small_width, 1));

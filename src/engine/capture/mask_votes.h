@@ -40,6 +40,9 @@ struct MaskDoubt {
 // One for each mask.
 std::vector<MaskDoubt> vote_on_masks(const SmallMasks& masks);
 
+// Pixels of the area, of the mask's size, as a share of its object pixels.
+double share_of_object(const Area& area, std::span<const uint8_t> mask);
+
 // An area of a reduced mask at the size of the view, with a reduced pixel around it: its outline is coarse.
 Area enlarged(const Area& area, int small_width, int small_height, int width, int height);
 

@@ -65,10 +65,7 @@ CellVotes votes_of(Samples samples) {
 // For each view, the share of its object's pixels that are in the area.
 std::vector<double> shares(Views views, std::span<const Area> areas) {
   std::vector<double> out;
-  for (size_t i = 0; i < views.size(); ++i) {
-    const auto object = std::count(views[i].mask.begin(), views[i].mask.end(), kObject);
-    out.push_back(double(pixels_in(areas[i])) / double(std::max<std::ptrdiff_t>(object, 1)));
-  }
+  for (size_t i = 0; i < views.size(); ++i) out.push_back(share_of_object(areas[i], views[i].mask));
   return out;
 }
 
