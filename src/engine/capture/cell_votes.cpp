@@ -60,4 +60,17 @@ bool CellVotes::supported(Vec3d p, MaskSample own) const {
   return seen >= std::max(2, views_ / 3) && against <= tolerance_ * seen;
 }
 
+Area CellVotes::supported_cells(MaskSample own) const {
+  Area out(cells_.count());
+  for (size_t i = 0; i < out.size(); ++i) out[i] = supported(cells_.center(i), own);
+  return out;
+}
+
+bool ray_meets_cells(const Camera& camera, int x, int y, const Cells& cells, const Area& area) {
+  return ray_meets(camera, x, y, cells, [&](Vec3d p) {
+    const int cell = cells.at(p);
+    return cell >= 0 && area[size_t(cell)];
+  });
+}
+
 }  // namespace cei3d

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/image/area.h"
 #include "core/math/ray_sphere.h"
 #include "model/geometry/shape/visual_hull.h"
 
@@ -36,6 +37,8 @@ class CellVotes {
   // Whether nearly all views show the object at p. own: what the view that asks shows there, which does not
   // count; nothing if it is not one of the views.
   bool supported(Vec3d p, MaskSample own) const;
+  // The same for all cells. #cells
+  Area supported_cells(MaskSample own) const;
 
  private:
   Cells cells_;
@@ -54,5 +57,8 @@ bool ray_meets(const Camera& camera, int x, int y, const Cells& cells, const F& 
     if (object_at(origin + direction * t)) return true;
   return false;
 }
+
+// The same for places in the cells of an area.
+bool ray_meets_cells(const Camera& camera, int x, int y, const Cells& cells, const Area& area);
 
 }  // namespace cei3d

@@ -242,6 +242,12 @@ class DoubtedMasks {
       : masks_(std::move(masks)), unsure_(masks_.size()), known_(masks_.size()) {}
 
   std::span<const JudgedMask> masks() const { return masks_; }
+  void add_moved(const std::vector<Area>& areas) {
+    for (size_t i = 0; i < areas.size(); ++i) {
+      add(i, areas[i]);
+      masks_[i].moved = !areas[i].empty();
+    }
+  }
   // Makes the pixels unknown. area: [height][width] of the view; empty: none of them.
   void add(size_t i, const Area& area) {
     if (area.empty()) return;
@@ -271,7 +277,8 @@ void doubt_masks(std::vector<JudgedMask> judged, CaptureReport& report) {
   const auto add = [&](const std::vector<Area>& areas) {
     for (size_t i = 0; i < areas.size(); ++i) masks.add(i, areas[i]);
   };
-  if (report.normalization) add(check_moves(masks.masks(), *report.normalization, report.findings));
+  if (report.normalization)
+    masks.add_moved(check_moves(masks.masks(), *report.normalization, report.findings));
   add(check_silhouettes(masks.masks(), report.normalization, report.findings));
   if (report.normalization) add(check_gaps(masks.masks(), *report.normalization, report.findings));
   add(check_borders(masks.masks(), report.findings));

@@ -42,6 +42,7 @@ struct JudgedMask {
   std::span<const uint8_t> mask;       // of view->camera
   const Image* photograph = nullptr;   // PhotoLook::small of the view; null: none
   const MaskBorder* border = nullptr;  // null: not known
+  bool moved = false;                  // a part of the object is in another place than in most views
 };
 
 // Views whose mask disagrees with the others. normalization: none if the masks have no volume in common;

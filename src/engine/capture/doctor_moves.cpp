@@ -4,14 +4,14 @@
 #include <numeric>
 
 #include "core/base/error.h"
-#include "core/base/parallel.h"
 #include "engine/capture/doctor.h"
-#include "engine/capture/moved_part.h"
+#include "engine/capture/moved_areas.h"
 
 namespace cei3d {
 namespace {
 
-constexpr int kMaxSide = 160;  // pixels: enough for a part, and quick
+constexpr int kMaxSide = 160;   // pixels: enough to find a part, and quick
+constexpr int kFineSide = 640;  // of the area where it is
 
 // By the names of the photographs, whose numbers count up: img_9 before img_10.
 std::vector<size_t> order_taken(std::span<const JudgedMask> masks) {
@@ -44,11 +44,10 @@ std::vector<Area> check_moves(std::span<const JudgedMask> masks, const Normaliza
   std::vector<Area> unsure(masks.size());
   const std::optional<MovedPart> part = find_moved_part(small_masks(hull, normalization, kMaxSide));
   if (!part) return unsure;
-  parallel_for(int(order.size()), [&](int k) {
-    if (!part->shown_by_most(size_t(k)))
-      unsure[order[size_t(k)]] =
-          seen_hull(part->place, normalization.unit_from_capture(hull[size_t(k)].camera));
-  });
+  const SmallMasks fine = small_masks(hull, normalization, kFineSide);
+  const std::vector<Area> areas = moved_areas(fine, *part);
+  for (size_t k = 0; k < order.size(); ++k)
+    unsure[order[k]] = at_full_size(areas[k], fine.cameras[k], hull[k].camera);
   findings.push_back(finding_of(*part, masks.size(), masks[order[part->first - 1]].view->name,
                                 masks[order[part->first]].view->name));
   return unsure;

@@ -35,12 +35,11 @@ std::vector<Area> check_gaps(std::span<const JudgedMask> masks, const Normalizat
   std::vector<HullMask> hull;
   for (const JudgedMask& m : masks) hull.push_back({m.view->camera, m.mask});
   const SmallMasks small = small_masks(hull, normalization, kGapMask);
-  std::vector<Area> areas = filled_gaps(small);
-  parallel_for(int(areas.size()), [&](int k) {
-    const auto i = size_t(k);
-    const Camera &reduced = small.cameras[i], &full = hull[i].camera;
-    if (!areas[i].empty())
-      areas[i] = enlarged(areas[i], reduced.width, reduced.height, full.width, full.height);
+  Area has_vote;
+  for (const JudgedMask& m : masks) has_vote.push_back(!m.moved);
+  std::vector<Area> areas = filled_gaps(small, has_vote);
+  parallel_for(int(areas.size()), [&](int i) {
+    areas[size_t(i)] = at_full_size(areas[size_t(i)], small.cameras[size_t(i)], hull[size_t(i)].camera);
   });
   report(masks, areas, Severity::warning,
          "fill gaps that the other views look through, or hold what they do not show",

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
-#include "engine/capture/test_balls.h"
-#include "engine/synthetic/views.h"
+#include "engine/capture/test_moved.h"
 
 namespace cei3d {
 namespace {
@@ -54,12 +54,16 @@ Area fill_hole(SmallMasks& masks, size_t view, double radius) {
   return hole;
 }
 
+std::vector<Area> gaps_in(const SmallMasks& masks) {
+  return filled_gaps(masks, Area(masks.masks.size(), uint8_t(1)));
+}
+
 TEST(FilledGaps, AHoleThatOneMaskFillsIsFound) {
   SmallMasks masks = masks_of(ring(24, 0.5, 0.2));
   const size_t view = view_through(masks);
   const Area hole = fill_hole(masks, view, 0.4);
   ASSERT_GT(pixels_in(hole), 200u);
-  const std::vector<Area> gaps = filled_gaps(masks);
+  const std::vector<Area> gaps = gaps_in(masks);
   ASSERT_EQ(gaps.size(), masks.masks.size());
   for (size_t v = 0; v < gaps.size(); ++v) EXPECT_EQ(gaps[v].empty(), v != view) << v;
   ASSERT_FALSE(gaps[view].empty());
@@ -70,7 +74,7 @@ TEST(FilledGaps, AHoleThatOneMaskFillsIsFound) {
 // Also of an object of few pixels' thickness, whose cells nearly all views contradict.
 TEST(FilledGaps, TrueMasksFillNone) {
   for (const double thickness : {0.2, 0.03})
-    for (const Area& gap : filled_gaps(masks_of(ring(thickness > 0.1 ? 24 : 120, 0.6, thickness))))
+    for (const Area& gap : gaps_in(masks_of(ring(thickness > 0.1 ? 24 : 120, 0.6, thickness))))
       EXPECT_TRUE(gap.empty()) << thickness;
 }
 
@@ -85,7 +89,21 @@ TEST(FilledGaps, WhatFewViewsSeeIsNotAGap) {
     for (size_t i = 0; i < unknown.size(); ++i)
       if (unknown[i]) masks.masks[v][i] = kUnknown;
   }
-  for (const Area& gap : filled_gaps(masks)) EXPECT_TRUE(gap.empty());
+  for (const Area& gap : gaps_in(masks)) EXPECT_TRUE(gap.empty());
+}
+
+// Views that show a part in another place look past where most have it.
+TEST(FilledGaps, ViewsOfAnotherStateHaveNoVote) {
+  constexpr size_t kBefore = 30, kAfter = 6;
+  const SmallMasks masks = moved_masks(kBefore, kAfter, kSize);
+  Area has_vote(kBefore + kAfter, uint8_t(1));
+  const auto found = [&] {
+    const std::vector<Area> gaps = filled_gaps(masks, has_vote);
+    return std::count_if(gaps.begin(), gaps.begin() + kBefore, [](const Area& a) { return !a.empty(); });
+  };
+  EXPECT_GT(found(), 0);
+  std::fill(has_vote.begin() + kBefore, has_vote.end(), uint8_t(0));
+  EXPECT_EQ(found(), 0);
 }
 
 // One mask that has a hole where there is none does not speak against all others.
@@ -95,7 +113,7 @@ TEST(FilledGaps, OneMaskWithAHoleDoesNotAccuseOthers) {
   const Area cut = seen_balls(hole, masks.cameras[7]);
   for (size_t i = 0; i < cut.size(); ++i)
     if (cut[i]) masks.masks[7][i] = kBackground;
-  for (const Area& gap : filled_gaps(masks)) EXPECT_TRUE(gap.empty());
+  for (const Area& gap : gaps_in(masks)) EXPECT_TRUE(gap.empty());
 }
 
 }  // namespace

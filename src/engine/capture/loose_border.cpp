@@ -6,7 +6,7 @@
 
 #include "core/math/color.h"
 #include "core/math/quantile.h"
-#include "model/geometry/mesh/sparse.h"
+#include "model/geometry/mesh/graph_walk.h"
 
 namespace cei3d {
 namespace {
@@ -17,6 +17,7 @@ constexpr double kBackgroundBelief = 0.7;  // from which a pixel is taken for ba
 constexpr double kTypicalSteps = 3;        // a step of that many typical ones is unlikely
 constexpr float kMinTypical = 0.01f;  // of a step between neighbors, sRGB: what noise and compression leave
 constexpr double kMinWeight = 1e-4;
+constexpr double kNowhere = 1e-9;  // of ending in the band: a part of it may touch neither side
 
 enum class Place : uint8_t { outside, background, band, object };
 
@@ -68,20 +69,22 @@ std::vector<double> background_belief(const std::vector<Place>& places, const st
   int n = 0;
   for (size_t i = 0; i < places.size(); ++i)
     if (places[i] == Place::band) index[i] = n++;
-  std::vector<SparseEntry> entries;
-  std::vector<double> right(static_cast<size_t>(n));
+  std::vector<WalkEdge> edges;
+  std::vector<WalkSeed> seeds;
   const auto leave = [&](uint32_t from, uint32_t to, double weight) {
-    if (index[from] < 0) return;
-    entries.push_back({index[from], index[from], weight});
-    if (index[to] >= 0) entries.push_back({index[from], index[to], -weight});
-    if (places[to] == Place::background) right[size_t(index[from])] += weight;
+    seeds.push_back({index[from], weight, places[to] == Place::background ? 1.0 : 0.0});
   };
   for (const Step& s : steps) {
     const double weight = std::exp(-square(s.size / (kTypicalSteps * typical)) / 2) + kMinWeight;
-    leave(s.a, s.b, weight), leave(s.b, s.a, weight);
+    if (index[s.a] < 0)
+      leave(s.b, s.a, weight);
+    else if (index[s.b] < 0)
+      leave(s.a, s.b, weight);
+    else
+      edges.push_back({index[s.a], index[s.b], weight});
   }
-  for (int i = 0; i < n; ++i) entries.push_back({i, i, 1e-9});  // a part of the band may touch neither
-  const std::vector<double> solved = SparseSolver(n, entries).solve(right);
+  for (int i = 0; i < n; ++i) seeds.push_back({i, kNowhere, 0});
+  const std::vector<double> solved = walk_to_seeds(n, edges, seeds);
   std::vector<double> out(places.size());
   for (size_t i = 0; i < places.size(); ++i)
     if (index[i] >= 0) out[i] = solved[size_t(index[i])];

@@ -184,4 +184,8 @@ Area enlarged(const Area& area, int small_width, int small_height, int width, in
   return out;
 }
 
+Area at_full_size(const Area& area, const Camera& small, const Camera& full) {
+  return area.empty() ? Area() : enlarged(area, small.width, small.height, full.width, full.height);
+}
+
 }  // namespace cei3d

@@ -45,5 +45,7 @@ double share_of_object(const Area& area, std::span<const uint8_t> mask);
 
 // An area of a reduced mask at the size of the view, with a reduced pixel around it: its outline is coarse.
 Area enlarged(const Area& area, int small_width, int small_height, int width, int height);
+// The same for the area of a small mask; empty: empty.
+Area at_full_size(const Area& area, const Camera& small, const Camera& full);
 
 }  // namespace cei3d

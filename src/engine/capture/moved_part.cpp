@@ -25,6 +25,7 @@ constexpr size_t kTried = 12;    // cuts, to begin with
 constexpr double kMoved = 0.001, kWithin = 0.2;
 constexpr double kBeyond = 0.2;  // share of the views that show a moved cell beside the other position
 constexpr size_t kMinCells = 4;
+constexpr double kPlace = 1, kAround = 6;  // cells on each side of a moved one
 
 // Object pixels among `asked` of a view that the views of the votes do not support. own: object if it is one
 // of these views.
@@ -168,13 +169,13 @@ std::vector<Vec3d> moved_cells(Views views, const CellVotes& own, const CellVote
   return cells;
 }
 
-// Corners of cubes of twice the size of the cells.
-std::vector<Vec3d> corners_around(std::span<const Vec3d> cells) {
+// Corners of cubes around their centers. half: of an edge, in cells.
+std::vector<Vec3d> corners_around(std::span<const Vec3d> cells, double half) {
   std::vector<Vec3d> out;
   for (const Vec3d p : cells)
     for (const double x : {-1.0, 1.0})
       for (const double y : {-1.0, 1.0})
-        for (const double z : {-1.0, 1.0}) out.push_back(p + Vec3d{x, y, z} * (2.0 / kCells.n));
+        for (const double z : {-1.0, 1.0}) out.push_back(p + Vec3d{x, y, z} * (half * 2.0 / kCells.n));
   return out;
 }
 
@@ -219,7 +220,8 @@ std::optional<MovedPart> find_moved_part(const SmallMasks& masks) {
   std::vector<Vec3d> cells = moved_cells(g.before, g.of_before, g.of_after);
   for (const Vec3d p : moved_cells(g.after, g.of_after, g.of_before)) cells.push_back(p);
   if (cells.size() < kMinCells) return {};
-  return MovedPart{cut, 2 * cut >= views.size(), corners_around(cells)};
+  return MovedPart{cut, 2 * cut >= views.size(), corners_around(cells, kPlace),
+                   corners_around(cells, kAround)};
 }
 
 }  // namespace cei3d

@@ -14,9 +14,11 @@
 namespace cei3d {
 
 struct MovedPart {
-  size_t first = 0;          // index of the first view after the move
-  bool earlier = true;       // more views show the object before the move
-  std::vector<Vec3d> place;  // whose convex hull holds what the masks show of the part in either position
+  size_t first = 0;     // index of the first view after the move
+  bool earlier = true;  // more views show the object before the move
+  // Their convex hull holds what the masks show of the part in either position, but for its thin ends.
+  std::vector<Vec3d> place;
+  std::vector<Vec3d> around;  // their convex hull holds these, too
   bool shown_by_most(size_t view) const { return (view < first) == earlier; }
 };
 

@@ -6,29 +6,16 @@
 #include <cmath>
 
 #include "core/base/error.h"
-#include "core/math/ray_sphere.h"
 #include "engine/capture/doctor.h"
-#include "engine/capture/test_balls.h"
-#include "engine/synthetic/views.h"
+#include "engine/capture/test_moved.h"
 
 namespace cei3d {
 namespace {
 
-// A ball with a knob.
-constexpr Ball kBody{{0, 0, 0}, 0.5}, kKnob{{0.5, 0, 0.2}, 0.2}, kMovedKnob{{0.45, 0.25, 0.25}, 0.2};
 constexpr int kSize = 72;
 
-// Views from all sides, as of an object that was turned before each photograph, of which the first `before`
-// show the knob in its first place.
 SmallMasks masks_of(int before, int after, Ball moved = kMovedKnob) {
-  SmallMasks out;
-  for (const bool later : {false, true})
-    for (const Camera& c : spread_cameras(later ? after : before, lens_of_size(kSize, kSize))) {
-      const Ball balls[] = {kBody, later ? moved : kKnob};
-      out.cameras.push_back(c);
-      out.masks.push_back(seen_balls(balls, c));  // kBackground is 0, kObject 1
-    }
-  return out;
+  return moved_masks(before, after, kSize, moved);
 }
 // A silhouette of one position may fit the hull of the views of the other, which are few.
 constexpr size_t kUncertain = 2;  // views
@@ -49,11 +36,8 @@ TEST(MovedPart, ItsPlaceHoldsWhatMoved) {
   const std::optional<MovedPart> part = find_moved_part(masks);
   ASSERT_TRUE(part.has_value());
   for (const Camera& camera : masks.cameras) {
-    const Ball before[] = {kBody, kKnob}, after[] = {kBody, kMovedKnob}, both[] = {kKnob, kMovedKnob};
-    const Area place = seen_hull(part->place, camera), was = seen_balls(before, camera),
-               is = seen_balls(after, camera);
-    Area changed(was.size());
-    for (size_t i = 0; i < changed.size(); ++i) changed[i] = was[i] != is[i];
+    const Ball both[] = {kKnob, kMovedKnob};
+    const Area place = seen_hull(part->place, camera), changed = changed_pixels(camera);
     if (pixels_in(changed) > 0) {
       EXPECT_GT(share_of(place, changed), 0.95);
     }

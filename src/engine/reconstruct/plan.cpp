@@ -47,7 +47,8 @@ constexpr double kJointShare = 0.1;
 constexpr double kFinerMeshShare = 1.0 / 40;
 constexpr double kCoupledShare = 0.3;   // of the network of a coupled color, in place of all that is left out
 constexpr double kResidualShare = 0.1;  // residual images
-constexpr double kTrialsShare = 0.3;    // comparison of start shapes, as a share of the geometry stage
+// Comparison of start shapes, as a share of the geometry stage; and of the shortest comparison.
+constexpr double kTrialsShare = 0.3, kMaxTrialsShare = 0.36;
 
 // Minimum shares of the whole time. Before the residual images comes light at all vertices, which grows with
 // the object and not with its pixels.
@@ -194,10 +195,13 @@ bool leave_one_out(const Costs& c, Plan& p) {
   return true;
 }
 
-// Short trials tell the start shapes apart, too; a bad start costs more than most stages bring.
+// Short trials tell the start shapes apart, too; a bad start costs more than most stages bring. Therefore the
+// shortest may take more than their usual share. seconds: of the geometry stage.
 int affordable_trial_steps(double seconds, int wanted, const Costs& c) {
-  const double steps = std::min((seconds - c.trials_besides) / c.trial_step, double(wanted));
-  return steps < kMinTrialShare * wanted ? 0 : int(steps);
+  const auto steps_in = [&](double share) { return (share * seconds - c.trials_besides) / c.trial_step; };
+  const double least = kMinTrialShare * wanted, steps = std::min(steps_in(kTrialsShare), double(wanted));
+  if (steps >= least) return int(steps);
+  return steps_in(kMaxTrialsShare) >= least ? int(least) : 0;
 }
 
 Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, bool joint_wanted) {
@@ -216,7 +220,7 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, b
   while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
   p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
   if (preset.start == StartChoice::trials)
-    p.trial_steps = affordable_trial_steps(kTrialsShare * p.geometry, preset.trial.steps, c);
+    p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, c);
   return p;
 }
 
@@ -236,7 +240,7 @@ Plan without_light(Plan p, double t, const Preset& preset, size_t pixels, const 
   p.reserve = std::min(p.reserve, (1 - kMinGeometryShare - kCoupledShare - kFinerMeshShare) * t);
   p.geometry = t - rest_of(p);
   if (preset.start == StartChoice::trials)
-    p.trial_steps = affordable_trial_steps(kTrialsShare * p.geometry, preset.trial.steps, c);
+    p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, c);
   return p;
 }
 

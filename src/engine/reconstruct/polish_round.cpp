@@ -11,6 +11,9 @@
 namespace cei3d {
 namespace {
 
+constexpr double kFullEffort = 2;  // the appearance stage at full effort, in times of a brief estimate
+constexpr double kMaxLent = 0.5;   // of what polishing has left
+
 // Sets the end of all rounds in the first.
 bool has_time(const RunContext& run, RunState& state, int round) {
   const Plan& plan = run.plan;
@@ -26,7 +29,7 @@ bool has_time(const RunContext& run, RunState& state, int round) {
 
 // Estimates light and material of the present surface. Until the round ends the scene holds them and the
 // field and surface that they belong to, so that its checkpoints do.
-void estimate(const RunContext& run, RunState& state) {
+void estimate(const RunContext& run, RunState& state, int round) {
   const double begin = run.progress.elapsed();
   const Field& sdf = state.geometry->sdf();
   SurfaceAndHits all = extract_surface_and_hits(run.device, sdf, run.preset.meshing, run.views.train,
@@ -37,9 +40,13 @@ void estimate(const RunContext& run, RunState& state) {
   brief.light_color = run.light_color;
   brief.several_materials = state.several_materials;
   const Turns turns = light_turns(run, state, all.surface, all.hits);
+  const double fit_begin = run.progress.elapsed();
   AppearanceResult made =
       fit_appearance(run.device, {all.surface, all.hits.samples(turns.get())}, brief, run.progress);
   check_cancelled(run.progress);
+  const double now = run.progress.elapsed();
+  if (round == 0)
+    state.polish_deadline -= seconds_lent(run.plan, now - fit_begin, state.polish_deadline - now);
   Scene& scene = state.scene;
   scene.sdf = std::make_shared<const Field>(sdf);
   scene.surface = std::move(all.surface);
@@ -88,6 +95,11 @@ PolishOptions options_of(const RunContext& run, RunState& state, int round,
 
 }  // namespace
 
+double seconds_lent(const Plan& plan, double brief_seconds, double left) {
+  const double needed = plan.effort == Effort::full ? kFullEffort * brief_seconds : brief_seconds;
+  return std::clamp(needed - plan.appearance, 0.0, std::max(0.0, kMaxLent * left));
+}
+
 double descent_seconds(double left, int rounds, double look, double planned) {
   const auto of_each = [&](int n) { return (left - (n - 1) * look) / n; };
   int kept = rounds;
@@ -98,7 +110,7 @@ double descent_seconds(double left, int rounds, double look, double planned) {
 void polish(const RunContext& run, RunState& state, int round, const Stage::Checkpoint& checkpoint) {
   const bool begun = !state.descent.tensors.empty();
   if (!begun && !has_time(run, state, round)) return;
-  if (!begun) estimate(run, state);
+  if (!begun) estimate(run, state, round);
   find_hits(run, state);
   const Scene& scene = state.scene;
   const Turns turns = light_turns(run, state, scene.surface, state.hits);

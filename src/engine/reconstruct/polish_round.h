@@ -14,6 +14,10 @@ inline constexpr double kMinPolishShare = 1.0 / 6;
 // left out, the last ones first, and leave their time to the others.
 double descent_seconds(double left, int rounds, double look, double planned);
 
+// Seconds that polishing leaves the stages of light and appearance, which need more than planned where there
+// are several materials or the light turns. brief_seconds: of the first brief estimate. left: of polishing.
+double seconds_lent(const Plan&, double brief_seconds, double left);
+
 // Skipped if there is no time. round: from 0 on.
 void polish(const RunContext&, RunState&, int round, const Stage::Checkpoint&);
 

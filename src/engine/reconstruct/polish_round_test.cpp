@@ -24,5 +24,18 @@ TEST(PolishRound, NoneTakesMoreThanWhatWasPlanned) {
   EXPECT_DOUBLE_EQ(descent_seconds(250, 2, 240, 90), 180);
 }
 
+TEST(PolishRound, LeavesLightAndAppearanceWhatABriefEstimateSaysThatTheyNeed) {
+  Plan plan;
+  plan.appearance = 100;
+  plan.effort = Effort::full;
+  EXPECT_EQ(seconds_lent(plan, 40, 300), 0);
+  EXPECT_DOUBLE_EQ(seconds_lent(plan, 80, 300), 60);
+  EXPECT_DOUBLE_EQ(seconds_lent(plan, 300, 300), 150);  // half of what is left
+  EXPECT_EQ(seconds_lent(plan, 300, -5), 0);
+  plan.effort = Effort::brief;
+  EXPECT_EQ(seconds_lent(plan, 80, 300), 0);
+  EXPECT_DOUBLE_EQ(seconds_lent(plan, 120, 300), 20);
+}
+
 }  // namespace
 }  // namespace cei3d

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/math/quantile.h"
-#include "model/geometry/mesh/sparse.h"
+#include "model/geometry/mesh/graph_walk.h"
 
 namespace cei3d {
 namespace {
@@ -31,23 +31,18 @@ std::vector<float> random_walk(const PointGraph& graph, std::span<const Seed> se
                                std::span<const float> prior) {
   const int n = int(graph.colors.size());
   const float typical = typical_step(graph);
-  std::vector<double> diagonal(n, kPrior), right(n);
-  std::vector<SparseEntry> entries;
-  entries.reserve(graph.edges.size() + n);
-  for (const GraphEdge& e : graph.edges) {
-    if (e.length > 2) continue;
-    const double w = std::exp(-kSharpness * square(e.step() / typical)) + kMinWeight;
-    diagonal[e.a] += w;
-    diagonal[e.b] += w;
-    entries.push_back({int(e.b), int(e.a), -w});
-  }
+  std::vector<WalkEdge> edges;
+  edges.reserve(graph.edges.size());
+  for (const GraphEdge& e : graph.edges)
+    if (e.length <= 2)
+      edges.push_back({int(e.a), int(e.b), std::exp(-kSharpness * square(e.step() / typical)) + kMinWeight});
+  std::vector<WalkSeed> ends;
+  ends.reserve(2 * size_t(n));
   for (int i = 0; i < n; ++i) {
-    right[i] = kPrior * prior[i];
-    if (seeds[i] != Seed::none) diagonal[i] += kSeed;
-    if (seeds[i] == Seed::positive) right[i] += kSeed;
-    entries.push_back({i, i, diagonal[i]});
+    ends.push_back({i, kPrior, prior[i]});
+    if (seeds[i] != Seed::none) ends.push_back({i, kSeed, seeds[i] == Seed::positive ? 1.0 : 0.0});
   }
-  const std::vector<double> x = SparseSolver(n, entries).solve(right);
+  const std::vector<double> x = walk_to_seeds(n, edges, ends);
   std::vector<float> scores(n);
   for (int i = 0; i < n; ++i) scores[i] = clamp(float(x[i]), 0.0f, 1.0f);
   return scores;
