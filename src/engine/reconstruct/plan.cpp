@@ -6,6 +6,7 @@
 #include "core/base/error.h"
 #include "core/base/json.h"
 #include "core/math/scalar.h"
+#include "model/geometry/shape/visual_hull.h"
 
 namespace cei3d {
 
@@ -47,8 +48,9 @@ constexpr double kJointShare = 0.1;
 constexpr double kFinerMeshShare = 1.0 / 40;
 constexpr double kCoupledShare = 0.3;   // of the network of a coupled color, in place of all that is left out
 constexpr double kResidualShare = 0.1;  // residual images
-// Comparison of start shapes, as a share of the geometry stage; and of the shortest comparison.
-constexpr double kTrialsShare = 0.3, kMaxTrialsShare = 0.36;
+// Comparison of start shapes, as a share of the geometry stage; the shortest one of an object that is cut
+// off.
+constexpr double kTrialsShare = 0.3, kMaxTrialsShare = 0.4;
 
 // Minimum shares of the whole time. Before the residual images comes light at all vertices, which grows with
 // the object and not with its pixels.
@@ -57,6 +59,11 @@ constexpr double kReserveShare = 0.03, kMinResidualShare = 0.02, kMinGeometrySha
 // Steps that the geometry stage gets before anything is polished or refined, unless they take more than a
 // share of the whole time.
 constexpr double kMinGeometrySteps = 4000, kMaxGeometryShare = 0.65;
+
+// An object is cut off where more than this share of its masks reach the border of the image with that many
+// pixels.
+constexpr double kCutOff = 0.25;
+constexpr size_t kMinAtBorder = 2;
 
 // Seconds.
 struct Costs {
@@ -195,21 +202,23 @@ bool leave_one_out(const Costs& c, Plan& p) {
   return true;
 }
 
-// Short trials tell the start shapes apart, too; a bad start costs more than most stages bring. Therefore the
-// shortest may take more than their usual share. seconds: of the geometry stage.
-int affordable_trial_steps(double seconds, int wanted, const Costs& c) {
+// Short trials tell the start shapes apart, too; a bad start costs more than most stages bring. Where the
+// visual hull is likely to be bad, the shortest may take more than their usual share. seconds: of the
+// geometry stage.
+int affordable_trial_steps(double seconds, int wanted, bool cut_off, const Costs& c) {
   const auto steps_in = [&](double share) { return (share * seconds - c.trials_besides) / c.trial_step; };
   const double least = kMinTrialShare * wanted, steps = std::min(steps_in(kTrialsShare), double(wanted));
   if (steps >= least) return int(steps);
-  return steps_in(kMaxTrialsShare) >= least ? int(least) : 0;
+  return cut_off && steps_in(kMaxTrialsShare) >= least ? int(least) : 0;
 }
 
-Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, bool joint_wanted) {
+Plan timed_plan(double t, const Preset& preset, const PlannedPixels& pixels, const Costs& c,
+                bool joint_wanted) {
   Plan p;
   plan_polish(t, preset, c, p);
-  plan_appearance(t, preset, c, pixels, p);
+  plan_appearance(t, preset, c, pixels.count, p);
   plan_joint(t, c, preset, joint_wanted, p);
-  plan_residual(t, c, preset, pixels, p);
+  plan_residual(t, c, preset, pixels.count, p);
   p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
   p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
   p.reserve = std::max(kReserve * c.surface, kReserveShare * t);
@@ -220,19 +229,19 @@ Plan timed_plan(double t, const Preset& preset, size_t pixels, const Costs& c, b
   while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
   p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
   if (preset.start == StartChoice::trials)
-    p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, c);
+    p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, pixels.cut_off, c);
   return p;
 }
 
 // A plan without light and material; t: 0: by steps.
-Plan without_light(Plan p, double t, const Preset& preset, size_t pixels, const Costs& c) {
+Plan without_light(Plan p, double t, const Preset& preset, const PlannedPixels& pixels, const Costs& c) {
   p.color = ColorChoice::coupled;
   p.polish_rounds = p.refinements = p.joint_steps = 0;
   p.look = p.polish = p.appearance = p.refinement = p.joint = 0;
   p.residual_pixels = 0;
   p.residual_steps =
       std::max(1, t > 0 ? preset.residual_steps : std::min(preset.residual_steps, p.iterations) / 2);
-  p.residual_hits = std::min(preset.max_residual_hits, t > 0 ? pixels : kUntimedResidualPixels);
+  p.residual_hits = std::min(preset.max_residual_hits, t > 0 ? pixels.count : kUntimedResidualPixels);
   if (t <= 0) return p;
   p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
   p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
@@ -240,17 +249,31 @@ Plan without_light(Plan p, double t, const Preset& preset, size_t pixels, const 
   p.reserve = std::min(p.reserve, (1 - kMinGeometryShare - kCoupledShare - kFinerMeshShare) * t);
   p.geometry = t - rest_of(p);
   if (preset.start == StartChoice::trials)
-    p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, c);
+    p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, pixels.cut_off, c);
   return p;
 }
 
 }  // namespace
 
-Plan plan_of(const ReconstructOptions& options, const Preset& given, size_t pixels, const Rates& rates) {
+PlannedPixels planned_pixels(const PixelStore& pixels) {
+  size_t cut_off = 0;
+  for (size_t v = 0; v < pixels.masks().size(); ++v) {
+    const size_t w = size_t(pixels.cameras()[v].width), h = size_t(pixels.cameras()[v].height);
+    const auto& mask = pixels.masks()[v];
+    size_t at_border = 0;
+    for (size_t x = 0; x < w; ++x) at_border += (mask[x] == kObject) + (mask[(h - 1) * w + x] == kObject);
+    for (size_t y = 0; y < h; ++y) at_border += (mask[y * w] == kObject) + (mask[y * w + w - 1] == kObject);
+    cut_off += at_border >= kMinAtBorder;
+  }
+  return {pixels.pixels().size(), double(cut_off) > kCutOff * double(pixels.masks().size())};
+}
+
+Plan plan_of(const ReconstructOptions& options, const Preset& given, const PlannedPixels& pixels,
+             const Rates& rates) {
   Preset preset = given;
   if (options.joint_steps >= 0) preset.joint_steps = options.joint_steps;
   const bool timed = options.seconds > 0 && options.iterations <= 0;
-  const Costs costs = timed ? costs_of(rates, preset, pixels) : Costs{};
+  const Costs costs = timed ? costs_of(rates, preset, pixels.count) : Costs{};
   const double t = timed ? options.seconds : 0;
   const bool coupled = preset.color == ColorChoice::coupled;
   if (coupled && preset.stages == StageChoice::joint)

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "core/base/json.h"
+#include "engine/reconstruct/pixels.h"
 #include "engine/reconstruct/presets.h"
 #include "engine/reconstruct/rates.h"
 #include "engine/reconstruct/reconstruct.h"
@@ -38,9 +39,17 @@ struct Plan {
   double reserve = 0;            // s for the first surface and for reading and writing files
 };
 
+// What the plan depends on, of the training pixels.
+struct PlannedPixels {
+  size_t count = 0;
+  // Whether many photographs cut the object off, so that its visual hull is far from its shape.
+  bool cut_off = false;
+};
+PlannedPixels planned_pixels(const PixelStore&);
+
 // Usage error: a choice of stages and of color that exclude each other.
-// pixels: number of training pixels. rates: of this machine; not read for a run by steps.
-Plan plan_of(const ReconstructOptions&, const Preset&, size_t pixels, const Rates& rates);
+// rates: of this machine; not read for a run by steps.
+Plan plan_of(const ReconstructOptions&, const Preset&, const PlannedPixels&, const Rates& rates);
 Json to_json(const Plan&);
 
 }  // namespace cei3d

@@ -27,10 +27,11 @@ std::optional<SavedRun> read_saved(const ReconstructInputs& in, const Preset& pr
   });
 }
 
-Plan make_plan(const ReconstructInputs& in, const Preset& preset, size_t pixels, const Json& rates,
+Plan make_plan(const ReconstructInputs& in, const Preset& preset, const PixelStore& store, const Json& rates,
                Progress& progress) {
+  const PlannedPixels pixels = planned_pixels(store);
   const Plan plan = plan_of(in.options, preset, pixels, rates.is_null() ? Rates() : rates_from_json(rates));
-  Json line{{"stage", "plan"}, {"pixels", pixels}, {"plan", to_json(plan)}, {"rates", rates}};
+  Json line{{"stage", "plan"}, {"pixels", pixels.count}, {"plan", to_json(plan)}, {"rates", rates}};
   progress.log(line.dump());
   return plan;
 }
@@ -54,7 +55,7 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
                            .normalization = in.normalization,
                            .views = views,
                            .preset = preset,
-                           .plan = make_plan(in, preset, views.train.pixels().size(), rates, progress),
+                           .plan = make_plan(in, preset, views.train, rates, progress),
                            .seed = in.options.seed,
                            .light = in.options.light,
                            .light_color = in.options.light_color,
