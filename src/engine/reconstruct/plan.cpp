@@ -202,9 +202,9 @@ bool leave_one_out(const Costs& c, Plan& p) {
   return true;
 }
 
-// Short trials tell the start shapes apart, too; a bad start costs more than most stages bring. Where the
-// visual hull is likely to be bad, the shortest may take more than their usual share. seconds: of the
-// geometry stage.
+// Where the visual hull is good, short trials may prefer a worse shape (docs/notebook/0046). Where it is
+// likely to be bad, it costs more than most stages bring, and the shortest trials may take more than their
+// usual share. seconds: of the geometry stage.
 int affordable_trial_steps(double seconds, int wanted, bool cut_off, const Costs& c) {
   const auto steps_in = [&](double share) { return (share * seconds - c.trials_besides) / c.trial_step; };
   const double least = kMinTrialShare * wanted, steps = std::min(steps_in(kTrialsShare), double(wanted));
