@@ -18,6 +18,7 @@ constexpr double kMesh = 1.6;           // surface of an object over that of the
 constexpr double kGeometryStep = 13;    // a step of the geometry stage, in Rates::sdf_step
 constexpr double kFirstLight = 4500;    // finding out how the light turns, in Rates::trial_step
 constexpr double kStartShapes = 20000;  // that, start shapes and poses, in Rates::trial_step
+constexpr double kStereo = 12000;       // the start shape by stereo, in Rates::trial_step
 constexpr double kPolishStep = 68;      // a step of polishing, in Rates::sdf_step
 // A pixel of the residual images, in times of tracing and shading a hit. A light that turns takes most.
 constexpr double kResidualPixel = 3;
@@ -71,6 +72,7 @@ struct Costs {
   double geometry_step;   // one training step of the geometry stage
   double trial_step;      // of the three trials
   double trials_besides;  // start shapes and the first fits to them
+  double stereo;          // start shape by stereo alone
   double brief_surface;   // with brief_hits
   double surface, full_appearance, brief_appearance, refinement, finer_mesh;
   double look;    // of a polishing round
@@ -89,6 +91,7 @@ Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
   c.geometry_step = kGeometryStep * r.sdf_step;
   c.trial_step = r.trial_step * 3 * kGeometryStep;
   c.trials_besides = r.trial_step * (3 * trial.geometry.prefit_steps + kStartShapes);
+  c.stereo = r.trial_step * (kFirstLight + kStereo);
   c.surface = mesh(preset.meshing) + hits * r.hit_traced;
   c.brief_surface = mesh(preset.meshing) + brief_hits * r.hit_traced;
   c.full_appearance = kFullSplit * r.hit_shaded + hits * hit + kFullDescent * r.albedo_step;
@@ -212,6 +215,13 @@ int affordable_trial_steps(double seconds, int wanted, bool cut_off, const Costs
   return cut_off && steps_in(kMaxTrialsShare) >= least ? int(least) : 0;
 }
 
+void plan_start(const Preset& preset, const PlannedPixels& pixels, const Costs& c, Plan& p) {
+  if (preset.start != StartChoice::trials) return;
+  p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, pixels.cut_off, c);
+  const bool stereo = p.trial_steps == 0 && pixels.cut_off && c.stereo <= kMaxTrialsShare * p.geometry;
+  p.start = stereo ? Start::stereo : Start::hull;
+}
+
 Plan timed_plan(double t, const Preset& preset, const PlannedPixels& pixels, const Costs& c,
                 bool joint_wanted) {
   Plan p;
@@ -228,8 +238,7 @@ Plan timed_plan(double t, const Preset& preset, const PlannedPixels& pixels, con
   while (rest_of(p) > t - enough && refines()) leave_one_out(c, p);
   while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
   p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
-  if (preset.start == StartChoice::trials)
-    p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, pixels.cut_off, c);
+  plan_start(preset, pixels, c, p);
   return p;
 }
 
@@ -248,8 +257,7 @@ Plan without_light(Plan p, double t, const Preset& preset, const PlannedPixels& 
   p.residual = kCoupledShare * t;
   p.reserve = std::min(p.reserve, (1 - kMinGeometryShare - kCoupledShare - kFinerMeshShare) * t);
   p.geometry = t - rest_of(p);
-  if (preset.start == StartChoice::trials)
-    p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, pixels.cut_off, c);
+  plan_start(preset, pixels, c, p);
   return p;
 }
 
@@ -286,6 +294,7 @@ Plan plan_of(const ReconstructOptions& options, const Preset& given, const Plann
 
 Json to_json(const Plan& p) {
   return {{"trial_steps", p.trial_steps},
+          {"start", p.start == Start::stereo ? "stereo" : "hull"},
           {"geometry", p.geometry},
           {"iterations", p.iterations},
           {"polish_rounds", p.polish_rounds},

@@ -101,6 +101,19 @@ TEST(Plan, ObjectsThatAreCutOffGetTrialsForLonger) {
   EXPECT_GT(slowest(true), 1.1 * slowest(false));
 }
 
+// Not where even stereo takes too much of the time, and no object that is seen whole.
+TEST(Plan, ObjectsThatAreCutOffStartFromStereoWhereThereIsNoTimeForTrials) {
+  int by_stereo = 0, by_hull = 0;
+  for (double slowness = 0.5; slowness < 100; slowness *= 1.05) {
+    const Plan p = plan_for("fast", 600, 3000000, slowness, true);
+    EXPECT_EQ(plan_for("fast", 600, 3000000, slowness, false).start, Start::hull);
+    if (p.trial_steps == 0) ++(p.start == Start::stereo ? by_stereo : by_hull);
+  }
+  EXPECT_GT(by_stereo, 5);
+  EXPECT_GT(by_hull, 5);
+  EXPECT_EQ(plan_for("fast", 600, 3000000, 100, true).start, Start::hull);
+}
+
 TEST(PlannedPixels, AnObjectAtTheBorderOfItsPhotographsIsCutOff) {
   constexpr int kSize = 20;
   for (const int cut : {1, 3}) {  // of eight views

@@ -24,8 +24,8 @@ struct Rates {
 Json to_json(const Rates&);
 Rates rates_from_json(const Json&);
 
-// Times small pieces of work on untrained fields, whose surface is a sphere. Less than a second with hash
-// grids on two cores. Error: interrupted.
+// Times small pieces of work on untrained fields, whose surface is a sphere. About a second with hash grids
+// on two cores. Error: interrupted.
 Rates measure_rates(const Device&, const Preset&, const PixelStore&, const Clock&, const Progress&);
 
 }  // namespace cei3d

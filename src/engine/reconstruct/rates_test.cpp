@@ -27,5 +27,17 @@ TEST(Rates, AreTheTicksOfAPieceOfWorkOverItsSize) {
   EXPECT_EQ(to_json(rates_from_json(to_json(r))), to_json(r));
 }
 
+// Steps that take ten times as long before caches are warm.
+TEST(Rates, DoNotDependOnTheFirstSteps) {
+  const BoxCapture capture;
+  Progress quiet;
+  const TrainingViews views = load_training_views(capture.capture(), capture, {}, quiet);
+  double seconds = 0;
+  int looks = 0;
+  const Clock clock = [&] { return seconds += looks++ < 10 ? 1e-2 : 1e-3; };
+  const Preset preset = shrunken(preset_by_name("fast"));
+  EXPECT_NEAR(measure_rates(make_device(), preset, views.train, clock, quiet).sdf_step, 1e-3, 1e-9);
+}
+
 }  // namespace
 }  // namespace cei3d

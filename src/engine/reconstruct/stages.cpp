@@ -77,7 +77,7 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
   const std::vector<Camera> given = pixels.cameras();
   const StartShape start = run.plan.trial_steps > 0
                                ? choose_start(run.device, pixels, trial, run.seed, run.progress)
-                               : start_shape(pixels, Start::hull, run.seed, trial.shapes, run.progress);
+                               : start_shape(pixels, run.plan.start, run.seed, trial.shapes, run.progress);
   if (!same_cameras(pixels.cameras(), given)) keep_cameras(run, state);
   if (!pixels.exposures().empty()) keep_exposures(run, state);
   const double chosen = run.progress.now();
