@@ -17,7 +17,7 @@ struct Plan {
   StageChoice stages = StageChoice::all;
   // Coupled: no polishing, appearance, refinements and joint descent; a network is the color.
   ColorChoice color = ColorChoice::disentangled;
-  int trial_steps = 0;    // of each training that tries one of three start shapes; 0: `start` is not tried
+  int trial_steps = 0;  // of each training that tries one of three start shapes; 0: `start` is not tried
   Start start = Start::hull;
   double geometry = 0;    // s, the comparison of starts included
   int iterations = 0;     // steps of the geometry stage where `geometry` is 0
