@@ -32,7 +32,7 @@ constexpr double kReserve = 3;         // reading and writing files, in times of
 
 // Minimum shares of all steps; fewer are not worth the time.
 constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinJointShare = 0.25,
-                 kMinTrialShare = 0.4;
+                 kMinTrialShare = 0.4, kMinTrialShareCutOff = 0.75;
 constexpr size_t kUntimedResidualPixels = 1000000;
 
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
@@ -49,9 +49,8 @@ constexpr double kJointShare = 0.1;
 constexpr double kFinerMeshShare = 1.0 / 40;
 constexpr double kCoupledShare = 0.3;   // of the network of a coupled color, in place of all that is left out
 constexpr double kResidualShare = 0.1;  // residual images
-// Comparison of start shapes, as a share of the geometry stage; the shortest one of an object that is cut
-// off.
-constexpr double kTrialsShare = 0.3, kMaxTrialsShare = 0.4;
+// As shares of the geometry stage: comparison of start shapes; stereo alone.
+constexpr double kTrialsShare = 0.3, kStereoShare = 0.4;
 
 // Minimum shares of the whole time. Before the residual images comes light at all vertices, which grows with
 // the object and not with its pixels.
@@ -205,20 +204,17 @@ bool leave_one_out(const Costs& c, Plan& p) {
   return true;
 }
 
-// Where the visual hull is good, short trials may prefer a worse shape (docs/notebook/0046). Where it is
-// likely to be bad, it costs more than most stages bring, and the shortest trials may take more than their
-// usual share. seconds: of the geometry stage.
+// Where the visual hull is far from the object, so is what is trained from it briefly, and cameras that are
+// aligned with that are moved away from where they are (docs/notebook/0047). seconds: of the geometry stage.
 int affordable_trial_steps(double seconds, int wanted, bool cut_off, const Costs& c) {
-  const auto steps_in = [&](double share) { return (share * seconds - c.trials_besides) / c.trial_step; };
-  const double least = kMinTrialShare * wanted, steps = std::min(steps_in(kTrialsShare), double(wanted));
-  if (steps >= least) return int(steps);
-  return cut_off && steps_in(kMaxTrialsShare) >= least ? int(least) : 0;
+  const double steps = std::min((kTrialsShare * seconds - c.trials_besides) / c.trial_step, double(wanted));
+  return steps >= (cut_off ? kMinTrialShareCutOff : kMinTrialShare) * wanted ? int(steps) : 0;
 }
 
 void plan_start(const Preset& preset, const PlannedPixels& pixels, const Costs& c, Plan& p) {
   if (preset.start != StartChoice::trials) return;
   p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, pixels.cut_off, c);
-  const bool stereo = p.trial_steps == 0 && pixels.cut_off && c.stereo <= kMaxTrialsShare * p.geometry;
+  const bool stereo = p.trial_steps == 0 && pixels.cut_off && c.stereo <= kStereoShare * p.geometry;
   p.start = stereo ? Start::stereo : Start::hull;
 }
 

@@ -91,14 +91,18 @@ TEST(Plan, ASlowerMachineTriesStartsMoreBriefly) {
   EXPECT_GT(std::set<int>(steps.begin(), none).size(), 4u);
 }
 
-// Their hull is a bad start: it is compared with others on slower machines, too.
-TEST(Plan, ObjectsThatAreCutOffGetTrialsForLonger) {
-  const auto slowest = [](bool cut_off) {
-    double slowness = 0.5;
-    while (plan_for("fast", 600, 3000000, slowness, cut_off).trial_steps > 0) slowness *= 1.05;
-    return slowness;
-  };
-  EXPECT_GT(slowest(true), 1.1 * slowest(false));
+TEST(Plan, ObjectsThatAreCutOffGetNoShortTrials) {
+  const int all = preset_by_name("fast").trial.steps;
+  int shorter = 0, none = 0;
+  for (double slowness = 0.5; slowness < 40; slowness *= 1.05) {
+    const int seen_whole = plan_for("fast", 600, 3000000, slowness).trial_steps,
+              cut_off = plan_for("fast", 600, 3000000, slowness, true).trial_steps;
+    EXPECT_EQ(cut_off, 4 * seen_whole >= 3 * all ? seen_whole : 0);
+    shorter += cut_off > 0 && cut_off < all;
+    none += cut_off == 0 && seen_whole > 0;
+  }
+  EXPECT_GT(shorter, 0);
+  EXPECT_GT(none, 0);
 }
 
 // Not where even stereo takes too much of the time, and no object that is seen whole.
