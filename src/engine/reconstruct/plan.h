@@ -17,14 +17,14 @@ struct Plan {
   StageChoice stages = StageChoice::all;
   // Coupled: no polishing, appearance, refinements and joint descent; a network is the color.
   ColorChoice color = ColorChoice::disentangled;
-  int trial_steps = 0;  // of each training that tries one of three start shapes; 0: `start` is not tried
-  Start start = Start::hull;
-  double geometry = 0;    // s, the comparison of starts included
-  int iterations = 0;     // steps of the geometry stage where `geometry` is 0
-  int polish_rounds = 0;  // of polishing
-  double look = 0;        // s that a round takes to make a mesh and estimate light and material briefly
-  double polish = 0;      // s of a polishing round's descent, at most
-  int polish_steps = 0;   // steps of a polishing round's descent, at most
+  int trial_steps = 0;        // of each training that tries one of three start shapes; 0: none is tried
+  Start start = Start::hull;  // if none is tried
+  double geometry = 0;        // s, the comparison of starts included
+  int iterations = 0;         // steps of the geometry stage where `geometry` is 0
+  int polish_rounds = 0;      // of polishing
+  double look = 0;            // s that a round takes to make a mesh and estimate light and material briefly
+  double polish = 0;          // s of a polishing round's descent, at most
+  int polish_steps = 0;       // steps of a polishing round's descent, at most
   Effort effort = Effort::full;  // of the appearance stage
   double appearance = 0;         // s of the appearance stage
   int refinements = 0;           // of the albedo, each on another random subset of the pixels
