@@ -157,6 +157,24 @@ TEST(Transport, AWhiteCavityGlows) {
   }
 }
 
+TEST(Transport, ComputesTheVerticesThatAreAskedForAsItDoesAll) {
+  const Transport transport(std::make_shared<const Surface>(two_spheres(-0.4f)));
+  SkyRadiance sky;
+  for (size_t k = 0; k < kSkyDirections; ++k) sky.push_back(Vec3f{1, 2, 3} * Rng(1, 0, k).uniform());
+  const std::vector<Vec3f> seen = transport.sky(sky), bounce = transport.bounce(seen);
+  std::vector<uint8_t> which;
+  for (size_t v = 0; v < seen.size(); ++v) which.push_back(Rng(2, 0, v).below(3) == 0);
+  const std::vector<Vec3f> few_seen = transport.sky(sky, which), few_bounce = transport.bounce(seen, which);
+  const auto skies = transport.skies(std::vector{sky, sky}),
+             few_skies = transport.skies(std::vector{sky, sky}, which);
+  for (size_t v = 0; v < seen.size(); ++v) {
+    const float share = float(which[v]);
+    EXPECT_EQ(length(few_seen[v] - seen[v] * share), 0);
+    EXPECT_EQ(length(few_bounce[v] - bounce[v] * share), 0);
+    EXPECT_EQ(length(few_skies[1][v] - skies[1][v] * share), 0);
+  }
+}
+
 // Two balls in three views, between which the light turns: each view has to look as under a light that stands
 // still and is turned accordingly.
 class TurningLight : public testing::Test {

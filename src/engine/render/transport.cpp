@@ -75,6 +75,8 @@ Transport::Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t
 
 namespace {
 
+bool is_among(std::span<const uint8_t> which, int vertex) { return which.empty() || which[size_t(vertex)]; }
+
 // Calls visit(direction) for the bits that are set.
 template <class F>
 void for_visible(const uint8_t* bits, const F& visit) {
@@ -84,12 +86,13 @@ void for_visible(const uint8_t* bits, const F& visit) {
 
 }  // namespace
 
-std::vector<Vec3f> Transport::sky(const SkyRadiance& radiance) const {
+std::vector<Vec3f> Transport::sky(const SkyRadiance& radiance, std::span<const uint8_t> which) const {
   const Mesh& mesh = surface_->mesh();
   const auto& sky = sky_directions();
   const uint8_t* bits = surface_->visibility().data();
   return per_vertex([&](int v) {
     Vec3f sum{0, 0, 0};
+    if (!is_among(which, v)) return sum;
     for_visible(bits + size_t(v) * (kSkyDirections / 8),
                 [&](int k) { sum += radiance[k] * max(dot(mesh.normals[v], sky[k]), 0.0f); });
     return sum * kSolidAngle;
@@ -125,10 +128,11 @@ std::vector<std::vector<Vec3f>> Transport::sums_over_skies(std::span<const SkyRa
   return out;
 }
 
-std::vector<std::vector<Vec3f>> Transport::skies(std::span<const SkyRadiance> radiance) const {
+std::vector<std::vector<Vec3f>> Transport::skies(std::span<const SkyRadiance> radiance,
+                                                 std::span<const uint8_t> which) const {
   const uint8_t* bits = surface_->visibility().data();
   return sums_over_skies(radiance, [&](int v, const auto& visit) {
-    for_visible(bits + size_t(v) * (kSkyDirections / 8), visit);
+    if (is_among(which, v)) for_visible(bits + size_t(v) * (kSkyDirections / 8), visit);
   });
 }
 
@@ -152,10 +156,11 @@ std::vector<Vec3f> Transport::unoccluded_sky(const SkyRadiance& radiance, std::v
   });
 }
 
-std::vector<Vec3f> Transport::bounce(std::span<const Vec3f> radiance) const {
+std::vector<Vec3f> Transport::bounce(std::span<const Vec3f> radiance, std::span<const uint8_t> which) const {
   const auto& sky = sky_directions();
   return per_vertex([&](int v) {
     Vec3f sum{0, 0, 0};
+    if (!is_among(which, v)) return sum;
     for (uint32_t i = start_[v]; i < start_[v + 1]; ++i) {
       if (blockers_[i] == kNone) continue;
       const float cosine = dot(surface_->mesh().normals[v], sky[directions_[i]]);

@@ -21,16 +21,18 @@ class Transport {
   explicit Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t> which = {},
                      const Progress& progress = Progress());
 
-  // Irradiance of every vertex from the sky that is visible from it: #V.
-  std::vector<Vec3f> sky(const SkyRadiance&) const;
+  // Irradiance of every vertex from the sky that is visible from it: #V. which: as above, at most.
+  std::vector<Vec3f> sky(const SkyRadiance&, std::span<const uint8_t> which = {}) const;
   // Irradiance of every vertex without occlusion: #V. visible: sky() of the same radiance.
   std::vector<Vec3f> unoccluded_sky(const SkyRadiance&, std::vector<Vec3f> visible) const;
-  // sky() and unoccluded_sky() of several skies at once, several times as fast: [sky][#V].
-  std::vector<std::vector<Vec3f>> skies(std::span<const SkyRadiance>) const;
+  // sky() and unoccluded_sky() of several skies at once, several times as fast: [sky][#V]. which: as above.
+  std::vector<std::vector<Vec3f>> skies(std::span<const SkyRadiance>,
+                                        std::span<const uint8_t> which = {}) const;
   std::vector<std::vector<Vec3f>> unoccluded_skies(std::span<const SkyRadiance>,
                                                    const std::vector<std::vector<Vec3f>>& visible) const;
-  // Irradiance of every vertex from the rest of the surface: #V. radiance: #V, leaving each vertex.
-  std::vector<Vec3f> bounce(std::span<const Vec3f> radiance) const;
+  // Irradiance of every vertex from the rest of the surface: #V. radiance: #V, leaving each vertex. which: as
+  // above.
+  std::vector<Vec3f> bounce(std::span<const Vec3f> radiance, std::span<const uint8_t> which = {}) const;
 
   const Surface& surface() const { return *surface_; }
   size_t bytes() const {

@@ -17,13 +17,14 @@ struct DirectLight {
   std::vector<Vec3f> mean;
 };
 
-DirectLight direct_light(const Transport& transport, const Image& light, const LightTurns* turns) {
-  if (!turns) return {{}, transport.sky(sky_radiance(light))};
+DirectLight direct_light(const Transport& transport, const Image& light, const LightTurns* turns,
+                         std::span<const uint8_t> which) {
+  if (!turns) return {{}, transport.sky(sky_radiance(light), which)};
   DirectLight out;
   out.mean.assign(transport.surface().mesh().positions.size(), Vec3f{0, 0, 0});
   std::vector<SkyRadiance> skies;
   for (const Mat3f& room_from_object : turns->bins) skies.push_back(sky_radiance(light, room_from_object));
-  out.by_bin = transport.skies(skies);
+  out.by_bin = transport.skies(skies, which);
   for (const std::vector<Vec3f>& bin : out.by_bin)
     for (size_t v = 0; v < out.mean.size(); ++v) out.mean[v] += bin[v] / float(turns->bins.size());
   return out;
@@ -31,11 +32,12 @@ DirectLight direct_light(const Transport& transport, const Image& light, const L
 
 // Irradiance of every vertex from the surface. Metals count as diffuse emitters of their mean reflection.
 std::vector<Vec3f> bounce_of(const Transport& transport, const SplitUnknowns& x,
-                             const SplitMaterials& materials, const std::vector<Vec3f>& direct) {
+                             const SplitMaterials& materials, const std::vector<Vec3f>& direct,
+                             std::span<const uint8_t> which) {
   std::vector<Vec3f> emitted = x.diffuse;
   for (uint32_t v = 0; v < emitted.size(); ++v)
     if (materials.is_metal(v)) emitted[v] = materials.color[v] * direct[v] / kPi;
-  return transport.bounce(emitted);
+  return transport.bounce(emitted, which);
 }
 
 }  // namespace
@@ -70,9 +72,10 @@ SkyRadiance sky_radiance(const Image& light, const Mat3f& room_from_object) {
 }
 
 std::vector<Vec3f> split_irradiance(const Transport& transport, const SplitUnknowns& x,
-                                    const SplitMaterials& materials, int height, const LightTurns* turns) {
-  std::vector<Vec3f> out = direct_light(transport, light_image(x.light, height), turns).mean;
-  const std::vector<Vec3f> bounce = bounce_of(transport, x, materials, out);
+                                    const SplitMaterials& materials, int height, const LightTurns* turns,
+                                    std::span<const uint8_t> which) {
+  std::vector<Vec3f> out = direct_light(transport, light_image(x.light, height), turns, which).mean;
+  const std::vector<Vec3f> bounce = bounce_of(transport, x, materials, out, which);
   for (size_t v = 0; v < out.size(); ++v) out[v] += bounce[v];
   return out;
 }
@@ -80,12 +83,12 @@ std::vector<Vec3f> split_irradiance(const Transport& transport, const SplitUnkno
 namespace {
 
 // Irradiance of every vertex from each harmonic of a light, without the bounce: #V.
-std::vector<Harmonics> transfer_of(const Transport& transport) {
+std::vector<Harmonics> transfer_of(const Transport& transport, std::span<const uint8_t> which) {
   std::vector<Harmonics> out(transport.surface().mesh().positions.size());
   std::vector<SkyRadiance> skies(kHarmonics);
   for (const Vec3f& d : sky_directions())
     for (size_t j = 0; j < kHarmonics; ++j) skies[j].push_back(Vec3f{1, 1, 1} * harmonics(d)[j]);
-  const std::vector<std::vector<Vec3f>> irradiance = transport.skies(skies);
+  const std::vector<std::vector<Vec3f>> irradiance = transport.skies(skies, which);
   for (size_t v = 0; v < out.size(); ++v)
     for (size_t j = 0; j < kHarmonics; ++j) out[v][j] = irradiance[j][v].x;
   return out;
@@ -93,12 +96,14 @@ std::vector<Harmonics> transfer_of(const Transport& transport) {
 
 }  // namespace
 
-TurningIrradiance::TurningIrradiance(const Transport& transport, const LightTurns& turns, int light_height)
+TurningIrradiance::TurningIrradiance(const Transport& transport, const LightTurns& turns, int light_height,
+                                     std::span<const uint8_t> which)
     : transport_(transport),
       turns_(turns),
       height_(light_height),
+      which_(which),
       harmonics_(light_height),
-      transfer_(transfer_of(transport)) {
+      transfer_(transfer_of(transport, which)) {
   for (const Mat3f& rotation : turns.room_from_object) views_.push_back(turned_harmonics(rotation));
   for (const Mat3f& rotation : turns.bins) {
     const HarmonicMatrix& m = bins_.emplace_back(turned_harmonics(rotation));
@@ -114,15 +119,16 @@ Harmonics TurningIrradiance::at(const SplitRow& row) const {
   return sum;
 }
 
-DiffuseLightGrad TurningIrradiance::turn(const SplitUnknowns& x, const SplitMaterials& materials,
-                                         std::vector<SplitRow>& rows) const {
+TurningIrradiance::Turned TurningIrradiance::turn(const SplitUnknowns& x, const SplitMaterials& materials,
+                                                  std::vector<SplitRow>& rows) const {
   const Vec3f dark{1e-6f, 1e-6f, 1e-6f};
-  DirectLight light = direct_light(transport_, light_image(x.light, height_), &turns_);
-  const std::vector<Vec3f> bounce = bounce_of(transport_, x, materials, light.mean);
-  for (size_t v = 0; v < bounce.size(); ++v) light.mean[v] += bounce[v] + dark;
+  DirectLight light = direct_light(transport_, light_image(x.light, height_), &turns_, which_);
+  const std::vector<Vec3f> bounce = bounce_of(transport_, x, materials, light.mean, which_);
+  for (size_t v = 0; v < bounce.size(); ++v) light.mean[v] += bounce[v];
+  Turned out{{std::vector<DiffuseLightGrad::OfRow>(rows.size()), harmonics_.of(x.light)}, light.mean};
+  for (Vec3f& mean : light.mean) mean += dark;
   for (std::vector<Vec3f>& bin : light.by_bin)
     for (size_t v = 0; v < bin.size(); ++v) bin[v] = (bin[v] + bounce[v] + dark) / light.mean[v];
-  DiffuseLightGrad grad{std::vector<DiffuseLightGrad::OfRow>(rows.size()), harmonics_.of(x.light)};
   parallel_ranges(int(rows.size()), 4096, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       SplitRow& row = rows[size_t(i)];
@@ -131,17 +137,17 @@ DiffuseLightGrad TurningIrradiance::turn(const SplitUnknowns& x, const SplitMate
       const Harmonics here = at(row), in_view = views_[row.view] * here,
                       in_bin = bins_[turns_.bin[row.view]] * here, mean = mean_ * here;
       const Vec3f mean_light = at_corners(light.mean, row.vertices, row.barycentric),
-                  more = (dot(in_view, grad.light) - dot(in_bin, grad.light)) / mean_light;
+                  more = (dot(in_view, out.grad.light) - dot(in_bin, out.grad.light)) / mean_light;
       row.diffuse_light = at_corners(bin, row.vertices, row.barycentric) + more;
       for (int c = 0; c < 3; ++c) row.diffuse_light[c] = max(row.diffuse_light[c], 0.0f);
       row.far_diffuse_light = at_corners(bin, row.far_vertices, row.far_barycentric);
-      DiffuseLightGrad::OfRow& of_row = grad.rows[size_t(i)];
+      DiffuseLightGrad::OfRow& of_row = out.grad.rows[size_t(i)];
       const float share = luminance(row.diffuse_light);
       for (size_t j = 0; j < kHarmonics; ++j) of_row.d_light[j] = in_view[j] - share * mean[j];
       of_row.gain = at_corners(x.diffuse, row.vertices, row.barycentric) / mean_light;
     }
   });
-  return grad;
+  return out;
 }
 
 }  // namespace cei3d

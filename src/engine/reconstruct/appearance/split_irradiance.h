@@ -14,17 +14,23 @@ Image light_image(const std::vector<Vec3f>& light, int height);
 SkyRadiance sky_radiance(const Image& light, const Mat3f& room_from_object = Mat3f::identity());
 
 // Irradiance of every vertex, from the light (of `height` rows) and by one bounce: #V. Under a turning light,
-// the mean over the bins; turns null: the light is fixed to the object.
+// the mean over the bins; turns null: the light is fixed to the object. which: see Transport; metals that are
+// not among these reflect nothing.
 std::vector<Vec3f> split_irradiance(const Transport&, const SplitUnknowns&, const SplitMaterials&, int height,
-                                    const LightTurns* turns);
+                                    const LightTurns* turns, std::span<const uint8_t> which = {});
 
 // The irradiance of samples under a turning light.
 class TurningIrradiance {
  public:
-  TurningIrradiance(const Transport&, const LightTurns&, int light_height);
-  // Sets the diffuse light of the rows: irradiance in their view over the mean of split_irradiance(). Returns
-  // its derivative by the light.
-  DiffuseLightGrad turn(const SplitUnknowns&, const SplitMaterials&, std::vector<SplitRow>& rows) const;
+  // which: see split_irradiance(); among them the corners of all rows and of their far points.
+  TurningIrradiance(const Transport&, const LightTurns&, int light_height,
+                    std::span<const uint8_t> which = {});
+  struct Turned {
+    DiffuseLightGrad grad;          // of the diffuse light of the rows, by the light
+    std::vector<Vec3f> irradiance;  // split_irradiance()
+  };
+  // Sets the diffuse light of the rows: irradiance in their view over the mean of split_irradiance().
+  Turned turn(const SplitUnknowns&, const SplitMaterials&, std::vector<SplitRow>& rows) const;
 
  private:
   Harmonics at(const SplitRow&) const;
@@ -32,6 +38,7 @@ class TurningIrradiance {
   const Transport& transport_;
   const LightTurns& turns_;
   int height_;
+  std::span<const uint8_t> which_;
   LightHarmonics harmonics_;
   std::vector<Harmonics> transfer_;    // #V: irradiance from the harmonics of a light
   std::vector<HarmonicMatrix> views_;  // rotation of the light in each view

@@ -74,7 +74,8 @@ TEST(TurningIrradiance, DerivativeByTheLightEqualsDifferences) {
   constexpr float kStep = 0.05f;
   Turning t;
   std::vector<SplitRow> rows = t.rows;
-  const DiffuseLightGrad grad = TurningIrradiance(t.transport, t.turns, kHeight).turn(t.x, t.materials, rows);
+  const DiffuseLightGrad grad =
+      TurningIrradiance(t.transport, t.turns, kHeight).turn(t.x, t.materials, rows).grad;
   const std::vector<Vec3f> change = harmonic_light(4, 0.3f, 0.5f);
   const HarmonicLight harmonics_of_change = LightHarmonics(kHeight).of(change);
   const std::vector<SplitRow> more = t.turned(change, kStep), less = t.turned(change, -kStep);
@@ -89,6 +90,26 @@ TEST(TurningIrradiance, DerivativeByTheLightEqualsDifferences) {
   }
   EXPECT_GT(std::sqrt(size / irradiance_alone), 0.02);  // the light's change matters
   EXPECT_LT(std::sqrt(error / size), 0.05);  // the light is smoothed a little before it is gathered
+}
+
+TEST(TurningIrradiance, NeedsOnlyTheVerticesAtRows) {
+  Turning t;
+  t.rows.resize(20);
+  std::vector<uint8_t> at_rows(t.x.diffuse.size(), 0);
+  for (const SplitRow& row : t.rows)
+    for (const uint32_t v : row.vertices) at_rows[v] = 1;
+  at_rows[0] = 1;  // corner of the rows' far points
+  std::vector<SplitRow> rows = t.rows, few = t.rows;
+  TurningIrradiance(t.transport, t.turns, kHeight).turn(t.x, t.materials, rows);
+  const std::vector<Vec3f> all = split_irradiance(t.transport, t.x, t.materials, kHeight, &t.turns),
+                           of_few = TurningIrradiance(t.transport, t.turns, kHeight, at_rows)
+                                        .turn(t.x, t.materials, few)
+                                        .irradiance;
+  for (size_t v = 0; v < all.size(); ++v) EXPECT_EQ(length(of_few[v] - all[v] * float(at_rows[v])), 0);
+  for (size_t i = 0; i < rows.size(); ++i) {
+    EXPECT_EQ(length(few[i].diffuse_light - rows[i].diffuse_light), 0);
+    EXPECT_EQ(length(few[i].far_diffuse_light - rows[i].far_diffuse_light), 0);
+  }
 }
 
 // The diffuse light of a sample is its irradiance over the mean, so that it does not depend on the light's

@@ -40,20 +40,29 @@ constexpr float kFirstWhite = 3, kLastWhite = 1.3f;
 // 0. On a surface without reflections, those of a smooth light cost more than they add (docs/notebook/0033).
 constexpr float kMinReflected = 0.05f;
 
+std::vector<uint8_t> corners_of(const std::vector<SplitRow>& rows, size_t vertices) {
+  std::vector<uint8_t> out(vertices, 0);
+  for (const SplitRow& row : rows)
+    for (const auto& corners : {row.vertices, row.far_vertices})
+      for (const uint32_t v : corners) out[v] = 1;
+  return out;
+}
+
 }  // namespace
 
 SplitSolver::SplitSolver(const Transport& transport, const SurfaceSamples& samples,
                          const LinearSplitOptions& options, Progress& progress, SplitGuess guess)
     : transport_(transport),
       mesh_(transport.surface().mesh()),
-      turns_(samples.turned.turns),
       colors_(mean_colors(mesh_, samples, options)),
       rows_(make_split_rows(transport.surface(), samples, options, colors_)),
       options_(options),
       progress_(progress),
       system_(mesh_, rows_, options),
+      at_rows_(corners_of(rows_, mesh_.positions.size())),
       guess_(std::move(guess)) {
-  if (turns_) turning_ = std::make_unique<TurningIrradiance>(transport, *turns_, options.light_height);
+  if (const LightTurns* turns = samples.turned.turns)
+    turning_ = std::make_unique<TurningIrradiance>(transport, *turns, options.light_height, at_rows_);
 }
 
 SplitUnknowns SplitSolver::uniform() const {
@@ -94,7 +103,10 @@ SplitSolution SplitSolver::solved(SplitSolution s, int rounds, int steps) {
 }
 
 void SplitSolver::turn_diffuse_light(const SplitSolution& s) {
-  if (turning_) system_.set_diffuse_light_grad(turning_->turn(s.x, s.materials, rows_));
+  if (!turning_) return;
+  TurningIrradiance::Turned turned = turning_->turn(s.x, s.materials, rows_);
+  system_.set_diffuse_light_grad(std::move(turned.grad));
+  irradiance_ = std::move(turned.irradiance);
 }
 
 SplitSolution SplitSolver::with_fitted_metals(SplitSolution s, int rounds, int steps) {
@@ -147,7 +159,9 @@ SplitSolution SplitSolver::under_light(const std::vector<Vec3f>& light, float ro
 }
 
 std::vector<Vec3f> SplitSolver::white_radiance(const SplitSolution& s, float albedo) const {
-  std::vector<Vec3f> out = split_irradiance(transport_, s.x, s.materials, options_.light_height, turns_);
+  std::vector<Vec3f> out =
+      turning_ ? irradiance_
+               : split_irradiance(transport_, s.x, s.materials, options_.light_height, nullptr, at_rows_);
   for (Vec3f& e : out) e = e * (albedo / kPi);
   return out;
 }
@@ -245,10 +259,10 @@ LightScale SplitSolver::light_correction(const SplitSolution& s) {
 SplitSolution SplitSolver::several(SplitSolution s, double max_residual) {
   const SimilarNeighbors near(mesh_, colors_);
   double before = std::numeric_limits<double>::infinity();
+  system_.set_materials(s.materials);
   for (int round = 0; round < kMaxRounds; ++round) {
     check_cancelled(progress_);
     const bool extended = round % 2 == 0;
-    system_.set_materials(s.materials);
     choose_materials(s.x, near, round + 1 >= kMinRounds, extended ? kExtended : 1, s.materials);
     system_.set_materials(s.materials);
     s.materials.color = system_.fit_metal_color(s.x);

@@ -66,17 +66,19 @@ class SplitSolver {
   void choose_materials(const SplitUnknowns&, const SimilarNeighbors&, bool settled, float extended,
                         SplitMaterials&);
   void fix_scale(SplitSolution&);
+  // Of vertices at rows. Under a turning light the solution must be the one turned last.
   std::vector<Vec3f> white_radiance(const SplitSolution&, float albedo) const;
 
   const Transport& transport_;
   const Mesh& mesh_;
-  const LightTurns* turns_;
   std::vector<Vec3f> colors_;  // #V, mean_colors()
   std::vector<SplitRow> rows_;
   LinearSplitOptions options_;
   Progress& progress_;
   SplitSystem system_;
+  std::vector<uint8_t> at_rows_;                // #V, 1 for the corners of rows and of their far points
   std::unique_ptr<TurningIrradiance> turning_;  // null: the light stands still
+  std::vector<Vec3f> irradiance_;               // under a turning light, of the solution turned last
   SplitGuess guess_;
 };
 
