@@ -124,9 +124,11 @@ TurningIrradiance::Turned TurningIrradiance::turn(const SplitUnknowns& x, const 
   const Vec3f dark{1e-6f, 1e-6f, 1e-6f};
   DirectLight light = direct_light(transport_, light_image(x.light, height_), &turns_, which_);
   const std::vector<Vec3f> bounce = bounce_of(transport_, x, materials, light.mean, which_);
-  for (size_t v = 0; v < bounce.size(); ++v) light.mean[v] += bounce[v];
   Turned out{{std::vector<DiffuseLightGrad::OfRow>(rows.size()), harmonics_.of(x.light)}, light.mean};
-  for (Vec3f& mean : light.mean) mean += dark;
+  for (size_t v = 0; v < bounce.size(); ++v) {
+    out.irradiance[v] += bounce[v];
+    light.mean[v] += bounce[v] + dark;
+  }
   for (std::vector<Vec3f>& bin : light.by_bin)
     for (size_t v = 0; v < bin.size(); ++v) bin[v] = (bin[v] + bounce[v] + dark) / light.mean[v];
   parallel_ranges(int(rows.size()), 4096, [&](int begin, int end) {

@@ -59,7 +59,7 @@ SplitSolver::SplitSolver(const Transport& transport, const SurfaceSamples& sampl
       options_(options),
       progress_(progress),
       system_(mesh_, rows_, options),
-      at_rows_(corners_of(rows_, mesh_.positions.size())),
+      at_rows_(options.in_patches ? corners_of(rows_, mesh_.positions.size()) : std::vector<uint8_t>()),
       guess_(std::move(guess)) {
   if (const LightTurns* turns = samples.turned.turns)
     turning_ = std::make_unique<TurningIrradiance>(transport, *turns, options.light_height, at_rows_);

@@ -76,7 +76,8 @@ class SplitSolver {
   LinearSplitOptions options_;
   Progress& progress_;
   SplitSystem system_;
-  std::vector<uint8_t> at_rows_;                // #V, 1 for the corners of rows and of their far points
+  // #V, 1 for the corners of rows and of their far points; empty: rows are all over the surface.
+  std::vector<uint8_t> at_rows_;
   std::unique_ptr<TurningIrradiance> turning_;  // null: the light stands still
   std::vector<Vec3f> irradiance_;               // under a turning light, of the solution turned last
   SplitGuess guess_;
