@@ -14,9 +14,12 @@ namespace {
 
 // Costs of work that is not measured, in multiples of measured rates; from runs on spot, those of the start
 // also on lego400.
-constexpr double kMesh = 1.6;           // surface of an object over that of the sphere of Rates::mesh
-constexpr double kGeometryStep = 13;    // a step of the geometry stage, in Rates::sdf_step
-constexpr double kFirstLight = 4500;    // finding out how the light turns, in Rates::trial_step
+constexpr double kMesh = 1.6;         // surface of an object over that of the sphere of Rates::mesh
+constexpr double kGeometryStep = 13;  // a step of the geometry stage, in Rates::sdf_step
+constexpr double kFirstLight = 4500;  // finding out how the light turns, in Rates::trial_step
+// Finding it out on the trained surface, in Rates::hit_shaded: half as much where one material tells, and
+// twice as much where the materials of the vertices must be searched.
+constexpr double kLightMotion = 1.2e7;
 constexpr double kStartShapes = 20000;  // that, start shapes and poses, in Rates::trial_step
 constexpr double kStereo = 12000;       // the start shape by stereo, in Rates::trial_step
 constexpr double kPolishStep = 68;      // a step of polishing, in Rates::sdf_step
@@ -35,6 +38,11 @@ constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinJoi
                  kMinTrialShare = 0.4, kMinTrialShareCutOff = 0.75;
 constexpr size_t kUntimedResidualPixels = 1000000;
 
+// Of a run that is late: minimum shares of what was planned for the appearance stage's descent and for the
+// residual images.
+constexpr double kMinDescentShare = 0.25, kLeastResidual = 0.5;
+constexpr double kWriting = 0.5;  // share of the reserve that is left for writing files
+
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
 // another subset. Refinements begin above the first ratio of pixels to max_hits, with one for each further
 // multiple of the second.
@@ -44,6 +52,7 @@ constexpr double kSubsetsToRefine = 4, kSubsetsOfRefinement = 2.4;
 constexpr double kPolishShare = 0.1;        // a round's descent
 constexpr double kPolishRoundsShare = 0.3;  // all rounds
 constexpr double kFullEffortShare = 0.36;   // the appearance stage at full effort; else it is brief
+constexpr double kLightMotionShare = 0.1;
 constexpr double kRefinementsShare = 0.1;
 constexpr double kJointShare = 0.1;
 constexpr double kFinerMeshShare = 1.0 / 40;
@@ -68,11 +77,13 @@ constexpr size_t kMinAtBorder = 2;
 // Seconds.
 struct Costs {
   double first_light;     // finding out how the light turns, without trials
+  double light_motion;    // the same on the trained surface
   double geometry_step;   // one training step of the geometry stage
   double trial_step;      // of the three trials
   double trials_besides;  // start shapes and the first fits to them
   double stereo;          // start shape by stereo alone
   double brief_surface;   // with brief_hits
+  double full_descent, brief_descent;
   double surface, full_appearance, brief_appearance, refinement, finer_mesh;
   double look;    // of a polishing round
   double polish;  // all steps of a round
@@ -87,14 +98,17 @@ Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
   const TrialOptions& trial = preset.trial;
   Costs c{};
   c.first_light = kFirstLight * r.trial_step;
+  c.light_motion = kLightMotion * r.hit_shaded;
   c.geometry_step = kGeometryStep * r.sdf_step;
   c.trial_step = r.trial_step * 3 * kGeometryStep;
   c.trials_besides = r.trial_step * (3 * trial.geometry.prefit_steps + kStartShapes);
   c.stereo = r.trial_step * (kFirstLight + kStereo);
   c.surface = mesh(preset.meshing) + hits * r.hit_traced;
   c.brief_surface = mesh(preset.meshing) + brief_hits * r.hit_traced;
-  c.full_appearance = kFullSplit * r.hit_shaded + hits * hit + kFullDescent * r.albedo_step;
-  c.brief_appearance = kBriefSplit * r.hit_shaded + brief_hits * hit + kBriefDescent * r.albedo_step;
+  c.full_descent = kFullDescent * r.albedo_step;
+  c.brief_descent = kBriefDescent * r.albedo_step;
+  c.full_appearance = kFullSplit * r.hit_shaded + hits * hit + c.full_descent;
+  c.brief_appearance = kBriefSplit * r.hit_shaded + brief_hits * hit + c.brief_descent;
   c.look = c.surface + c.brief_appearance;
   c.polish = preset.polish_steps * kPolishStep * r.sdf_step;
   c.refinement = hits * hit + kRefinementStep * preset.refinement_steps * r.albedo_step;
@@ -149,10 +163,14 @@ void plan_polish(double t, const Preset& preset, const Costs& c, Plan& p) {
   if (p.polish_rounds > 0) p.polish = seconds(p.polish_rounds);
 }
 
+void set_effort(Effort effort, const Costs& c, Plan& p) {
+  p.effort = effort;
+  p.appearance = effort == Effort::full ? c.full_appearance : c.brief_appearance;
+  p.descent = effort == Effort::full ? c.full_descent : c.brief_descent;
+}
+
 void plan_appearance(double t, const Preset& preset, const Costs& c, size_t pixels, Plan& p) {
-  const bool full = c.full_appearance <= kFullEffortShare * t;
-  p.effort = full ? Effort::full : Effort::brief;
-  p.appearance = full ? c.full_appearance : c.brief_appearance;
+  set_effort(c.full_appearance <= kFullEffortShare * t ? Effort::full : Effort::brief, c, p);
   p.refinement = c.refinement;
   const double subsets = double(pixels) / double(preset.max_hits),
                wanted = (subsets - kSubsetsToRefine) / kSubsetsOfRefinement,
@@ -176,8 +194,8 @@ void plan_residual(double t, const Costs& c, const Preset& preset, size_t pixels
 
 // Seconds of all but the geometry stage.
 double rest_of(const Plan& p) {
-  return p.polish_rounds * (p.polish + p.look) + p.appearance + p.refinements * p.refinement + p.joint +
-         p.finer_mesh + p.residual + p.reserve;
+  return p.light_motion + p.polish_rounds * (p.polish + p.look) + p.appearance +
+         p.refinements * p.refinement + p.joint + p.finer_mesh + p.residual + p.reserve;
 }
 
 // Removes the least valuable stage; false: nothing is left to remove.
@@ -196,8 +214,7 @@ bool leave_one_out(const Costs& c, Plan& p) {
     p.residual_pixels = 0;
     p.residual = 0;
   } else if (p.effort == Effort::full) {
-    p.effort = Effort::brief;
-    p.appearance = c.brief_appearance;
+    set_effort(Effort::brief, c, p);
   } else {
     return false;
   }
@@ -219,11 +236,11 @@ void plan_start(const Preset& preset, const PlannedPixels& pixels, const Costs& 
 }
 
 Plan timed_plan(double t, const Preset& preset, const PlannedPixels& pixels, const Costs& c,
-                bool joint_wanted) {
+                const ReconstructOptions& wanted) {
   Plan p;
   plan_polish(t, preset, c, p);
   plan_appearance(t, preset, c, pixels.count, p);
-  plan_joint(t, c, preset, joint_wanted, p);
+  plan_joint(t, c, preset, wanted.joint_steps > 0, p);
   plan_residual(t, c, preset, pixels.count, p);
   p.has_finer_mesh = has_finer_meshing(preset) && c.finer_mesh <= kFinerMeshShare * t;
   p.finer_mesh = p.has_finer_mesh ? c.finer_mesh : 0;
@@ -233,6 +250,7 @@ Plan timed_plan(double t, const Preset& preset, const PlannedPixels& pixels, con
   const auto refines = [&] { return p.polish_rounds + p.refinements + p.joint_steps > 0; };
   while (rest_of(p) > t - enough && refines()) leave_one_out(c, p);
   while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
+  if (p.polish_rounds == 0 && !wanted.light) p.light_motion = std::min(c.light_motion, kLightMotionShare * t);
   p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
   plan_start(preset, pixels, c, p);
   return p;
@@ -242,7 +260,7 @@ Plan timed_plan(double t, const Preset& preset, const PlannedPixels& pixels, con
 Plan without_light(Plan p, double t, const Preset& preset, const PlannedPixels& pixels, const Costs& c) {
   p.color = ColorChoice::coupled;
   p.polish_rounds = p.refinements = p.joint_steps = 0;
-  p.look = p.polish = p.appearance = p.refinement = p.joint = 0;
+  p.light_motion = p.look = p.polish = p.appearance = p.descent = p.refinement = p.joint = 0;
   p.residual_pixels = 0;
   p.residual_steps =
       std::max(1, t > 0 ? preset.residual_steps : std::min(preset.residual_steps, p.iterations) / 2);
@@ -283,9 +301,22 @@ Plan plan_of(const ReconstructOptions& options, const Preset& given, const Plann
   if (coupled && preset.stages == StageChoice::joint)
     fail_usage("A coupled color has no light to descend on; it goes with the setting stages=all.");
   if (preset.stages == StageChoice::joint) return joint_plan(options, preset, t, costs);
-  const Plan plan =
-      timed ? timed_plan(t, preset, pixels, costs, options.joint_steps > 0) : untimed_plan(options, preset);
+  const Plan plan = timed ? timed_plan(t, preset, pixels, costs, options) : untimed_plan(options, preset);
   return coupled ? without_light(plan, t, preset, pixels, costs) : plan;
+}
+
+double affordable_descent(const Plan& p, double left) {
+  if (p.descent <= 0) return 1;
+  const double later = p.finer_mesh + kLeastResidual * p.residual + kWriting * p.reserve;
+  return std::clamp((left - later) / p.descent, kMinDescentShare, 1.0);
+}
+
+bool has_time_for_finer_mesh(const Plan& p, double left) {
+  return left >= p.finer_mesh + kLeastResidual * p.residual;
+}
+
+double seconds_of_residual(const Plan& p, double left) {
+  return std::max(left - kWriting * p.reserve, kLeastResidual * p.residual);
 }
 
 Json to_json(const Plan& p) {
@@ -293,11 +324,13 @@ Json to_json(const Plan& p) {
           {"start", p.start == Start::stereo ? "stereo" : "hull"},
           {"geometry", p.geometry},
           {"iterations", p.iterations},
+          {"light_motion", p.light_motion},
           {"polish_rounds", p.polish_rounds},
           {"look", p.look},
           {"polish", p.polish},
           {"effort", p.effort == Effort::full ? "full" : "brief"},
           {"appearance", p.appearance},
+          {"descent", p.descent},
           {"refinements", p.refinements},
           {"refinement", p.refinement},
           {"joint_steps", p.joint_steps},

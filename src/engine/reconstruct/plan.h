@@ -21,12 +21,15 @@ struct Plan {
   Start start = Start::hull;  // if none is tried
   double geometry = 0;        // s, the comparison of starts included
   int iterations = 0;         // steps of the geometry stage where `geometry` is 0
-  int polish_rounds = 0;      // of polishing
-  double look = 0;            // s that a round takes to make a mesh and estimate light and material briefly
-  double polish = 0;          // s of a polishing round's descent, at most
-  int polish_steps = 0;       // steps of a polishing round's descent, at most
+  // s of finding out on the trained surface how the light moves; 0: known, or in the time of polishing.
+  double light_motion = 0;
+  int polish_rounds = 0;  // of polishing
+  double look = 0;        // s that a round takes to make a mesh and estimate light and material briefly
+  double polish = 0;      // s of a polishing round's descent, at most
+  int polish_steps = 0;   // steps of a polishing round's descent, at most
   Effort effort = Effort::full;  // of the appearance stage
   double appearance = 0;         // s of the appearance stage
+  double descent = 0;            // s of its descent alone
   int refinements = 0;           // of the albedo, each on another random subset of the pixels
   double refinement = 0;         // s of one refinement
   int joint_steps = 0;           // of the joint descent, at most; 0: none
@@ -51,6 +54,13 @@ PlannedPixels planned_pixels(const PixelStore&);
 // Usage error: a choice of stages and of color that exclude each other.
 // rates: of this machine; not read for a run by steps.
 Plan plan_of(const ReconstructOptions&, const Preset&, const PlannedPixels&, const Rates& rates);
+
+// Share of the appearance stage's descent that there is time for. left: s of the run before it.
+double affordable_descent(const Plan&, double left);
+// Whether there is time for the finer mesh. left: s of the run before it.
+bool has_time_for_finer_mesh(const Plan&, double left);
+// Seconds of the residual images, at least half of what was planned. left: s of the run before them.
+double seconds_of_residual(const Plan&, double left);
 Json to_json(const Plan&);
 
 }  // namespace cei3d

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -28,8 +29,8 @@ Plan plan_for(const char* name, double seconds, size_t pixels, double slowness, 
 }
 
 double sum_of(const Plan& p) {
-  return p.geometry + p.polish_rounds * (p.polish + p.look) + p.appearance + p.refinements * p.refinement +
-         p.joint + p.finer_mesh + p.residual + p.reserve;
+  return p.geometry + p.light_motion + p.polish_rounds * (p.polish + p.look) + p.appearance +
+         p.refinements * p.refinement + p.joint + p.finer_mesh + p.residual + p.reserve;
 }
 
 TEST(Plan, SpendsNoMoreThanWasAskedFor) {
@@ -151,12 +152,43 @@ TEST(Plan, PolishesNoSurfaceThatWasTrainedBriefly) {
   EXPECT_GT(not_polished, 0);
 }
 
+TEST(Plan, HasTimeForTheMotionOfTheLightUnlessItIsGivenOrPolishingHasIt) {
+  EXPECT_EQ(plan_for("fast", 600, 3000000, 1).light_motion, 0);
+  ReconstructOptions options;
+  options.seconds = 60;
+  const Preset preset = preset_by_name("fast");
+  const Plan searching = plan_of(options, preset, {3000000}, kTestRates);
+  options.light = LightMotion::world;
+  const Plan given = plan_of(options, preset, {3000000}, kTestRates);
+  EXPECT_GT(searching.light_motion, 0);
+  EXPECT_EQ(given.light_motion, 0);
+  EXPECT_GT(given.geometry, searching.geometry);
+}
+
+TEST(Plan, ALateRunDescendsOnTheAppearanceAsLongAsThereIsTime) {
+  const Plan p = plan_for("fast", 600, 3000000, 1);
+  ASSERT_GT(p.descent, 0);
+  EXPECT_LT(p.descent, p.appearance);
+  EXPECT_EQ(affordable_descent(p, p.descent + p.finer_mesh + p.residual + p.reserve), 1);
+  EXPECT_EQ(affordable_descent(p, 0), affordable_descent(p, -100));
+  EXPECT_GT(affordable_descent(p, -100), 0);
+  for (double left = 0; left < 200; left += 5) {
+    const double share = affordable_descent(p, left), after = left - share * p.descent;
+    if (share == affordable_descent(p, 0)) continue;  // cannot be less
+    EXPECT_TRUE(has_time_for_finer_mesh(p, after));
+    EXPECT_LE(seconds_of_residual(p, after - p.finer_mesh), after - p.finer_mesh);
+  }
+  EXPECT_FALSE(has_time_for_finer_mesh(p, 0));
+}
+
 TEST(Plan, ByStepsKnowsNoClock) {
   ReconstructOptions options;
   options.iterations = 2000;
   const Plan p = plan_of(options, preset_by_name("balanced"), {3000000}, {});
   EXPECT_EQ(p.iterations, 2000);
   EXPECT_EQ(sum_of(p), 0);
+  EXPECT_EQ(affordable_descent(p, std::numeric_limits<double>::infinity()), 1);
+  EXPECT_TRUE(has_time_for_finer_mesh(p, std::numeric_limits<double>::infinity()));
   EXPECT_EQ(p.polish_steps, 300);
   EXPECT_GT(p.residual_pixels, 0u);
 }

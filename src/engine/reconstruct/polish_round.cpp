@@ -39,6 +39,7 @@ void estimate(const RunContext& run, RunState& state, int round) {
   brief.seed = run.seed;
   brief.light_color = run.light_color;
   brief.several_materials = state.several_materials;
+  const double motion_begin = run.progress.elapsed();
   const Turns turns = light_turns(run, state, all.surface, all.hits);
   const double fit_begin = run.progress.elapsed();
   AppearanceResult made =
@@ -55,7 +56,8 @@ void estimate(const RunContext& run, RunState& state, int round) {
   scene.albedo = std::move(made.albedo);
   state.several_materials = scene.material.varying() != nullptr;
   state.hits = std::move(all.hits);
-  state.look_seconds = run.progress.elapsed() - begin;
+  // Later rounds know how the light moves.
+  state.look_seconds = run.progress.elapsed() - begin - (fit_begin - motion_begin);
 }
 
 void forget_estimate(RunState& state) {

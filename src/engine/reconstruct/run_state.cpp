@@ -59,6 +59,7 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
           {"start_seconds", state.start_seconds},
           {"polish_deadline", state.polish_deadline},
           {"look_seconds", state.look_seconds},
+          {"descent_share", state.descent_share},
           {"descent_seconds", state.descent_seconds},
           {"light_frame_known", state.light_frame_known},
           {"several_materials", state.several_materials},
@@ -89,6 +90,7 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
   state.look_seconds = reader.require<double>("look_seconds");
   const double of_older = reader.optional("joint_seconds", 0.0);  // before polishing had it, too
   state.descent_seconds = reader.optional("descent_seconds", of_older);
+  state.descent_share = reader.optional("descent_share", 1.0);
   state.light_frame_known = reader.optional("light_frame_known", false);
   state.several_materials = reader.optional("several_materials", false);
   state.descent = {reader.optional<int64_t>("descent_step", 0), without_prefix(kDescent, tensors)};

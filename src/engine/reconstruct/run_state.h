@@ -30,6 +30,7 @@ struct RunState {
 
   // Between the stages of light and appearance: LinearSplit::albedo, #V of scene.surface; else empty.
   std::vector<Vec3f> separated_albedo;
+  double descent_share = 1;    // of the appearance stage's descent, decided when the light is known
   DescentState descent;        // of a stage that is in the middle of a descent
   double descent_seconds = 0;  // s that the descent took so far; of polishing and of the joint stage
 

@@ -154,6 +154,7 @@ void estimate_light(const RunContext& run, RunState& state, const Stage::Checkpo
   scene.light_error = relative_error(made.split.light_error);
   scene.material = made.material;
   state.separated_albedo = std::move(made.split.albedo);
+  state.descent_share = affordable_descent(run.plan, run.progress.left());
 }
 
 void estimate_appearance(const RunContext& run, RunState& state, const Stage::Checkpoint& checkpoint) {
@@ -163,6 +164,7 @@ void estimate_appearance(const RunContext& run, RunState& state, const Stage::Ch
   AppearanceResult made{scene.light, scene.material, nullptr, {}};
   AppearanceOptions options = appearance_options(run);
   options.show = shown_on(run, scene, turns.get());
+  options.descent_share = state.descent_share;
   descend_on_appearance(run.device, appearance_input(run, state, turns.get()), options,
                         state.separated_albedo, made, run.progress,
                         descent_store(run, state, nullptr, checkpoint));
@@ -237,7 +239,9 @@ void descend_on_all(const RunContext& run, RunState& state, const Stage::Checkpo
   scene = std::move(after);
 }
 
+// Skipped when the run is late.
 void make_finer_mesh(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  if (!has_time_for_finer_mesh(run.plan, run.progress.left())) return;
   state.scene.surface = extract_surface(run.device, *state.scene.sdf, run.preset.finer_meshing, run.progress);
 }
 
@@ -246,7 +250,7 @@ void make_residual_images(const RunContext& run, RunState& state, const Stage::C
   ResidualImagesOptions options;
   options.max_pixels = run.preset.max_residual_pixels;
   if (plan.residual > 0)
-    options.seconds = std::max(run.progress.left() - 0.5 * plan.reserve, 0.5 * plan.residual);
+    options.seconds = seconds_of_residual(plan, run.progress.left());
   else
     options.max_pixels = plan.residual_pixels;
   options.clock = run.progress.clock();

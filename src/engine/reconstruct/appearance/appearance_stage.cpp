@@ -112,16 +112,18 @@ void descend_on_appearance(const Device& device, const AppearanceInput& input,
   const bool brief = options.effort == Effort::brief;
   AppearanceDescent descent(device, input, transport_of(input, progress), options,
                             Field(options.albedo, options.seed + 100), vertex_albedo, result, progress);
+  const int albedo_steps = options.albedo_steps >= 0 ? options.albedo_steps
+                           : brief                   ? 300
+                                                     : 800,
+            refine_steps =
+                options.refine_steps >= 0 ? options.refine_steps : refine_steps_for(result.material, brief);
   // The strength of the light is determined only by reflections of dielectrics.
-  descent.run(
-      {.albedo = options.albedo_steps >= 0 ? options.albedo_steps
-                 : brief                   ? 300
-                                           : 800,
-       .refine = options.refine_steps >= 0 ? options.refine_steps : refine_steps_for(result.material, brief),
-       .albedo_rate = 1,
-       .refine_albedo_rate = refine_albedo_rate(result.material),
-       .keep_power = !all_metal(result.material)},
-      store);
+  descent.run({.albedo = int(std::ceil(options.descent_share * albedo_steps)),
+               .refine = int(std::ceil(options.descent_share * refine_steps)),
+               .albedo_rate = 1,
+               .refine_albedo_rate = refine_albedo_rate(result.material),
+               .keep_power = !all_metal(result.material)},
+              store);
   result.albedo = std::make_shared<const Field>(descent.take_albedo());
   progress.log(Json{{"stage", "descent"}, {"seconds", steady_seconds() - start}}.dump());
 }

@@ -32,6 +32,7 @@ struct AppearanceOptions {
   Effort effort = Effort::full;
   int albedo_steps = -1;           // steps on the albedo field under the separated light; -1: by `effort`
   int refine_steps = -1;           // steps on albedo, material and light together; -1: by `effort`
+  double descent_share = 1;        // share of these steps that there is time for
   int lobe_steps = 800;            // steps of the fit of lobes to the separated light
   int material_steps = 400;        // steps of the fit of a field to the separated materials
   float roughness = 0;             // roughness of the object where it is known; 0: searched
