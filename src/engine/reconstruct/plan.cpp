@@ -38,9 +38,9 @@ constexpr double kMinFirstPolish = 1.0 / 12, kMinSecondPolish = 1.0 / 6, kMinJoi
                  kMinTrialShare = 0.4, kMinTrialShareCutOff = 0.75;
 constexpr size_t kUntimedResidualPixels = 1000000;
 
-// Of a run that is late: minimum shares of what was planned for the appearance stage's descent and for the
-// residual images.
-constexpr double kMinDescentShare = 0.25, kLeastResidual = 0.5;
+// Of a run that is late: minimum shares of what was planned for the appearance stage's descent at full effort
+// and for the residual images. A brief descent has no step to spare.
+constexpr double kMinDescentShare = 0.4, kLeastResidual = 0.5;
 constexpr double kWriting = 0.5;  // share of the reserve that is left for writing files
 
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
@@ -306,7 +306,7 @@ Plan plan_of(const ReconstructOptions& options, const Preset& given, const Plann
 }
 
 double affordable_descent(const Plan& p, double left) {
-  if (p.descent <= 0) return 1;
+  if (p.descent <= 0 || p.effort == Effort::brief) return 1;
   const double later = p.finer_mesh + kLeastResidual * p.residual + kWriting * p.reserve;
   return std::clamp((left - later) / p.descent, kMinDescentShare, 1.0);
 }

@@ -167,6 +167,7 @@ TEST(Plan, HasTimeForTheMotionOfTheLightUnlessItIsGivenOrPolishingHasIt) {
 
 TEST(Plan, ALateRunDescendsOnTheAppearanceAsLongAsThereIsTime) {
   const Plan p = plan_for("fast", 600, 3000000, 1);
+  ASSERT_EQ(p.effort, Effort::full);
   ASSERT_GT(p.descent, 0);
   EXPECT_LT(p.descent, p.appearance);
   EXPECT_EQ(affordable_descent(p, p.descent + p.finer_mesh + p.residual + p.reserve), 1);
@@ -179,6 +180,9 @@ TEST(Plan, ALateRunDescendsOnTheAppearanceAsLongAsThereIsTime) {
     EXPECT_LE(seconds_of_residual(p, after - p.finer_mesh), after - p.finer_mesh);
   }
   EXPECT_FALSE(has_time_for_finer_mesh(p, 0));
+  const Plan brief = plan_for("fast", 60, 3000000, 1);
+  ASSERT_EQ(brief.effort, Effort::brief);
+  EXPECT_EQ(affordable_descent(brief, 0), 1);
 }
 
 TEST(Plan, ByStepsKnowsNoClock) {
