@@ -272,6 +272,13 @@ Checkpoints::State with_materials(const Checkpoints::State& state, const FieldCo
   return checkpoint_of(run.position, run.state);
 }
 
+TEST(Reconstruct, ACheckpointKeepsTheShareOfTheDescentThatThereIsTimeFor) {
+  SavedRun run = read_checkpoint(uninterrupted().checkpoints.after.at("light"), {});
+  EXPECT_EQ(run.state.descent_share, 1);
+  run.state.descent_share = 0.625;
+  EXPECT_EQ(read_checkpoint(checkpoint_of(run.position, run.state), {}).state.descent_share, 0.625);
+}
+
 TEST(Reconstruct, ATurningLightAndSeveralMaterialsAreResumedAnywhere) {
   SmallTurningRun small;
   const Reference turning(small);

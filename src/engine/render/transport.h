@@ -21,7 +21,7 @@ class Transport {
   explicit Transport(std::shared_ptr<const Surface> surface, std::vector<uint8_t> which = {},
                      const Progress& progress = Progress());
 
-  // Irradiance of every vertex from the sky that is visible from it: #V. which: as above, at most.
+  // Irradiance of every vertex from the sky that is visible from it: #V. which: as above.
   std::vector<Vec3f> sky(const SkyRadiance&, std::span<const uint8_t> which = {}) const;
   // Irradiance of every vertex without occlusion: #V. visible: sky() of the same radiance.
   std::vector<Vec3f> unoccluded_sky(const SkyRadiance&, std::vector<Vec3f> visible) const;

@@ -99,6 +99,23 @@ TEST(AppearanceStage, ExplainsThePicturesAndGivesTheSameBitsTwice) {
     EXPECT_EQ(a.albedo->params().all()[i].value, b.albedo->params().all()[i].value);
 }
 
+TEST(AppearanceStage, TakesTheShareOfItsStepsThatThereIsTimeFor) {
+  const Drawn d = draw({0.3f, 0.5f, 0});
+  AppearanceOptions o = brief(0.3f);
+  o.albedo_steps = 8;
+  o.refine_steps = 3;
+  o.lobe_steps = 1;
+  int steps = 0;
+  o.show = [&](const Lighting&, const Field&, const MaterialField&) { ++steps; };
+  Progress quiet;
+  for (const auto& [share, expected] : {std::pair{1.0, 11}, {0.5, 6}, {0.01, 2}}) {
+    steps = 0;
+    o.descent_share = share;
+    fit_appearance(make_device(), {d.surface, d.samples()}, o, quiet);
+    EXPECT_EQ(steps, expected);
+  }
+}
+
 // Where a picture clips red, green and blue still tell the light's color, and the darker stripes, which
 // mirror the same light unclipped, its strength.
 TEST(AppearanceStage, TakesClippedChannelsForLowerBounds) {
