@@ -68,6 +68,33 @@ TEST(LinearSplit, FindsAlbedoUnderALightThatTurns) {
   EXPECT_LT(albedo.error, 0.05);
 }
 
+// One of two balls is sampled, which reflects the other one.
+TEST(LinearSplit, SamplesOfAllPatchesAreAllSamples) {
+  Drawn d = draw(
+      [](Vec3f) {
+        return Material{0.3f, 0.5f, 0};
+      },
+      paint, LightMotion::turntable, two_bumpy_balls());
+  size_t n = 0;
+  for (size_t i = 0; i < d.hits.size(); ++i) {
+    if (d.hits[i].position.x < 0) continue;
+    d.hits[n] = d.hits[i], d.colors[n] = d.colors[i], d.views[n] = d.views[i];
+    ++n;
+  }
+  d.hits.resize(n), d.colors.resize(n), d.views.resize(n);
+  const auto turns = turns_of(light_frame(LightMotion::turntable, d.cameras, {0, 0, 1}), d.cameras);
+  SurfaceSamples samples = d.samples();
+  samples.turned = {turns.get(), d.views};
+  LinearSplitOptions o = small();
+  o.max_hits = int(n);
+  o.hold_out = 5;
+  Progress quiet;
+  const std::vector<double> all = held_out_residuals(*d.transport, samples, o, 0.3f, false, quiet);
+  o.in_patches = true;
+  EXPECT_GT(all.size(), 2u);
+  EXPECT_EQ(held_out_residuals(*d.transport, samples, o, 0.3f, false, quiet), all);
+}
+
 // What one photograph has that the others do not, no light explains; it must not decide.
 TEST(LinearSplit, ADarkPhotographDoesNotHideThatTheLightTurns) {
   constexpr uint16_t kDark = 10;  // one of every fifth view, which judge
