@@ -46,7 +46,7 @@ constexpr double kWriting = 0.5;  // share of the reserve that is left for writi
 // The appearance stage sees Preset::max_hits of the training pixels, and each refinement of the albedo
 // another subset. Refinements begin above the first ratio of pixels to max_hits, with one for each further
 // multiple of the second.
-constexpr double kSubsetsToRefine = 4, kSubsetsOfRefinement = 2.4;
+constexpr double kSubsetsToRefine = 4, kSubsetsOfRefinement = 1.2;
 
 // Maximum shares of the whole time.
 constexpr double kPolishShare = 0.1;        // a round's descent

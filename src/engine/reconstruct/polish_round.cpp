@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kFullEffort = 2;  // the appearance stage at full effort, in times of a brief estimate
 constexpr double kMaxLent = 0.5;   // of what polishing has left
+constexpr double kMinPolishShare = 1.0 / 6;  // of a descent's planned time
 
 // Sets the end of all rounds in the first.
 bool has_time(const RunContext& run, RunState& state, int round) {
@@ -23,8 +24,8 @@ bool has_time(const RunContext& run, RunState& state, int round) {
     state.look_seconds = plan.look;
     return true;
   }
-  return plan.polish <= 0 ||
-         state.polish_deadline - now >= state.look_seconds + kMinPolishShare * plan.polish;
+  const double look = state.look_seconds;
+  return plan.polish <= 0 || worth_a_look(state.polish_deadline - now - look, look, plan.polish);
 }
 
 // Estimates light and material of the present surface. Until the round ends the scene holds them and the
@@ -102,11 +103,15 @@ double seconds_lent(const Plan& plan, double brief_seconds, double left) {
   return std::clamp(needed - plan.appearance, 0.0, std::max(0.0, kMaxLent * left));
 }
 
+bool worth_a_look(double seconds, double look, double planned) {
+  return seconds >= std::max(look, kMinPolishShare * planned);
+}
+
 double descent_seconds(double left, int rounds, double look, double planned) {
   const auto of_each = [&](int n) { return (left - (n - 1) * look) / n; };
   int kept = rounds;
-  while (kept > 1 && of_each(kept) < kMinPolishShare * planned) --kept;
-  return std::min(of_each(kept), planned * rounds / kept);
+  while (kept > 1 && !worth_a_look(of_each(kept), look, planned)) --kept;
+  return std::min(of_each(kept), planned);
 }
 
 void polish(const RunContext& run, RunState& state, int round, const Stage::Checkpoint& checkpoint) {

@@ -7,11 +7,12 @@
 
 namespace cei3d {
 
-// Minimum share of a descent's planned time; less is not worth another estimate of light and material.
-inline constexpr double kMinPolishShare = 1.0 / 6;
-// Seconds of a round's descent. left: for it and all rounds after it, each of which begins with an estimate
-// of `look` seconds. planned: for each descent. Rounds that would get less than the minimum share of that are
-// left out, the last ones first, and leave their time to the others.
+// Whether a descent of so many seconds is worth another estimate of light and material, which takes `look`
+// seconds. planned: for each descent.
+bool worth_a_look(double seconds, double look, double planned);
+// Seconds of a round's descent, at most as many as planned. left: for it and all rounds after it, each of
+// which begins with an estimate of `look` seconds. Rounds that are not worth their look are left out, the
+// last ones first; what the others do not need of their time is left to later stages.
 double descent_seconds(double left, int rounds, double look, double planned);
 
 // Seconds that polishing leaves the stages of light and appearance, which need more than planned where there

@@ -12,16 +12,30 @@ TEST(PolishRound, RoundsShareWhatTheirEstimatesLeave) {
   EXPECT_DOUBLE_EQ(descent_seconds(200 - first - 40, 1, 40, 90), 80);  // after the second estimate
 }
 
-TEST(PolishRound, ARoundThatWouldBeTooShortLeavesItsTimeToThoseBefore) {
-  EXPECT_DOUBLE_EQ(descent_seconds(150, 2, 131, 90), 150);
-  EXPECT_DOUBLE_EQ(descent_seconds(150, 2, 120, 90), 15);
-  EXPECT_DOUBLE_EQ(descent_seconds(150, 3, 131, 90), 150);
+// Its descent would be shorter than the estimate before it, or hardly a descent.
+TEST(PolishRound, ARoundThatIsNotWorthItsEstimateLeavesItsTimeToThoseBefore) {
+  EXPECT_DOUBLE_EQ(descent_seconds(80, 2, 26, 90), 27);
+  EXPECT_DOUBLE_EQ(descent_seconds(80, 2, 28, 90), 80);
+  EXPECT_DOUBLE_EQ(descent_seconds(80, 3, 28, 90), 80);
+  EXPECT_DOUBLE_EQ(descent_seconds(29, 2, 1, 90), 29);
+  EXPECT_DOUBLE_EQ(descent_seconds(32, 2, 1, 90), 15.5);
 }
 
-// What the plan has for later stages stays theirs.
+// What the plan has for later stages stays theirs, and they get what a round leaves that is left out.
 TEST(PolishRound, NoneTakesMoreThanWhatWasPlanned) {
   EXPECT_DOUBLE_EQ(descent_seconds(250, 2, 10, 90), 90);
-  EXPECT_DOUBLE_EQ(descent_seconds(250, 2, 240, 90), 180);
+  EXPECT_DOUBLE_EQ(descent_seconds(250, 2, 90, 90), 90);
+}
+
+// The second round decides as the first did for it.
+TEST(PolishRound, WhatIsLeftAfterARoundIsWorthALookIfTheRoundSaidSo) {
+  for (const double look : {1.0, 20.0, 60.0, 100.0})
+    for (double left = 5; left < 300; left += 7) {
+      const double first = descent_seconds(left, 2, look, 90), rest = left - first - look;
+      if (first < std::min(left, 90.0)) {
+        EXPECT_TRUE(worth_a_look(rest, look, 90)) << left << " " << look;
+      }
+    }
 }
 
 TEST(PolishRound, LeavesLightAndAppearanceWhatABriefEstimateSaysThatTheyNeed) {
