@@ -47,6 +47,10 @@ constexpr double kWriting = 0.5;  // share of the reserve that is left for writi
 // another subset. Refinements begin above the first ratio of pixels to max_hits, with one for each further
 // multiple of the second.
 constexpr double kSubsetsToRefine = 4, kSubsetsOfRefinement = 1.2;
+// Refinements for which there may be time left, from this ratio on: in fewer pixels there are no others to
+// see.
+constexpr double kSubsetsToSpare = 2;
+constexpr int kSpareRefinements = 4;
 
 // Maximum shares of the whole time.
 constexpr double kPolishShare = 0.1;        // a round's descent
@@ -176,6 +180,7 @@ void plan_appearance(double t, const Preset& preset, const Costs& c, size_t pixe
                wanted = (subsets - kSubsetsToRefine) / kSubsetsOfRefinement,
                affordable = kRefinementsShare * t / c.refinement;
   p.refinements = std::max(0, int(std::min(wanted, affordable)));
+  p.spare_refinements = subsets >= kSubsetsToSpare ? kSpareRefinements : 0;
 }
 
 // wanted: by the user, however few steps there is time for.
@@ -259,7 +264,7 @@ Plan timed_plan(double t, const Preset& preset, const PlannedPixels& pixels, con
 // A plan without light and material; t: 0: by steps.
 Plan without_light(Plan p, double t, const Preset& preset, const PlannedPixels& pixels, const Costs& c) {
   p.color = ColorChoice::coupled;
-  p.polish_rounds = p.refinements = p.joint_steps = 0;
+  p.polish_rounds = p.refinements = p.spare_refinements = p.joint_steps = 0;
   p.light_motion = p.look = p.polish = p.appearance = p.descent = p.refinement = p.joint = 0;
   p.residual_pixels = 0;
   p.residual_steps =
@@ -332,6 +337,7 @@ Json to_json(const Plan& p) {
           {"appearance", p.appearance},
           {"descent", p.descent},
           {"refinements", p.refinements},
+          {"spare_refinements", p.spare_refinements},
           {"refinement", p.refinement},
           {"joint_steps", p.joint_steps},
           {"joint", p.joint},

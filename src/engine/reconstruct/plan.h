@@ -31,6 +31,7 @@ struct Plan {
   double appearance = 0;         // s of the appearance stage
   double descent = 0;            // s of its descent alone
   int refinements = 0;           // of the albedo, each on another random subset of the pixels
+  int spare_refinements = 0;     // further ones, for which no time is planned: if there is some left
   double refinement = 0;         // s of one refinement
   int joint_steps = 0;           // of the joint descent, at most; 0: none
   double joint = 0;              // s of the joint descent, with the judgment of its result

@@ -197,6 +197,16 @@ TEST(Plan, ByStepsKnowsNoClock) {
   EXPECT_GT(p.residual_pixels, 0u);
 }
 
+// A refinement sees other pixels than the stage before it, if there are any.
+TEST(Plan, SparesTimeForRefinementsOfManyPixelsOnly) {
+  const size_t seen = preset_by_name("fast").max_hits;
+  for (const double seconds : {60.0, 900.0}) {
+    EXPECT_EQ(plan_for("fast", seconds, seen, 1).spare_refinements, 0);
+    EXPECT_GT(plan_for("fast", seconds, 3 * seen, 1).spare_refinements, 0);
+  }
+  EXPECT_EQ(plan_of({}, preset_by_name("fast"), {3 * seen}, kTestRates).spare_refinements, 0);
+}
+
 TEST(Plan, OfACoupledColorHasNoLight) {
   Preset preset = preset_by_name("fast");
   preset.color = ColorChoice::coupled;
@@ -206,7 +216,7 @@ TEST(Plan, OfACoupledColorHasNoLight) {
     options.seconds = seconds;
     const Plan p = plan_of(options, preset, {3000000}, kTestRates);
     EXPECT_EQ(p.color, ColorChoice::coupled);
-    EXPECT_EQ(p.polish_rounds + p.refinements + p.joint_steps, 0);
+    EXPECT_EQ(p.polish_rounds + p.refinements + p.spare_refinements + p.joint_steps, 0);
     EXPECT_EQ(p.appearance, 0);
     EXPECT_EQ(p.residual_pixels, 0u);
     EXPECT_GT(p.residual_steps, 0);

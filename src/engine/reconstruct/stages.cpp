@@ -125,9 +125,11 @@ AppearanceOptions appearance_options(const RunContext& run) {
   return options;
 }
 
-// What the stages of light and appearance see; computed again where a run is resumed between them.
-AppearanceInput appearance_input(const RunContext& run, RunState& state, const LightTurns* turns) {
-  AppearanceInput input{state.scene.surface, state.hits.samples(turns), state.transport};
+// What the stages of light, appearance and albedo see, which share the transport; it is computed again where
+// a run is resumed between them.
+AppearanceInput appearance_input(const RunContext& run, RunState& state, const ObjectHits& hits,
+                                 const LightTurns* turns) {
+  AppearanceInput input{state.scene.surface, hits.samples(turns), state.transport};
   state.transport = input.transport = transport_of(input, run.progress);
   return input;
 }
@@ -147,8 +149,8 @@ void estimate_light(const RunContext& run, RunState& state, const Stage::Checkpo
   const Turns turns = light_turns(run, state, scene.surface, state.hits);
   AppearanceOptions options = appearance_options(run);
   options.several_materials = state.several_materials;
-  AppearanceResult made =
-      separate_light(run.device, appearance_input(run, state, turns.get()), options, run.progress);
+  AppearanceResult made = separate_light(run.device, appearance_input(run, state, state.hits, turns.get()),
+                                         options, run.progress);
   check_cancelled(run.progress);
   scene.light = std::move(made.light);
   scene.light_error = relative_error(made.split.light_error);
@@ -165,13 +167,12 @@ void estimate_appearance(const RunContext& run, RunState& state, const Stage::Ch
   AppearanceOptions options = appearance_options(run);
   options.show = shown_on(run, scene, turns.get());
   options.descent_share = state.descent_share;
-  descend_on_appearance(run.device, appearance_input(run, state, turns.get()), options,
+  descend_on_appearance(run.device, appearance_input(run, state, state.hits, turns.get()), options,
                         state.separated_albedo, made, run.progress,
                         descent_store(run, state, nullptr, checkpoint));
   check_cancelled(run.progress);
   state.descent = {};
   state.hits = {};
-  state.transport = nullptr;
   state.separated_albedo.clear();
   scene.light = std::move(made.light);
   scene.material = made.material;
@@ -181,14 +182,14 @@ void estimate_appearance(const RunContext& run, RunState& state, const Stage::Ch
 // Skipped when time is short.
 void refine(const RunContext& run, RunState& state, uint64_t subset) {
   const Plan& plan = run.plan;
-  if (run.progress.left() < plan.refinement + plan.finer_mesh + plan.residual) return;
+  if (run.progress.left() < plan.refinement + plan.joint + plan.finer_mesh + plan.residual) return;
   Scene& scene = state.scene;
   const ObjectHits hits = scene_hits(run, scene, {run.preset.max_hits, subset});
   AppearanceResult result{scene.light, scene.material, scene.albedo, {}};
   const Turns turns = light_turns(run, state, scene.surface, hits);
   AppearanceOptions options = appearance_options(run);
   options.show = shown_on(run, scene, turns.get());
-  refine_albedo(run.device, {scene.surface, hits.samples(turns.get())}, options, result, run.progress,
+  refine_albedo(run.device, appearance_input(run, state, hits, turns.get()), options, result, run.progress,
                 run.preset.refinement_steps);
   check_cancelled(run.progress);
   scene.albedo = std::move(result.albedo);
@@ -241,11 +242,13 @@ void descend_on_all(const RunContext& run, RunState& state, const Stage::Checkpo
 
 // Skipped when the run is late.
 void make_finer_mesh(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  state.transport = nullptr;  // of the coarser one; no later stage needs it
   if (!has_time_for_finer_mesh(run.plan, run.progress.left())) return;
   state.scene.surface = extract_surface(run.device, *state.scene.sdf, run.preset.finer_meshing, run.progress);
 }
 
 void make_residual_images(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
+  state.transport = nullptr;
   const Plan& plan = run.plan;
   ResidualImagesOptions options;
   options.max_pixels = run.preset.max_residual_pixels;
@@ -312,8 +315,8 @@ std::vector<Stage> stages_of(const Plan& plan) {
   }
   stages.push_back({"light", kLightShare * budget.appearance, estimate_light});
   stages.push_back({"appearance", (1 - kLightShare) * budget.appearance, estimate_appearance});
-  for (int k = 1; k <= plan.refinements; ++k)
-    stages.push_back({fmt::format("albedo {}", k), budget.refinement,
+  for (int k = 1; k <= plan.refinements + plan.spare_refinements; ++k)
+    stages.push_back({fmt::format("albedo {}", k), k <= plan.refinements ? budget.refinement : 0,
                       [k](const RunContext& run, RunState& state, const Stage::Checkpoint&) {
                         refine(run, state, uint64_t(k));
                       }});
