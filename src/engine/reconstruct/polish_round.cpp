@@ -104,7 +104,7 @@ double seconds_lent(const Plan& plan, double brief_seconds, double left) {
 }
 
 bool worth_a_look(double seconds, double look, double planned) {
-  return seconds >= std::max(look, kMinPolishShare * planned);
+  return seconds >= std::clamp(look, kMinPolishShare * planned, planned);
 }
 
 double descent_seconds(double left, int rounds, double look, double planned) {

@@ -7,8 +7,8 @@
 
 namespace cei3d {
 
-// Whether a descent of so many seconds is worth another estimate of light and material, which takes `look`
-// seconds. planned: for each descent.
+// Whether a descent of so many seconds is worth another estimate of light and material: it is as long as
+// planned, or at least as long as the estimate, which takes `look` seconds.
 bool worth_a_look(double seconds, double look, double planned);
 // Seconds of a round's descent, at most as many as planned. left: for it and all rounds after it, each of
 // which begins with an estimate of `look` seconds. Rounds that are not worth their look are left out, the

@@ -27,14 +27,19 @@ TEST(PolishRound, NoneTakesMoreThanWhatWasPlanned) {
   EXPECT_DOUBLE_EQ(descent_seconds(250, 2, 90, 90), 90);
 }
 
-// The second round decides as the first did for it.
-TEST(PolishRound, WhatIsLeftAfterARoundIsWorthALookIfTheRoundSaidSo) {
+// An estimate that takes longer than a whole descent does not forbid one.
+TEST(PolishRound, AWholeDescentIsWorthALook) {
+  EXPECT_TRUE(worth_a_look(90, 140, 90));
+  EXPECT_FALSE(worth_a_look(89, 140, 90));
+}
+
+// What is left after a round is worth the look of a second one exactly where the first counted on it.
+TEST(PolishRound, TheSecondRoundDecidesAsTheFirstDid) {
   for (const double look : {1.0, 20.0, 60.0, 100.0})
-    for (double left = 5; left < 300; left += 7) {
-      const double first = descent_seconds(left, 2, look, 90), rest = left - first - look;
-      if (first < std::min(left, 90.0)) {
-        EXPECT_TRUE(worth_a_look(rest, look, 90)) << left << " " << look;
-      }
+    for (double left = 5; left < 400; left += 7) {
+      const double rest = left - descent_seconds(left, 2, look, 90) - look;
+      EXPECT_EQ(worth_a_look(rest, look, 90), worth_a_look((left - look) / 2, look, 90))
+          << left << " " << look;
     }
 }
 
