@@ -37,7 +37,7 @@ namespace cei3d {
 
 // 1: one result per edit. 2: one result per state that the edit depends on. 3: the correction network has
 // features of its own. 4: materials may vary over the surface. 5: displaced edits are set aside. 6: residual
-// images.
+// images, rings of a turntable.
 inline constexpr int kProjectVersion = 6;
 
 struct ProjectHead {

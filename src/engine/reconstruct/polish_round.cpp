@@ -2,11 +2,14 @@
 #include "engine/reconstruct/polish_round.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/base/cancel.h"
 #include "core/base/json.h"
+#include "engine/reconstruct/appearance/shaded_samples.h"
 #include "engine/reconstruct/appearance/surface_polish.h"
 #include "engine/reconstruct/stage_inputs.h"
+#include "engine/reconstruct/view_brightness.h"
 
 namespace cei3d {
 namespace {
@@ -14,6 +17,10 @@ namespace {
 constexpr double kFullEffort = 2;  // the appearance stage at full effort, in times of a brief estimate
 constexpr double kMaxLent = 0.5;   // of what polishing has left
 constexpr double kMinPolishShare = 1.0 / 6;  // of a descent's planned time
+constexpr size_t kCompared = 300000;         // hits, about, by which photographs are compared
+// Spread of the photographs' brightness that counts. Where exposures are equal it is .03 at most, for a
+// metal.
+constexpr double kMinBrightness = 0.05;
 
 // Sets the end of all rounds in the first.
 bool has_time(const RunContext& run, RunState& state, int round) {
@@ -26,6 +33,41 @@ bool has_time(const RunContext& run, RunState& state, int round) {
   }
   const double look = state.look_seconds;
   return plan.polish <= 0 || worth_a_look(state.polish_deadline - now - look, look, plan.polish);
+}
+
+// Every n-th hit with what light and material make of it.
+std::vector<ComparedSample> compared(const RunContext& run, const RunState& state, const LightTurns* turns,
+                                     const Transport& transport) {
+  ObjectHits some;
+  const ObjectHits& all = state.hits;
+  for (size_t i = 0; i < all.hits.size(); i += std::max<size_t>(1, all.hits.size() / kCompared)) {
+    some.hits.push_back(all.hits[i]);
+    some.colors.push_back(all.colors[i]);
+    some.views.push_back(all.views[i]);
+    some.footprints.push_back(all.footprints[i]);
+  }
+  const SampleShader shader(run.device, state.scene, turns, run.progress, &transport);
+  const std::vector<Vec3f> radiance = shader.radiance(some.samples(turns), run.progress);
+  std::vector<ComparedSample> out;
+  for (size_t i = 0; i < radiance.size(); ++i)
+    out.push_back({some.hits[i].position, some.views[i], some.colors[i], radiance[i]});
+  return out;
+}
+
+// What the radiance network has learned with the colors, so that it could not tell it.
+void fit_brightness(const RunContext& run, RunState& state, const LightTurns* turns,
+                    const Transport& transport) {
+  const size_t views = run.views.train.cameras().size();
+  const std::vector<float> factors = view_brightness(compared(run, state, turns, transport), views);
+  double squares = 0;
+  for (const float f : factors) squares += square(std::log(double(f)));
+  const double spread = std::sqrt(squares / double(views));
+  run.progress.log(Json{{"stage", "brightness of views"}, {"spread", spread}}.dump());
+  if (spread < kMinBrightness) return;
+  state.brightness.resize(views, 1);
+  for (size_t v = 0; v < views; ++v) state.brightness[v] *= factors[v];
+  run.views.train.set_exposures(exposures_of(state));
+  state.hits = {};  // have the colors of before
 }
 
 // Estimates light and material of the present surface. Until the round ends the scene holds them and the
@@ -43,8 +85,9 @@ void estimate(const RunContext& run, RunState& state, int round) {
   const double motion_begin = run.progress.elapsed();
   const Turns turns = light_turns(run, state, all.surface, all.hits);
   const double fit_begin = run.progress.elapsed();
-  AppearanceResult made =
-      fit_appearance(run.device, {all.surface, all.hits.samples(turns.get())}, brief, run.progress);
+  AppearanceInput input{all.surface, all.hits.samples(turns.get())};
+  input.transport = transport_of(input, run.progress);
+  AppearanceResult made = fit_appearance(run.device, input, brief, run.progress);
   check_cancelled(run.progress);
   const double now = run.progress.elapsed();
   if (round == 0)
@@ -57,6 +100,7 @@ void estimate(const RunContext& run, RunState& state, int round) {
   scene.albedo = std::move(made.albedo);
   state.several_materials = scene.material.varying() != nullptr;
   state.hits = std::move(all.hits);
+  if (run.fit_exposures) fit_brightness(run, state, turns.get(), *input.transport);
   // Later rounds know how the light moves.
   state.look_seconds = run.progress.elapsed() - begin - (fit_begin - motion_begin);
 }

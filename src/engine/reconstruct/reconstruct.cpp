@@ -65,9 +65,7 @@ Scene reconstruct(const ReconstructInputs& in, Checkpoints& checkpoints, Progres
                            .live = live};
   RunState state = saved ? std::move(saved->state) : RunState();
   if (!state.scene.refined.poses.empty()) views.set_cameras(state.scene.refined, in.normalization);
-  std::vector<Vec3f> exposures;
-  for (const ViewExposure& e : state.scene.exposures) exposures.push_back(e.factors);
-  views.train.set_exposures(std::move(exposures));
+  views.train.set_exposures(exposures_of(state));
   state.scene.normalization = in.normalization;
   state.scene.up = in.capture.up;
   StageRunner(context, rates, checkpoints)

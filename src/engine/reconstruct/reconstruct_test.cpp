@@ -316,6 +316,32 @@ TEST(Reconstruct, ExposuresAreFittedKeptAndResumed) {
   EXPECT_TRUE(given.run(checkpoints, progress).exposures.empty());
 }
 
+// A run whose geometry stage does not look for exposures. Where each place is in three or four photographs
+// only, its albedo and the light take up half of what these differ by.
+TEST(Reconstruct, PolishingFindsTheBrightnessOfPhotographs) {
+  const ExposedCapture box(12, 64);
+  AnyRun run(box.capture(), box);
+  run.preset.exposures_from_steps = 1000000;
+  run.preset.max_hits = 20000;
+  const Reference reference(run);
+  EXPECT_FALSE(reference.scene.head.contains("exposures"));
+  const Tensors& polished = reference.checkpoints.after.at("polish 2").tensors;
+  ASSERT_TRUE(polished.contains("brightness"));
+  const std::vector<float> found = polished.at("brightness").f32;
+  double bright = 0, dark = 0;  // logarithms
+  size_t i = 0;
+  for (const View& view : box.capture().views) {
+    if (view.split != Split::train) continue;
+    (ExposedCapture::factor(view.name) > 1 ? bright : dark) += std::log(found.at(i++)) / 5;
+  }
+  EXPECT_EQ(i, found.size());
+  EXPECT_GT(bright - dark, 0.4 * std::log(1.3 / 0.6));
+  EXPECT_LT(bright - dark, 1.1 * std::log(1.3 / 0.6));
+  const auto& stages = reference.progress.stages;
+  const auto light = size_t(std::find(stages.begin(), stages.end(), "light") - stages.begin());
+  expect_same_after(run, reference, light, 1, How::kill);
+}
+
 // A run of the joint descent alone.
 void expect_resumed_anywhere(AnyRun& small, const std::vector<std::string>& expected) {
   const Reference reference(small);

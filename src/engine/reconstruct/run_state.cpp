@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/reconstruct/run_state.h"
 
+#include <algorithm>
+
 #include "core/base/error.h"
 #include "core/base/json_reader.h"
 #include "model/geometry/shape/vec_tensors.h"
@@ -11,7 +13,7 @@ namespace {
 
 constexpr int kVersion = 2;  // version 1: the geometry stage alone, its tensors without a prefix
 const std::string kGeometry = "geometry/", kScene = "scene/", kDescent = "descent/",
-                  kSeparatedAlbedo = "separated_albedo";
+                  kSeparatedAlbedo = "separated_albedo", kBrightness = "brightness";
 
 void add_prefixed(const std::string& prefix, Tensors from, Tensors& to) {
   for (auto& [name, tensor] : from) to[prefix + name] = std::move(tensor);
@@ -53,6 +55,15 @@ SavedRun read_version_2(const Checkpoints::State& saved, const MakeGeometry& mak
 
 }  // namespace
 
+std::vector<Vec3f> exposures_of(const RunState& state) {
+  std::vector<Vec3f> out;
+  for (const ViewExposure& e : state.scene.exposures) out.push_back(e.factors);
+  if (out.empty()) out.assign(state.brightness.size(), {1, 1, 1});
+  for (size_t v = 0; v < std::min(out.size(), state.brightness.size()); ++v)
+    out[v] = out[v] * state.brightness[v];
+  return out;
+}
+
 void save_state(const RunState& state, Tensors& tensors, Json& head) {
   head = {{"step", state.step},
           {"training_seconds", state.training_seconds},
@@ -76,6 +87,8 @@ void save_state(const RunState& state, Tensors& tensors, Json& head) {
   add_prefixed(kScene, std::move(scene), tensors);
   head["scene"] = std::move(scene_head);
   if (!state.separated_albedo.empty()) tensors[kSeparatedAlbedo] = tensor_of(state.separated_albedo);
+  if (!state.brightness.empty())
+    tensors[kBrightness] = {{int64_t(state.brightness.size())}, state.brightness, {}};
   head["descent_step"] = state.descent.step;
   add_prefixed(kDescent, state.descent.tensors, tensors);
 }
@@ -104,6 +117,7 @@ RunState load_state(const Tensors& tensors, const Json& head, const MakeGeometry
     state.separated_albedo =
         vectors_from(tensors, kSeparatedAlbedo, int64_t(state.scene.surface->mesh().positions.size()));
   }
+  if (tensors.contains(kBrightness)) state.brightness = require_tensor(tensors, kBrightness).f32;
   if (has_geometry) {
     state.geometry = make_geometry();
     state.geometry->load(without_prefix(kGeometry, tensors));

@@ -25,6 +25,9 @@ struct RunState {
   bool light_frame_known = false;  // whether scene.light_frame is final
   bool several_materials = false;  // whether the last estimate found several
   int alignments = 0;              // of the poses that are done in the geometry stage
+  // By how much the training photographs are brighter than light and material explain, beyond their exposures
+  // (view_brightness.h); empty: not at all.
+  std::vector<float> brightness;
   // The finished parts of the object; in the middle of a round of polishing what it estimates, instead.
   Scene scene;
 
@@ -38,6 +41,10 @@ struct RunState {
   ObjectHits hits;
   std::shared_ptr<const Transport> transport;
 };
+
+// By which colors of the training pixels are divided (PixelStore::set_exposures): the photographs' exposures
+// and their brightness.
+std::vector<Vec3f> exposures_of(const RunState&);
 
 using MakeGeometry = std::function<std::unique_ptr<GeometryStage>()>;
 

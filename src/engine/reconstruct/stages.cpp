@@ -247,8 +247,11 @@ void make_finer_mesh(const RunContext& run, RunState& state, const Stage::Checkp
   state.scene.surface = extract_surface(run.device, *state.scene.sdf, run.preset.finer_meshing, run.progress);
 }
 
+// Of the photographs as bright as they are: views between them are as bright as those around.
 void make_residual_images(const RunContext& run, RunState& state, const Stage::Checkpoint&) {
   state.transport = nullptr;
+  state.brightness.clear();
+  run.views.train.set_exposures(exposures_of(state));
   const Plan& plan = run.plan;
   ResidualImagesOptions options;
   options.max_pixels = run.preset.max_residual_pixels;

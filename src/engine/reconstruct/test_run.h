@@ -60,11 +60,12 @@ class BoxCapture : public DrawnCapture {
 // The box in photographs that are brighter and darker in turn.
 class ExposedCapture : public BoxCapture {
  public:
+  using BoxCapture::BoxCapture;
+  static float factor(const std::string& view) { return std::stoi(view) % 2 ? 0.6f : 1.3f; }
   Image load(const View& view) const override {
     Image image = BoxCapture::load(view);
-    const float factor = std::stoi(view.name) % 2 ? 0.6f : 1.3f;
     for (size_t i = 0; i < image.data.size(); ++i)
-      if (i % 4 < 3) image.data[i] *= factor;
+      if (i % 4 < 3) image.data[i] *= factor(view.name);
     return image;
   }
 };

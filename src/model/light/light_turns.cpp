@@ -18,6 +18,9 @@ float angle_between(const Mat3f& a, const Mat3f& b) {
   return std::acos(clamp((trace - 1) / 2, -1.0f, 1.0f));
 }
 
+// Right, down and forward, in the frame of the object.
+Mat3f axes_of(const Mat3f& world_from_cam) { return transpose(world_from_cam); }
+
 }  // namespace
 
 const char* light_motion_name(LightMotion motion) { return kNames[size_t(motion)]; }
@@ -28,9 +31,28 @@ std::optional<LightMotion> light_motion_named(const std::string& name) {
   return LightMotion(at - kNames.begin());
 }
 
+float CameraRing::tilt(const Mat3f& world_from_cam) const {
+  const Mat3f seen = axes_of(world_from_cam);
+  const auto angle = [](float cosine) { return std::asin(clamp(cosine, -1.0f, 1.0f)); };
+  return std::hypot(angle(dot(seen.row[2], axis)) - angle(forward),
+                    angle(dot(seen.row[0], axis)) - angle(right));
+}
+
+// To axes that stand still while the object turns: towards the camera, aside, and up.
+Mat3f LightFrame::table_from_object(const Mat3f& world_from_cam) const {
+  const Vec3f up =
+      std::min_element(rings.begin(), rings.end(), [&](const CameraRing& a, const CameraRing& b) {
+        return a.tilt(world_from_cam) < b.tilt(world_from_cam);
+      })->axis;
+  const Vec3f back = -axes_of(world_from_cam).row[2], towards = normalize(back - up * dot(back, up));
+  return {{towards, cross(up, towards), up}};
+}
+
 Mat3f LightFrame::room_from_object(const Mat3d& world_from_cam) const {
   const Mat3f camera = to_float(world_from_cam);
   if (motion == LightMotion::camera) return reference * transpose(camera);
+  if (motion == LightMotion::turntable && !rings.empty())
+    return transpose(table_from_object(reference)) * table_from_object(camera);
   if (motion == LightMotion::turntable)
     return about_axis(axis, -angle_about(axis, camera * transpose(reference)));
   return Mat3f::identity();

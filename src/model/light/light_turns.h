@@ -18,10 +18,19 @@ namespace cei3d {
 enum class LightMotion {
   world,     // stands still against the object
   camera,    // is fixed to the camera: a flash, or a turntable before a camera that never moved
-  turntable  // goes round an axis with the camera's azimuth
+  turntable  // goes round an axis, or the axes of several rings, with the camera's azimuth
 };
 const char* light_motion_name(LightMotion);
 std::optional<LightMotion> light_motion_named(const std::string&);
+
+// Photographs between which only the object turned, about one axis, before a camera that stood still.
+struct CameraRing {
+  Vec3f axis{0, 0, 1};           // unit, capture frame; points up in the photographs
+  float forward = 0, right = 0;  // cosines between the axis and the camera's view direction, and its right
+
+  // How far, in radians, a camera is tilted against that of the ring.
+  float tilt(const Mat3f& world_from_cam) const;
+};
 
 // The frame of the light, "room" in names, in which a turning light stands still: that of the object in one
 // of its photographs.
@@ -29,10 +38,16 @@ struct LightFrame {
   LightMotion motion = LightMotion::world;
   Vec3f axis{0, 0, 1};                  // of the turntable; unit, capture frame
   Mat3f reference = Mat3f::identity();  // rotation of that photograph's camera, world_from_cam
+  // Of a turntable on which the object lay in several ways, or before which the camera was moved up or down;
+  // a camera is of the ring with the smallest tilt. Empty: all views are about the axis.
+  std::vector<CameraRing> rings = {};
 
   // The rotation of the light in the view of a camera with this rotation: it takes a direction of the object
   // to the direction in the reference photograph from which the same light comes.
   Mat3f room_from_object(const Mat3d& world_from_cam) const;
+
+ private:
+  Mat3f table_from_object(const Mat3f& world_from_cam) const;
 };
 
 // The rotations of a turning light in the views of a capture.

@@ -108,6 +108,16 @@ void save_light_frame(const LightFrame& frame, Json& head) {
   head["light_frame"] = {{"motion", light_motion_name(frame.motion)},
                          {"axis", vector_json(frame.axis)},
                          {"reference", reference}};
+  for (const CameraRing& ring : frame.rings)
+    head["light_frame"]["rings"].push_back(
+        {{"axis", vector_json(ring.axis)}, {"forward", ring.forward}, {"right", ring.right}});
+}
+
+CameraRing load_ring(JsonReader reader) {
+  CameraRing ring{to_float(vector_from(reader, "axis")), reader.require<float>("forward"),
+                  reader.require<float>("right")};
+  reader.finish();
+  return ring;
 }
 
 LightFrame load_light_frame(JsonReader& head) {
@@ -118,6 +128,9 @@ LightFrame load_light_frame(JsonReader& head) {
   const std::array<double, 9> rows = reader.numbers<9>("reference");  // row by row
   for (size_t i = 0; i < 3; ++i)
     frame.reference.row[i] = {float(rows[3 * i]), float(rows[3 * i + 1]), float(rows[3 * i + 2])};
+  if (reader.has("rings"))
+    for (const Json& j : reader.member("rings"))
+      frame.rings.push_back(load_ring(JsonReader(j, reader.what() + ": a ring")));
   reader.finish();
   return frame;
 }

@@ -45,6 +45,21 @@ TEST(SceneLightFrame, IsStored) {
   EXPECT_THROW(load_scene(tensors, head), Error);
 }
 
+TEST(SceneLightFrame, IsStoredWithItsRings) {
+  Scene scene = on_a_turntable();
+  scene.light_frame.rings = {{{0, 0, 1}, -0.6f, 0.02f}, {normalize(Vec3f{0, 1, 0.2f}), -0.4f, 0}};
+  Tensors tensors;
+  Json head;
+  save_scene(scene, tensors, head);
+  const Scene back = load_scene(tensors, head), without = on_a_turntable();
+  Camera camera = turned_camera(2);
+  camera.world_from_cam = upright_rotation({0.3, 0.5, -0.6}, {0, 0, 1});
+  EXPECT_EQ(to_array(light_in_view(back, camera)), to_array(light_in_view(scene, camera)));
+  EXPECT_NE(to_array(light_in_view(without, camera)), to_array(light_in_view(scene, camera)));
+  head["light_frame"]["rings"][1].erase("right");
+  EXPECT_THROW(load_scene(tensors, head), Error);
+}
+
 TEST(SceneLightFrame, ALightPutThereByAnEditStandsStill) {
   EditLayer layer;
   layer.light = SgMixture{{{{0, 1, 0}, 5, {1, 1, 1}}}};

@@ -6,6 +6,7 @@
 
 #include "core/base/json.h"
 #include "core/math/quantile.h"
+#include "engine/reconstruct/appearance/find_rings.h"
 
 namespace cei3d {
 namespace {
@@ -54,8 +55,8 @@ class Motions {
     options_.hold_out = cameras.size() >= 2 * kHoldOut ? kHoldOut : 0;
   }
 
-  std::vector<double> residuals(LightMotion motion, bool several) const {
-    const auto turns = turns_of(light_frame(motion, cameras_, axis_), cameras_);
+  std::vector<double> residuals(const LightFrame& frame, bool several) const {
+    const auto turns = turns_of(frame, cameras_);
     SurfaceSamples samples = samples_;
     samples.turned = {turns.get(), views_};
     return held_out_residuals(transport_, samples, options_, kRoughness, several, progress_);
@@ -66,10 +67,12 @@ class Motions {
                    bool several) const {
     Compared out;
     for (const LightMotion motion : motions) {
-      const double ratio = median_ratio(residuals(motion, several), still);
+      const LightFrame frame = light_frame(motion, cameras_, axis_);
+      const double ratio = median_ratio(residuals(frame, several), still);
       progress_.log(Json{
           {"stage", "light motion"},
           {"motion", light_motion_name(motion)},
+          {"rings", frame.rings.size()},
           {"several_materials", several},
           {"ratio",
            ratio}}.dump());
@@ -93,7 +96,9 @@ class Motions {
 
 LightFrame light_frame(LightMotion motion, std::span<const Camera> cameras, Vec3f axis) {
   if (motion == LightMotion::world || cameras.empty()) return {};
-  return {motion, axis, to_float(cameras.front().world_from_cam)};
+  LightFrame frame{motion, axis, to_float(cameras.front().world_from_cam)};
+  if (motion == LightMotion::turntable) frame.rings = find_rings(cameras);
+  return frame;
 }
 
 std::shared_ptr<const LightTurns> turns_of(const LightFrame& frame, std::span<const Camera> cameras) {
@@ -107,13 +112,15 @@ LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16
                             std::span<const Camera> cameras, Vec3f axis, const MotionSearch& search,
                             Progress& progress) {
   const Motions motions(input, views, cameras, axis, search.seed, progress);
-  const std::vector<double> still = motions.residuals(LightMotion::world, false);
+  const std::vector<double> still = motions.residuals({}, false);
   if (still.empty() || median(still) < kExplained) return {};
   Compared found = motions.compare(std::array{LightMotion::camera, LightMotion::turntable}, still, false);
   const double max_ratio = search.several_materials ? kMaxCertain : kMaxTurningRatio;
   if (found.ratio < max_ratio) return light_frame(found.motion, cameras, axis);
   if (found.possible.empty() || !search.several_materials) return {};
-  found = motions.compare(found.possible, motions.residuals(LightMotion::world, true), true);
+  // In rings, a turntable is the more exact of two like motions.
+  if (!light_frame(found.motion, cameras, axis).rings.empty()) found.possible = {found.motion};
+  found = motions.compare(found.possible, motions.residuals({}, true), true);
   return light_frame(found.ratio < kMaxRatioOfSeveral ? found.motion : LightMotion::world, cameras, axis);
 }
 

@@ -16,7 +16,7 @@ struct MotionSearch {
 // The motion that explains held-out views best, after a linear separation of the other views. A light that
 // stands still wins unless another motion leaves a much smaller residual. input: its samples not turned.
 // views: #samples, index of the camera. cameras: of the training views; the first is the reference. axis: of
-// a turntable, unit.
+// a turntable, unit, where the cameras are not in rings (find_rings.h).
 LightFrame find_light_frame(const AppearanceInput& input, std::span<const uint16_t> views,
                             std::span<const Camera> cameras, Vec3f axis, const MotionSearch&, Progress&);
 

@@ -2,6 +2,7 @@
 #include "engine/reconstruct/appearance/shaded_samples.h"
 
 #include <algorithm>
+#include <optional>
 
 #include "core/base/cancel.h"
 #include "core/math/color.h"
@@ -24,19 +25,21 @@ std::vector<Vec3f> pixel_colors(const Device& device, const Field& albedo, std::
 namespace {
 
 Lighting lighting_of(const Device& device, const Scene& scene, const LightTurns* turns,
-                     const Progress& progress) {
+                     const Transport* transport, const Progress& progress) {
+  std::optional<Transport> own;
+  if (!transport) transport = &own.emplace(scene.surface, std::vector<uint8_t>(), progress);
   const std::vector<Vec3f>& vertices = scene.surface->mesh().positions;
   return Lighting(device, scene.surface, scene.light,
                   turned_vertex_lights(
-                      Transport(scene.surface, {}, progress), scene.light,
+                      *transport, scene.light,
                       {scene.albedo->eval3(device, vertices), scene.material.at(device, vertices)}, turns));
 }
 
 }  // namespace
 
 SampleShader::SampleShader(const Device& device, const Scene& scene, const LightTurns* turns,
-                           const Progress& progress)
-    : device_(device), scene_(scene), light_(lighting_of(device, scene, turns, progress)) {}
+                           const Progress& progress, const Transport* transport)
+    : device_(device), scene_(scene), light_(lighting_of(device, scene, turns, transport, progress)) {}
 
 std::vector<Vec3f> SampleShader::radiance(const SurfaceSamples& samples, const Progress& progress) const {
   // Number of hits between two checks for interruption: 5 s with the largest networks.

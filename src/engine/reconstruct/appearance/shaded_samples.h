@@ -21,8 +21,9 @@ std::vector<Vec3f> pixel_colors(const Device&, const Field& albedo, std::span<co
 class SampleShader {
  public:
   // turns: of the samples' views; null: the light stands still. Scene and turns must outlive the object.
-  // Error: interrupted.
-  SampleShader(const Device&, const Scene&, const LightTurns* turns, const Progress&);
+  // transport: of the scene's surface, or null. Error: interrupted.
+  SampleShader(const Device&, const Scene&, const LightTurns* turns, const Progress&,
+               const Transport* transport = nullptr);
   // Linear radiance: #samples. Error: interrupted.
   std::vector<Vec3f> radiance(const SurfaceSamples&, const Progress&) const;
 

@@ -232,11 +232,17 @@ namespace {
 std::vector<float> values_of(const LightFrame& f) {
   std::vector<float> out{float(f.motion), f.axis.x, f.axis.y, f.axis.z};
   for (const Vec3f& row : f.reference.row) out.insert(out.end(), {row.x, row.y, row.z});
+  for (const CameraRing& r : f.rings)
+    out.insert(out.end(), {r.axis.x, r.axis.y, r.axis.z, r.forward, r.right});
   return out;
 }
 LightFrame light_frame_from(const std::vector<float>& v) {
+  constexpr size_t kRings = 13, kRing = 5;  // first value of the rings, and their lengths
+  if (v.size() < kRings || (v.size() - kRings) % kRing != 0) fail("The frame of the light is incomplete.");
   const auto vec = [&](size_t i) { return Vec3f{v[i], v[i + 1], v[i + 2]}; };
-  return {LightMotion(int(v[0])), vec(1), {{vec(4), vec(7), vec(10)}}};
+  LightFrame f{LightMotion(int(v[0])), vec(1), {{vec(4), vec(7), vec(10)}}};
+  for (size_t i = kRings; i < v.size(); i += kRing) f.rings.push_back({vec(i), v[i + 3], v[i + 4]});
+  return f;
 }
 
 }  // namespace
@@ -248,7 +254,8 @@ void GeometryStage::save(Tensors& out) const {
   const int64_t n = grid_.resolution();
   out["pixel_errors"] = {{int64_t(errors_.block_errors().size())}, errors_.block_errors(), {}};
   out["matte_until"] = {{1}, {matte_until_}, {}};
-  out["light_frame"] = {{13}, values_of(light_), {}};
+  const std::vector<float> light = values_of(light_);
+  out["light_frame"] = {{int64_t(light.size())}, light, {}};
   if (anchor_.n) out["anchor"] = {{anchor_.n, anchor_.n, anchor_.n}, anchor_.values, {}};
   // With cells that are out of date, so that a resumed run equals one that never stopped.
   out["occupancy"] = {{n, n, n}, grid_.values(), {}};
@@ -262,7 +269,7 @@ void GeometryStage::load(const Tensors& in) {
   grid_.set(require_tensor(in, "occupancy", {n, n, n}).f32);
   errors_.set_block_errors(require_tensor(in, "pixel_errors", {int64_t(errors_.block_errors().size())}).f32);
   matte_until_ = require_tensor(in, "matte_until", {1}).f32[0];
-  if (in.contains("light_frame")) light_ = light_frame_from(require_tensor(in, "light_frame", {13}).f32);
+  if (in.contains("light_frame")) light_ = light_frame_from(require_tensor(in, "light_frame").f32);
   if (const auto anchor = in.find("anchor"); anchor != in.end() && !anchor->second.shape.empty()) {
     const int64_t cells = anchor->second.shape[0];
     anchor_ = {int(cells), require_tensor(in, "anchor", {cells, cells, cells}).f32};

@@ -73,6 +73,9 @@ TEST(GeometryStage, ResumedFromItsCheckpointTakesTheSameStep) {
   start.matte_until = 0.1f;
   GeometryStage stage(device, pixels, options, 1), resumed(device, pixels, options, 1);
   stage.prefit(start);
+  LightFrame light{LightMotion::turntable, {0, 0, 1}};
+  light.rings = {{{0, 0, 1}, -0.5f, 0.02f}, {{0, 1, 0}, -0.4f, 0}};
+  stage.set_light(light);
   for (int step = 0; step < 3; ++step) stage.step(step, 0.05);
   Tensors checkpoint, want, got;
   stage.save(checkpoint);
