@@ -316,8 +316,8 @@ TEST(Reconstruct, ExposuresAreFittedKeptAndResumed) {
   EXPECT_TRUE(given.run(checkpoints, progress).exposures.empty());
 }
 
-// A run whose geometry stage does not look for exposures. Where each place is in three or four photographs
-// only, its albedo and the light take up half of what these differ by.
+// A run whose geometry stage does not look for exposures. With so few photographs and steps it finds about
+// half of what they differ by.
 TEST(Reconstruct, PolishingFindsTheBrightnessOfPhotographs) {
   const ExposedCapture box(12, 64);
   AnyRun run(box.capture(), box);

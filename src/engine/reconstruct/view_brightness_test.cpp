@@ -43,11 +43,11 @@ double worst_error(const std::vector<float>& factors) {
   return worst;
 }
 
+// Noise of 5 % in parts of some tens of samples leaves about .01.
 TEST(ViewBrightness, IsTheFactorOfThePhotographs) {
   EXPECT_LT(worst_error(view_brightness(photographed(0), kViews)), 0.02);
 }
 
-// Sums over the whole view would be off by more than .1.
 TEST(ViewBrightness, DoesNotFollowAPartThatIsExplainedBadly) {
   EXPECT_LT(worst_error(view_brightness(photographed(0.8f), kViews)), 0.03);
 }
