@@ -18,7 +18,7 @@ constexpr double kFullEffort = 2;  // the appearance stage at full effort, in ti
 constexpr double kMaxLent = 0.5;   // of what polishing has left
 constexpr double kMinPolishShare = 1.0 / 6;  // of a descent's planned time
 constexpr size_t kCompared = 300000;         // hits, about, by which photographs are compared
-// Spread of the photographs' brightness that counts. Where exposures are equal it is .03 at most, for a
+// Spread of the photographs' brightness that counts. Where exposures are equal it is .02 at most, for a
 // metal.
 constexpr double kMinBrightness = 0.05;
 
