@@ -32,6 +32,7 @@ struct Votes {
       if (has_vote[v] && v != own) out.push_back(views[v]);
     return out;
   }
+  RayVotes on(size_t own) const { return {without(own), views[own].camera}; }
 };
 
 // Object pixels whose rays meet none of the cells; of each four pixels one is asked.
@@ -48,20 +49,50 @@ Area unsupported(const Area& cells, const HullMask& view) {
   return opened(out, w, h, kOpening);
 }
 
-Area gap_of(const Votes& votes, size_t index, const Area& cells) {
-  const HullMask& view = votes.views[index];
+// What many of the other views look past.
+struct Past {
+  Area likely, sure;
+};
+
+Past look_past(const RayVotes& others, const HullMask& view, Area asked) {
   const int w = view.camera.width, h = view.camera.height;
-  const RayVotes others(votes.without(index), view.camera);
-  Area likely = unsupported(cells, view), sure(likely.size());
+  Past out{std::move(asked), Area(view.mask.size())};
   for (int y = 0; y < h; ++y)
     for (int x = 0; x < w; ++x) {
       const size_t i = size_t(y) * size_t(w) + size_t(x);
-      if (!likely[i]) continue;
+      if (!out.likely[i]) continue;
       const size_t against = others.against(x, y, others.allowed(kLikely), others.allowed(kSure));
-      likely[i] = against > others.allowed(kLikely);
-      sure[i] = against > others.allowed(kSure);
+      out.likely[i] = against > others.allowed(kLikely);
+      out.sure[i] = against > others.allowed(kSure);
     }
-  return parts_with(opened(sure, w, h, kOpening), opened(likely, w, h, kOpening), w, h);
+  return out;
+}
+
+Area gap_of(const RayVotes& others, const HullMask& view, const Area& cells) {
+  const int w = view.camera.width, h = view.camera.height;
+  const Past past = look_past(others, view, unsupported(cells, view));
+  return parts_with(opened(past.sure, w, h, kOpening), opened(past.likely, w, h, kOpening), w, h);
+}
+
+// The object's pixels beside the area, within `radius` pixels along both axes.
+Area beside(const Area& area, const HullMask& view, int radius) {
+  Area out = dilated(area, view.camera.width, view.camera.height, radius);
+  for (size_t i = 0; i < out.size(); ++i) out[i] = out[i] && !area[i] && view.mask[i] == kObject;
+  return out;
+}
+
+void add(const Area& more, Area& area) {
+  for (size_t i = 0; i < area.size(); ++i) area[i] |= more[i];
+}
+
+// Up to the object that the other views show, whose cells were not asked, and as far beyond as their outlines
+// may be wrong.
+void grow_to_outline(const RayVotes& others, const HullMask& view, Area& gap) {
+  const int w = view.camera.width, h = view.camera.height;
+  Area more = look_past(others, view, beside(gap, view, std::max(w, h) / kCells.n)).likely;
+  add(gap, more);
+  gap = parts_with(gap, more, w, h);
+  add(beside(gap, view, kOpening), gap);
 }
 
 }  // namespace
@@ -78,12 +109,17 @@ std::vector<Area> filled_gaps(const SmallMasks& masks, std::span<const uint8_t> 
   std::vector<double> shares(views.size());
   parallel_for(int(views.size()), [&](int i) {
     const auto v = size_t(i);
-    gaps[v] = gap_of(votes, v, has_vote[v] ? of_voter : of_other);
+    gaps[v] = gap_of(votes.on(v), views[v], has_vote[v] ? of_voter : of_other);
     shares[v] = share_of_object(gaps[v], views[v].mask);
   });
-  const double usual = median(shares);
-  for (size_t v = 0; v < views.size(); ++v)
-    if (shares[v] <= kShare + kOutlier * usual) gaps[v].clear();
+  const double least = kShare + kOutlier * median(shares);
+  parallel_for(int(views.size()), [&](int i) {
+    const auto v = size_t(i);
+    if (shares[v] > least)
+      grow_to_outline(votes.on(v), views[v], gaps[v]);
+    else
+      gaps[v].clear();
+  });
   return gaps;
 }
 

@@ -67,8 +67,8 @@ TEST(FilledGaps, AHoleThatOneMaskFillsIsFound) {
   ASSERT_EQ(gaps.size(), masks.masks.size());
   for (size_t v = 0; v < gaps.size(); ++v) EXPECT_EQ(gaps[v].empty(), v != view) << v;
   ASSERT_FALSE(gaps[view].empty());
-  EXPECT_GT(share_of(gaps[view], hole), 0.6);
-  EXPECT_GT(share_of(hole, gaps[view]), 0.99);
+  EXPECT_GT(share_of(gaps[view], hole), 0.95);
+  EXPECT_GT(share_of(dilated(hole, kSize, kSize, 2), gaps[view]), 0.99);
 }
 
 // Also of an object of few pixels' thickness, whose cells nearly all views contradict.

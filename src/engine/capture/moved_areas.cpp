@@ -43,6 +43,18 @@ Area contradictions(const HullMask& view, const State& state, const Area& asked)
   return opened(out, w, h, kOpening);
 }
 
+// Pieces of the object that the area cuts off from the rest: nothing but what may have moved holds them.
+Area cut_off(const HullMask& view, const Area& area, const Area& around) {
+  Area rest(area.size()), beyond(area.size());
+  for (size_t i = 0; i < area.size(); ++i) {
+    rest[i] = view.mask[i] == kObject && !area[i];
+    beyond[i] = rest[i] && !around[i];
+  }
+  const Area held = parts_with(beyond, rest, view.camera.width, view.camera.height);
+  for (size_t i = 0; i < rest.size(); ++i) rest[i] = rest[i] && !held[i];
+  return rest;
+}
+
 }  // namespace
 
 std::vector<Area> moved_areas(const SmallMasks& masks, const MovedPart& part) {
@@ -56,10 +68,13 @@ std::vector<Area> moved_areas(const SmallMasks& masks, const MovedPart& part) {
     const auto v = size_t(k);
     if (part.shown_by_most(v)) return;
     const Camera& camera = views[v].camera;
-    const Area place = seen_hull(part.place, camera);
-    areas[v] = contradictions(views[v], state, seen_hull(part.around, camera));
-    for (size_t i = 0; i < place.size(); ++i) areas[v][i] |= place[i];
-    areas[v] = parts_with(place, areas[v], camera.width, camera.height);
+    const Area place = seen_hull(part.place, camera), around = seen_hull(part.around, camera);
+    Area& area = areas[v];
+    area = contradictions(views[v], state, around);
+    for (size_t i = 0; i < place.size(); ++i) area[i] |= place[i];
+    area = parts_with(place, area, camera.width, camera.height);
+    const Area pieces = cut_off(views[v], area, around);
+    for (size_t i = 0; i < pieces.size(); ++i) area[i] |= pieces[i];
   });
   return areas;
 }
