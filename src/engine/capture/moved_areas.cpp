@@ -43,13 +43,15 @@ Area contradictions(const HullMask& view, const State& state, const Area& asked)
   return opened(out, w, h, kOpening);
 }
 
-// Pieces of the object that the area cuts off from the rest: nothing but what may have moved holds them.
+// Pieces of the object near the area that it cuts off from the rest: nothing but what may have moved holds
+// them. None where all that the area leaves of the object is near it.
 Area cut_off(const HullMask& view, const Area& area, const Area& around) {
   Area rest(area.size()), beyond(area.size());
   for (size_t i = 0; i < area.size(); ++i) {
     rest[i] = view.mask[i] == kObject && !area[i];
     beyond[i] = rest[i] && !around[i];
   }
+  if (pixels_in(beyond) == 0) return beyond;
   const Area held = parts_with(beyond, rest, view.camera.width, view.camera.height);
   for (size_t i = 0; i < rest.size(); ++i) rest[i] = rest[i] && !held[i];
   return rest;

@@ -100,5 +100,19 @@ TEST(MovedAreas, HoldPiecesThatThePlaceCutsOff) {
   EXPECT_GT(before_the_body, 1);
 }
 
+// Else a view would have no object left.
+TEST(MovedAreas, LeaveAnObjectThatIsAllAroundThePlace) {
+  const SmallMasks masks = moved_masks(kBefore, kAfter, kSize);
+  MovedPart part = part_of_the_knob();
+  part.around = cube({0, 0, 0}, 0.9);
+  const std::vector<Area> areas = moved_areas(masks, part);
+  for (size_t v = kBefore; v < areas.size(); ++v) {
+    size_t object = 0, held = 0;
+    for (size_t i = 0; i < areas[v].size(); ++i)
+      if (masks.masks[v][i] == kObject) ++object, held += areas[v][i];
+    EXPECT_LT(2 * held, object) << v;
+  }
+}
+
 }  // namespace
 }  // namespace cei3d

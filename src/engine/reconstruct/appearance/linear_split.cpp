@@ -41,9 +41,10 @@ constexpr float kMaxGain = 4, kFaded = 1.1f * kMaxGain;
 // Systematic error of the light, as a share of the unexplained variance over that explained by reflections,
 // as for errors of regressors.
 constexpr double kSharedError = 0.1;
-// The search for several materials stops if its first round leaves a larger share than this of the residual
-// of one material.
-constexpr double kMaxFirstRoundRatio = 0.85;
+// The search for several materials stops if its first rounds leave a larger share than this of the residual
+// of one material, unless several are expected: on objects of one material .91 and more, of several up to .88
+// (docs/notebook/0051-gaps-up-to-their-outline.md).
+constexpr double kMaxFirstRoundRatio = 0.9;
 // The roughness is the largest whose residual is so close to the smallest, relatively, where photographs are
 // explained worse than to 25 dB: what shape and reflections of the object in itself leave unexplained is
 // smallest for surfaces that are too smooth. Where they are explained well, the smallest residual is nearer
@@ -220,14 +221,15 @@ OneMaterial search_one_material(SplitSolver search, const LinearSplitOptions& op
 }
 
 // None where one material is sufficient. guess: the last solution.
-std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMaterial& found,
+std::optional<SplitMaterials> search_materials(SplitSolver search, const OneMaterial& found, bool expected,
                                                SplitGuess& guess) {
   const auto one = [&](float roughness) {
     return found.is_metal ? search.metal(roughness) : search.dielectric(roughness);
   };
   SplitSolution start = one(found.roughness);
   if (start.residual < kNoise) return {};
-  const double max_residual = kMaxFirstRoundRatio * start.residual;
+  const double max_residual =
+      expected ? std::numeric_limits<double>::infinity() : kMaxFirstRoundRatio * start.residual;
   if (found.roughness > kFirstRoughness) start = one(kFirstRoughness);
   SplitSolution several = search.several(std::move(start), max_residual);
   if (several.residual > max_residual) return {};
@@ -280,7 +282,8 @@ Solved solve(const Transport& transport, const SurfaceSamples& samples, const Li
   const OneMaterial found = search_one_material(solver(search_options(options)), options, trials, guess);
   std::optional<SplitMaterials> materials;
   if (options.fixed_roughness <= 0)
-    materials = search_materials(solver(material_search_options(options)), found, guess);
+    materials =
+        search_materials(solver(material_search_options(options)), found, options.several_expected, guess);
   SplitSolver fine = solver(options);
   SplitSolution best = found.is_metal ? fine.metal(found.roughness) : fine.dielectric(found.roughness);
   trials.insert(trials.end(), fine.trials.begin(), fine.trials.end());
