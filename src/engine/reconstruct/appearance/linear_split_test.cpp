@@ -5,8 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "core/base/error.h"
+#include "core/base/json.h"
 #include "core/math/color.h"
 #include "core/math/quantile.h"
+#include "core/math/rng.h"
 #include "engine/reconstruct/appearance/find_light_frame.h"
 #include "engine/reconstruct/appearance/test_drawn.h"
 #include "model/light/envmap.h"
@@ -316,6 +318,29 @@ TEST(LinearSplit, SeveralMaterialsThatAreExpectedNeedLessEvidence) {
   EXPECT_TRUE(several_explain_more(2e-3, 1.6e-3, true));
   EXPECT_FALSE(several_explain_more(2e-3, 1.8e-3, true));
   EXPECT_FALSE(several_explain_more(1.5e-4, 0.6e-4, true));  // less than the noise of photographs
+}
+
+// Counts the rounds of the search for materials.
+struct Rounds : Progress {
+  int count = 0;
+  void on_log(const std::string& line) override {
+    const Json j = Json::parse(line);
+    count += j["stage"] == "materials" && j.contains("round");
+  }
+};
+
+// On one material with noise the search ends early; but not after polishing with several.
+TEST(LinearSplit, SeveralMaterialsThatAreExpectedAreSearchedToTheEnd) {
+  Drawn d = draw({0.3f, 0.5f, 0});
+  Rng rng(7, 0, 0);
+  for (Vec3f& c : d.colors) c = c * (0.8f + 0.4f * rng.uniform());
+  LinearSplitOptions o = small();
+  for (const bool expected : {false, true}) {
+    o.several_expected = expected;
+    Rounds rounds;
+    EXPECT_TRUE(linear_split(*d.transport, d.samples(), o, rounds).materials.empty()) << expected;
+    EXPECT_EQ(rounds.count > 2, expected) << rounds.count;
+  }
 }
 
 }  // namespace
