@@ -58,6 +58,10 @@ Image shown_in(const Image& image, const Area& area, float background) {
   return out;
 }
 
+void add_to(Area& area, const Area& more) {
+  for (size_t i = 0; i < area.size(); ++i) area[i] |= more[i];
+}
+
 size_t pixels_in(const Area& area) { return size_t(std::count(area.begin(), area.end(), uint8_t(1))); }
 
 }  // namespace cei3d

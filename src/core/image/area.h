@@ -27,6 +27,9 @@ Area parts_with(const Area& seeds, const Area& area, int width, int height);
 // The image with all channels set to `background` outside the area.
 Image shown_in(const Image& image, const Area& area, float background);
 
+// Adds the pixels of `more` to the area.
+void add_to(Area& area, const Area& more);
+
 // Number of pixels in the area.
 size_t pixels_in(const Area& area);
 

@@ -81,18 +81,14 @@ Area beside(const Area& area, const HullMask& view, int radius) {
   return out;
 }
 
-void add(const Area& more, Area& area) {
-  for (size_t i = 0; i < area.size(); ++i) area[i] |= more[i];
-}
-
 // Up to the object that the other views show, whose cells were not asked, and as far beyond as their outlines
 // may be wrong.
 void grow_to_outline(const RayVotes& others, const HullMask& view, Area& gap) {
   const int w = view.camera.width, h = view.camera.height;
   Area more = look_past(others, view, beside(gap, view, std::max(w, h) / kCells.n)).likely;
-  add(gap, more);
+  add_to(more, gap);
   gap = parts_with(gap, more, w, h);
-  add(beside(gap, view, kOpening), gap);
+  add_to(gap, beside(gap, view, kOpening));
 }
 
 }  // namespace

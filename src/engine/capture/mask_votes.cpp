@@ -91,7 +91,7 @@ MaskDoubt judge(const Votes& votes, const HullMask& view, size_t index) {
   doubt.extra = double(pixels_in(extra)) * per_object;
   doubt.missing_area = missing;
   doubt.doubtful = std::move(missing);
-  for (size_t i = 0; i < extra.size(); ++i) doubt.doubtful[i] |= extra[i];
+  add_to(doubt.doubtful, extra);
   return doubt;
 }
 

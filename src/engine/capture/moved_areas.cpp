@@ -73,10 +73,9 @@ std::vector<Area> moved_areas(const SmallMasks& masks, const MovedPart& part) {
     const Area place = seen_hull(part.place, camera), around = seen_hull(part.around, camera);
     Area& area = areas[v];
     area = contradictions(views[v], state, around);
-    for (size_t i = 0; i < place.size(); ++i) area[i] |= place[i];
+    add_to(area, place);
     area = parts_with(place, area, camera.width, camera.height);
-    const Area pieces = cut_off(views[v], area, around);
-    for (size_t i = 0; i < pieces.size(); ++i) area[i] |= pieces[i];
+    add_to(area, cut_off(views[v], area, around));
   });
   return areas;
 }

@@ -21,9 +21,16 @@ constexpr double kReportSeconds = 2;
 // Between evaluations on held-out pixels: at least 2 s, and 40 times as long as the last one took.
 constexpr double kEvaluationSeconds = 2, kEvaluationShare = 40;
 // Positions in the schedule at which poses that were moved before, and exposures, are fitted to what was
-// trained.
-constexpr std::array kFitAt{0.1, 0.2, 0.3, 0.45, 0.6};
-constexpr int kAlignSide = 320, kExposeSide = 64;  // maximum sides of the images that are compared, pixels
+// trained, and the share of the training that the poses may take. Those of the last fit are the poses of the
+// object: more precise ones gain more than the steps that they cost.
+struct Fit {
+  double at, align_share;
+};
+constexpr std::array<Fit, 5> kFits{{{0.1, 0.07}, {0.2, 0.07}, {0.3, 0.07}, {0.45, 0.07}, {0.6, 0.2}}};
+// Maximum sides of the images that are compared, pixels. Of those for alignment the largest for which there
+// is time, by how long the last one took; a first one has kFirstAlignSide.
+constexpr std::array kAlignSides{320, 160};
+constexpr int kFirstAlignSide = 160, kExposeSide = 64;
 // Exposures are fitted from kExposeFrom of the schedule on, because the brightness of what was trained
 // briefly is off by as much as they differ. They are used if their exposure_change() is at least
 // kMinExposure: where all exposures are equal it is .05 at most, for a metal.
@@ -72,35 +79,54 @@ class Training {
   // Changes the state only when everything is computed: a run that is interrupted meanwhile resumes from
   // before.
   void fit_views(double u) {
+    const auto due = int(std::count_if(kFits.begin(), kFits.end(), [&](const Fit& f) { return f.at <= u; }));
+    if (state_.alignments >= due) return;
     PixelStore& pixels = run_.views.train;
-    while (state_.alignments < int(kFitAt.size()) && u >= kFitAt[size_t(state_.alignments)]) {
-      std::vector<Camera> cameras;
-      std::vector<Vec3f> exposures;
-      if (!state_.scene.refined.poses.empty()) cameras = aligned_cameras(u);
-      if (run_.fit_exposures && u >= kExposeFrom && state_.step >= run_.preset.exposures_from_steps)
-        exposures = found_exposures(u);
-      if (!cameras.empty()) {
-        pixels.set_cameras(std::move(cameras));
-        keep_cameras(run_, state_);
-      }
-      if (!exposures.empty()) {
-        pixels.set_exposures(std::move(exposures));
-        keep_exposures(run_, state_);
-      }
-      ++state_.alignments;
+    std::vector<Camera> cameras;
+    std::vector<Vec3f> exposures;
+    if (!state_.scene.refined.poses.empty()) cameras = aligned_cameras(u, kFits[size_t(due - 1)].align_share);
+    if (run_.fit_exposures && u >= kExposeFrom && state_.step >= run_.preset.exposures_from_steps)
+      exposures = found_exposures(u);
+    if (!cameras.empty()) {
+      pixels.set_cameras(std::move(cameras));
+      keep_cameras(run_, state_);
     }
+    if (!exposures.empty()) {
+      pixels.set_exposures(std::move(exposures));
+      keep_exposures(run_, state_);
+    }
+    state_.alignments = due;
   }
 
-  // A focal length that no trial has changed stays: here nothing tells whether a change pays.
-  std::vector<Camera> aligned_cameras(double u) {
+  // Of alignment. share: of the training that it may take. 0: it takes longer at any side.
+  int align_side(double share) const {
+    if (seconds_ == 0) return kAlignSides.front();
+    if (align_rate_ == 0) return kFirstAlignSide;
+    for (const int side : kAlignSides)
+      if (align_rate_ * double(pixels_shown(run_.views.train, side)) <= share * seconds_) return side;
+    return 0;
+  }
+
+  // A focal length that no trial has changed stays: here nothing tells whether a change pays. Empty: there is
+  // no time.
+  std::vector<Camera> aligned_cameras(double u, double share) {
     const PixelStore& pixels = run_.views.train;
+    const int side = align_side(share);
+    if (side == 0) return {};
+    const double begin = elapsed();
     const double focal = state_.scene.refined.focal;
     const FocalPrior prior{focal != 1 ? run_.preset.trial.focal_error : 0, focal};
     AlignedViews aligned =
-        align_views(show_views(*state_.geometry, pixels, kAlignSide, run_.progress), pixels, prior);
-    run_.progress.log(
-        Json{{"stage", "alignment"}, {"u", u}, {"pixels", aligned.pixels}, {"focal", focal * aligned.focal}}
-            .dump());
+        align_views(show_views(*state_.geometry, pixels, side, run_.progress), pixels, prior);
+    const double took = elapsed() - begin;
+    align_rate_ = took / double(pixels_shown(pixels, side));
+    run_.progress.log(Json{{"stage", "alignment"},
+                           {"u", u},
+                           {"side", side},
+                           {"took", took},
+                           {"pixels", aligned.pixels},
+                           {"focal", focal * aligned.focal}}
+                          .dump());
     return std::move(aligned.cameras);
   }
 
@@ -147,8 +173,9 @@ class Training {
   RunState& state_;
   const PixelStore& judged_;
   const char* judged_name_;
-  double begin_;        // start of the training on the clock of the run, as if it had not been interrupted
-  double seconds_ = 0;  // of the schedule; 0: by steps
+  double begin_;           // start of the training on the clock of the run, as if it had not been interrupted
+  double seconds_ = 0;     // of the schedule; 0: by steps
+  double align_rate_ = 0;  // s per pixel of the last alignment; 0: there was none yet
   // By elapsed().
   double next_evaluation_ = kEvaluationSeconds, next_report_ = kReportSeconds, last_save_ = 0;
   double psnr_ = 0;

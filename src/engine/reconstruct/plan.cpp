@@ -62,8 +62,9 @@ constexpr double kJointShare = 0.1;
 constexpr double kFinerMeshShare = 1.0 / 40;
 constexpr double kCoupledShare = 0.3;   // of the network of a coupled color, in place of all that is left out
 constexpr double kResidualShare = 0.1;  // residual images
-// As shares of the geometry stage: comparison of start shapes; stereo alone.
-constexpr double kTrialsShare = 0.3, kStereoShare = 0.4;
+// As shares of the geometry stage: comparison of start shapes; stereo alone; trials with aligned cameras,
+// after the first.
+constexpr double kTrialsShare = 0.3, kStereoShare = 0.4, kAlignmentShare = 0.1;
 
 // Minimum shares of the whole time. Before the residual images comes light at all vertices, which grows with
 // the object and not with its pixels.
@@ -79,14 +80,19 @@ constexpr double kCutOff = 0.25;
 constexpr size_t kMinAtBorder = 2;
 
 // Seconds.
+struct TrialCosts {
+  double step;     // of all trials
+  double besides;  // start shapes and the first fits to them
+};
+
 struct Costs {
-  double first_light;     // finding out how the light turns, without trials
-  double light_motion;    // the same on the trained surface
-  double geometry_step;   // one training step of the geometry stage
-  double trial_step;      // of the three trials
-  double trials_besides;  // start shapes and the first fits to them
-  double stereo;          // start shape by stereo alone
-  double brief_surface;   // with brief_hits
+  double first_light;      // finding out how the light turns, without trials
+  double light_motion;     // the same on the trained surface
+  double geometry_step;    // one training step of the geometry stage
+  TrialCosts trials;       // of the three start shapes
+  TrialCosts hull_trials;  // of the hull alone, before and after its cameras are aligned
+  double stereo;           // start shape by stereo alone
+  double brief_surface;    // with brief_hits
   double full_descent, brief_descent;
   double surface, full_appearance, brief_appearance, refinement, finer_mesh;
   double look;    // of a polishing round
@@ -104,8 +110,12 @@ Costs costs_of(const Rates& r, const Preset& preset, size_t pixels) {
   c.first_light = kFirstLight * r.trial_step;
   c.light_motion = kLightMotion * r.hit_shaded;
   c.geometry_step = kGeometryStep * r.sdf_step;
-  c.trial_step = r.trial_step * 3 * kGeometryStep;
-  c.trials_besides = r.trial_step * (3 * trial.geometry.prefit_steps + kStartShapes);
+  const auto trials = [&](int count, double shapes) {
+    return TrialCosts{r.trial_step * count * kGeometryStep,
+                      r.trial_step * (count * trial.geometry.prefit_steps + shapes)};
+  };
+  c.trials = trials(3, kStartShapes);
+  c.hull_trials = trials(2, kFirstLight);
   c.stereo = r.trial_step * (kFirstLight + kStereo);
   c.surface = mesh(preset.meshing) + hits * r.hit_traced;
   c.brief_surface = mesh(preset.meshing) + brief_hits * r.hit_traced;
@@ -226,16 +236,25 @@ bool leave_one_out(const Costs& c, Plan& p) {
   return true;
 }
 
-// Where the visual hull is far from the object, so is what is trained from it briefly, and cameras that are
-// aligned with that are moved away from where they are (docs/notebook/0047). seconds: of the geometry stage.
-int affordable_trial_steps(double seconds, int wanted, bool cut_off, const Costs& c) {
-  const double steps = std::min((kTrialsShare * seconds - c.trials_besides) / c.trial_step, double(wanted));
-  return steps >= (cut_off ? kMinTrialShareCutOff : kMinTrialShare) * wanted ? int(steps) : 0;
+// 0: fewer than the minimum share of the wanted ones. seconds: of the geometry stage.
+int affordable_trial_steps(double seconds, int wanted, double min_share, const TrialCosts& c) {
+  const double steps = std::min((kTrialsShare * seconds - c.besides) / c.step, double(wanted));
+  return steps >= min_share * wanted ? int(steps) : 0;
 }
 
-void plan_start(const Preset& preset, const PlannedPixels& pixels, const Costs& c, Plan& p) {
+// Where the visual hull is far from the object, so is what is trained from it briefly, and cameras that are
+// aligned with that are moved away from where they are (docs/notebook/0047). refine_poses: whether the user
+// wants that.
+void plan_start(const Preset& preset, const PlannedPixels& pixels, const Costs& c, bool refine_poses,
+                Plan& p) {
   if (preset.start != StartChoice::trials) return;
-  p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, pixels.cut_off, c);
+  const double min_share = pixels.cut_off ? kMinTrialShareCutOff : kMinTrialShare;
+  p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, min_share, c.trials);
+  if (p.trial_steps == 0 && refine_poses && !pixels.cut_off) {
+    p.trial_steps = affordable_trial_steps(p.geometry, preset.trial.steps, min_share, c.hull_trials);
+    p.hull_alone = p.trial_steps > 0;
+  }
+  p.alignment = kAlignmentShare * p.geometry;
   const bool stereo = p.trial_steps == 0 && pixels.cut_off && c.stereo <= kStereoShare * p.geometry;
   p.start = stereo ? Start::stereo : Start::hull;
 }
@@ -257,12 +276,13 @@ Plan timed_plan(double t, const Preset& preset, const PlannedPixels& pixels, con
   while (rest_of(p) > (1 - kMinGeometryShare) * t && leave_one_out(c, p)) continue;
   if (p.polish_rounds == 0 && !wanted.light) p.light_motion = std::min(c.light_motion, kLightMotionShare * t);
   p.geometry = std::max(kMinGeometryShare * t, t - rest_of(p));
-  plan_start(preset, pixels, c, p);
+  plan_start(preset, pixels, c, wanted.refine_poses, p);
   return p;
 }
 
 // A plan without light and material; t: 0: by steps.
-Plan without_light(Plan p, double t, const Preset& preset, const PlannedPixels& pixels, const Costs& c) {
+Plan without_light(Plan p, double t, const Preset& preset, const PlannedPixels& pixels, const Costs& c,
+                   const ReconstructOptions& wanted) {
   p.color = ColorChoice::coupled;
   p.polish_rounds = p.refinements = p.spare_refinements = p.joint_steps = 0;
   p.light_motion = p.look = p.polish = p.appearance = p.descent = p.refinement = p.joint = 0;
@@ -276,7 +296,7 @@ Plan without_light(Plan p, double t, const Preset& preset, const PlannedPixels& 
   p.residual = kCoupledShare * t;
   p.reserve = std::min(p.reserve, (1 - kMinGeometryShare - kCoupledShare - kFinerMeshShare) * t);
   p.geometry = t - rest_of(p);
-  plan_start(preset, pixels, c, p);
+  plan_start(preset, pixels, c, wanted.refine_poses, p);
   return p;
 }
 
@@ -307,7 +327,7 @@ Plan plan_of(const ReconstructOptions& options, const Preset& given, const Plann
     fail_usage("A coupled color has no light to descend on; it goes with the setting stages=all.");
   if (preset.stages == StageChoice::joint) return joint_plan(options, preset, t, costs);
   const Plan plan = timed ? timed_plan(t, preset, pixels, costs, options) : untimed_plan(options, preset);
-  return coupled ? without_light(plan, t, preset, pixels, costs) : plan;
+  return coupled ? without_light(plan, t, preset, pixels, costs, options) : plan;
 }
 
 double affordable_descent(const Plan& p, double left) {
@@ -326,6 +346,8 @@ double seconds_of_residual(const Plan& p, double left) {
 
 Json to_json(const Plan& p) {
   return {{"trial_steps", p.trial_steps},
+          {"hull_alone", p.hull_alone},
+          {"alignment", p.alignment},
           {"start", p.start == Start::stereo ? "stereo" : "hull"},
           {"geometry", p.geometry},
           {"iterations", p.iterations},

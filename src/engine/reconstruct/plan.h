@@ -18,6 +18,8 @@ struct Plan {
   // Coupled: no polishing, appearance, refinements and joint descent; a network is the color.
   ColorChoice color = ColorChoice::disentangled;
   int trial_steps = 0;        // of each training that tries one of three start shapes; 0: none is tried
+  bool hull_alone = false;    // whether of these shapes the hull alone is tried, to refine the cameras
+  double alignment = 0;       // s after which no trial with cameras that were moved begins; 0: no limit
   Start start = Start::hull;  // if none is tried
   double geometry = 0;        // s, the comparison of starts included
   int iterations = 0;         // steps of the geometry stage where `geometry` is 0

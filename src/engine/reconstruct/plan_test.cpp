@@ -65,7 +65,8 @@ TEST(Plan, AFasterMachineLeavesNothingOutThatASlowerOneDoes) {
   for (const double seconds : {30.0, 60.0, 180.0, 300.0, 900.0}) {
     const Plan slow = plan_for("fast", seconds, 13000000, 2),
                quick = plan_for("fast", seconds, 13000000, 0.5);
-    EXPECT_GE(quick.trial_steps, slow.trial_steps);
+    const auto trial_steps = [](const Plan& p) { return (p.hull_alone ? 1 : 3) * p.trial_steps; };
+    EXPECT_GE(trial_steps(quick), trial_steps(slow));
     EXPECT_GE(quick.polish_rounds, slow.polish_rounds);
     EXPECT_GE(quick.refinements, slow.refinements);
     EXPECT_GE(quick.has_finer_mesh, slow.has_finer_mesh);
@@ -79,8 +80,10 @@ TEST(Plan, AFasterMachineLeavesNothingOutThatASlowerOneDoes) {
 TEST(Plan, ASlowerMachineTriesStartsMoreBriefly) {
   const int all = preset_by_name("fast").trial.steps;
   std::vector<int> steps;
-  for (double slowness = 0.5; slowness < 40; slowness *= 1.05)
-    steps.push_back(plan_for("fast", 600, 3000000, slowness).trial_steps);
+  for (double slowness = 0.5; slowness < 40; slowness *= 1.05) {
+    const Plan p = plan_for("fast", 600, 3000000, slowness);
+    steps.push_back(p.hull_alone ? 0 : p.trial_steps);
+  }
   EXPECT_EQ(steps.front(), all);
   EXPECT_EQ(steps.back(), 0);
   const auto none = std::find(steps.begin(), steps.end(), 0);
@@ -96,7 +99,8 @@ TEST(Plan, ObjectsThatAreCutOffGetNoShortTrials) {
   const int all = preset_by_name("fast").trial.steps;
   int shorter = 0, none = 0;
   for (double slowness = 0.5; slowness < 40; slowness *= 1.05) {
-    const int seen_whole = plan_for("fast", 600, 3000000, slowness).trial_steps,
+    const Plan whole = plan_for("fast", 600, 3000000, slowness);
+    const int seen_whole = whole.hull_alone ? 0 : whole.trial_steps,
               cut_off = plan_for("fast", 600, 3000000, slowness, true).trial_steps;
     EXPECT_EQ(cut_off, 4 * seen_whole >= 3 * all ? seen_whole : 0);
     shorter += cut_off > 0 && cut_off < all;
@@ -117,6 +121,27 @@ TEST(Plan, ObjectsThatAreCutOffStartFromStereoWhereThereIsNoTimeForTrials) {
   EXPECT_GT(by_stereo, 5);
   EXPECT_GT(by_hull, 5);
   EXPECT_EQ(plan_for("fast", 600, 3000000, 100, true).start, Start::hull);
+}
+
+// On slower machines than three start shapes are tried on; not for an object that is cut off, and not where
+// the poses are to stay.
+TEST(Plan, CamerasAreRefinedWithTheHullAloneWhereThereIsNoTimeForAllTrials) {
+  ReconstructOptions given;
+  given.seconds = 600;
+  given.refine_poses = false;
+  const Preset preset = preset_by_name("fast");
+  int alone = 0;
+  for (double slowness = 0.5; slowness < 100; slowness *= 1.05) {
+    const Plan p = plan_for("fast", 600, 3000000, slowness);
+    alone += p.hull_alone;
+    EXPECT_FALSE(plan_for("fast", 600, 3000000, slowness, true).hull_alone);
+    EXPECT_FALSE(plan_of(given, preset, {3000000}, times(kTestRates, slowness)).hull_alone);
+    if (!p.hull_alone) continue;
+    EXPECT_GE(5 * p.trial_steps, 2 * preset.trial.steps);
+    EXPECT_LE(p.trial_steps, preset.trial.steps);
+  }
+  EXPECT_GT(alone, 10);
+  EXPECT_EQ(plan_for("fast", 600, 3000000, 100).trial_steps, 0);
 }
 
 TEST(PlannedPixels, AnObjectAtTheBorderOfItsPhotographsIsCutOff) {

@@ -71,7 +71,10 @@ void make_start(const RunContext& run, RunState& state, const Stage::Checkpoint&
   trial.light = state.scene.light_frame = first_light_frame(run);
   state.light_frame_known = run.light || trial.light.motion != LightMotion::world;
   if (run.plan.trial_steps > 0) trial.steps = run.plan.trial_steps;
+  trial.hull_alone = run.plan.hull_alone;
   trial.align = run.refine_poses;
+  trial.align_seconds = run.plan.alignment;
+  trial.clock = run.progress.clock();
   if (!can_change_focal(run.capture)) trial.focal_error = 0;
   if (run.fit_exposures) trial.exposures = run.views.noted_exposures;
   const std::vector<Camera> given = pixels.cameras();

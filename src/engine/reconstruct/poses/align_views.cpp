@@ -112,10 +112,29 @@ std::vector<Image> photographs_over_white(const PixelStore& store, std::span<con
   return out;
 }
 
+namespace {
+
+std::vector<int> reductions_to(int side, const PixelStore& store) {
+  std::vector<int> n;
+  for (const Camera& c : store.cameras()) n.push_back((std::max(c.width, c.height) + side - 1) / side);
+  return n;
+}
+
+}  // namespace
+
+size_t pixels_shown(const PixelStore& store, int side) {
+  const std::vector<int> n = reductions_to(side, store);
+  size_t sum = 0;
+  for (size_t v = 0; v < n.size(); ++v) {
+    const Camera small = scaled(store.cameras()[v], n[v]);
+    sum += size_t(small.width) * size_t(small.height);
+  }
+  return sum;
+}
+
 ShownViews show_views(GeometryStage& model, const PixelStore& store, int side, const Progress& progress) {
   ShownViews out;
-  for (const Camera& c : store.cameras())
-    out.reductions.push_back((std::max(c.width, c.height) + side - 1) / side);
+  out.reductions = reductions_to(side, store);
   out.photographs = photographs_over_white(store, out.reductions);
   for (size_t v = 0; v < store.cameras().size(); ++v) {
     check_cancelled(progress);

@@ -22,6 +22,9 @@ struct ShownViews {
 // model: trained on these pixels. side: of the images, at most; pixels. Error: interrupted.
 ShownViews show_views(GeometryStage& model, const PixelStore&, int side, const Progress&);
 
+// Number of pixels of its photographs, or of its models.
+size_t pixels_shown(const PixelStore&, int side);
+
 struct AlignedViews {
   std::vector<Camera> cameras;  // of the store's views, moved
   double focal = 1;             // factor on the focal lengths that they had

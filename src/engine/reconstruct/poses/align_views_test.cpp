@@ -201,6 +201,24 @@ TEST(AlignViews, CamerasThatAreRightStay) {
   EXPECT_TRUE(same_cameras(store.cameras(), before));
 }
 
+TEST(AlignViews, TrialsOfTheHullAloneMoveCamerasIfThereIsTime) {
+  PixelStore store = photographs(0.03);
+  const std::vector<Camera> given = store.cameras();
+  const double before = off_by(store);
+  TrialOptions o = brief_trials();
+  o.hull_alone = true;
+  o.steps = 200;
+  double now = 0;
+  o.clock = [&] { return now += 1; };
+  o.align_seconds = 0.5;  // over before the first
+  Progress quiet;
+  choose_start(make_device(), store, o, 1, quiet);
+  EXPECT_TRUE(same_cameras(store.cameras(), given));
+  o.align_seconds = 2;  // over after the first
+  choose_start(make_device(), store, o, 1, quiet);
+  EXPECT_LT(off_by(store), 0.6 * before) << before;
+}
+
 TEST(RefinedCameras, GoToTheCaptureAndBack) {
   Capture capture;
   std::vector<Camera> given, cameras;

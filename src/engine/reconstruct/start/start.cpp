@@ -2,10 +2,10 @@
 #include "engine/reconstruct/start/start.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "core/base/cancel.h"
 #include "core/base/json.h"
@@ -15,9 +15,6 @@
 namespace cei3d {
 
 namespace {
-
-constexpr std::array<std::pair<Start, const char*>, 3> kStarts{
-    {{Start::hull, "hull_psnr"}, {Start::carved, "carved_psnr"}, {Start::stereo, "stereo_psnr"}}};
 
 // Fraction of the schedule during which colors do not depend on the view after a start carved by colors:
 // otherwise mirror images would hollow the shape out further. Not after stereo, whose shape is close enough
@@ -80,6 +77,17 @@ struct Trial {
   double psnr = -1e9;
 };
 
+std::vector<Start> starts_to_try(const TrialOptions& options) {
+  if (options.hull_alone) return {Start::hull};
+  // Carving takes the colors of a point for the same in all views.
+  if (options.light.motion != LightMotion::world) return {Start::hull, Start::stereo};
+  return {Start::hull, Start::carved, Start::stereo};
+}
+
+const char* name_of(Start start) {
+  return start == Start::hull ? "hull" : start == Start::carved ? "carved" : "stereo";
+}
+
 // done: fraction of all trials before this one.
 Trial tried(const Device& device, const PixelStore& pixels, const TrialOptions& options, Start start,
             uint64_t seed, double done, Progress& progress) {
@@ -88,13 +96,17 @@ Trial tried(const Device& device, const PixelStore& pixels, const TrialOptions& 
   GeometryStage& stage = *trial.trained;
   stage.set_light(options.light);
   stage.prefit(trial.shape, progress);
+  const double trials = double(starts_to_try(options).size()), begin = options.clock();
   for (int step = 0; step < options.steps; ++step) {
     check_cancelled(progress);
     const double u = double(step) / options.steps;
     stage.step(step, u, {}, progress);
-    if (step % 20 == 0) progress.report({"choosing a start", done + u / kStarts.size(), -1, ""});
+    if (step % 20 == 0) progress.report({"choosing a start", done + u / trials, -1, ""});
   }
   trial.psnr = stage.evaluate(pixels, options.rays, 1).psnr();
+  progress.log(Json{
+      {"stage", "trial"}, {"start", name_of(start)}, {"psnr", trial.psnr}, {"took", options.clock() - begin}}
+                   .dump());
   return trial;
 }
 
@@ -104,7 +116,9 @@ Trial tried(const Device& device, const PixelStore& pixels, const TrialOptions& 
 Trial align_with_hull(const Device& device, PixelStore& pixels, const TrialOptions& options, Trial hull,
                       uint64_t seed, Progress& progress) {
   FocalPrior prior{options.focal_error};
+  const double begin = options.clock();
   for (int round = 0; round < kMaxAlignments; ++round) {
+    if (options.align_seconds > 0 && options.clock() - begin > options.align_seconds) break;
     AlignedViews aligned =
         align_views(show_views(*hull.trained, pixels, kCompareSide, progress), pixels, prior);
     const double focal = prior.found * aligned.focal;
@@ -159,24 +173,23 @@ StartShape choose_start(const Device& device, PixelStore& pixels, const TrialOpt
                         Progress& progress) {
   StartShape best;
   double best_psnr = -1e9;
-  Json log{{"stage", "start"}};
-  for (size_t i = 0; i < kStarts.size(); ++i) {
-    const auto& [start, name] = kStarts[i];
+  Start chosen = Start::hull;
+  const std::vector<Start> starts = starts_to_try(options);
+  for (size_t i = 0; i < starts.size(); ++i) {
+    const Start start = starts[i];
     check_cancelled(progress);
-    // Carving takes the colors of a point for the same in all views.
-    if (start == Start::carved && options.light.motion != LightMotion::world) continue;
-    const double done = double(i) / kStarts.size();
+    const double done = double(i) / double(starts.size());
     Trial trial = tried(device, pixels, options, start, seed, done, progress);
     if (start == Start::hull && !options.exposures.empty())
       trial = expose_with_hull(device, pixels, options, std::move(trial), seed, progress);
     if (start == Start::hull && options.align)
       trial = align_with_hull(device, pixels, options, std::move(trial), seed, progress);
-    log[name] = trial.psnr;
     if (trial.psnr <= best_psnr) continue;
+    chosen = start;
     best = std::move(trial.shape);
     best_psnr = trial.psnr + (start == Start::hull ? kMinGain : 0);
   }
-  progress.log(log.dump());
+  progress.log(Json{{"stage", "start"}, {"chosen", name_of(chosen)}}.dump());
   return best;
 }
 

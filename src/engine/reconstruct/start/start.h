@@ -2,6 +2,7 @@
 // Shapes that the geometry stage can start from.
 #pragma once
 
+#include "core/base/clock.h"
 #include "core/base/progress.h"
 #include "engine/reconstruct/geometry/geometry_stage.h"
 #include "engine/reconstruct/start/carve.h"
@@ -31,13 +32,16 @@ struct TrialOptions {
   ShapeOptions shapes;
   GeometryOptions geometry;
   int steps = 400;
-  int rays = 32768;    // number of random training pixels of the comparison
-  LightFrame light;    // in the training views
-  bool align = false;  // whether cameras are moved where that pays
+  int rays = 32768;          // number of random training pixels of the comparison
+  bool hull_alone = false;   // whether no other start is tried; cameras and exposures are found with it
+  LightFrame light;          // in the training views
+  bool align = false;        // whether cameras are moved where that pays
+  double align_seconds = 0;  // after so many no further alignment begins; 0: no limit
   // With `align`: standard deviation of the logarithm of the focal length as it is given; 0: it is right,
   // or its error is not known. That of EXIF notes is wrong by some percent, that of a calibration by less.
   double focal_error = 0;
   std::vector<Vec3f> exposures;  // of the views, by their cameras' notes; empty: not known
+  Clock clock = steady_seconds;
 };
 
 // Trains briefly from each start shape and returns the one with the highest PSNR. Carving opens concavities
