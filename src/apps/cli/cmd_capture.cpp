@@ -40,14 +40,14 @@ std::string list_of(const std::string& what, const std::vector<std::string>& nam
   return text + ".\n";
 }
 
-std::string text_of(const PhotosReport& r, const PhotosRequest& request, size_t doubtful) {
+std::string text_of(const PhotosReport& r, const PhotosRequest& request) {
   std::string text = fmt::format("{}: poses of {} of {} photographs in {}.\n", r.out.string(), r.posed,
                                  r.photos, duration_text(r.seconds));
   text += list_of("Without a pose, left out:", r.without_pose);
   text += list_of("Without a mask, because the object was not found:", r.without_mask);
   if (!request.masks) return text + "The masks are yours to add, in masks/ beside images/.";
-  text += fmt::format("{}: all masks{}.\n", (r.out / "contact_sheet.png").string(),
-                      doubtful ? fmt::format("; {} doubtful ones have a red frame", doubtful) : "");
+  text += fmt::format("{}: all masks; views that `cei3d check` names have a red frame.\n",
+                      (r.out / "contact_sheet.png").string());
   return text + fmt::format("Next: cei3d reconstruct {} -o PROJECT{}", r.out.string(),
                             request.turntable ? " --light turntable" : "");
 }
@@ -55,19 +55,17 @@ std::string text_of(const PhotosReport& r, const PhotosRequest& request, size_t 
 void capture(const Options& o, Session& session, Console& console) {
   const PhotosRequest request = request_of(o);
   const PhotosReport r = capture_photos(request, console);
-  size_t doubtful = 0;
   Json json = r.json();
   if (request.masks) {
     CheckRequest check;
     check.capture = r.out;
     check.contact_sheet = r.out / "contact_sheet.png";
     const CheckReport checked = session.check(check);
-    doubtful = checked.report.doubts.size();
     json["check"] = checked.json();
     for (const Finding& f : checked.report.findings)
       if (f.severity != Severity::note) console.warn(f.what + " " + f.fix);
   }
-  console.done(json, text_of(r, request, doubtful));
+  console.done(json, text_of(r, request));
 }
 
 void add_mask_options(CLI::App* verb, Options& o) {
