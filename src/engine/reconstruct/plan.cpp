@@ -79,7 +79,7 @@ constexpr double kMinGeometrySteps = 4000, kMaxGeometryShare = 0.65;
 constexpr double kCutOff = 0.25;
 constexpr size_t kMinAtBorder = 2;
 
-// Seconds.
+// Costs are seconds.
 struct TrialCosts {
   double step;     // of all trials
   double besides;  // start shapes and the first fits to them
