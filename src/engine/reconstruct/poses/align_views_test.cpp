@@ -214,9 +214,9 @@ TEST(AlignViews, TrialsOfTheHullAloneMoveCamerasIfThereIsTime) {
   Progress quiet;
   choose_start(make_device(), store, o, 1, quiet);
   EXPECT_TRUE(same_cameras(store.cameras(), given));
-  o.align_seconds = 2;  // over after the first
+  o.align_seconds = 5;  // over after the second
   choose_start(make_device(), store, o, 1, quiet);
-  EXPECT_LT(off_by(store), 0.6 * before) << before;
+  EXPECT_LT(off_by(store), 0.7 * before) << before;  // by a model of 96 pixels and 200 steps
 }
 
 TEST(RefinedCameras, GoToTheCaptureAndBack) {
