@@ -46,7 +46,7 @@ std::string text_of(const PhotosReport& r, const PhotosRequest& request) {
   text += list_of("Without a pose, left out:", r.without_pose);
   text += list_of("Without a mask, because the object was not found:", r.without_mask);
   if (!request.masks) return text + "The masks are yours to add, in masks/ beside images/.";
-  text += fmt::format("{}: all masks; views that `cei3d check` names have a red frame.\n",
+  text += fmt::format("{}: all masks; views of a warning or problem of `cei3d check` have a red frame.\n",
                       (r.out / "contact_sheet.png").string());
   return text + fmt::format("Next: cei3d reconstruct {} -o PROJECT{}", r.out.string(),
                             request.turntable ? " --light turntable" : "");

@@ -124,14 +124,9 @@ struct Checked {
 };
 
 // Views that cannot be used at all are left out; what remains is checked again.
-std::function<void(Capture&)> removal_for(Problem problem, const std::vector<std::string>& names) {
-  if (problem != kNoFile && problem != kBroken && problem != kBadPose && problem != kEmptyMask &&
-      problem != kAway)
-    return {};
-  return [names](Capture& c) {
-    std::erase_if(
-        c.views, [&](const View& v) { return std::find(names.begin(), names.end(), v.name) != names.end(); });
-  };
+bool makes_useless(Problem problem) {
+  return problem == kNoFile || problem == kBroken || problem == kBadPose || problem == kEmptyMask ||
+         problem == kAway;
 }
 
 void report_problems(const std::vector<Checked>& all, CaptureReport& report) {
@@ -148,7 +143,7 @@ void report_problems(const std::vector<Checked>& all, CaptureReport& report) {
     report.findings.push_back(
         {text.severity,
          fmt::format("{} of {} {}: {}.{}", names.size(), all.size(), text.what, some_names(names), detail),
-         text.fix, removal_for(Problem(problem), names)});
+         text.fix, names, makes_useless(Problem(problem)) ? removal_of(names) : nullptr});
   }
 }
 
@@ -230,7 +225,9 @@ void check_polarity(const std::vector<Checked>& all, CaptureReport& report) {
        fmt::format("The masks cover the borders of {} of {} images: they seem to mean the background, not "
                    "the object.",
                    inside_out, stated),
-       "Invert them; `check` can write a corrected copy of the capture.", [](Capture& c) {
+       "Invert them; `check` can write a corrected copy of the capture.",
+       {},
+       [](Capture& c) {
          for (View& v : c.views) v.dark_object = !v.dark_object;
        }});
 }
@@ -325,6 +322,13 @@ std::string some_names(const std::vector<std::string>& names) {
   std::string text;
   for (size_t i = 0; i < names.size() && i < 5; ++i) text += (i ? ", " : "") + names[i];
   return names.size() > 5 ? fmt::format("{} and {} more", text, names.size() - 5) : text;
+}
+
+std::function<void(Capture&)> removal_of(std::vector<std::string> names) {
+  return [names = std::move(names)](Capture& c) {
+    std::erase_if(
+        c.views, [&](const View& v) { return std::find(names.begin(), names.end(), v.name) != names.end(); });
+  };
 }
 
 bool CaptureReport::usable() const {

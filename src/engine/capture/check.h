@@ -20,6 +20,9 @@ enum class Severity { note, warning, error };  // error: reconstruct refuses the
 struct Finding {
   Severity severity = Severity::error;
   std::string what, fix;  // sentences
+  // Names of the views that it is about; empty: it is about the capture as a whole. The sentence names the
+  // first few.
+  std::vector<std::string> views = {};
   // A safe change of the capture that removes the cause; empty: there is none.
   std::function<void(Capture&)> repair = {};
 };

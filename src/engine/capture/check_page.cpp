@@ -20,17 +20,11 @@ constexpr Vec3f kRed{0.85f, 0.15f, 0.1f}, kGray{0.5f, 0.5f, 0.5f};
 
 void put(Image& image, int x, int y, Vec3f color) { std::copy_n(&color.x, 3, image.at(x, y)); }
 
-bool is_named(const View& view, const CaptureReport& report) {
+// A note asks for no change of a view.
+bool is_doubtful(const View& view, const CaptureReport& report) {
   return std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& f) {
-    for (size_t at = f.what.find(view.name); at != std::string::npos; at = f.what.find(view.name, at + 1)) {
-      const size_t end = at + view.name.size();
-      const auto part_of_word = [](char c) {
-        return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '/';
-      };
-      if ((at == 0 || !part_of_word(f.what[at - 1])) && (end == f.what.size() || !part_of_word(f.what[end])))
-        return true;
-    }
-    return false;
+    return f.severity != Severity::note &&
+           std::find(f.views.begin(), f.views.end(), view.name) != f.views.end();
   });
 }
 
@@ -60,7 +54,7 @@ constexpr const char* kHead = R"(<!doctype html><meta charset="utf-8"><title>Che
 body{font:15px/1.45 sans-serif;margin:2em;max-width:75em;color:#222}
 li{margin:.5em 0}.problem b{color:#b00}.warning b{color:#a60}.note b{color:#068}
 figure{display:inline-block;margin:4px;vertical-align:top;width:180px}figcaption{font-size:12px;overflow-wrap:anywhere}
-.named img{outline:3px solid #d22}img{max-width:100%}
+.doubtful img{outline:3px solid #d22}img{max-width:100%}
 </style>)";
 
 std::string finding_item(const Finding& f) {
@@ -107,7 +101,7 @@ Image contact_sheet(const Capture& capture, const CaptureReport& report, int siz
   for (int i = 0; i < n; ++i) {
     const Image& p = pictures[size_t(i)];
     const int x0 = i % columns * cell, y0 = i / columns * cell;
-    if (is_named(capture.views[size_t(i)], report))
+    if (is_doubtful(capture.views[size_t(i)], report))
       for (int y = 0; y < cell; ++y)
         for (int x = 0; x < cell; ++x) put(sheet, x0 + x, y0 + y, kRed);
     for (int y = 0; y < p.height; ++y)
@@ -132,8 +126,8 @@ std::string check_page(const Capture& capture, const CaptureReport& report) {
   const std::vector<Image> pictures = pictures_of(capture, report, 180);
   for (size_t i = 0; i < pictures.size(); ++i)
     page += fmt::format("<figure{}>{}<figcaption>{}</figcaption></figure>\n",
-                        is_named(capture.views[i], report) ? " class=\"named\"" : "", image_tag(pictures[i]),
-                        html_escaped(capture.views[i].name));
+                        is_doubtful(capture.views[i], report) ? " class=\"doubtful\"" : "",
+                        image_tag(pictures[i]), html_escaped(capture.views[i].name));
   return page;
 }
 

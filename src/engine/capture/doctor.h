@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -19,6 +20,9 @@ namespace cei3d {
 
 // "a, b, c", of more than five names the first five and the number of the others.
 std::string some_names(const std::vector<std::string>& names);
+
+// The repair that leaves out the views of these names.
+std::function<void(Capture&)> removal_of(std::vector<std::string> names);
 
 // Sparse points projected into the photographs that show them: names swapped or misplaced lens coefficients,
 // principal points that are half a pixel off, K of another image size, views of another pose. Captures

@@ -269,13 +269,6 @@ std::vector<std::string> names_of(const std::vector<Suspect>& all) {
   return names;
 }
 
-std::function<void(Capture&)> removal(const std::vector<std::string>& names) {
-  return [names](Capture& c) {
-    std::erase_if(
-        c.views, [&](const View& v) { return std::find(names.begin(), names.end(), v.name) != names.end(); });
-  };
-}
-
 void report_poses(const std::vector<Suspect>& poses, size_t all, std::vector<Finding>& findings) {
   if (poses.empty()) return;
   std::vector<std::string> texts;
@@ -286,7 +279,7 @@ void report_poses(const std::vector<Suspect>& poses, size_t all, std::vector<Fin
        fmt::format("{} of {} views do not fit the others: {}.", poses.size(), all, some_names(texts)),
        "Their poses or images are wrong: exchange the images, match the photographs again, or remove "
        "these views.",
-       removal(names_of(poses))});
+       names_of(poses), removal_of(names_of(poses))});
 }
 
 void report_masks(const std::vector<Suspect>& wrong, size_t all, const char* what,
@@ -295,7 +288,8 @@ void report_masks(const std::vector<Suspect>& wrong, size_t all, const char* wha
   findings.push_back(
       {Severity::warning,
        fmt::format("{} of {} masks {}: {}.", wrong.size(), all, what, some_names(names_of(wrong))),
-       "Correct these masks. Where they contradict the other views, `reconstruct` does not use them."});
+       "Correct these masks. Where they contradict the other views, `reconstruct` does not use them.",
+       names_of(wrong)});
 }
 
 // Mistakes of all cameras, when the masks do not agree as they are. Whether one was found.
@@ -315,6 +309,7 @@ bool report_mistake(std::span<const JudgedMask> masks, std::vector<Finding>& fin
                    "They agree ({:.0f} %) if {}.",
                    100 * now, 100 * largest, best->what),
        "Correct the cameras; `check` can write a corrected copy of the capture.",
+       {},
        [undo = best->undo](Capture& c) {
          for (View& v : c.views) {
            v.camera = undo(v.camera);

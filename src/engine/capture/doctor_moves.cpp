@@ -31,7 +31,8 @@ Finding finding_of(const MovedPart& part, size_t views, const std::string& befor
                       before, after, part.first, later),
           fmt::format("`reconstruct` shows it as the views {} the move do, and does not use the others where "
                       "it is. Photograph the object without moving anything to have it from all sides.",
-                      part.earlier ? "before" : "after")};
+                      part.earlier ? "before" : "after"),
+          {before, after}};
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ void report(std::span<const JudgedMask> masks, const std::vector<Area>& areas, S
   if (names.empty()) return;
   findings.push_back(
       {severity, fmt::format("{} of {} masks {}: {}.", names.size(), masks.size(), what, some_names(names)),
-       fix});
+       fix, names});
 }
 
 }  // namespace

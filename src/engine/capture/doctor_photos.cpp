@@ -103,17 +103,18 @@ std::vector<double> jumps_of_brightness(std::span<const JudgedPhoto> photos, Vec
 void check_exposures(std::span<const JudgedPhoto> photos, Vec3d center, std::vector<Finding>& findings) {
   const auto differences = jumps_of_brightness(photos, center);
   const double limit = std::max(kJump, kOutlierFactor * median_deviation(differences));
-  std::vector<std::string> names;
+  std::vector<std::string> names, texts;
   for (size_t i = 0; i < photos.size(); ++i)
-    if (std::abs(differences[i]) > limit)
-      names.push_back(
-          fmt::format("{} ({:.2g} times as bright)", photos[i].view->name, std::exp(differences[i])));
+    if (std::abs(differences[i]) > limit) {
+      names.push_back(photos[i].view->name);
+      texts.push_back(fmt::format("{} ({:.2g} times as bright)", names.back(), std::exp(differences[i])));
+    }
   if (!names.empty())
     findings.push_back(
         {Severity::warning,
          fmt::format("{} of {} photographs are much brighter or darker than their neighbors: {}.",
-                     names.size(), photos.size(), some_names(names)),
-         "Lock exposure and white balance, or remove these views."});
+                     names.size(), photos.size(), some_names(texts)),
+         "Lock exposure and white balance, or remove these views.", names});
   std::vector<double> stated;
   for (const JudgedPhoto& p : photos)
     if (p.look->notes.exposure) stated.push_back(*p.look->notes.exposure);
@@ -138,7 +139,7 @@ void check_white_balance(std::span<const JudgedPhoto> photos, std::vector<Findin
        fmt::format("By the camera's own notes (EXIF) it chose the white balance of {} of {} photographs "
                    "itself, so their colors may differ: {}.",
                    names.size(), photos.size(), some_names(names)),
-       "Lock the white balance; `reconstruct` makes up for constant factors of the channels."});
+       "Lock the white balance; `reconstruct` makes up for constant factors of the channels.", names});
 }
 
 void check_blur(std::span<const JudgedPhoto> photos, std::vector<Finding>& findings) {
@@ -153,11 +154,7 @@ void check_blur(std::span<const JudgedPhoto> photos, std::vector<Finding>& findi
                         fmt::format("{} of {} photographs are blurred against their neighbors: {}.",
                                     names.size(), photos.size(), some_names(names)),
                         "Remove these views, or take them again: longer depth of field, shorter exposure.",
-                        [names](Capture& c) {
-                          std::erase_if(c.views, [&](const View& v) {
-                            return std::find(names.begin(), names.end(), v.name) != names.end();
-                          });
-                        }});
+                        names, removal_of(names)});
 }
 
 double difference_of(const PhotoLook& a, const PhotoLook& b) {
@@ -177,7 +174,7 @@ double contrast_of(const PhotoLook& look) {
 // Finds the same image at two poses, or twice at one. Neighboring photographs of a smooth object are similar,
 // too: thumbnails of a duplicate are nearly equal, and its pixels are the same.
 void check_duplicates(std::span<const JudgedPhoto> photos, std::vector<Finding>& findings) {
-  std::vector<std::string> pairs, second;
+  std::vector<std::string> pairs, both, second;
   for (size_t i = 0; i < photos.size(); ++i)
     for (size_t k = 0; k < i; ++k) {
       const PhotoLook &a = *photos[i].look, &b = *photos[k].look;
@@ -186,18 +183,15 @@ void check_duplicates(std::span<const JudgedPhoto> photos, std::vector<Finding>&
         continue;
       pairs.push_back(fmt::format("{} = {}", photos[i].view->name, photos[k].view->name));
       second.push_back(photos[i].view->name);
+      both.insert(both.end(), {photos[i].view->name, photos[k].view->name});
       break;
     }
   if (!pairs.empty())
     findings.push_back({Severity::warning,
                         fmt::format("{} of {} photographs are there twice: {}.", pairs.size(), photos.size(),
                                     some_names(pairs)),
-                        "Remove the copies; where their poses differ, one of the two is wrong.",
-                        [second](Capture& c) {
-                          std::erase_if(c.views, [&](const View& v) {
-                            return std::find(second.begin(), second.end(), v.name) != second.end();
-                          });
-                        }});
+                        "Remove the copies; where their poses differ, one of the two is wrong.", both,
+                        removal_of(second)});
 }
 
 // Standard deviation over photographs of what is background in nearly all of them, and over its places.

@@ -142,11 +142,8 @@ void check_each(const std::vector<const View*>& views, double usual, std::vector
       {Severity::warning,
        fmt::format("{} of {} views do not fit the sparse points that they are said to show: {}.", odd.size(),
                    views.size(), some_names(odd)),
-       "Their pose, or their image, is that of another photograph: remove them, or match again.",
-       [odd](Capture& c) {
-         std::erase_if(c.views,
-                       [&](const View& v) { return std::find(odd.begin(), odd.end(), v.name) != odd.end(); });
-       }});
+       "Their pose, or their image, is that of another photograph: remove them, or match again.", odd,
+       removal_of(odd)});
 }
 
 }  // namespace
@@ -167,6 +164,7 @@ void check_tracks(const Capture& capture, std::vector<Finding>& findings) {
                      "cameras fit if {}.",
                      now, best->what),
          "Correct the cameras; `check` can write a corrected copy of the capture.",
+         {},
          [change = best->change](Capture& c) {
            for (View& v : c.views) set_photo(v, change(camera_of(v)));
          }});
@@ -203,7 +201,9 @@ void check_intrinsics(const Capture& capture, std::vector<Finding>& findings) {
         {Severity::warning,
          fmt::format("The principal points lie at {:.2f} of the image width and {:.2f} of its height.",
                      0.5 / x, 0.5 / y),
-         fmt::format("K belongs to images of another size: multiply it by {:.3g}.", x), [x](Capture& c) {
+         fmt::format("K belongs to images of another size: multiply it by {:.3g}.", x),
+         {},
+         [x](Capture& c) {
            for (View& v : c.views) {
              const PhotoCamera p = camera_of(v);
              set_photo(v, PhotoCamera(enlarged(p.camera(), x), p.lens()));

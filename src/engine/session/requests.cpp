@@ -85,7 +85,10 @@ Json CheckReport::json() const {
         {"sizes_vary", r.sizes_vary},
         {"coverage", {{"mean", r.coverage}, {"least", r.coverage_min}, {"most", r.coverage_max}}}};
   for (const Finding& f : report.findings)
-    findings.push_back({{"severity", kSeverities[size_t(f.severity)]}, {"what", f.what}, {"fix", f.fix}});
+    findings.push_back({{"severity", kSeverities[size_t(f.severity)]},
+                        {"what", f.what},
+                        {"fix", f.fix},
+                        {"views", f.views}});
   return {
       {"format", report.format},
       {"root", capture.root.string()},
