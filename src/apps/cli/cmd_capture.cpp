@@ -92,8 +92,9 @@ void add_capture(Commands& commands) {
   verb->add_option("photos", o->request.photos, "Folder of photographs (JPEG, PNG, TIFF, HEIC), or a video")
       ->required();
   verb->add_option("-o,--output", o->request.out, "Folder for the capture")->required();
-  verb->add_flag("--turntable", o->request.turntable,
-                 "The object turned before a camera that stood still: the background is ignored");
+  verb->add_flag(
+      "--turntable", o->request.turntable,
+      "The object turned before a camera that stood still. Else that is tried if few poses are found");
   verb->add_option("--focal", o->focal,
                    "Focal length of the photographs in pixels (default: by their EXIF notes, else guessed)")
       ->check(CLI::PositiveNumber);

@@ -44,10 +44,12 @@ std::vector<fs::path> paths_of(const PhotoFiles& photos, const fs::path& folder)
   return out;
 }
 
-// Files that keep COLMAP from finding features on a background that stands still.
+// Files that keep COLMAP from finding features on what stands still while the object turns. Where the camera
+// went around the object, only plain background is the same in nearly all photographs, which has no features.
+// Photographs of several cameras or sizes: none.
 fs::path write_feature_masks(const PhotosRequest& r, const PhotoFiles& photos, const Progress& progress) {
   const fs::path folder = r.out / "work/features";
-  if (!r.turntable) return {};
+  if (!r.turntable && !photos.one_camera) return {};
   const StillPixels still = still_pixels(paths_of(photos, r.out / "images"), progress);
   Image mask(still.width, still.height, 1);
   const int columns = still.width / still.reduction, rows = still.height / still.reduction;
@@ -136,9 +138,9 @@ PhotosReport capture_photos(const PhotosRequest& r, Progress& progress) {
   const PhotoFiles photos = copy_photos(r.photos, r.out / "images", r.frames, progress);
   PosingRequest posing;
   posing.images = r.out / "images", posing.work = r.out / "work", posing.sparse = r.out / "sparse";
-  posing.feature_masks = write_feature_masks(r, photos, progress);
   posing.one_camera = photos.one_camera, posing.in_order = photos.in_order;
   posing.turntable = r.turntable, posing.focal = r.focal, posing.threads = r.threads;
+  if (!poses_are_found(posing)) posing.feature_masks = write_feature_masks(r, photos, progress);
   find_poses(posing, kCopied, r.masks ? kPosed : 1, progress);
 
   const Capture capture = load_capture(r.out / "sparse", {"colmap"});
@@ -148,8 +150,7 @@ PhotosReport capture_photos(const PhotosRequest& r, Progress& progress) {
     throw Error(
         ErrorCode::failed,
         fmt::format("COLMAP found the poses of only {} of {} photographs.", report.posed, report.photos),
-        "More overlap between neighbors helps, and texture: docs/photographing.md. If the object turned on "
-        "a turntable, say so.");
+        "More overlap between neighbors helps, and texture: docs/photographing.md.");
   if (segmenter) {
     set_aside_other_masks(r);
     MaskRequest masks{capture.views, clicks_of(r, capture), r.out / "work/first_masks", r.out / "masks"};

@@ -23,7 +23,7 @@ struct PhotosRequest {
   };
   std::vector<Click> clicks;    // on the object, or beside it; empty: found by itself
   std::filesystem::path plate;  // photograph of the background without the object; empty: none
-  bool turntable = false;       // the object turned before a camera that stood still
+  bool turntable = false;       // the object turned before a camera that stood still; found out if not said
   bool masks = true;            // false: poses alone
   std::optional<double> focal;  // of the photographs, in pixels
   int frames = 100;             // that are taken of a video

@@ -146,6 +146,26 @@ TEST_F(Photos, WithTooFewPosesAreRefused) {
   EXPECT_NE(message([&] { capture_photos(request(), progress_); }).find("only 5 of 12"), std::string::npos);
 }
 
+// Of a turntable that nobody mentioned: the strict search poses few.
+TEST_F(Photos, AreAlsoPosedAsOnATurntable) {
+  for (const bool found : {true, false}) {
+    write_colmap_bin(root_.path() / "few/0", TestBall(), {views_.begin(), views_.begin() + 5}, {});
+    write_program(fmt::format(R"(#!/bin/sh
+[ "$2" = -h ] && exit 0
+[ "$1" = mapper ] || {{ echo "$@" >> ROOT/calls; exit 0; }}
+model={}
+for word in "$@"; do [ "$word" = --Mapper.init_min_tri_angle ] && model=model; done
+[ $model ] || exit 1
+while [ "$1" != --output_path ]; do shift; done
+cp -r ROOT/$model/0 "$2"
+)",
+                              found ? "few" : ""));
+    EXPECT_EQ(capture_photos(request(), progress_).posed, 12u) << found;
+    EXPECT_NE(calls().find("--ImageReader.mask_path"), std::string::npos);
+    fs::remove_all(request().out);
+  }
+}
+
 TEST_F(Photos, WhoseProgramFailsAreRefusedWithItsWords) {
   write_program("#!/bin/sh\n[ \"$2\" = -h ] && exit 0\necho no good >&2\nexit 3\n");
   const std::string error = message([&] { capture_photos(request(), progress_); });

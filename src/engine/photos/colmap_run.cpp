@@ -11,11 +11,15 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/process.h"
+#include "engine/capture/colmap_model.h"
 #include "engine/io/image_file.h"
 
 namespace cei3d {
 namespace fs = std::filesystem;
 namespace {
+
+// With fewer photographs that have a pose, of all, poses are searched again as on a turntable.
+constexpr double kEnoughPosed = 0.9;
 
 using Words = std::vector<std::string>;
 
@@ -70,14 +74,17 @@ Words matching_step(const PosingRequest& r, const Dialect& d, const std::string&
           threads};
 }
 
-Words mapping_step(const PosingRequest& r, const std::string& threads, const fs::path& models) {
+// narrow: also from pairs of photographs whose directions differ little, and by few points.
+Words mapping_step(const PosingRequest& r, bool narrow, const std::string& threads, const fs::path& models) {
   Words w{"mapper",        "--database_path",      (r.work / "database.db").string(),
           "--image_path",  r.images.string(),      "--output_path",
           models.string(), "--Mapper.num_threads", threads};
-  if (r.turntable)
+  if (narrow)
     w.insert(w.end(), {"--Mapper.init_min_tri_angle", "4", "--Mapper.abs_pose_min_num_inliers", "20"});
   return w;
 }
+
+std::string threads_of(const PosingRequest& r) { return std::to_string(r.threads > 0 ? r.threads : -1); }
 
 size_t photos_in(const fs::path& folder) {
   size_t n = 0;
@@ -122,14 +129,31 @@ class Steps {
   Progress& progress_;
 };
 
-bool has_model(const fs::path& models) {
-  std::error_code none;
-  return fs::exists(models / "0", none);
+// Finds poses in `folder`. Returns how many the largest of the models has; 0: there is none.
+size_t map_photos(Steps& steps, const PosingRequest& r, bool narrow, const fs::path& folder, double first,
+                  double last) {
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+  try {
+    steps.run("poses", mapping_step(r, narrow, threads_of(r), folder), first, last);
+  } catch (const Error& e) {
+    // Some versions of COLMAP fail where they find nothing.
+    if (e.code() != ErrorCode::failed || !fs::is_empty(folder)) throw;
+  }
+  size_t most = 0;
+  for (const auto& model : fs::directory_iterator(folder))
+    if (is_colmap_model(model)) most = std::max(most, colmap_image_count(model));
+  return most;
 }
 
 }  // namespace
 
 void require_colmap() { dialect(); }
+
+bool poses_are_found(const PosingRequest& r) {
+  std::error_code none;
+  return fs::exists(r.sparse / "0", none);
+}
 
 std::optional<double> colmap_progress(const std::string& log, size_t photos) {
   unsigned done = 0, all = 0, other = 0, others = 0;
@@ -151,25 +175,25 @@ std::optional<double> colmap_progress(const std::string& log, size_t photos) {
 }
 
 void find_poses(const PosingRequest& r, double first, double last, Progress& progress) {
-  if (has_model(r.sparse)) return;
+  if (poses_are_found(r)) return;
   const Dialect d = dialect();
   fs::create_directories(r.work);
-  const std::string threads = std::to_string(r.threads > 0 ? r.threads : -1);
   const auto at = [&](double share) { return first + (last - first) * share; };
   Steps steps(r, progress);
-  steps.run("features", feature_step(r, d, threads), at(0), at(0.15));
-  steps.run("matches", matching_step(r, d, threads), at(0.15), at(0.6));
-  const fs::path models = r.work / "models";
-  fs::remove_all(models);
-  fs::create_directories(models);
-  steps.run("poses", mapping_step(r, threads, models), at(0.6), at(1));
-  if (!has_model(models))
+  steps.run("features", feature_step(r, d, threads_of(r)), at(0), at(0.15));
+  steps.run("matches", matching_step(r, d, threads_of(r)), at(0.15), at(0.6));
+  const fs::path wide = r.work / "models", narrow = r.work / "narrow_models";
+  const size_t of_wide = r.turntable ? 0 : map_photos(steps, r, false, wide, at(0.6), at(0.8));
+  const bool enough = double(of_wide) >= kEnoughPosed * double(photos_in(r.images));
+  const size_t of_narrow = enough ? 0 : map_photos(steps, r, true, narrow, at(0.8), at(1));
+  if (of_wide + of_narrow == 0)
     throw Error(
         ErrorCode::failed, "COLMAP could not find out from where the photographs were taken.",
-        "Photographs of the same places that overlap by half, sharp, of a surface with texture, help: "
-        "docs/photographing.md. If the object turned on a turntable, say so.");
+        fmt::format("Photographs of the same places that overlap by half, sharp, of a surface with texture, "
+                    "help: docs/photographing.md. COLMAP's own words are in {}.",
+                    (r.work / "colmap.log").string()));
   fs::remove_all(r.sparse);
-  move_path(models, r.sparse);
+  move_path(of_narrow > of_wide ? narrow : wide, r.sparse);
 }
 
 }  // namespace cei3d

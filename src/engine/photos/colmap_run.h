@@ -16,13 +16,18 @@ struct PosingRequest {
   std::filesystem::path feature_masks;  // NAME.jpg.png, black where no features are wanted; empty: everywhere
   bool one_camera = true;               // all photographs have the same intrinsics
   bool in_order = false;                // compare only neighbors
-  bool turntable = false;               // neighbors are seen from similar directions, with few features
-  std::optional<double> focal;          // of the photographs in pixels; none: by their notes, else guessed
-  int threads = 0;                      // 0: all cores
+  // Neighbors are seen from similar directions, with few features. Tried also if it is not said, where else
+  // many photographs have no pose.
+  bool turntable = false;
+  std::optional<double> focal;  // of the photographs in pixels; none: by their notes, else guessed
+  int threads = 0;              // 0: all cores
 };
 
 // Error: COLMAP is not installed, with what to do.
 void require_colmap();
+
+// Whether find_poses() has nothing left to do.
+bool poses_are_found(const PosingRequest&);
 
 // Does what of it is not done yet. Reports the shares of progress between `first` and `last`. Errors: COLMAP
 // fails, no model comes out, interrupted.
