@@ -46,8 +46,9 @@ std::string text_of(const PhotosReport& r, const PhotosRequest& request) {
   text += list_of("Without a pose, left out:", r.without_pose);
   text += list_of("Without a mask, because the object was not found:", r.without_mask);
   if (!request.masks) return text + "The masks are yours to add, in masks/ beside images/.";
-  text += fmt::format("{}: all masks; views of a warning or problem of `cei3d check` have a red frame.\n",
-                      (r.out / "contact_sheet.png").string());
+  text += fmt::format(
+      "{}: all masks; those of which `cei3d check` says that something is wrong have a red frame.\n",
+      (r.out / "contact_sheet.png").string());
   return text + fmt::format("Next: cei3d reconstruct {} -o PROJECT{}", r.out.string(),
                             request.turntable ? " --light turntable" : "");
 }

@@ -82,7 +82,7 @@ void add_check(Commands& commands) {
       "bounding sphere. With --fix the folder of the corrected capture");
   verb->add_flag("--fix", o->fix, "Write a capture without what can be corrected safely, and check that");
   verb->add_option("--contact-sheet", o->request.contact_sheet,
-                   "PNG file to write: all views; those of a warning or problem have a red frame");
+                   "PNG file to write: all views; those of which something is wrong have a red frame");
   commands.on(verb, o, run_check);
 }
 

@@ -143,7 +143,7 @@ void report_problems(const std::vector<Checked>& all, CaptureReport& report) {
     report.findings.push_back(
         {text.severity,
          fmt::format("{} of {} {}: {}.{}", names.size(), all.size(), text.what, some_names(names), detail),
-         text.fix, names, makes_useless(Problem(problem)) ? removal_of(names) : nullptr});
+         text.fix, names, makes_useless(Problem(problem)) ? removal_of(names) : nullptr, problem != kCut});
   }
 }
 

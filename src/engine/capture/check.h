@@ -25,6 +25,7 @@ struct Finding {
   std::vector<std::string> views = {};
   // A safe change of the capture that removes the cause; empty: there is none.
   std::function<void(Capture&)> repair = {};
+  bool marked = true;  // its views where all are shown; false: pictures of them show it as well
 };
 
 struct SplitReport {

@@ -20,10 +20,10 @@ constexpr Vec3f kRed{0.85f, 0.15f, 0.1f}, kGray{0.5f, 0.5f, 0.5f};
 
 void put(Image& image, int x, int y, Vec3f color) { std::copy_n(&color.x, 3, image.at(x, y)); }
 
-// A note asks for no change of a view.
+// A note asks for no change of a view, and of what a picture shows there may be too many.
 bool is_doubtful(const View& view, const CaptureReport& report) {
   return std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& f) {
-    return f.severity != Severity::note &&
+    return f.severity != Severity::note && f.marked &&
            std::find(f.views.begin(), f.views.end(), view.name) != f.views.end();
   });
 }
@@ -102,8 +102,8 @@ Image contact_sheet(const Capture& capture, const CaptureReport& report, int siz
     const Image& p = pictures[size_t(i)];
     const int x0 = i % columns * cell, y0 = i / columns * cell;
     if (is_doubtful(capture.views[size_t(i)], report))
-      for (int y = 0; y < cell; ++y)
-        for (int x = 0; x < cell; ++x) put(sheet, x0 + x, y0 + y, kRed);
+      for (int y = 0; y < p.height + 2 * kFrame; ++y)
+        for (int x = 0; x < p.width + 2 * kFrame; ++x) put(sheet, x0 + x, y0 + y, kRed);
     for (int y = 0; y < p.height; ++y)
       for (int x = 0; x < p.width; ++x) put(sheet, x0 + kFrame + x, y0 + kFrame + y, p.rgb(x, y));
   }
