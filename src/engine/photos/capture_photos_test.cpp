@@ -11,6 +11,7 @@
 #include "core/base/temp_folder.h"
 #include "engine/capture/capture.h"
 #include "engine/capture/capture_images.h"
+#include "engine/capture/colmap_model.h"
 #include "engine/capture/test_formats.h"
 #include "engine/photos/colmap_run.h"
 #include "engine/photos/photo_files.h"
@@ -27,6 +28,23 @@ TEST(ColmapProgress, IsReadFromWhatItPrints) {
   EXPECT_DOUBLE_EQ(*colmap_progress("Matching image [30/40]", 40), 0.75);
   EXPECT_DOUBLE_EQ(*colmap_progress("Registering image #12 (3)\n\n  => Image sees 40 / 90 points", 12), 0.25);
   EXPECT_FALSE(colmap_progress("Processed file [x/8]", 8));
+}
+
+TEST(FullLens, ProjectsAsBefore) {
+  const TempFolder folder;
+  TestColmap model;
+  model.model = 2, model.lens = {0.03};
+  write_colmap_bin(folder.path(), TestBall(), test_views(TestBall(), 2), model);
+  EXPECT_FALSE(give_full_lens(folder.path()));  // two cameras
+  write_colmap_bin(folder.path(), TestBall(), test_views(TestBall(), 1), model);
+  const ColmapModel::Camera before = read_colmap_model(folder.path()).cameras.at(1);
+  EXPECT_EQ(before.lens.radial[0], 0.03);
+  EXPECT_TRUE(give_full_lens(folder.path()));
+  const ColmapModel::Camera after = read_colmap_model(folder.path()).cameras.at(1);
+  EXPECT_EQ(after.lens, before.lens);
+  for (const auto member : {&Camera::fx, &Camera::fy, &Camera::cx, &Camera::cy})
+    EXPECT_EQ(after.k.*member, before.k.*member);
+  EXPECT_FALSE(give_full_lens(folder.path()));  // it has one
 }
 
 Image gray(int width, int height) { return Image(width, height, 3, 0.45f); }

@@ -1,16 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "engine/photos/colmap_run.h"
 
+#include <array>
 #include <chrono>
 #include <cstdio>
+#include <cstring>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "core/base/bytes.h"
 #include "core/base/cancel.h"
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/process.h"
+#include "engine/capture/colmap_camera.h"
 #include "engine/capture/colmap_model.h"
 #include "engine/io/image_file.h"
 
@@ -47,15 +51,15 @@ Dialect dialect() {
 std::string camera_text(const PosingRequest& r) {
   const ImageSize size = read_image_size(fs::directory_iterator(r.images)->path());
   const double f = *r.focal, cx = size.width / 2.0, cy = size.height / 2.0;
-  return r.one_camera ? fmt::format("{},{},{},{},0,0,0,0", f, f, cx, cy)
-                      : fmt::format("{},{},{},0", f, cx, cy);
+  return fmt::format("{},{},{},0", f, cx, cy);
 }
 
 Words feature_step(const PosingRequest& r, const Dialect& d, const std::string& threads) {
   Words w{"feature_extractor", "--database_path", (r.work / "database.db").string(), "--image_path",
           r.images.string(), "--ImageReader.single_camera", r.one_camera ? "1" : "0",
-          "--ImageReader.camera_model", r.one_camera ? "OPENCV" : "SIMPLE_RADIAL",
-          "--" + d.extraction + ".use_gpu", "0", "--" + d.extraction + ".num_threads", threads,
+          // Few photographs do not tell more of the lens, and with a wrong one the others do not fit.
+          "--ImageReader.camera_model", "SIMPLE_RADIAL", "--" + d.extraction + ".use_gpu", "0",
+          "--" + d.extraction + ".num_threads", threads,
           // Without the doubled image of the default, which takes gigabytes; photographs are large enough.
           "--SiftExtraction.first_octave", "0", "--SiftExtraction.max_image_size", "1600",
           "--SiftExtraction.max_num_features", "4096"};
@@ -123,6 +127,17 @@ class Steps {
                             said.substr(said.size() - std::min<size_t>(said.size(), 300))));
   }
 
+  // Likewise; whether COLMAP did not fail.
+  bool succeeds(const char* stage, Words words, double first, double last) {
+    try {
+      run(stage, std::move(words), first, last);
+    } catch (const Error& e) {
+      if (e.code() != ErrorCode::failed) throw;
+      return false;
+    }
+    return true;
+  }
+
  private:
   fs::path log_;
   size_t photos_;
@@ -134,19 +149,52 @@ size_t map_photos(Steps& steps, const PosingRequest& r, bool narrow, const fs::p
                   double last) {
   fs::remove_all(folder);
   fs::create_directories(folder);
-  try {
-    steps.run("poses", mapping_step(r, narrow, threads_of(r), folder), first, last);
-  } catch (const Error& e) {
-    // Some versions of COLMAP fail where they find nothing.
-    if (e.code() != ErrorCode::failed || !fs::is_empty(folder)) throw;
-  }
+  // Some versions of COLMAP fail where they find nothing.
+  steps.succeeds("poses", mapping_step(r, narrow, threads_of(r), folder), first, last);
   size_t most = 0;
   for (const auto& model : fs::directory_iterator(folder))
     if (is_colmap_model(model)) most = std::max(most, colmap_image_count(model));
   return most;
 }
 
+// Adjusts each model again with more of the lens, which all its photographs together tell.
+void refine_lens(Steps& steps, const fs::path& models, const fs::path& work, double progress) {
+  const std::vector<fs::path> folders(fs::directory_iterator(models), {});
+  for (const fs::path& model : folders) {
+    if (!give_full_lens(model)) continue;
+    const fs::path refined = work / "refined";
+    fs::remove_all(refined);
+    fs::create_directories(refined);
+    const Words step{"bundle_adjuster", "--input_path", model.string(), "--output_path", refined.string()};
+    if (!steps.succeeds("poses", step, progress, progress)) continue;
+    fs::remove_all(model);
+    move_path(refined, model);
+  }
+}
+
 }  // namespace
+
+bool give_full_lens(const fs::path& model) {
+  struct Head {
+    uint64_t cameras;
+    uint32_t id;
+    int32_t kind;
+    uint64_t width, height;
+  } head;
+  std::array<double, 4> k{};  // f, cx, cy, k1
+  const fs::path file = model / "cameras.bin";
+  const std::string bytes = fs::exists(file) ? read_file(file) : "";
+  if (bytes.size() != sizeof head + sizeof k) return false;
+  std::memcpy(&head, bytes.data(), sizeof head);
+  std::memcpy(k.data(), bytes.data() + sizeof head, sizeof k);
+  if (head.cameras != 1 || head.kind != colmap_camera_model("SIMPLE_RADIAL", "").id) return false;
+  head.kind = colmap_camera_model("OPENCV", "").id;
+  std::string full;
+  append_bytes(full, head);
+  append_bytes(full, std::array<double, 8>{k[0], k[0], k[1], k[2], k[3], 0, 0, 0});
+  write_file_atomic(file, full);
+  return true;
+}
 
 void require_colmap() { dialect(); }
 
@@ -192,8 +240,10 @@ void find_poses(const PosingRequest& r, double first, double last, Progress& pro
         fmt::format("Photographs of the same places that overlap by half, sharp, of a surface with texture, "
                     "help: docs/photographing.md. COLMAP's own words are in {}.",
                     (r.work / "colmap.log").string()));
+  const fs::path& best = of_narrow > of_wide ? narrow : wide;
+  refine_lens(steps, best, r.work, at(1));
   fs::remove_all(r.sparse);
-  move_path(of_narrow > of_wide ? narrow : wide, r.sparse);
+  move_path(best, r.sparse);
 }
 
 }  // namespace cei3d

@@ -33,6 +33,10 @@ bool poses_are_found(const PosingRequest&);
 // fails, no model comes out, interrupted.
 void find_poses(const PosingRequest&, double first, double last, Progress&);
 
+// Gives the camera of a model that has one, of the kind SIMPLE_RADIAL, all of the lens that OPENCV's has: two
+// focal lengths, k1, k2, p1, p2. It projects as before. False: several cameras, or others.
+bool give_full_lens(const std::filesystem::path& model);
+
 // Share of a COLMAP step that is done, by the end of what it printed; none where it does not say.
 std::optional<double> colmap_progress(const std::string& log, size_t photos);
 
