@@ -9,6 +9,7 @@
 #include "core/base/error.h"
 #include "core/base/file.h"
 #include "core/base/json.h"
+#include "core/base/json_reader.h"
 #include "core/base/parse_json.h"
 #include "core/math/quantile.h"
 #include "core/math/tangents.h"
@@ -105,6 +106,19 @@ bool shows_photographs(const CameraChoice& choice) {
   return std::holds_alternative<ProjectViews>(choice) || std::holds_alternative<CaptureViews>(choice);
 }
 
+// The capture of this path; what was found out about its views, if it is that of the project.
+Capture named_capture(const Project& project, const Capture& own, const fs::path& path) {
+  Capture capture = load_capture(path);
+  if (capture.format != own.format) return capture;
+  Capture as_read = load_capture(path, reading_of(project));
+  if (capture_fingerprint(as_read) != project.fingerprint()) return capture;
+  as_read = with_cameras(std::move(as_read), project.refined_cameras());
+  std::map<std::string, fs::path> doubtful;
+  for (const View& v : own.views) doubtful[v.name] = v.doubtful_path;
+  for (View& v : as_read.views) v.doubtful_path = doubtful[v.name];
+  return as_read;
+}
+
 bool is_camera_file(const fs::path& path) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return false;
@@ -112,18 +126,22 @@ bool is_camera_file(const fs::path& path) {
   return j.is_object() && j.contains("cameras");
 }
 
+CaptureOptions reading_of(const Project& project) {
+  JsonReader reader(project.head().options, "The options of the reconstruction");
+  CaptureOptions o;
+  o.format = reader.optional("format", o.format);
+  o.test_every = reader.optional("test_every", o.test_every);
+  o.views = reader.optional("views", o.views);
+  o.test_share = reader.optional("test_share", o.test_share);
+  o.seed = reader.optional("seed", o.seed);
+  return o;
+}
+
 std::vector<View> choose_views(const Project& project, const fs::path& path, std::optional<Split> split) {
-  Capture capture = path.empty() ? project.capture() : load_capture(path);
+  const Capture own = project.capture();
+  Capture capture = path.empty() ? own : named_capture(project, own, path);
   std::map<std::string, Split> known;
-  std::map<std::string, fs::path> doubtful;
-  for (const View& v : project.capture().views) {
-    known[v.name] = v.split;
-    doubtful[v.name] = v.doubtful_path;
-  }
-  if (!path.empty() && capture_fingerprint(capture) == project.fingerprint()) {
-    capture = with_cameras(std::move(capture), project.refined_cameras());
-    for (View& v : capture.views) v.doubtful_path = doubtful[v.name];
-  }
+  for (const View& v : own.views) known[v.name] = v.split;
   const bool has_splits = std::any_of(capture.views.begin(), capture.views.end(),
                                       [](const View& v) { return v.split != Split::train; });
   if (!has_splits)

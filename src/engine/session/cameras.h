@@ -13,6 +13,9 @@ namespace cei3d {
 // Errors: no views, unreadable files. size 0: the cameras' own.
 std::vector<NamedCamera> choose_cameras(const Project&, const CameraChoice&, int width, int height);
 
+// How the reconstruction read its capture.
+CaptureOptions reading_of(const Project&);
+
 // The views of a capture that the choice names: of a split, or of every split; of the project's own capture
 // when the path is empty. Splits that the project held out itself count for the same views of a capture
 // without splits.

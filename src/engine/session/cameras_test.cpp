@@ -149,6 +149,16 @@ TEST_F(CamerasTest, ViewsOfTheObjectsCaptureKeepWhatIsDoubtful) {
     EXPECT_EQ(views.at(0).doubtful_path, "");
     EXPECT_EQ(views.at(1).doubtful_path, doubtful);
   }
+  // Also where the split is that of the reconstruction.
+  Capture split = load_capture(photos, {"", 2});
+  split.views[1].doubtful_path = doubtful;
+  const Project q =
+      Project::create(temp_.path() / "q", {{{1, 2, 3}, 0.5}, {{"test_every", 2}}}, split, false);
+  for (const fs::path& named : {fs::path(), photos}) {
+    EXPECT_EQ(choose_views(q, named, Split::test).size(), views_of(split, Split::test).size());
+    for (const View& v : choose_views(q, named, std::nullopt))
+      EXPECT_EQ(v.doubtful_path.empty(), v.name != split.views[1].name) << v.name;
+  }
   write_nerf_split(photos, "train", ball, test_views(ball, 4));  // another capture
   EXPECT_EQ(choose_views(p, photos, std::nullopt).at(1).doubtful_path, "");
 }

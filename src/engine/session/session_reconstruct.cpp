@@ -11,6 +11,7 @@
 #include "engine/project/project.h"
 #include "engine/reconstruct/preset_settings.h"
 #include "engine/render/render_cache.h"
+#include "engine/session/cameras.h"
 #include "engine/session/object_summary.h"
 #include "engine/session/photograph_size.h"
 #include "engine/session/run_log.h"
@@ -116,10 +117,7 @@ Project create_project(const ReconstructRequest& request, const CheckReport& che
 // Error: the capture has changed since the reconstruction began.
 void require_same_capture(const Project& project, const fs::path& given) {
   Capture now = project.given_capture();
-  if (!given.empty()) {
-    const Json& o = project.head().options;
-    now = load_capture(given, capture_options(o.value("format", ""), options_from_json(o)));
-  }
+  if (!given.empty()) now = load_capture(given, reading_of(project));
   if (capture_fingerprint(now) != project.fingerprint())
     fail(
         "The capture {} has changed since {} was begun: its views, cameras or images differ. Restore "
