@@ -25,7 +25,7 @@ struct Finding {
   std::vector<std::string> views = {};
   // A safe change of the capture that removes the cause; empty: there is none.
   std::function<void(Capture&)> repair = {};
-  bool marked = true;  // its views where all are shown; false: pictures of them show it as well
+  bool marked = true;  // whether its views have a red frame; false: the pictures themselves show it
 };
 
 struct SplitReport {

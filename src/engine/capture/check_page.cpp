@@ -20,7 +20,7 @@ constexpr Vec3f kRed{0.85f, 0.15f, 0.1f}, kGray{0.5f, 0.5f, 0.5f};
 
 void put(Image& image, int x, int y, Vec3f color) { std::copy_n(&color.x, 3, image.at(x, y)); }
 
-// A note asks for no change of a view, and of what a picture shows there may be too many.
+// A note asks for no change of a view.
 bool is_doubtful(const View& view, const CaptureReport& report) {
   return std::any_of(report.findings.begin(), report.findings.end(), [&](const Finding& f) {
     return f.severity != Severity::note && f.marked &&

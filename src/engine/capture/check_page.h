@@ -13,8 +13,8 @@ namespace cei3d {
 // pixels where its mask is overruled red. A view that cannot be read is gray.
 Image view_picture(const View& view, const CaptureReport& report, int size);
 
-// All views in rows, in the capture's order; those of a warning or problem have a red frame, but
-// for an object that the border of the photograph cuts, which is seen.
+// All views in rows, in the capture's order; those of a warning or problem have a red frame.
+// Where the border of the photograph cuts the object, that is seen without one.
 Image contact_sheet(const Capture& capture, const CaptureReport& report, int size = 160);
 
 // A page that needs no other file: findings with their fixes, cameras and sphere, all views with their names.
